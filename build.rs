@@ -16,14 +16,14 @@ fn main() {
     // new image.
     println!("cargo::rerun-if-changed=tools/linker/src");
     println!("cargo::rerun-if-env-changed=LIZARD_PLAIN_LINK");
-    let given = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    let file = given.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
+    let configured_path = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    let file = configured_path.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
     println!("cargo::rerun-if-changed={}", file.display());
     let robot = Robot::load(&file).unwrap_or_else(|error| stop(&error.to_string()));
     // Cargo sets OUT_DIR for every build script.
-    let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
-    let out = PathBuf::from(out);
-    write(&out.join("robot.bin"), &robot.section());
+    let out_dir = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
+    let out_dir = PathBuf::from(out_dir);
+    write(&out_dir.join("robot.bin"), &robot.section());
     // The linker script lays out the flash. The address of the robot's section comes from
     // lizard_core::numbers::section::START.
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
@@ -38,9 +38,9 @@ fn main() {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }
     // OUT_DIR is build/<package>/out in the folder of the firmware.
-    if let Some(beside) = out.ancestors().nth(3) {
+    if let Some(firmware_folder) = out_dir.ancestors().nth(3) {
         write(
-            &beside.join("gaits.txt"),
+            &firmware_folder.join("gaits.txt"),
             Report::of(&robot).to_string().as_bytes(),
         );
     }

@@ -23,9 +23,9 @@ static mut MAIN: Main = Main::new();
 #[avr_device::entry]
 fn main() -> ! {
     let mut uno = Uno::start();
-    let place = &raw mut MAIN;
+    let main_pointer = &raw mut MAIN;
     // SAFETY: this function is entered once, and nobody else names `MAIN`.
-    let main = unsafe { &mut *place };
+    let main = unsafe { &mut *main_pointer };
     main.begin(Region::EMPTY, &mut uno);
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {

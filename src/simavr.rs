@@ -8,11 +8,11 @@ const fn number(tag: u8, value: u32) -> [u8; 6] {
 }
 
 /// Length of the chip's name, padded with zeros, in bytes.
-const NAME: usize = 64;
+const NAME_BYTES: usize = 64;
 
 #[repr(C)]
 struct Simavr {
-    name: [u8; 2 + NAME],
+    name: [u8; 2 + NAME_BYTES],
     numbers: [[u8; 6]; 4],
     end: [u8; 2],
 }
@@ -23,9 +23,9 @@ struct Simavr {
 #[unsafe(link_section = ".mmcu")]
 static SIMAVR: Simavr = Simavr {
     name: {
-        let mut name = [0; 2 + NAME];
+        let mut name = [0; 2 + NAME_BYTES];
         let (head, text) = name.split_at_mut(2);
-        head.copy_from_slice(&[1, NAME as u8]);
+        head.copy_from_slice(&[1, NAME_BYTES as u8]);
         text.split_at_mut(10).0.copy_from_slice(b"atmega328p");
         name
     },

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 /// The version of libsimavr that the shim corrects. With another version, tests of the data sheet fail or hang.
-const TESTED: &str = "1.6";
+const TESTED_VERSION: &str = "1.6";
 
 fn main() {
     if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "windows") {
@@ -18,10 +18,10 @@ fn main() {
     let files = std::fs::read_dir("shim").expect("the folder shim/ is part of the package");
     let files = files.map(|file| file.expect("a file of shim/").path());
     let mut sources: Vec<PathBuf> = files
-        .filter(|file| file.extension().is_some_and(|end| end == "c"))
+        .filter(|file| file.extension().is_some_and(|extension| extension == "c"))
         .collect();
     sources.sort();
-    let compiled = cc::Build::new()
+    let result = cc::Build::new()
         .files(sources)
         .opt_level(2)
         .std("gnu11")
@@ -30,7 +30,7 @@ fn main() {
         // simavr's callbacks have parameters that most of ours do not use.
         .flag("-Wno-unused-parameter")
         .try_compile("simulated_uno_shim");
-    if let Err(error) = compiled {
+    if let Err(error) = result {
         panic!(
             "the shim does not compile; it needs libsimavr's headers:\n\
              sudo apt-get install libsimavr-dev libelf-dev\n{error}"
@@ -64,19 +64,19 @@ fn folder_of(library: &str) -> Option<PathBuf> {
     Some(path.parent()?.to_owned()).filter(|folder| folder.is_absolute())
 }
 
-/// Ends the build if pkg-config reports a version of libsimavr other than [`TESTED`], or no version.
+/// Ends the build if pkg-config reports a version of libsimavr other than [`TESTED_VERSION`], or no version.
 fn check_version() {
-    let mut ask = Command::new("pkg-config");
-    let output = ask.args(["--modversion", "simavr"]).output();
+    let mut pkg_config = Command::new("pkg-config");
+    let output = pkg_config.args(["--modversion", "simavr"]).output();
     let version = output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
     match version.as_deref() {
-        Ok(TESTED) => {}
-        Ok(other) if !other.is_empty() => panic!(
-            "libsimavr {other} is installed; this package corrects {TESTED} (Debian 12) and would \
-             simulate another chip with {other}: install {TESTED}, from Debian 12 or from source"
+        Ok(TESTED_VERSION) => {}
+        Ok(installed_version) if !installed_version.is_empty() => panic!(
+            "libsimavr {installed_version} is installed; this package corrects {TESTED_VERSION} (Debian 12) and would \
+             simulate another chip with {installed_version}: install {TESTED_VERSION}, from Debian 12 or from source"
         ),
         _ => panic!(
-            "pkg-config does not find libsimavr {TESTED}:\n\
+            "pkg-config does not find libsimavr {TESTED_VERSION}:\n\
              sudo apt-get install pkg-config libsimavr-dev libelf-dev"
         ),
     }

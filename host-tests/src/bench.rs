@@ -24,8 +24,8 @@ impl FirmwareBench {
     ///
     /// The file may contain any robot; [`FirmwareBench::image`] replaces it.
     pub fn elf() -> PathBuf {
-        let built = root().join("target/avr-atmega328p/release/lizard.elf");
-        std::env::var_os("LIZARD_ELF").map_or(built, PathBuf::from)
+        let built_elf = root().join("target/avr-atmega328p/release/lizard.elf");
+        std::env::var_os("LIZARD_ELF").map_or(built_elf, PathBuf::from)
     }
 
     /// The firmware's image, in which [`robot`] replaces the robot of the file.
@@ -61,7 +61,7 @@ impl FirmwareBench {
     /// See [`FirmwareBench::boot`].
     pub fn boot_with(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
-        Self(or_panic(board))
+        Self(value_or_panic(board))
     }
 
     /// Powers the board on and runs no cycle yet.
@@ -83,7 +83,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware does not answer.
     pub fn say(&mut self, line: &str) -> String {
-        or_panic(self.0.say(line))
+        value_or_panic(self.0.say(line))
     }
 
     /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].
@@ -91,7 +91,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware does not answer.
     pub fn ask(&mut self, line: &str) -> (Vec<String>, String) {
-        or_panic(self.0.ask(line))
+        value_or_panic(self.0.ask(line))
     }
 
     /// Runs the firmware for some milliseconds: see [`SimulatedBoard::run_ms`].
@@ -99,7 +99,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset during this time.
     pub fn run_ms(&mut self, ms: u64) {
-        or_panic(self.0.run_ms(ms));
+        value_or_panic(self.0.run_ms(ms));
     }
 
     /// Times the calls of a function: see [`SimulatedBoard::time_calls`].
@@ -107,7 +107,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the ELF has no such function, or more than one.
     pub fn time_calls(&mut self, function: &str, ms: u64) -> Vec<Call> {
-        or_panic(self.0.time_calls(function, ms))
+        value_or_panic(self.0.time_calls(function, ms))
     }
 
     /// Runs the firmware for some frames and returns them: see [`SimulatedBoard::run_for_frames`].
@@ -115,7 +115,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset during these frames.
     pub fn run_for_frames(&mut self, count: u64) -> Vec<Frame> {
-        or_panic(self.0.run_for_frames(count))
+        value_or_panic(self.0.run_for_frames(count))
     }
 }
 
@@ -133,7 +133,7 @@ impl DerefMut for FirmwareBench {
     }
 }
 
-fn or_panic<T>(result: Result<T, BoardError>) -> T {
+fn value_or_panic<T>(result: Result<T, BoardError>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -8,7 +8,7 @@ use std::num::NonZeroU64;
 /// # Panics
 /// If `LIZARD_FUZZ` is not a whole number of at least 1.
 pub fn scaled(count: u64) -> u64 {
-    count * number("LIZARD_FUZZ", 1)
+    count * read_number("LIZARD_FUZZ", 1)
 }
 
 /// Reads the minutes of a test's dialogue from the environment variable `LIZARD_MINUTES`, 10 by default.
@@ -16,13 +16,13 @@ pub fn scaled(count: u64) -> u64 {
 /// # Panics
 /// If `LIZARD_MINUTES` is not a whole number of at least 1.
 pub fn minutes() -> u64 {
-    number("LIZARD_MINUTES", 10)
+    read_number("LIZARD_MINUTES", 10)
 }
 
 /// Reads a number from the environment. Rejects 0, with which a test would check nothing.
-fn number(name: &str, otherwise: u64) -> u64 {
-    std::env::var(name).map_or(otherwise, |given| match given.parse::<NonZeroU64>() {
-        Ok(number) => number.get(),
-        Err(_) => panic!("{name} is {given:?}; it must be a whole number from 1 on"),
+fn read_number(name: &str, default: u64) -> u64 {
+    std::env::var(name).map_or(default, |value| match value.parse::<NonZeroU64>() {
+        Ok(count) => count.get(),
+        Err(_) => panic!("{name} is {value:?}; it must be a whole number from 1 on"),
     })
 }

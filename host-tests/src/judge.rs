@@ -18,7 +18,7 @@ use crate::robots::root;
 
 /// Cycles at the end of a run in which pulses are not compared, since a pulse may have ended on one simulator and not
 /// yet on the other.
-const LAST_CYCLES: u64 = 1_000;
+const IGNORED_END_CYCLES: u64 = 1_000;
 
 /// Cycles by which Timer1 starts later on avr8js, and so everything that the firmware does: simavr's Timer1 counts
 /// from the first cycle of the instruction that starts it, that of avr8js from the last cycle. The bytes are sent to
@@ -117,15 +117,15 @@ pub fn run_on_avr8js(
         script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(AVR8JS_LAG));
     }
     script += &format!("end {end}\n");
-    let printed = run_program(
+    let output_text = run_program(
         node()?.arg(judge_folder().join("run.js")).arg(hex),
         "nodejs",
         &script,
     )?;
-    let mut verdict =
-        read(&printed).ok_or_else(|| format!("the judge's output is malformed:\n{printed}"))?;
-    verdict.account.end = end;
-    Ok(verdict)
+    let mut run = parse_run(&output_text)
+        .ok_or_else(|| format!("the judge's output is malformed:\n{output_text}"))?;
+    run.account.end = end;
+    Ok(run)
 }
 
 /// Runs the tests of tools/judge, which show each error of avr8js and its correction. Returns their output.
@@ -154,54 +154,57 @@ fn node() -> Result<Command, String> {
     Ok(Command::new("node"))
 }
 
-/// Runs a program on `input` and returns its output. `debian` is the Debian package that contains the program, for
-/// the error message.
-fn run_program(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
+/// Runs a program on `input` and returns its output. `debian_package` is the Debian package that contains the
+/// program, for the error message.
+fn run_program(command: &mut Command, debian_package: &str, input: &str) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = LIMIT.output(command, input.as_bytes());
     let output = output.map_err(|error| match error.kind() {
         ErrorKind::NotFound => format!(
             "{program} is missing: scripts/setup and scripts/setup-judge install it \
-             (Debian package {debian})"
+             (Debian package {debian_package})"
         ),
         _ => format!("{program}: {error}"),
     })?;
-    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    let output_text = String::from_utf8_lossy(&output.stdout).into_owned();
     if output.status.success() {
-        return Ok(printed);
+        return Ok(output_text);
     }
-    let complaint = String::from_utf8_lossy(&output.stderr);
-    Err(format!("{program} fails: {}\n{printed}", complaint.trim()))
+    let error_text = String::from_utf8_lossy(&output.stderr);
+    Err(format!(
+        "{program} fails: {}\n{output_text}",
+        error_text.trim()
+    ))
 }
 
 /// Parses the output of tools/judge/run.js; the comment at the top of that file describes the lines. Returns `None`
 /// if the output is malformed.
-fn read(printed: &str) -> Option<Avr8jsRun> {
-    let mut verdict = Avr8jsRun::default();
-    for line in printed.lines() {
+fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
+    let mut run = Avr8jsRun::default();
+    for line in output_text.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
-            ["pulse", pin, rise, width] => verdict.account.pulses.push(PinPulse {
+            ["pulse", pin, rise, width] => run.account.pulses.push(PinPulse {
                 pin: Pin::arduino(pin.parse().ok()?),
                 rise: rise.parse().ok()?,
                 width: width.parse().ok()?,
             }),
-            ["sent", cycle, byte] => verdict.account.sent.push(SerialByte {
+            ["sent", cycle, byte] => run.account.sent.push(SerialByte {
                 cycle: cycle.parse().ok()?,
                 byte: u8::from_str_radix(byte, 16).ok()?,
             }),
             ["eeprom", bytes] => {
-                let byte = |cycle| u8::from_str_radix(bytes.get(cycle..cycle + 2)?, 16).ok();
-                verdict.eeprom = (0..bytes.len())
+                let byte_at = |index| u8::from_str_radix(bytes.get(index..index + 2)?, 16).ok();
+                run.eeprom = (0..bytes.len())
                     .step_by(2)
-                    .map(byte)
+                    .map(byte_at)
                     .collect::<Option<_>>()?;
             }
-            ["cpu", ms] => verdict.cpu_ms = ms.parse().ok()?,
+            ["cpu", ms] => run.cpu_ms = ms.parse().ok()?,
             _ => return None,
         }
     }
-    (verdict.eeprom.len() == 1024).then_some(verdict)
+    (run.eeprom.len() == 1024).then_some(run)
 }
 
 /// The result of comparing two simulators whose outputs agree.
@@ -243,32 +246,39 @@ pub fn compare_pulses(
     avr8js: &Outputs,
     servos: &[Pin],
 ) -> Result<Agreement, String> {
-    let of_servos = |account: &Outputs| -> Vec<PinPulse> {
+    let pulses_of_servos = |account: &Outputs| -> Vec<PinPulse> {
         let pulses = account.pulses.iter().copied();
         pulses.filter(|pulse| servos.contains(&pulse.pin)).collect()
     };
-    let (pulses, others) = (of_servos(simavr), of_servos(avr8js));
-    let (Some(first), Some(other)) = (pulses.first(), others.first()) else {
+    let (simavr_pulses, avr8js_pulses) = (pulses_of_servos(simavr), pulses_of_servos(avr8js));
+    let (Some(first_simavr), Some(first_avr8js)) = (simavr_pulses.first(), avr8js_pulses.first())
+    else {
         return Err("on one of them no servo gets a pulse".into());
     };
-    let offset = other.rise as i64 - first.rise as i64;
-    let others: Vec<PinPulse> = others
+    let offset = first_avr8js.rise as i64 - first_simavr.rise as i64;
+    let avr8js_pulses: Vec<PinPulse> = avr8js_pulses
         .iter()
         .map(|pulse| PinPulse {
             rise: pulse.rise.saturating_add_signed(-offset),
             ..*pulse
         })
         .collect();
-    let limit = simavr.end.min(avr8js.end) - LAST_CYCLES;
-    let (pulses, others) = (ended_pulses(&pulses, limit), ended_pulses(&others, limit));
-    let both = pulses.iter().zip(&others).enumerate();
-    if let Some((n, (a, b))) = both.into_iter().find(|(_, (a, b))| a != b) {
+    let limit_cycle = simavr.end.min(avr8js.end) - IGNORED_END_CYCLES;
+    let (simavr_pulses, avr8js_pulses) = (
+        ended_pulses(&simavr_pulses, limit_cycle),
+        ended_pulses(&avr8js_pulses, limit_cycle),
+    );
+    let pairs = simavr_pulses.iter().zip(&avr8js_pulses).enumerate();
+    if let Some((index, (simavr_pulse, avr8js_pulse))) = pairs
+        .into_iter()
+        .find(|(_, (simavr_pulse, avr8js_pulse))| simavr_pulse != avr8js_pulse)
+    {
         return Err(format!(
-            "pulse {n}: on simavr {a}, on avr8js {b}, where all come {offset} cycles later"
+            "pulse {index}: on simavr {simavr_pulse}, on avr8js {avr8js_pulse}, where all come {offset} cycles later"
         ));
     }
-    let count = pulses.len().min(others.len());
-    for (name, pulses) in [("simavr", &pulses), ("avr8js", &others)] {
+    let count = simavr_pulses.len().min(avr8js_pulses.len());
+    for (name, pulses) in [("simavr", &simavr_pulses), ("avr8js", &avr8js_pulses)] {
         if let Some(next) = pulses.get(count) {
             return Err(format!("pulse {count} is on {name} alone: {next}"));
         }
@@ -286,22 +296,28 @@ pub fn compare_pulses(
 /// # Errors
 /// Returns a message about the first difference.
 pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, String> {
-    let (Some(first), Some(other)) = (simavr.sent.first(), avr8js.sent.first()) else {
+    let (Some(first_simavr), Some(first_avr8js)) = (simavr.sent.first(), avr8js.sent.first())
+    else {
         return Err("one of them is silent".into());
     };
-    let offset = other.cycle as i64 - first.cycle as i64;
-    let both = simavr.sent.iter().zip(&avr8js.sent);
+    let offset = first_avr8js.cycle as i64 - first_simavr.cycle as i64;
+    let pairs = simavr.sent.iter().zip(&avr8js.sent);
     let mut jitter = 0;
-    for (n, (a, b)) in both.enumerate() {
-        if a.byte != b.byte {
+    for (index, (simavr_byte, avr8js_byte)) in pairs.enumerate() {
+        if simavr_byte.byte != avr8js_byte.byte {
             return Err(format!(
-                "byte {n} of the console, cycle {}: simavr has {:?}, avr8js {:?}",
-                a.cycle,
-                tail(&simavr.sent, n),
-                tail(&avr8js.sent, n)
+                "byte {index} of the console, cycle {}: simavr has {:?}, avr8js {:?}",
+                simavr_byte.cycle,
+                tail(&simavr.sent, index),
+                tail(&avr8js.sent, index)
             ));
         }
-        jitter = jitter.max(b.cycle.saturating_add_signed(-offset).abs_diff(a.cycle));
+        jitter = jitter.max(
+            avr8js_byte
+                .cycle
+                .saturating_add_signed(-offset)
+                .abs_diff(simavr_byte.cycle),
+        );
     }
     let count = simavr.sent.len().min(avr8js.sent.len());
     for (name, account) in [("simavr", simavr), ("avr8js", avr8js)] {
@@ -321,16 +337,16 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
 }
 
 /// Returns the pulses that have ended by a cycle.
-fn ended_pulses(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
+fn ended_pulses(pulses: &[PinPulse], limit_cycle: u64) -> Vec<PinPulse> {
     let pulses = pulses.iter().copied();
     pulses
-        .filter(|pulse| pulse.rise + pulse.width <= limit)
+        .filter(|pulse| pulse.rise + pulse.width <= limit_cycle)
         .collect()
 }
 
-/// Returns the last 60 bytes, about a line, of the text up to byte `n`.
-fn tail(bytes: &[SerialByte], n: usize) -> String {
-    let end = bytes.len().min(n + 1);
+/// Returns the last 60 bytes, about a line, of the text up to byte `index`.
+fn tail(bytes: &[SerialByte], index: usize) -> String {
+    let end = bytes.len().min(index + 1);
     let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]
         .iter()
         .map(|byte| byte.byte)

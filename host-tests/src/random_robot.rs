@@ -16,7 +16,7 @@ use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 
 /// Number of drafts of a robot after which the search ends.
-const DRAFTS: usize = 1000;
+const MAX_DRAFTS: usize = 1000;
 
 /// The pins to which a servo may be connected.
 const PINS: [&str; 17] = [
@@ -33,20 +33,20 @@ const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 /// # Panics
 /// If no draft is a valid robot, which means that the generator has an error.
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
-    (0..DRAFTS)
+    (0..MAX_DRAFTS)
         .find_map(|_| {
             let body = Body::random(rng)?;
             let mut text = body.text();
             Robot::parse(&text).ok()?;
-            for gait in gaits(rng, &body) {
+            for gait in random_gaits(rng, &body) {
                 text = with_allowed_gait(text, &gait);
             }
             if rng.bool() {
-                append_line(&mut text, &rail(rng, &body.pins));
+                append_line(&mut text, &random_rail(rng, &body.pins));
             }
             let robot = Robot::parse(&text).ok()?;
-            let moves = robot.gaits().iter().any(|gait| gait.moves());
-            moves.then_some((text, robot))
+            let has_moving_gait = robot.gaits().iter().any(|gait| gait.moves());
+            has_moving_gait.then_some((text, robot))
         })
         .expect("one draft in a few is a valid robot")
 }
@@ -58,14 +58,14 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 /// If the robot has no gait that moves, or is not valid.
 pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
-    let like = robot.gaits().iter().find(|gait| gait.moves());
-    let like = like.expect("a gait that moves").name();
+    let gait = robot.gaits().iter().find(|gait| gait.moves());
+    let gait_name = gait.expect("a gait that moves").name();
     // Leaves room for one waveform more, in case the additional gaits need their own.
-    let taken = robot.content().section().len() + size_of::<Wave>();
-    let room = usize::from(SPACE).saturating_sub(taken);
-    let gaits = (0..room / (size_of::<Gait>() + length)).map(|n| {
-        let name = format!("{:n<1$}{n:02}", "on-and-o", length - 2);
-        format!("[gait.{name}]\nlike = \"{like}\"\n")
+    let taken_bytes = robot.content().section().len() + size_of::<Wave>();
+    let room_bytes = usize::from(SPACE).saturating_sub(taken_bytes);
+    let gaits = (0..room_bytes / (size_of::<Gait>() + length)).map(|number| {
+        let name = format!("{:n<1$}{number:02}", "on-and-o", length - 2);
+        format!("[gait.{name}]\nlike = \"{gait_name}\"\n")
     });
     Robot::parse(&format!("{text}{}", gaits.collect::<String>())).expect("more of the same gait")
 }
@@ -87,19 +87,19 @@ impl Body {
     /// Returns a random robot that can stand; `None` if no safe neutral pose was found.
     fn random(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
-        let mut length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
-        let chassis = length(100.0, 170.0);
+        let mut random_length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
+        let chassis = random_length(100.0, 170.0);
         // l0 and l5 bases; l1, l4, l6, l9 cranks; l2, l3, l7, l8 couplers; l10 and
         // l15 chassis; l11, l14, l16, l19 arms; l12, l13, l17, l18 slider halves.
         let mut links: [f64; 20] = std::array::from_fn(|link| match link {
-            0 | 5 => length(12.0, 36.0),
-            1 | 4 | 6 | 9 => length(22.0, 38.0),
-            2 | 3 | 7 | 8 => length(40.0, 66.0),
+            0 | 5 => random_length(12.0, 36.0),
+            1 | 4 | 6 | 9 => random_length(22.0, 38.0),
+            2 | 3 | 7 | 8 => random_length(40.0, 66.0),
             10 | 15 => chassis,
-            11 | 14 | 16 | 19 => length(14.0, 40.0),
-            _ => length(40.0, 50.0),
+            11 | 14 | 16 | 19 => random_length(14.0, 40.0),
+            _ => random_length(40.0, 50.0),
         });
-        let (ground, leg) = (length(30.0, 70.0), length(30.0, 60.0));
+        let (ground, leg_length) = (random_length(30.0, 70.0), random_length(30.0, 60.0));
         let mut limits = Limits {
             type2: round_factor(random_between(rng, 0.1, 0.5)),
             type1: round_factor(random_between(rng, 0.0, 0.4)),
@@ -111,37 +111,38 @@ impl Body {
             links: Links::from(links),
             leg: Leg {
                 ground,
-                crank: leg,
+                crank: leg_length,
                 coupler: ground,
-                follower: leg,
+                follower: leg_length,
             },
         };
-        let neutral = neutral(rng, &lizard, &limits)?;
+        let neutral = random_neutral(rng, &lizard, &limits)?;
         // The sliders' nominal lengths follow from the neutral pose.
         let solution = lizard.solve(&neutral.into()).ok()?;
         for (side, halves) in [(Side::Left, [12, 13]), (Side::Right, [17, 18])] {
-            let room = 0.5 * limits.stroke_max.min(-limits.stroke_min);
-            let nominal = solution.side(side).d + random_between(rng, -room, room);
-            let first = random_between(rng, 0.35, 0.65);
-            links[halves[0]] = round(nominal * first);
-            links[halves[1]] = round(nominal * (1.0 - first));
+            let max_shift = 0.5 * limits.stroke_max.min(-limits.stroke_min);
+            let nominal_length = solution.side(side).d + random_between(rng, -max_shift, max_shift);
+            let first_share = random_between(rng, 0.35, 0.65);
+            links[halves[0]] = round(nominal_length * first_share);
+            links[halves[1]] = round(nominal_length * (1.0 - first_share));
             // Limits how far a slider may shorten, so that its length stays positive.
-            limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal));
+            limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal_length));
         }
         lizard.links = Links::from(links);
         let mut pins = PINS;
         rng.shuffle(&mut pins);
         let servos = std::array::from_fn(|servo| {
             let sign = if rng.bool() { 1.0 } else { -1.0 };
-            let trim = |rng: &mut Rng, us: f64| (us + random_between(rng, -60.0, 60.0)).round();
+            let random_us =
+                |rng: &mut Rng, us: f64| (us + random_between(rng, -60.0, 60.0)).round();
             format!(
                 "pin = \"{}\"\nneutral = {}\nneutral_us = {}\nus_per_degree = {}\nmin_us = {}\nmax_us = {}\n",
                 pins[servo],
                 neutral[servo],
-                trim(rng, 1500.0),
+                random_us(rng, 1500.0),
                 sign * round_factor(random_between(rng, 6.0, 14.0)),
-                trim(rng, 600.0),
-                trim(rng, 2400.0),
+                random_us(rng, 600.0),
+                random_us(rng, 2400.0),
             )
         });
         Some(Self {
@@ -208,29 +209,34 @@ impl Body {
 
 /// Returns a random neutral pose, deg, whose margins exceed their limits by at least `ROOM`; `None` if no such pose
 /// was found. The strokes are not checked.
-fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
+fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
     /// Least distance of every margin from its limit, a sine.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
-        let [left, right, rear_left, rear_right] =
+        let [left_deg, right_deg, rear_left_deg, rear_right_deg] =
             [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
-        let neutral = [180.0 - left, right, 360.0 - rear_right, 180.0 + rear_left];
+        let neutral = [
+            180.0 - left_deg,
+            right_deg,
+            360.0 - rear_right_deg,
+            180.0 + rear_left_deg,
+        ];
         let solution = lizard.solve(&neutral.into()).ok()?;
-        let roomy = Limits {
+        let limits_with_room = Limits {
             type2: limits.type2 + ROOM,
             type1: limits.type1 + ROOM,
             leg: limits.leg + ROOM,
             stroke_min: f64::NEG_INFINITY,
             stroke_max: f64::INFINITY,
         };
-        roomy.is_safe(&solution).then_some(neutral)
+        limits_with_room.is_safe(&solution).then_some(neutral)
     })
 }
 
 /// Returns the text of a rail on an analogue pin without a servo, with random thresholds.
-fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
-    let free = pins[4..].iter().find(|pin| pin.starts_with('A'));
-    let pin = free.expect("six analogue pins and four servos");
+fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
+    let free_pin = pins[4..].iter().find(|pin| pin.starts_with('A'));
+    let pin = free_pin.expect("six analogue pins and four servos");
     let ratio = round(random_between(rng, 1.5, 3.0));
     // The highest voltage at the pin is 5 V.
     let slow = round(ratio * random_between(rng, 2.4, 4.0));
@@ -247,10 +253,10 @@ fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
 type GaitOfSize = Box<dyn Fn(f64) -> String>;
 
 /// Returns random gaits of every kind: waves, held gaits, reversed and mirrored gaits, and paths of head and tail.
-fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
+fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     let mut gaits = Vec::new();
-    let period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
-    let legs = |values: [f64; 4]| {
+    let random_period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
+    let table_of_legs = |values: [f64; 4]| {
         let pairs: Vec<String> = LEGS
             .iter()
             .zip(values)
@@ -258,27 +264,31 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
             .collect();
         format!("{{ {} }}", pairs.join(", "))
     };
-    let mut any = |min: f64, max: f64| -> [f64; 4] {
+    let mut random_factors = |min: f64, max: f64| -> [f64; 4] {
         std::array::from_fn(|_| round_factor(random_between(rng, min, max)))
     };
-    let (starts, gains, halves) = (any(0.0, 1.0), any(0.4, 1.0), any(-1.0, 1.0));
-    let wave = format!(
+    let (starts, gains, halves) = (
+        random_factors(0.0, 1.0),
+        random_factors(0.4, 1.0),
+        random_factors(-1.0, 1.0),
+    );
+    let wave_text = format!(
         "[gait.wander]\nperiod = {}\nwaveform = \"wave\"\nduty = {}\nstart = {}\ngain = {}",
-        period(rng),
+        random_period(rng),
         round_factor(random_between(rng, 0.5, 0.85)),
-        legs(starts),
-        legs(gains),
+        table_of_legs(starts),
+        table_of_legs(gains),
     );
     let mut order = LEGS;
     rng.shuffle(&mut order);
-    let held = format!(
+    let held_text = format!(
         "[gait.creep-along]\nperiod = {}\nwaveform = \"held\"\norder = {order:?}\ngain = {}",
-        period(rng),
-        legs(halves),
+        random_period(rng),
+        table_of_legs(halves),
     );
-    for wavy in [wave, held] {
+    for gait_text in [wave_text, held_text] {
         gaits.push(Box::new(move |size| {
-            format!("{wavy}\namplitude = {}", round_factor(30.0 * size))
+            format!("{gait_text}\namplitude = {}", round_factor(30.0 * size))
         }) as GaitOfSize);
     }
     gaits.push(Box::new(|_| "[gait.retreat]\nreverse = \"wander\"".into()));
@@ -286,11 +296,14 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     gaits.push(Box::new(|_| {
         "[gait.other-hand]\nmirror = \"creep-along\"".into()
     }));
-    let curve = format!("[gait.curve]\nlike = \"wander\"\nperiod = {}", period(rng));
+    let curve_text = format!(
+        "[gait.curve]\nlike = \"wander\"\nperiod = {}",
+        random_period(rng)
+    );
     gaits.push(Box::new(move |size| {
         format!(
-            "{curve}\ngain = {}",
-            legs([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
+            "{curve_text}\ngain = {}",
+            table_of_legs([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
         )
     }));
     // A path of head or tail is centred at the end point's position in the neutral pose.
@@ -351,25 +364,28 @@ mod tests {
     #[test]
     fn random_robots_are_valid_differ_in_every_length_and_limit_and_move() {
         let mut rng = Rng::with_seed(1);
-        let mut gaits = 0;
+        let mut gait_count = 0;
         for _ in 0..20 {
             let (text, robot) = random_robot(&mut rng);
-            let l = robot.lizard().links;
+            let links = robot.lizard().links;
             let pairs = [
-                (l.l0, l.l5),
-                (l.l1, l.l4),
-                (l.l2, l.l3),
-                (l.l6, l.l9),
-                (l.l7, l.l8),
-                (l.l11, l.l14),
-                (l.l16, l.l19),
+                (links.l0, links.l5),
+                (links.l1, links.l4),
+                (links.l2, links.l3),
+                (links.l6, links.l9),
+                (links.l7, links.l8),
+                (links.l11, links.l14),
+                (links.l16, links.l19),
                 (robot.limits().type1, robot.limits().leg),
                 (robot.limits().type1, robot.limits().type2),
             ];
-            assert!(pairs.iter().all(|(one, other)| one != other), "{text}");
-            gaits += robot.gaits().len();
+            assert!(
+                pairs.iter().all(|(first, second)| first != second),
+                "{text}"
+            );
+            gait_count += robot.gaits().len();
         }
-        println!("{gaits} gaits of 20 robots");
-        assert!(gaits > 20 * 6);
+        println!("{gait_count} gaits of 20 robots");
+        assert!(gait_count > 20 * 6);
     }
 }

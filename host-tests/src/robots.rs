@@ -10,7 +10,7 @@ use lizard_robot::{Robot, edit::without_gait};
 use crate::random_robot::random_robot;
 
 /// Number of random robots in a run.
-const RANDOM: u64 = 8;
+const RANDOM_ROBOTS: u64 = 8;
 
 /// A robot and its name in messages.
 #[derive(Debug)]
@@ -33,7 +33,7 @@ pub fn root() -> PathBuf {
 /// # Panics
 /// If the file is missing or invalid.
 pub fn robot() -> &'static Robot {
-    static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&file()));
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&robot_file()));
     &ROBOT
 }
 
@@ -44,7 +44,7 @@ pub fn robot() -> &'static Robot {
 /// If there is no room even with one gait.
 pub fn patrolling() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        let text = std::fs::read_to_string(file()).expect("a robot.toml");
+        let text = std::fs::read_to_string(robot_file()).expect("a robot.toml");
         patrol_of(&text).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
@@ -61,15 +61,17 @@ pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
         let robot = Robot::parse(text)?;
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
         // A gait to which another gait or a routine refers cannot be removed.
-        let mut fewer = names.rev().map(|name| without_gait(text, name));
-        let fewer = fewer.find(|text| Robot::parse(text).is_ok()).ok_or(error)?;
-        patrol_of(&fewer)
+        let mut shorter_texts = names.rev().map(|name| without_gait(text, name));
+        let shorter_text = shorter_texts
+            .find(|text| Robot::parse(text).is_ok())
+            .ok_or(error)?;
+        patrol_of(&shorter_text)
     })
 }
 
-fn file() -> PathBuf {
-    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    root().join(given.unwrap_or_else(|| "robot.toml".into()))
+fn robot_file() -> PathBuf {
+    let named_path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    root().join(named_path.unwrap_or_else(|| "robot.toml".into()))
 }
 
 /// The paper's robot, for tests that check the paper's figures.
@@ -111,9 +113,9 @@ pub fn robots() -> &'static [Named] {
                 robot: load(path),
             }
         }));
-        robots.extend((0..RANDOM).map(|n| Named {
-            name: format!("random robot {n} of seed {}", seed()),
-            robot: random_robot(&mut rng(n)).1,
+        robots.extend((0..RANDOM_ROBOTS).map(|number| Named {
+            name: format!("random robot {number} of seed {}", seed()),
+            robot: random_robot(&mut rng(number)).1,
         }));
         robots
     });
@@ -125,8 +127,8 @@ pub fn robots() -> &'static [Named] {
 /// # Panics
 /// If the variable is not a whole number.
 pub fn seed() -> u64 {
-    let given = std::env::var("PROPTEST_RNG_SEED").ok();
-    given.map_or(1, |seed| {
+    let value = std::env::var("PROPTEST_RNG_SEED").ok();
+    value.map_or(1, |seed| {
         seed.parse().expect("PROPTEST_RNG_SEED is a whole number")
     })
 }

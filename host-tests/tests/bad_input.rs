@@ -19,25 +19,30 @@ mod lines;
 const COUNT: u64 = 2_000_000;
 
 /// Number of threads on which a test runs.
-const PARTS: u64 = 2;
+const THREADS: u64 = 2;
 
 /// Runs a test on several threads, each with its own random numbers and its share of the count.
-fn in_parts(part: impl Fn(&mut Rng, u64) + Sync) {
+fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
-        let run = |n| {
-            let part = &part;
-            scope.spawn(move || part(&mut lizard_host_tests::rng(1000 + n), scaled(COUNT) / PARTS))
+        let run = |number| {
+            let test = &test;
+            scope.spawn(move || {
+                test(
+                    &mut lizard_host_tests::rng(1000 + number),
+                    scaled(COUNT) / THREADS,
+                )
+            })
         };
-        let parts: Vec<_> = (0..PARTS).map(run).collect();
-        for part in parts {
-            assert!(part.join().is_ok());
+        let handles: Vec<_> = (0..THREADS).map(run).collect();
+        for handle in handles {
+            assert!(handle.join().is_ok());
         }
     });
 }
 
 #[test]
 fn millions_of_random_bytes_do_no_harm_to_the_core() {
-    in_parts(|rng, count| {
+    run_on_threads(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
         for n in 0..count {
             // Line ends are more frequent than in random bytes.
@@ -60,7 +65,7 @@ fn millions_of_random_bytes_do_no_harm_to_the_core() {
 
 #[test]
 fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
-    in_parts(|rng, count| {
+    run_on_threads(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
         let mut accepted = 0u64;
         for n in 0..count {
@@ -82,12 +87,12 @@ fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
 
 #[test]
 fn thousands_of_memories_do_no_harm_to_the_core() {
-    in_parts(|rng, count| {
+    run_on_threads(|rng, count| {
         for _ in 0..count / 1_000 {
             // Changes one byte, three bytes, or about as many bytes as there are.
-            let changed = [1, 3, 3 * CONTENT_BYTES][rng.usize(..3)];
+            let change_count = [1, 3, 3 * CONTENT_BYTES][rng.usize(..3)];
             let mut data = [0; 3 * CONTENT_BYTES + 12];
-            for _ in 0..changed {
+            for _ in 0..change_count {
                 data[rng.usize(..3 * CONTENT_BYTES)] = rng.u8(..);
             }
             let patches = rng.usize(..=4);

@@ -37,16 +37,16 @@ fn embedded_image() -> Image {
 }
 
 /// Returns the versions of the installed compiler and linker, one per line.
-fn tools_here() -> String {
+fn installed_tools() -> String {
     let script = root().join("scripts/code-image");
     let output = Command::new(script)
         .arg("--tools")
         .arg(FirmwareBench::elf())
         .output();
     let output = output.expect("scripts/code-image runs");
-    let printed = String::from_utf8(output.stdout).expect("it is text");
-    assert!(printed.starts_with("rustc version "), "{printed}");
-    printed
+    let output_text = String::from_utf8(output.stdout).expect("it is text");
+    assert!(output_text.starts_with("rustc version "), "{output_text}");
+    output_text
 }
 
 /// Runs an image for a minute of walking, other commands and rest, and returns the recording.
@@ -82,39 +82,56 @@ fn record_minute(image: Image) -> Recording {
 #[test]
 fn the_code_inside_the_program_is_what_the_source_builds() {
     let inside_code = code_of(&Image::parse_hex(CODE).expect("it is Intel HEX"));
-    let mut built = FirmwareBench::image();
-    built
+    let mut built_image = FirmwareBench::image();
+    built_image
         .replace(u32::from(START)..0x7e00, &[])
         .expect("the robot is taken out");
-    let built_code = code_of(&built);
-    let made_by = std::fs::read_to_string(root().join("firmware/tools.txt"));
-    let made_by = made_by.expect("firmware/tools.txt");
-    if made_by == tools_here() {
-        let wrong = (0..START.into()).find(|&at| inside_code[at] != built_code[at]);
-        assert_eq!(wrong, None, "{RENEW} (the first byte that differs)");
+    let built_code = code_of(&built_image);
+    let recorded_tools = std::fs::read_to_string(root().join("firmware/tools.txt"));
+    let recorded_tools = recorded_tools.expect("firmware/tools.txt");
+    if recorded_tools == installed_tools() {
+        let first_difference =
+            (0..START.into()).find(|&index| inside_code[index] != built_code[index]);
+        assert_eq!(
+            first_difference, None,
+            "{RENEW} (the first byte that differs)"
+        );
         return;
     }
     // The test harness would hide the output of `eprintln!` if the test passes, so this writes to stderr directly.
     let note = format!(
         "code_image: firmware/code.hex was made by other tools than those here, so its bytes are \
-         not compared, but what both do in a minute. It was made by\n{made_by}and here are\n{}",
-        tools_here()
+         not compared, but what both do in a minute. It was made by\n{recorded_tools}and here are\n{}",
+        installed_tools()
     );
     std::io::stderr()
         .write_all(note.as_bytes())
         .expect("it is said");
-    let [inside, built] = [embedded_image(), FirmwareBench::image()].map(record_minute);
-    assert_eq!(inside.banner, built.banner, "{RENEW} (its banner)");
-    assert_eq!(inside.answers, built.answers, "{RENEW} (its answers)");
-    assert_eq!(inside.frames.widths.len(), built.frames.widths.len());
-    for (n, (inside, built)) in inside
+    let [inside_recording, built_recording] =
+        [embedded_image(), FirmwareBench::image()].map(record_minute);
+    assert_eq!(
+        inside_recording.banner, built_recording.banner,
+        "{RENEW} (its banner)"
+    );
+    assert_eq!(
+        inside_recording.answers, built_recording.answers,
+        "{RENEW} (its answers)"
+    );
+    assert_eq!(
+        inside_recording.frames.widths.len(),
+        built_recording.frames.widths.len()
+    );
+    for (index, (inside_widths, built_widths)) in inside_recording
         .frames
         .widths
         .iter()
-        .zip(&built.frames.widths)
+        .zip(&built_recording.frames.widths)
         .enumerate()
     {
-        assert_eq!(inside, built, "{RENEW} (the pulses of frame {n})");
+        assert_eq!(
+            inside_widths, built_widths,
+            "{RENEW} (the pulses of frame {index})"
+        );
     }
 }
 
@@ -122,8 +139,11 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
 fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_after_it() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("a banner");
-    let its = lizard_host::firmware::label(robot().firmware());
-    assert!(banner.contains(&format!(" robot {its}")), "{banner}");
+    let robot_label = lizard_host::firmware::label(robot().firmware());
+    assert!(
+        banner.contains(&format!(" robot {robot_label}")),
+        "{banner}"
+    );
     assert!(recording.frames.widths.len() > 2700);
     let code = Image::parse_hex(CODE).expect("it is Intel HEX").flash();
     assert!(

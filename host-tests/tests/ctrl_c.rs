@@ -22,11 +22,11 @@ fn ctrl_c_ends_a_command_that_reads_and_prints() {
 fn ctrl_c_ends_a_command_even_if_the_tests_ignore_it() {
     // A shell without job control starts a program with `&` so that it ignores SIGINT. The shell of the tests must
     // not inherit that.
-    let this = std::env::current_exe().expect("it runs");
-    let mut again = Command::new("env");
-    again.args(["--ignore-signal=INT"]).arg(this);
-    again.args(["--exact", "ctrl_c_ends_a_command_that_reads_and_prints"]);
-    let output = LIMIT.output(&mut again, b"").expect("it ends");
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(printed.contains("1 passed"), "{printed}");
+    let test_program = std::env::current_exe().expect("it runs");
+    let mut command = Command::new("env");
+    command.args(["--ignore-signal=INT"]).arg(test_program);
+    command.args(["--exact", "ctrl_c_ends_a_command_that_reads_and_prints"]);
+    let output = LIMIT.output(&mut command, b"").expect("it ends");
+    let output_text = String::from_utf8_lossy(&output.stdout);
+    assert!(output_text.contains("1 passed"), "{output_text}");
 }

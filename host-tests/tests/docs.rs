@@ -18,17 +18,17 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
     let mut count = 0;
     for row in rows {
-        let parts: Vec<&str> = row.split('`').collect();
-        let [.., file, _, test, _] = parts[..] else {
+        let pieces: Vec<&str> = row.split('`').collect();
+        let [.., file, _, test, _] = pieces[..] else {
             panic!("no test: {row}");
         };
-        let places = [
+        let folders = [
             root().join("host-tests/tests"),
             root().join("crates/core/src"),
         ];
-        let source = places
+        let source = folders
             .iter()
-            .find_map(|place| fs::read_to_string(place.join(file)).ok());
+            .find_map(|folder| fs::read_to_string(folder.join(file)).ok());
         let source = source.unwrap_or_else(|| panic!("no file {file}"));
         assert!(
             source.contains(&format!("#[test]\nfn {test}()")),
@@ -86,13 +86,13 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
             maps
         ]
     );
-    let part = |name: &str, each: usize| format!("| {name} | {each} each |");
+    let row_of_part = |name: &str, bytes: usize| format!("| {name} | {bytes} each |");
     let parts = [
         format!("| header | {} |", size_of::<Header>()),
         format!("| numbers | {} |", size_of::<Numbers>()),
-        part("curves", size_of::<Table>()),
-        part("gaits", size_of::<Gait>()),
-        part("waveforms", size_of::<Wave>()),
+        row_of_part("curves", size_of::<Table>()),
+        row_of_part("gaits", size_of::<Gait>()),
+        row_of_part("waveforms", size_of::<Wave>()),
     ];
     let flash = [
         format!("{START:#x}"),
@@ -103,7 +103,7 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
     let missing: Vec<String> = [&header[..], &numbers[..], &parts[..], &flash[..]]
         .concat()
         .into_iter()
-        .filter(|printed| !page.contains(printed))
+        .filter(|row| !page.contains(row))
         .collect();
     assert!(
         missing.is_empty(),
@@ -114,16 +114,16 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
 
 /// Splits a text into words. Dashes, underscores and slashes are part of a word, as in the paths of crates.
 fn identifiers(text: &str) -> BTreeSet<&str> {
-    let apart = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
-    text.split(apart).collect()
+    let is_separator = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
+    text.split(is_separator).collect()
 }
 
 #[test]
 fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
     let license = fs::read_to_string(root().join("LICENSE")).expect("the file");
-    let (_, printed) = license.split_once("therefore licensed").expect("libsimavr");
-    let (with, without) = printed.split_once("The firmware").expect("both sides");
-    let (with, without) = (identifiers(with), identifiers(without));
+    let (_, text) = license.split_once("therefore licensed").expect("libsimavr");
+    let (text_with, text_without) = text.split_once("The firmware").expect("both sides");
+    let (names_with, names_without) = (identifiers(text_with), identifiers(text_without));
     let workspace = fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
     let (_, members) = workspace.split_once("members = [").expect("its members");
     let (members, _) = members.split_once(']').expect("their end");
@@ -135,13 +135,17 @@ fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
             None => format!("crates/{folder}"),
         };
         let manifest = fs::read_to_string(root().join(&name).join("Cargo.toml")).expect(&name);
-        let has = name == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
+        let uses_simavr = name == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
         let word = &*format!("{name}/");
-        let printed = [
-            with.contains(word) || name == "crates/simulated-uno",
-            without.contains(word),
+        let is_listed = [
+            names_with.contains(word) || name == "crates/simulated-uno",
+            names_without.contains(word),
         ];
-        assert_eq!(printed, [has, !has], "LICENSE and {name}/Cargo.toml");
+        assert_eq!(
+            is_listed,
+            [uses_simavr, !uses_simavr],
+            "LICENSE and {name}/Cargo.toml"
+        );
     }
 }
 
@@ -153,18 +157,18 @@ fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
     for page in pages.filter(|page| page.extension().is_some_and(|end| end == "md")) {
         let text = fs::read_to_string(&page).expect("a page");
         for path in text.split('`').filter(|span| span.starts_with("lizard_")) {
-            let Some((of, item)) = path
+            let Some((crate_name, item)) = path
                 .strip_prefix("lizard_")
                 .and_then(|path| path.split_once("::"))
             else {
                 continue;
             };
-            let sources = sources(&root().join("crates").join(of).join("src"));
+            let sources = read_sources(&root().join("crates").join(crate_name).join("src"));
             for name in item.split("::") {
-                let declared = ["fn", "mod", "struct", "enum", "trait", "const", "type"]
+                let is_declared = ["fn", "mod", "struct", "enum", "trait", "const", "type"]
                     .iter()
-                    .any(|kind| sources.contains(&format!("{kind} {name}")));
-                assert!(declared, "{}: {path} has no {name}", page.display());
+                    .any(|keyword| sources.contains(&format!("{keyword} {name}")));
+                assert!(is_declared, "{}: {path} has no {name}", page.display());
             }
             count += 1;
         }
@@ -173,12 +177,12 @@ fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
 }
 
 /// Returns the text of all Rust files in a folder and its subfolders.
-fn sources(folder: &Path) -> String {
+fn read_sources(folder: &Path) -> String {
     let entries = fs::read_dir(folder).expect("a folder of sources");
     let paths = entries.map(|entry| entry.expect("an entry").path());
     paths
         .map(|path| match path.is_dir() {
-            true => sources(&path),
+            true => read_sources(&path),
             false => fs::read_to_string(path).expect("a file"),
         })
         .collect()
@@ -196,9 +200,9 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     }
     let text = fs::read_to_string(path).expect("a text");
     let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-    let knows = words.any(|other| other.eq_ignore_ascii_case(word));
+    let has_word = words.any(|candidate| candidate.eq_ignore_ascii_case(word));
     let path = path.strip_prefix(root()).expect("below the root");
-    knows.then(|| path.to_path_buf()).into_iter().collect()
+    has_word.then(|| path.to_path_buf()).into_iter().collect()
 }
 
 /// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain `center`. The
@@ -211,7 +215,7 @@ fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     let (list, _) = list.split_once("**A gait.**").expect("the next list");
     let quoted = list.split('`').skip(1).step_by(2);
     let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
-    let listed: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
+    let listed_files: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
 
     let folders = [
         "crates/core",
@@ -220,43 +224,45 @@ fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
         "tools/rules",
         "docs/console.md",
     ];
-    let mut known: BTreeSet<PathBuf> = folders
+    let mut files_with_command: BTreeSet<PathBuf> = folders
         .iter()
         .flat_map(|folder| files_with_word(&root().join(folder), "center"))
         .collect();
-    known.extend(files_with_word(
+    files_with_command.extend(files_with_word(
         &root().join("crates/core/src/console/text.rs"),
         "deadman",
     ));
-    assert_eq!(listed, known);
-    assert!(listed.len() <= 7, "{listed:?}");
+    assert_eq!(listed_files, files_with_command);
+    assert!(listed_files.len() <= 7, "{listed_files:?}");
 }
 
 /// Returns the paths and texts of README.md, CONTRIBUTING.md and the pages in docs/.
-fn pages() -> Vec<(PathBuf, String)> {
+fn read_pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
     let docs = fs::read_dir(root().join("docs")).expect("docs/");
     paths.extend(docs.map(|page| page.expect("a page").path()));
     paths.retain(|path| path.extension().is_some_and(|end| end == "md"));
-    let text = |path: PathBuf| {
+    let read_page = |path: PathBuf| {
         let text = fs::read_to_string(&path).expect("a page");
         (path, text)
     };
-    paths.into_iter().map(text).collect()
+    paths.into_iter().map(read_page).collect()
 }
 
 /// Returns the targets of the links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
-fn links(text: &str) -> Vec<&str> {
-    let between = |start: &'static str, end: char| {
-        let behind = text.split(start).skip(1);
-        behind.filter_map(move |rest| rest.split_once(end).map(|(link, _)| link))
+fn links_of(text: &str) -> Vec<&str> {
+    let texts_between = |start: &'static str, end: char| {
+        let pieces = text.split(start).skip(1);
+        pieces.filter_map(move |rest| rest.split_once(end).map(|(link, _)| link))
     };
-    between("](", ')').chain(between("src=\"", '"')).collect()
+    texts_between("](", ')')
+        .chain(texts_between("src=\"", '"'))
+        .collect()
 }
 
 /// Returns the anchors of a page's headings, as GitHub and mkdocs make them.
-fn anchors(text: &str) -> Vec<String> {
-    let anchor = |line: &str| {
+fn anchors_of(text: &str) -> Vec<String> {
+    let anchor_of = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
         let letters = title
             .chars()
@@ -265,15 +271,15 @@ fn anchors(text: &str) -> Vec<String> {
     };
     text.lines()
         .filter(|line| line.starts_with('#'))
-        .map(anchor)
+        .map(anchor_of)
         .collect()
 }
 
 #[test]
 fn every_link_of_a_page_leads_somewhere() {
     let mut count = 0;
-    for (page, text) in pages() {
-        for link in links(&text) {
+    for (page, text) in read_pages() {
+        for link in links_of(&text) {
             if link.contains("://") {
                 continue;
             }
@@ -284,9 +290,11 @@ fn every_link_of_a_page_leads_somewhere() {
             };
             assert!(target.exists(), "{}: {link}", page.display());
             if !anchor.is_empty() {
-                let there = fs::read_to_string(&target).expect("a page");
-                let has = anchors(&there).iter().any(|there| there == anchor);
-                assert!(has, "{}: {link}", page.display());
+                let target_text = fs::read_to_string(&target).expect("a page");
+                let has_anchor = anchors_of(&target_text)
+                    .iter()
+                    .any(|candidate| candidate == anchor);
+                assert!(has_anchor, "{}: {link}", page.display());
             }
             count += 1;
         }
@@ -298,7 +306,7 @@ fn every_link_of_a_page_leads_somewhere() {
 fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
     let book = fs::read_to_string(root().join("mkdocs.yml")).expect("the book's contents");
     let count_of = |name: &str| book.matches(name).count();
-    for (page, _) in pages() {
+    for (page, _) in read_pages() {
         let name = page.file_name().expect("a name").to_str().expect("plain");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
             assert_eq!(
@@ -320,21 +328,25 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
 
 #[test]
 fn no_picture_is_on_two_pages_of_the_book() {
-    let mut seen = BTreeSet::new();
-    for (page, text) in pages() {
+    let mut seen_pictures = BTreeSet::new();
+    for (page, text) in read_pages() {
         let folder = page.parent().expect("a folder");
         // README.md is not a page of the book.
         if !folder.ends_with("docs") {
             continue;
         }
-        for link in links(&text) {
+        for link in links_of(&text) {
             if [".svg", ".png"].iter().any(|end| link.ends_with(end)) {
                 let picture = folder.join(link);
-                assert!(seen.insert(picture), "{}: {link} once more", page.display());
+                assert!(
+                    seen_pictures.insert(picture),
+                    "{}: {link} once more",
+                    page.display()
+                );
             }
         }
     }
-    assert!(seen.len() > 5, "{seen:?}");
+    assert!(seen_pictures.len() > 5, "{seen_pictures:?}");
 }
 
 #[test]
@@ -348,14 +360,19 @@ fn the_pages_name_the_version_that_is_built() {
     let log = fs::read_to_string(root().join("CHANGELOG.md")).expect("CHANGELOG.md");
     assert!(log.contains(&format!("\n## {version} (")), "CHANGELOG.md");
     let mut count = 0;
-    for (page, text) in pages() {
+    for (page, text) in read_pages() {
         // `lizard-0.2.0-page.zip`, `git tag v0.2.0`, `# lizard 0.2.0 tables`.
-        for before in ["lizard-", "tag v", "# lizard "] {
-            for rest in text.split(before).skip(1) {
-                let end = |c: char| !c.is_ascii_digit() && c != '.';
-                let named = rest.split(end).next().unwrap_or_default();
-                if named.matches('.').count() == 2 {
-                    assert_eq!(named, version, "{}: {before}{named}", page.display());
+        for prefix in ["lizard-", "tag v", "# lizard "] {
+            for rest in text.split(prefix).skip(1) {
+                let is_end = |c: char| !c.is_ascii_digit() && c != '.';
+                let named_version = rest.split(is_end).next().unwrap_or_default();
+                if named_version.matches('.').count() == 2 {
+                    assert_eq!(
+                        named_version,
+                        version,
+                        "{}: {prefix}{named_version}",
+                        page.display()
+                    );
                     count += 1;
                 }
             }

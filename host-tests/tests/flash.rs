@@ -23,8 +23,8 @@ fn make_flash(desk: &Desk) -> Shell {
 /// Runs the board for a number of frames.
 fn run_frames(desk: &mut Desk, count: u64) {
     let end = desk.uno.cycle() + count * FRAME;
-    let passed = desk.run_until(|uno| uno.cycle() > end);
-    assert!(passed, "waited {LIMIT} for {count} frames");
+    let has_passed = desk.run_until(|uno| uno.cycle() > end);
+    assert!(has_passed, "waited {LIMIT} for {count} frames");
 }
 
 #[test]
@@ -36,8 +36,8 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     assert!(screen.contains("bytes of flash verified"), "{screen}");
 
     let elf = FirmwareBench::elf();
-    let truth = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
-    desk.assert_written(truth.flash());
+    let expected_uno = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
+    desk.assert_written(expected_uno.flash());
 
     // Waits until all four servos are awake, then walks two steps.
     shell.say("stand");
@@ -48,12 +48,12 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     desk.edges.clear();
     run_frames(&mut desk, 110);
     let pins = servo_pins(robot());
-    let first = desk
+    let first_edge = desk
         .edges
         .iter()
         .find(|edge| edge.high && edge.pin == pins[0]);
-    let start = first.expect("A1 has a pulse").cycle;
-    let walked: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start, 100)
+    let start = first_edge.expect("A1 has a pulse").cycle;
+    let walked_widths: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start, 100)
         .iter()
         .map(Frame::widths)
         .collect();
@@ -63,14 +63,16 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
     bench.say("walk");
-    let bench: Vec<[u64; 4]> = bench
+    let bench_widths: Vec<[u64; 4]> = bench
         .run_for_frames(150)
         .iter()
         .map(Frame::widths)
         .collect();
     assert!(
-        bench.windows(walked.len()).any(|part| part == walked),
-        "the robot walks as on the bench; pulses in cycles: {walked:?}"
+        bench_widths
+            .windows(walked_widths.len())
+            .any(|window| window == walked_widths),
+        "the robot walks as on the bench; pulses in cycles: {walked_widths:?}"
     );
     shell.interrupt();
 }
@@ -78,13 +80,13 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 #[test]
 fn an_upload_keeps_the_eeprom() {
     let mut desk = Desk::with_a_new_board();
-    let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
-    desk.uno.set_eeprom(&kept);
+    let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
+    desk.uno.set_eeprom(&eeprom);
     let mut shell = make_flash(&desk);
     // The EEPROM is compared before the firmware can write to it.
     desk.wait_for_text(&shell, "bytes of flash verified");
     assert!(
-        desk.uno.eeprom() == kept,
+        desk.uno.eeprom() == eeprom,
         "the upload has changed the EEPROM"
     );
     shell.interrupt();
@@ -116,7 +118,7 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let shell = make_flash(&desk);
     let mut is_worn = false;
     // Once the image's first page is written, one bit of it changes.
-    let ended = desk.run_until(|uno| {
+    let has_ended = desk.run_until(|uno| {
         if !is_worn && uno.flash()[0x100] != 0xff {
             uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
             is_worn = true;
@@ -124,7 +126,10 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
         shell.has_ended()
     });
     let screen = shell.screen();
-    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+    assert!(
+        has_ended,
+        "waited {LIMIT} for the end of the upload:\n{screen}"
+    );
     assert!(is_worn, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: it did not work"), "{screen}");

@@ -11,14 +11,14 @@ use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
 /// Returns a standing robot on the simulated UNO, with everything recorded since power-on.
-fn awake() -> FirmwareBench {
+fn wake_robot() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
     bench
 }
 
 /// Returns the commands for all gaits.
-fn gaits() -> Vec<String> {
+fn gait_commands() -> Vec<String> {
     let names = robot().gaits().iter().map(|gait| gait.name());
     names.map(|name| name.replace('-', " ")).collect()
 }
@@ -43,7 +43,7 @@ enum TimeTolerance {
 const MAX_LOOP_CYCLES: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
-fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) {
+fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTolerance) {
     let end = bench.uno.cycle();
     let edges = bench.uno.edges();
     let simavr = Outputs::new(&edges, bench.bytes(), end);
@@ -55,30 +55,33 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: TimeTolerance) 
         robot(),
     ));
     let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
-    let pulses = pulses.unwrap_or_else(|difference| panic!("{what}: {difference}"));
+    let pulses = pulses.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
     assert_eq!(
         pulses.offset, AVR8JS_LAG,
-        "{what}: the pulses' cycle in the slot"
+        "{case_name}: the pulses' cycle in the slot"
     );
-    let limit = match apart {
+    let limit = match tolerance {
         TimeTolerance::Cycles => Some(2),
         TimeTolerance::LoopIteration => Some(MAX_LOOP_CYCLES),
         TimeTolerance::Any => None,
     };
     if let Some(limit) = limit {
         let console = compare_console(&simavr, &verdict.account);
-        let console = console.unwrap_or_else(|difference| panic!("{what}: {difference}"));
+        let console = console.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
         assert!(
             console.offset.abs() <= 1 && console.jitter <= limit,
-            "{what}: the console's times differ: {console:?}"
+            "{case_name}: the console's times differ: {console:?}"
         );
-        println!("{what}: {console}");
+        println!("{case_name}: {console}");
     }
     let eeprom = bench.uno.eeprom();
-    let differs = eeprom.iter().zip(&verdict.eeprom).position(|(a, b)| a != b);
-    assert_eq!(differs, None, "{what}: the EEPROMs differ at this address");
+    let differing_address = eeprom.iter().zip(&verdict.eeprom).position(|(a, b)| a != b);
+    assert_eq!(
+        differing_address, None,
+        "{case_name}: the EEPROMs differ at this address"
+    );
     println!(
-        "{what}: {} bytes received, {pulses}; {:.1} s in {} ms of processor time",
+        "{case_name}: {} bytes received, {pulses}; {:.1} s in {} ms of processor time",
         received.len(),
         end as f64 / (1000 * CYCLES_PER_MS) as f64,
         verdict.cpu_ms
@@ -91,8 +94,8 @@ fn unwrap_or_panic<T>(result: Result<T, String>) -> T {
 
 #[test]
 fn two_simulators_agree_about_every_pulse_of_every_gait() {
-    let mut bench = awake();
-    for line in gaits() {
+    let mut bench = wake_robot();
+    for line in gait_commands() {
         bench.say(&line);
         bench.run_ms(2000);
         bench.say("status");
@@ -104,20 +107,20 @@ fn two_simulators_agree_about_every_pulse_of_every_gait() {
 
 #[test]
 fn two_simulators_agree_about_saved_settings() {
-    let mut bench = awake();
+    let mut bench = wake_robot();
     for line in ["trim 1 3", "save", "trim 2 -2.5", "save", "rest"] {
         bench.say(line);
         bench.run_ms(2_000);
     }
-    let written = bench
+    let written_count = bench
         .uno
         .eeprom()
         .iter()
         .filter(|byte| **byte != 0xff)
         .count();
     assert!(
-        written > 100,
-        "both calibrations and a pose are kept: {written} bytes"
+        written_count > 100,
+        "both calibrations and a pose are kept: {written_count} bytes"
     );
     check_agreement(
         &mut bench,
@@ -128,8 +131,11 @@ fn two_simulators_agree_about_saved_settings() {
 
 #[test]
 fn two_simulators_agree_under_a_saturated_line() {
-    let moving = gaits().iter().find(|line| *line != "stand").cloned();
-    let moving = moving.unwrap_or_else(|| "stand".into());
+    let moving_gait = gait_commands()
+        .iter()
+        .find(|line| *line != "stand")
+        .cloned();
+    let moving_gait = moving_gait.unwrap_or_else(|| "stand".into());
     // No flood contains a command that moves the robot: bytes of a flood are lost, and each simulator might
     // obey other commands.
     let floods = [
@@ -140,18 +146,18 @@ fn two_simulators_agree_under_a_saturated_line() {
         ("\0\u{7f}\u{8}\n", TimeTolerance::LoopIteration),
     ];
     thread::scope(|scope| {
-        for (flood, apart) in floods {
-            let moving = &moving;
+        for (flood, tolerance) in floods {
+            let moving_gait = &moving_gait;
             scope.spawn(move || {
-                let mut bench = awake();
+                let mut bench = wake_robot();
                 bench.say("watch 1");
-                bench.say(moving);
+                bench.say(moving_gait);
                 bench.uno.flood(flood.as_bytes());
                 bench.run_ms(2000);
                 bench.uno.flood(b"");
                 bench.uno.send(b"\nwatch 0\nstatus\n");
                 bench.run_ms(500);
-                check_agreement(&mut bench, &format!("{flood:?}"), apart);
+                check_agreement(&mut bench, &format!("{flood:?}"), tolerance);
             });
         }
     });
@@ -179,14 +185,15 @@ fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
 #[test]
 fn the_first_difference_between_two_accounts_is_named() {
     let pulses = [pulse(1_000, 24_000), pulse(321_000, 24_000)];
-    let ours = outputs_of(&pulses, "ok walk");
-    let later = pulses.map(|PinPulse { rise, width, .. }| pulse(rise + 1, width));
-    let difference = |pulses: &[PinPulse]| {
-        let theirs = outputs_of(pulses, "ok walk");
-        compare_pulses(&ours, &theirs, &[Pin::d(9)]).map(|agreed| (agreed.count, agreed.offset))
+    let our_outputs = outputs_of(&pulses, "ok walk");
+    let later_pulses = pulses.map(|PinPulse { rise, width, .. }| pulse(rise + 1, width));
+    let compare_with_ours = |pulses: &[PinPulse]| {
+        let their_outputs = outputs_of(pulses, "ok walk");
+        compare_pulses(&our_outputs, &their_outputs, &[Pin::d(9)])
+            .map(|agreed| (agreed.count, agreed.offset))
     };
-    assert_eq!(difference(&later), Ok((2, 1)));
-    for (theirs, named) in [
+    assert_eq!(compare_with_ours(&later_pulses), Ok((2, 1)));
+    for (their_pulses, expected_text) in [
         (
             &[pulse(1_000, 24_000), pulse(321_000, 24_001)][..],
             "pulse 1: on simavr D9 rises at cycle 321000 for 24000 cycles, on avr8js D9 rises at cycle 321000 for 24001 cycles",
@@ -202,10 +209,10 @@ fn the_first_difference_between_two_accounts_is_named() {
         ),
         (&[], "no servo gets a pulse"),
     ] {
-        let printed = difference(theirs).expect_err(named);
-        assert!(printed.contains(named), "{printed}");
+        let message = compare_with_ours(their_pulses).expect_err(expected_text);
+        assert!(message.contains(expected_text), "{message}");
     }
-    for (text, named) in [
+    for (text, expected_text) in [
         (
             "ok well",
             "byte 4 of the console, cycle 0: simavr has \"ok wa\", avr8js \"ok we\"",
@@ -216,7 +223,8 @@ fn the_first_difference_between_two_accounts_is_named() {
             "byte 7 of the console is on avr8js alone: \"ok walks\"",
         ),
     ] {
-        let printed = compare_console(&ours, &outputs_of(&pulses, text)).expect_err(named);
-        assert!(printed.contains(named), "{printed}");
+        let message =
+            compare_console(&our_outputs, &outputs_of(&pulses, text)).expect_err(expected_text);
+        assert!(message.contains(expected_text), "{message}");
     }
 }

@@ -7,10 +7,10 @@ use simulated_uno::{Fidelity, Image, Uno};
 /// Links a program unchanged, and after our linker has shrunk it. Returns both images with their savings.
 fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
     let object = object_of_c(program).expect("it compiles");
-    let (short, savings) = shrink(&object)
+    let (shrunk, savings) = shrink(&object)
         .expect("it is an object")
         .expect("of an AVR");
-    [(object, Savings::default()), (short, savings)]
+    [(object, Savings::default()), (shrunk, savings)]
         .map(|(object, savings)| (link(ROUTINES, &object).expect("it links"), savings))
 }
 
@@ -32,8 +32,8 @@ fn run(image: &Image) -> Uno {
 }
 
 /// Returns a C program of twenty functions of 600 bytes, interrupted by a timer. Each of the first ten calls
-/// the function ten places further on. `more` is added in front of `main`.
-fn far_calls(more: &str) -> String {
+/// the function ten places further on. `extra_code` is added in front of `main`.
+fn program_with_far_calls(extra_code: &str) -> String {
     let functions: String = (0..20)
         .rev()
         .map(|index| {
@@ -59,7 +59,7 @@ fn far_calls(more: &str) -> String {
         volatile uint8_t done; volatile uint16_t ticks, result;
         ISR(TIMER0_COMPA_vect) {{ ticks++; }}
         {functions}
-        {more}
+        {extra_code}
         int main(void) {{
             OCR0A = 130; TCCR0A = 2; TCCR0B = 1; TIMSK0 = 2; sei();
             uint16_t sum = 7;
@@ -70,8 +70,8 @@ fn far_calls(more: &str) -> String {
     )
 }
 
-/// Returns the result that the program of [`far_calls`] must compute.
-fn far_sum() -> u16 {
+/// Returns the result that the program of [`program_with_far_calls`] must compute.
+fn expected_sum() -> u16 {
     fn f(index: u16, a: u16) -> u16 {
         let a = a.wrapping_mul(33).wrapping_add(index);
         a ^ if index < 10 {
@@ -85,46 +85,51 @@ fn far_sum() -> u16 {
 
 fn run_for_result(image: &Image) -> u16 {
     let uno = run(image);
-    let at = address(image, "result");
-    u16::from_le_bytes([uno.peek(at), uno.peek(at + 1)])
+    let result_address = address(image, "result");
+    u16::from_le_bytes([uno.peek(result_address), uno.peek(result_address + 1)])
 }
 
 #[test]
 fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
-    let [(plain, _), (short, savings)] = link_both_ways(&far_calls(""));
-    assert_eq!(run_for_result(&plain), far_sum());
-    assert_eq!(run_for_result(&short), far_sum());
+    let [(plain_image, _), (shrunk_image, savings)] = link_both_ways(&program_with_far_calls(""));
+    assert_eq!(run_for_result(&plain_image), expected_sum());
+    assert_eq!(run_for_result(&shrunk_image), expected_sum());
     // Main cannot be near all ten functions that it calls, but each of these functions can be near its
     // callee.
     assert!(savings.calls >= 20, "{savings:?}");
-    let end = |image: &Image| image.symbol("_etext").expect("it has one").address;
-    let saved = end(&plain) as i64 - end(&short) as i64;
-    assert!(saved >= savings.calls, "{saved} {savings:?}");
+    let end_address = |image: &Image| image.symbol("_etext").expect("it has one").address;
+    let saved_bytes = end_address(&plain_image) as i64 - end_address(&shrunk_image) as i64;
+    assert!(saved_bytes >= savings.calls, "{saved_bytes} {savings:?}");
 }
 
 #[test]
 fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
     // The function `upper` has no return, a return that may be skipped, or a branch of short reach to
     // `lower`.
-    for end in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
-        let more = format!(
+    for ending in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
+        let extra_code = format!(
             r#"asm(
             ".section .text.upper, \"ax\", @progbits\n .global upper\n .type upper, @function\n"
-            "upper: {end}\n .size upper, . - upper\n"
+            "upper: {ending}\n .size upper, . - upper\n"
             ".section .text.lower, \"ax\", @progbits\n .type lower, @function\n"
             "lower: com r24\n ret\n .size lower, . - lower\n .text\n");
             uint8_t upper(uint8_t a);"#
         );
-        let program = far_calls(&more).replace("sum = f9(sum);", "sum = f9(sum) + upper(sum);");
+        let program = program_with_far_calls(&extra_code)
+            .replace("sum = f9(sum);", "sum = f9(sum) + upper(sum);");
         let mut results = Vec::new();
         for (image, savings) in link_both_ways(&program) {
-            assert_eq!(savings.calls, 0, "{end}: {savings:?}");
-            let symbol = |name| image.symbol(name).expect("it has one");
-            let upper = symbol("upper");
-            assert_eq!(symbol("lower").address, upper.address + upper.size, "{end}");
+            assert_eq!(savings.calls, 0, "{ending}: {savings:?}");
+            let symbol_of = |name| image.symbol(name).expect("it has one");
+            let upper = symbol_of("upper");
+            assert_eq!(
+                symbol_of("lower").address,
+                upper.address + upper.size,
+                "{ending}"
+            );
             results.push(run_for_result(&image));
         }
-        assert_eq!(results[0], results[1], "{end}");
-        assert_ne!(results[0], far_sum(), "{end}");
+        assert_eq!(results[0], results[1], "{ending}");
+        assert_ne!(results[0], expected_sum(), "{ending}");
     }
 }

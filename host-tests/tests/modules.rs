@@ -45,11 +45,11 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
 fn no_modules_use_each_other_in_a_circle() {
-    let mut count = 0;
+    let mut use_count = 0;
     for name in CRATES {
         for folder in folders(&root().join(name).join("src")) {
             let uses = folder.uses(WITH_OWN_FILE.contains(&(name, &folder.path)));
-            count += uses.values().map(BTreeSet::len).sum::<usize>();
+            use_count += uses.values().map(BTreeSet::len).sum::<usize>();
             let circles = find_circles(uses);
             assert!(
                 circles.is_empty(),
@@ -58,18 +58,21 @@ fn no_modules_use_each_other_in_a_circle() {
             );
         }
     }
-    assert!(count > 200, "only {count} uses of another module were read");
+    assert!(
+        use_count > 200,
+        "only {use_count} uses of another module were read"
+    );
 }
 
 #[test]
 fn a_room_of_the_core_uses_only_rooms_below_it() {
     let core = folders(&root().join("crates/core/src")).remove(0);
-    for (room, used) in core.uses(false) {
-        if let Some(place) = ROOMS.iter().position(|name| *name == room) {
-            for other in used {
+    for (room, used_rooms) in core.uses(false) {
+        if let Some(index) = ROOMS.iter().position(|name| *name == room) {
+            for other_room in used_rooms {
                 assert!(
-                    ROOMS[place..].contains(&other.as_str()),
-                    "{room} uses {other}, which is not below it"
+                    ROOMS[index..].contains(&other_room.as_str()),
+                    "{room} uses {other_room}, which is not below it"
                 );
             }
         }
@@ -78,14 +81,14 @@ fn a_room_of_the_core_uses_only_rooms_below_it() {
 
 #[test]
 fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
-    let uses = |lines: &[(&str, &[&str])]| -> Uses {
-        let named = |names: &[&str]| names.iter().map(ToString::to_string).collect();
-        let line = |&(name, used): &(&str, &[&str])| (name.to_string(), named(used));
-        lines.iter().map(line).collect()
+    let uses_of = |lines: &[(&str, &[&str])]| -> Uses {
+        let name_set = |names: &[&str]| names.iter().map(ToString::to_string).collect();
+        let uses_of_line = |&(name, used): &(&str, &[&str])| (name.to_string(), name_set(used));
+        lines.iter().map(uses_of_line).collect()
     };
-    let chain = uses(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
+    let chain = uses_of(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
     assert!(find_circles(chain).is_empty());
-    let circle = uses(&[
+    let circle = uses_of(&[
         ("above", &["a"]),
         ("a", &["b"]),
         ("b", &["c"]),
@@ -103,22 +106,22 @@ fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found()
         "use crate::drive::console::{Link, status};\nuse crate::drive::recorder::Event;"
     );
     let root = "mod menu;\npub fn run() {}\nconst KNOWN: u8 = 1;\nuse menu::Choice;";
-    assert_eq!(items(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
+    assert_eq!(item_names(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
 /// Returns the modules that use each other in circles: those that remain after repeatedly removing every
 /// module that uses no other or that no other uses.
 fn find_circles(mut uses: Uses) -> Vec<String> {
     loop {
-        let before = uses.len();
+        let previous_count = uses.len();
         let used: BTreeSet<String> = uses.values().flatten().cloned().collect();
         uses.retain(|name, others| !others.is_empty() && used.contains(name));
-        let left: BTreeSet<String> = uses.keys().cloned().collect();
+        let remaining: BTreeSet<String> = uses.keys().cloned().collect();
         for others in uses.values_mut() {
-            others.retain(|other| left.contains(other));
+            others.retain(|other| remaining.contains(other));
         }
-        if uses.len() == before {
-            return left.into_iter().collect();
+        if uses.len() == previous_count {
+            return remaining.into_iter().collect();
         }
     }
 }
@@ -135,33 +138,34 @@ struct Folder {
 
 /// Returns all folders of modules of a crate, the crate itself first.
 fn folders(source: &Path) -> Vec<Folder> {
-    let mut all = vec![Folder {
+    let mut all_folders = vec![Folder {
         path: "crate::".to_owned(),
         root_text: read(&source.join("lib.rs")),
         directory: source.to_owned(),
     }];
-    let mut next = 0;
-    while let Some(folder) = all.get(next) {
-        let within = folder.modules().into_iter().filter_map(|module| {
-            let place = folder.directory.join(module);
-            let root = read(&place.join("mod.rs")) + &read(&place.with_extension("rs"));
+    let mut next_index = 0;
+    while let Some(folder) = all_folders.get(next_index) {
+        let inner_folders = folder.modules().into_iter().filter_map(|module| {
+            let module_folder = folder.directory.join(module);
+            let root =
+                read(&module_folder.join("mod.rs")) + &read(&module_folder.with_extension("rs"));
             let path = format!("{}{module}::", folder.path);
-            place.is_dir().then_some(Folder {
+            module_folder.is_dir().then_some(Folder {
                 path,
                 root_text: root,
-                directory: place,
+                directory: module_folder,
             })
         });
-        let within: Vec<_> = within.collect();
-        all.extend(within);
-        next += 1;
+        let inner_folders: Vec<_> = inner_folders.collect();
+        all_folders.extend(inner_folders);
+        next_index += 1;
     }
-    all
+    all_folders
 }
 
 impl Folder {
     fn modules(&self) -> BTreeSet<&str> {
-        self.root_text.lines().filter_map(module).collect()
+        self.root_text.lines().filter_map(declared_module).collect()
     }
 
     /// Returns the uses among the folder's modules, including its `mod.rs` if `with_root`. A module
@@ -169,47 +173,48 @@ impl Folder {
     fn uses(&self, with_root: bool) -> Uses {
         let modules = self.modules();
         // `crate::Name` uses the module from which the folder's root file exports the name.
-        let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
+        let mut modules_by_name: BTreeMap<&str, &str> =
+            modules.iter().map(|name| (*name, *name)).collect();
         for export in self
             .root_text
             .split(';')
             .filter_map(|item| item.split_once("use "))
         {
-            if let Some((home, names)) = export.1.split_once("::")
-                && let Some(home) = modules.get(home)
+            if let Some((module_name, names)) = export.1.split_once("::")
+                && let Some(module_name) = modules.get(module_name)
             {
-                homes.extend(words(names).map(|name| (name, *home)));
+                modules_by_name.extend(words_in(names).map(|name| (name, *module_name)));
             }
         }
         let mut uses = Uses::new();
         if with_root {
-            homes.extend(items(&self.root_text).map(|name| (name, ROOT)));
+            modules_by_name.extend(item_names(&self.root_text).map(|name| (name, ROOT)));
             let used = modules
                 .iter()
                 .filter(|module| self.root_text.contains(&format!("{module}::")));
             uses.insert(ROOT.to_owned(), used.map(ToString::to_string).collect());
         }
         for module in &modules {
-            let place = self.directory.join(module);
-            let mut text = resolve_super(&read(&place.with_extension("rs")), &self.path);
-            for path in files(&place) {
-                let within = path
+            let module_folder = self.directory.join(module);
+            let mut text = resolve_super(&read(&module_folder.with_extension("rs")), &self.path);
+            for path in source_files(&module_folder) {
+                let relative_path = path
                     .strip_prefix(&self.directory)
                     .expect("it is in the folder");
-                let parents = within.parent().expect("a folder").iter();
+                let parents = relative_path.parent().expect("a folder").iter();
                 let parents = parents.map(|name| name.to_string_lossy());
                 let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
                 // `mod.rs` is the module of its folder.
                 let depth = parents.len() - usize::from(path.ends_with("mod.rs"));
-                let above: String = parents[..depth]
+                let parent_path: String = parents[..depth]
                     .iter()
                     .map(|name| format!("{name}::"))
                     .collect();
-                text += &resolve_super(&read(&path), &format!("{}{above}", self.path));
+                text += &resolve_super(&read(&path), &format!("{}{parent_path}", self.path));
             }
             let used = names_after(&text, &self.path).into_iter();
             let others = used
-                .filter_map(|name| homes.get(name))
+                .filter_map(|name| modules_by_name.get(name))
                 .filter(|other| *other != module);
             uses.insert(
                 module.to_string(),
@@ -224,32 +229,34 @@ impl Folder {
 const ROOT: &str = "(mod.rs)";
 
 /// Returns the names of the functions, types and constants that a text defines.
-fn items(text: &str) -> impl Iterator<Item = &str> {
+fn item_names(text: &str) -> impl Iterator<Item = &str> {
     const KINDS: [&str; 6] = ["fn ", "struct ", "enum ", "trait ", "type ", "const "];
     text.lines().filter_map(|line| {
         let line = line.trim_start_matches("pub(crate) ");
         let line = line.trim_start_matches("pub ");
-        let name = KINDS.iter().find_map(|kind| line.strip_prefix(kind))?;
-        words(name).next()
+        let name = KINDS
+            .iter()
+            .find_map(|keyword| line.strip_prefix(keyword))?;
+        words_in(name).next()
     })
 }
 
-/// Replaces every `super::` in the text of a file by the path of the module that it denotes. `above` is the path
+/// Replaces every `super::` in the text of a file by the path of the module that it denotes. `parent_path` is the path
 /// of the module above the file.
-fn resolve_super(text: &str, above: &str) -> String {
+fn resolve_super(text: &str, parent_path: &str) -> String {
     let mut text = text.to_owned();
-    let parts: Vec<&str> = above.split_inclusive("::").collect();
-    for up in (1..=parts.len()).rev() {
+    let parts: Vec<&str> = parent_path.split_inclusive("::").collect();
+    for level_count in (1..=parts.len()).rev() {
         text = text.replace(
-            &"super::".repeat(up),
-            &parts[..parts.len() + 1 - up].concat(),
+            &"super::".repeat(level_count),
+            &parts[..parts.len() + 1 - level_count].concat(),
         );
     }
     text
 }
 
 /// Returns the name of the module that a line of a folder's root file declares; `None` for another line.
-fn module(line: &str) -> Option<&str> {
+fn declared_module(line: &str) -> Option<&str> {
     let line = line
         .trim_start_matches("pub(crate) ")
         .trim_start_matches("pub ");
@@ -258,18 +265,18 @@ fn module(line: &str) -> Option<&str> {
 
 /// Returns the names that follow each occurrence of a path such as `crate::`: a single name, or the names in braces.
 fn names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
-    let after = text.split(path).skip(1);
-    after
+    let parts_after = text.split(path).skip(1);
+    parts_after
         .flat_map(|rest| match rest.strip_prefix('{') {
-            Some(list) => words(list.split('}').next().unwrap_or_default()).collect(),
-            None => words(rest).take(1).collect::<Vec<_>>(),
+            Some(list) => words_in(list.split('}').next().unwrap_or_default()).collect(),
+            None => words_in(rest).take(1).collect::<Vec<_>>(),
         })
         .collect()
 }
 
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    let apart = |c: char| !(c.is_alphanumeric() || c == '_');
-    text.split(apart).filter(|word| !word.is_empty())
+fn words_in(text: &str) -> impl Iterator<Item = &str> {
+    let is_separator = |c: char| !(c.is_alphanumeric() || c == '_');
+    text.split(is_separator).filter(|word| !word.is_empty())
 }
 
 /// Reads a file without its comments and without the code that is compiled only for tests. Returns an empty
@@ -277,20 +284,20 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 fn read(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap_or_default();
     let text = match text.split_once("#[cfg(test)]\nmod tests {") {
-        Some((before, _)) => before.to_string(),
+        Some((code, _)) => code.to_string(),
         None => text,
     };
     let lines: Vec<&str> = text
         .lines()
         .filter(|line| !line.trim_start().starts_with("//"))
         .collect();
-    let for_tests = |i: usize| i > 0 && lines[i - 1].trim() == "#[cfg(test)]";
-    let indices = (0..lines.len()).filter(|i| !for_tests(*i));
+    let is_for_tests = |i: usize| i > 0 && lines[i - 1].trim() == "#[cfg(test)]";
+    let indices = (0..lines.len()).filter(|i| !is_for_tests(*i));
     indices.map(|i| format!("{}\n", lines[i])).collect()
 }
 
 /// Returns the files of a module's folder and of the folders in it, except for its tests.
-fn files(folder: &Path) -> Vec<PathBuf> {
+fn source_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };
@@ -298,7 +305,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     let sources = paths.filter(|path| path.file_stem().is_some_and(|name| name != "tests"));
     sources
         .flat_map(|path| match path.is_dir() {
-            true => files(&path),
+            true => source_files(&path),
             false => vec![path],
         })
         .collect()

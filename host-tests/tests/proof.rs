@@ -10,31 +10,38 @@ use lizard_robot::Robot;
 const ONE_IN: u32 = 256;
 
 /// Returns the file of the robot that the firmware was built for, by default robot.toml, and every file of robots/.
-fn files() -> Vec<PathBuf> {
+fn robot_files() -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let own = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    let own = own.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
+    let own_file = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    let own_file = own_file.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
     let robots = std::fs::read_dir(format!("{root}/robots")).expect("there is a folder robots");
-    let mut files: Vec<PathBuf> = robots
+    let mut paths: Vec<PathBuf> = robots
         .map(|entry| entry.expect("it can be read").path())
-        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
         .collect();
-    files.sort();
-    files.insert(0, own);
-    files
+    paths.sort();
+    paths.insert(0, own_file);
+    paths
 }
 
 #[test]
 fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
-    for (number, file) in (0..).zip(files()) {
+    for (number, file) in (0..).zip(robot_files()) {
         // Each robot and each seed gets a different sample of the pairs.
-        let share = PairSample {
+        let sample = PairSample {
             one_in: ONE_IN,
             offset: (seed().wrapping_add(number) % u64::from(ONE_IN)) as u32,
         };
         let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
-        let proof = Proof::of(&robot, robot.firmware(), share, &|_| {});
-        let pairs: u64 = proof.findings.iter().map(|one| one.tally.pairs).sum();
+        let proof = Proof::of(&robot, robot.firmware(), sample, &|_| {});
+        let pairs: u64 = proof
+            .findings
+            .iter()
+            .map(|finding| finding.tally.pairs)
+            .sum();
         assert!(pairs > 250_000, "{pairs} pairs are no walk");
         let certified = proof.certified();
         assert!(
@@ -45,7 +52,7 @@ fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
             assert_eq!(
                 finding.tally.wrong,
                 0,
-                "{}, {} with {share:?}: {:?}",
+                "{}, {} with {sample:?}: {:?}",
                 file.display(),
                 finding.part,
                 finding.tally.example
@@ -62,21 +69,21 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
     // Leaves out the gaits from `look` on, since `look` is unsafe with the longer couplers.
     let text = text.split("[gait.look]").next().unwrap_or_default();
     let robot = Robot::parse(text).expect("it is right");
-    let longer = text
+    let longer_text = text
         .replace("\nl2 = 50.0 ", "\nl2 = 51.0 ")
         .replace("\nl10 = 135.0 ", "\nl10 = 136.0 ")
         .replace("\nl15 = 135.0 ", "\nl15 = 136.0 ");
-    let longer = Robot::parse(&longer).expect("it is right, too");
-    let share = PairSample {
+    let longer_robot = Robot::parse(&longer_text).expect("it is right, too");
+    let sample = PairSample {
         one_in: 4096,
         offset: 1,
     };
     assert_eq!(
-        Proof::of(&robot, robot.firmware(), share, &|_| {}).wrong(),
+        Proof::of(&robot, robot.firmware(), sample, &|_| {}).wrong(),
         0
     );
-    let proof = Proof::of(&robot, longer.firmware(), share, &|_| {});
-    for (finding, seen) in proof.findings.iter().zip([true, false, true, true]) {
-        assert_eq!(finding.tally.wrong > 0, seen, "{}", finding.part);
+    let proof = Proof::of(&robot, longer_robot.firmware(), sample, &|_| {});
+    for (finding, is_noticed) in proof.findings.iter().zip([true, false, true, true]) {
+        assert_eq!(finding.tally.wrong > 0, is_noticed, "{}", finding.part);
     }
 }

@@ -35,19 +35,19 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
         assert_eq!(*uno.state(), State::Alive);
         let edges = uno.edges();
         let frame = u64::from(frame_cycles(8));
-        let servos = edges.iter().filter(|edge| edge.pin != Pin::d(13));
-        let servos: Vec<_> = servos.copied().collect();
-        assert_eq!(most_pins_high(&servos), 1, "one servo at a time");
+        let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
+        let servo_edges: Vec<_> = servo_edges.copied().collect();
+        assert_eq!(most_pins_high(&servo_edges), 1, "one servo at a time");
         // The first two or three frames are not among the edges.
-        let first = uno.pulses(Pin::arduino(PINS[0]))[0].width;
-        let skipped = (0..10)
-            .find(|n| width(0, *n) == first)
+        let first_width = uno.pulses(Pin::arduino(PINS[0]))[0].width;
+        let skipped_frames = (0..10)
+            .find(|n| width(0, *n) == first_width)
             .expect("it is one of the first");
         for (servo, pin) in PINS.into_iter().enumerate() {
             let pulses = uno.pulses(Pin::arduino(pin));
             assert!(pulses.len() > 880, "{} of {pin}", pulses.len());
             for (n, pulse) in pulses.iter().enumerate() {
-                let expected = width(servo as u64, skipped + n as u64);
+                let expected = width(servo as u64, skipped_frames + n as u64);
                 assert_eq!(pulse.width, expected, "{fidelity:?}, pin {pin}, frame {n}");
             }
             for pair in pulses.windows(2) {
@@ -65,8 +65,11 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
             let sent: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
-            let wrong = (0..echo.len()).find(|n| echo[*n] != sent[*n]);
-            assert_eq!(wrong, None, "the first byte that is not what was sent");
+            let wrong_index = (0..echo.len()).find(|n| echo[*n] != sent[*n]);
+            assert_eq!(
+                wrong_index, None,
+                "the first byte that is not what was sent"
+            );
             assert_eq!((uno.overruns(), uno.bytes_sent()), (0, echo.len() as u64));
         } else {
             assert!(echo.len() > 100_000, "{} bytes", echo.len());
@@ -90,21 +93,22 @@ fn the_led_blinks_every_sixteen_frames() {
 fn the_costs_in_the_readme_are_those_of_the_example() {
     let mut uno = sweep(Fidelity::DataSheet);
     uno.run_ms(100);
-    let cost = |uno: &Uno| {
-        let used = uno.interrupts();
+    let interrupt_cycles = |uno: &Uno| {
+        let interrupts = uno.interrupts();
         let cycles_of = |vector| {
-            used.iter()
-                .find(|one| one.vector == vector)
-                .map_or(0, |one| one.cycles)
+            interrupts
+                .iter()
+                .find(|interrupt| interrupt.vector == vector)
+                .map_or(0, |interrupt| interrupt.cycles)
         };
         cycles_of(11) + cycles_of(12)
     };
-    let before = (cost(&uno), uno.cycle());
+    let state_before = (interrupt_cycles(&uno), uno.cycle());
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
-    let per_frame = (cost(&uno) - before.0) as f64 / 100.0;
+    let per_frame = (interrupt_cycles(&uno) - state_before.0) as f64 / 100.0;
     let readme =
         std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("it is there");
-    let row = |name: &str| -> Vec<String> {
+    let cells_of_row = |name: &str| -> Vec<String> {
         let row = readme
             .lines()
             .find(|line| line.starts_with(&format!("| {name}")));
@@ -113,15 +117,18 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
             .map(|cell| cell.trim().replace(' ', ""))
             .collect()
     };
-    let number = |cell: &str| {
+    let parse_number = |cell: &str| {
         cell.parse::<f64>()
             .unwrap_or_else(|_| panic!("{cell} is a number"))
     };
     // Another compiler may save a byte or two.
     let assert_near = |name: &str, measured: f64| {
-        let stated = number(&row(name)[2]);
-        let error = (measured - stated).abs();
-        assert!(error <= stated / 50.0, "{name}: {measured}, not {stated}");
+        let stated_value = parse_number(&cells_of_row(name)[2]);
+        let error = (measured - stated_value).abs();
+        assert!(
+            error <= stated_value / 50.0,
+            "{name}: {measured}, not {stated_value}"
+        );
     };
     assert_near("cycles of its interrupts in a frame", per_frame);
     let image = uno.image();

@@ -11,11 +11,11 @@ const BEGIN: &str = "
         ldi r28, 0xff $ ldi r29, 0x08
         out SPH, r29 $ out SPL, r28";
 
-fn depth(image: &Image) -> StackDepth {
+fn depth_of(image: &Image) -> StackDepth {
     StackDepth::of(image).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn refusal(image: &Image) -> StackError {
+fn refusal_of(image: &Image) -> StackError {
     StackDepth::of(image).expect_err("it must be refused")
 }
 
@@ -46,39 +46,39 @@ fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
     over: pop r17
         ret"
     ));
-    assert_eq!(depth(&image).worst(), 2 + 3 + 2 + 1);
+    assert_eq!(depth_of(&image).worst(), 2 + 3 + 2 + 1);
     assert_eq!(measure_depth(&image), 8);
     // There is no static data, so all of SRAM except these bytes is left.
-    assert_eq!(depth(&image).margin(), 2048 - 8);
+    assert_eq!(depth_of(&image).margin(), 2048 - 8);
 }
 
 #[test]
 fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
     for bytes in [1u16, 20, 63, 64, 300] {
-        let room = match bytes {
+        let reserve = match bytes {
             0..64 => format!("sbiw r28, {bytes}"),
             _ => format!("subi r28, lo8({bytes}) $ sbci r29, hi8({bytes})"),
         };
-        let back = match bytes {
+        let release = match bytes {
             0..64 => format!("adiw r28, {bytes}"),
             _ => format!("subi r28, lo8(-{bytes}) $ sbci r29, hi8(-{bytes})"),
         };
-        let set = "in r0, SREG $ cli $ out SPH, r29 $ out SREG, r0 $ out SPL, r28";
+        let set_pointer = "in r0, SREG $ cli $ out SPH, r29 $ out SREG, r0 $ out SPL, r28";
         let image = assembler(&format!(
             "{BEGIN}
             call framed
         end: rjmp end
         framed: push r28 $ push r29
-            in r28, SPL $ in r29, SPH $ {room} $ {set}
+            in r28, SPL $ in r29, SPH $ {reserve} $ {set_pointer}
             std Y+1, r16
             call leaf
-            {back} $ {set}
+            {release} $ {set_pointer}
             pop r29 $ pop r28
             jmp last
         last: push r16 $ pop r16
         leaf: ret"
         ));
-        assert_eq!(depth(&image).worst(), 2 + 2 + bytes + 2, "{bytes}");
+        assert_eq!(depth_of(&image).worst(), 2 + 2 + bytes + 2, "{bytes}");
         assert_eq!(measure_depth(&image), 2 + 2 + bytes + 2, "{bytes}");
     }
 }
@@ -98,7 +98,7 @@ fn the_deepest_interrupt_counts_once() {
     deep: push r0 $ push r1 $ rcall more $ pop r1 $ pop r0 $ reti
     more: push r2 $ pop r2 $ ret"
     ));
-    let depth = depth(&image);
+    let depth = depth_of(&image);
     assert_eq!((depth.main, depth.handler), (1, 2 + 2 + 2 + 1));
 }
 
@@ -123,9 +123,15 @@ fn compiled_c_is_followed_and_no_run_gets_deeper() {
             sei();
             for (;;) out = fill(out);
         }");
-    let (worst, deepest) = (depth(&image).worst(), measure_depth(&image));
-    assert!(deepest > 100 && deepest <= worst, "{deepest} of {worst}");
-    assert!(worst - deepest < 20, "{deepest} of {worst}");
+    let (worst_depth, measured_depth) = (depth_of(&image).worst(), measure_depth(&image));
+    assert!(
+        measured_depth > 100 && measured_depth <= worst_depth,
+        "{measured_depth} of {worst_depth}"
+    );
+    assert!(
+        worst_depth - measured_depth < 20,
+        "{measured_depth} of {worst_depth}"
+    );
 }
 
 #[test]
@@ -137,7 +143,7 @@ fn a_function_that_calls_itself_is_refused_by_name() {
             GPIOR1 = n;
         }
         int main(void) { for (;;) deeper(PINB); }");
-    let error = refusal(&image).to_string();
+    let error = refusal_of(&image).to_string();
     assert!(
         error.contains("deeper") && error.contains("calls itself"),
         "{error}"
@@ -152,14 +158,17 @@ fn a_call_of_a_computed_address_is_refused_by_name() {
         static void (*volatile which)(void);
         __attribute__((noinline)) void choose(void) { which(); GPIOR1 = 1; }
         int main(void) { which = PINB ? one : two; for (;;) choose(); }");
-    let error = refusal(&image).to_string();
+    let error = refusal_of(&image).to_string();
     assert!(
         error.contains("choose") && error.contains("computes"),
         "{error}"
     );
     for jump in ["ijmp", "icall"] {
         let image = assembler(&format!("{BEGIN}\n{jump}\nend: rjmp end"));
-        assert!(refusal(&image).to_string().contains("computes"), "{jump}");
+        assert!(
+            refusal_of(&image).to_string().contains("computes"),
+            "{jump}"
+        );
     }
 }
 
@@ -180,10 +189,10 @@ fn code_without_a_bound_is_refused() {
         ("nop", "runs out"),
     ];
     for (program, reason) in programs {
-        let error = refusal(&assembler(&format!("{BEGIN}\n{program}"))).to_string();
+        let error = refusal_of(&assembler(&format!("{BEGIN}\n{program}"))).to_string();
         assert!(error.contains(reason), "{program}: {error}");
     }
-    let nests = assembler(
+    let image = assembler(
         "jmp start
         .org 0x2c
         jmp handler
@@ -191,7 +200,7 @@ fn code_without_a_bound_is_refused() {
     start: rjmp start
     handler: sei $ reti",
     );
-    let error = refusal(&nests).to_string();
+    let error = refusal_of(&image).to_string();
     assert!(error.contains("lets interrupts into"), "{error}");
 }
 
@@ -209,7 +218,7 @@ fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
     hung: push r1 $ sei
     stay: rjmp stay",
     );
-    let depth = depth(&image);
+    let depth = depth_of(&image);
     assert_eq!(
         (depth.main, depth.handler, depth.final_handler),
         (0, 2 + 3, 2 + 1)
@@ -219,39 +228,47 @@ fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
 
 #[test]
 fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
-    for (first, saved, room) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
+    for (first_register, saved_bytes, room_bytes) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
         let image = assembler(&format!(
             "{BEGIN}
             call framed
         end: rjmp end
-        framed: ldi r26, {room} $ call __frame_save_{first}
+        framed: ldi r26, {room_bytes} $ call __frame_save_{first_register}
             std Y+1, r16
             call leaf
-            ldi r26, {room} $ jmp __frame_restore_{first}
+            ldi r26, {room_bytes} $ jmp __frame_restore_{first_register}
         leaf: ret
         {ROUTINES}"
         ));
         // On the stack are the return address of `framed`, the saved registers, the room, and below the room the
         // return address of `leaf`.
-        assert_eq!(depth(&image).worst(), 2 + saved + room + 2, "{first}");
-        assert_eq!(measure_depth(&image), 2 + saved + room + 2, "{first}");
+        assert_eq!(
+            depth_of(&image).worst(),
+            2 + saved_bytes + room_bytes + 2,
+            "{first_register}"
+        );
+        assert_eq!(
+            measure_depth(&image),
+            2 + saved_bytes + room_bytes + 2,
+            "{first_register}"
+        );
     }
 }
 
 #[test]
 fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
-    for (first, room) in [(16, 5), (14, 6)] {
+    for (first_register, room_bytes) in [(16, 5), (14, 6)] {
         let image = assembler(&format!(
             "{BEGIN}
             call framed
         end: rjmp end
         .type framed, @function
         framed: ldi r26, 5 $ call __frame_save_14
-            ldi r26, {room} $ jmp __frame_restore_{first}
+            ldi r26, {room_bytes} $ jmp __frame_restore_{first_register}
         {ROUTINES}"
         ));
-        let refused = refusal(&image);
-        assert_eq!(refused.function, "framed");
-        assert_eq!(refused.what, "restores other registers than it saved");
+        let error = refusal_of(&image);
+        assert_eq!(error.function, "framed");
+        assert_eq!(error.what, "restores other registers than it saved");
     }
 }

@@ -42,25 +42,26 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         .iter()
         .filter_map(|row| Some((row, row.cycle.as_ref()?)))
         .collect();
-    let moving = robot().gaits().iter().filter(|gait| gait.moves()).count();
-    assert_eq!(cycles.len(), moving, "one for each gait");
-    let mut compared = 0;
+    let moving_count = robot().gaits().iter().filter(|gait| gait.moves()).count();
+    assert_eq!(cycles.len(), moving_count, "one for each gait");
+    let mut compared_count = 0;
     for (row, cycle) in cycles {
-        let mut part = |name: &str, ours: Option<f64>, wanted: Option<f64>, min: f64| {
-            let (Some(ours), Some(wanted)) = (ours, wanted) else {
-                assert_eq!(ours, wanted, "{} {name}", row.command);
-                return;
+        let mut compare =
+            |name: &str, measured: Option<f64>, expected: Option<f64>, tolerance: f64| {
+                let (Some(measured), Some(expected)) = (measured, expected) else {
+                    assert_eq!(measured, expected, "{} {name}", row.command);
+                    return;
+                };
+                compared_count += 1;
+                let error = (measured - expected).abs();
+                assert!(
+                    error <= tolerance.max(0.03 * expected.abs()),
+                    "{} {name}: {measured}, not {expected}",
+                    row.command
+                );
             };
-            compared += 1;
-            let error = (ours - wanted).abs();
-            assert!(
-                error <= min.max(0.03 * wanted.abs()),
-                "{} {name}: {ours}, not {wanted}",
-                row.command
-            );
-        };
-        part("ahead", cycle.way.forward, cycle.predicted.forward, 0.5);
-        part("turn", cycle.way.turn, cycle.predicted.turn, 0.3);
+        compare("ahead", cycle.way.forward, cycle.predicted.forward, 0.5);
+        compare("turn", cycle.way.turn, cycle.predicted.turn, 0.3);
         assert!(
             row.servo_rate <= robot().pace().gait_slew + 5.0,
             "{}",
@@ -71,5 +72,5 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         let min = limits.type2.min(limits.type1).min(limits.leg);
         assert!(margin > min - 0.01, "{} {name} {margin}", row.command);
     }
-    assert!(compared > 0, "every gait depends on a tie");
+    assert!(compared_count > 0, "every gait depends on a tie");
 }

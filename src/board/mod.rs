@@ -57,22 +57,22 @@ impl Uno {
     pub fn start() -> Self {
         // SAFETY: nothing has run before this except the boot loader; each peripheral
         // goes to the one module that owns it.
-        let board = unsafe { Peripherals::steal() };
+        let peripherals = unsafe { Peripherals::steal() };
         // The servos' pins are not known yet, so no pin may stay high.
         // SAFETY: any value of a port is sound; D0 and D1, the serial line, keep theirs.
         unsafe {
-            board.PORTB.portb.write(|w| w.bits(0));
-            board.PORTC.portc.write(|w| w.bits(0));
-            board
+            peripherals.PORTB.portb.write(|w| w.bits(0));
+            peripherals.PORTC.portc.write(|w| w.bits(0));
+            peripherals
                 .PORTD
                 .portd
                 .modify(|port, w| w.bits(port.bits() & 0x03));
         }
-        let restart = kept::restart(&board.CPU);
+        let restart = kept::restart(&peripherals.CPU);
         stack::start();
         led::start();
-        sleep::start(board.CPU);
-        serial::start(board.USART0, restart.rate);
+        sleep::start(peripherals.CPU);
+        serial::start(peripherals.USART0, restart.rate);
         // SAFETY: interrupts are off, and nothing else here uses Timer1 or the servos' pins.
         unsafe { pulses::start() };
         watchdog::start();
@@ -81,8 +81,8 @@ impl Uno {
         unsafe { avr_device::interrupt::enable() };
         Self {
             writer: serial::Writer,
-            eeprom: eeprom::Eeprom::new(board.EEPROM),
-            converter: supply::Converter::new(board.ADC),
+            eeprom: eeprom::Eeprom::new(peripherals.EEPROM),
+            converter: supply::Converter::new(peripherals.ADC),
             restart,
         }
     }

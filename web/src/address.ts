@@ -7,7 +7,7 @@ import type { Session } from './session';
  * Time without a further change after which the address is written, ms: browsers refuse an address that changes too
  * often.
  */
-const QUIET = 300;
+const QUIET_MS = 300;
 
 /** Returns the parts after the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
 export const partsOf = (hash: string) => new URLSearchParams(hash.slice(1));
@@ -42,7 +42,7 @@ export class Address {
     this.timer = setTimeout(() => {
       // A browser that cannot compress keeps the old address; the button for a link says why.
       this.show().catch((error: unknown) => console.info(`The address does not follow the robot: ${String(error)}`));
-    }, QUIET);
+    }, QUIET_MS);
   }
 
   private async show(): Promise<void> {
@@ -55,7 +55,7 @@ export class Address {
     if (room) parts.set('room', room);
     if (robot) parts.set('robot', robot);
     else if (file !== '' && file !== this.first) parts.set('file', file);
-    const plain = location.href.split('#')[0] ?? '';
-    history.replaceState(OWN, '', parts.size > 0 ? `${plain}#${parts}` : plain);
+    const pageAddress = location.href.split('#')[0] ?? '';
+    history.replaceState(OWN, '', parts.size > 0 ? `${pageAddress}#${parts}` : pageAddress);
   }
 }

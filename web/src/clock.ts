@@ -3,30 +3,30 @@
 /** Longest simulated time per picture, ms: what a hidden or slow page misses beyond this is skipped. */
 const MAX_CATCH_UP_MS = 100;
 /** Slice of simulated time, ms; promises are settled between two slices. */
-const PART = 4;
+const SLICE_MS = 4;
 /** CPU time that the simulation may take for a picture, ms; if it needs more, it falls behind real time. */
-const BUDGET = 30;
+const BUDGET_MS = 30;
 
 export function run(advance: (ms: number) => void, draw: () => void): void {
-  let before: number | null = null;
-  let failed = false;
+  let lastTime: number | null = null;
+  let hasFailed = false;
   const frame = async (now: number) => {
-    let left = before === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - before));
-    before = now;
+    let leftMs = lastTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - lastTime));
+    lastTime = now;
     const start = performance.now();
     try {
-      while (left > 0 && !failed && performance.now() - start < BUDGET) {
-        advance(Math.min(PART, left));
-        left -= PART;
+      while (leftMs > 0 && !hasFailed && performance.now() - start < BUDGET_MS) {
+        advance(Math.min(SLICE_MS, leftMs));
+        leftMs -= SLICE_MS;
         await Promise.resolve();
       }
     } catch (error) {
       // The stop is reported once; the page continues.
-      failed = true;
+      hasFailed = true;
       console.error(error);
     }
     draw();
-    requestAnimationFrame((next) => void frame(next));
+    requestAnimationFrame((time) => void frame(time));
   };
-  requestAnimationFrame((first) => void frame(first));
+  requestAnimationFrame((time) => void frame(time));
 }

@@ -19,13 +19,13 @@ export class Companion {
    */
   static create(toml: string, floor: Floor, servos: string, volts: number): Companion {
     const robot = new Robot();
-    const read = robot.read(toml);
-    if (isRefused(read)) throw new Error(read.refused);
+    const result = robot.read(toml);
+    if (isRefused(result)) throw new Error(result.refused);
     robot.setFloor(floor);
     robot.setServos(servos);
     robot.runCore();
     const companion = new Companion(robot, volts);
-    for (let n = 0; n < WAKE_FRAMES; n++) companion.step();
+    for (let frame = 0; frame < WAKE_FRAMES; frame++) companion.step();
     robot.restart();
     companion.step();
     return companion;

@@ -13,7 +13,7 @@ export class Helper<Functions> {
     this.functions = wrap<Functions>(worker);
     worker.addEventListener('error', ({ message }) => {
       this.trouble = new Error(message || 'the worker could not be loaded');
-      for (const fail of this.waiting) fail(this.trouble);
+      for (const reject of this.waiting) reject(this.trouble);
     });
   }
 
@@ -23,14 +23,14 @@ export class Helper<Functions> {
    */
   async ask<Answer>(call: (functions: Remote<Functions>) => Promise<Answer>): Promise<Answer> {
     if (this.trouble) throw this.trouble;
-    let failed: (error: Error) => void = () => {};
+    let rejectCall: (error: Error) => void = () => {};
     try {
-      return await new Promise<Answer>((done, fail) => {
-        this.waiting.add((failed = fail));
-        call(this.functions).then(done, fail);
+      return await new Promise<Answer>((resolve, reject) => {
+        this.waiting.add((rejectCall = reject));
+        call(this.functions).then(resolve, reject);
       });
     } finally {
-      this.waiting.delete(failed);
+      this.waiting.delete(rejectCall);
     }
   }
 

@@ -17,11 +17,11 @@ export interface SavedChanges {
 
 /** The prefix of the storage keys; it differs for pages at other addresses of the same server. */
 const KEY = `lizard ${location.pathname}`;
-const ASIDE = `${KEY} aside`;
-const GAIT = `${KEY} gait`;
+const ASIDE_KEY = `${KEY} aside`;
+const GAIT_KEY = `${KEY} gait`;
 
 /** Largest number of robots that are put aside; older ones are dropped. */
-const MOST_ASIDE = 8;
+const MAX_ASIDE = 8;
 
 function store(key: string, value: unknown): void {
   try {
@@ -32,7 +32,7 @@ function store(key: string, value: unknown): void {
 }
 
 /** Returns the stored robots that this version of the page can use; none if the text is damaged. */
-function stored(key: string): SavedChanges[] {
+function loadStates(key: string): SavedChanges[] {
   try {
     const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
     return states.flatMap((state) => {
@@ -58,22 +58,22 @@ export const kept = {
   put: (state: SavedChanges) => store(KEY, state),
 
   /** The stored state; null if there is none that can be used. */
-  get: (): SavedChanges | null => stored(KEY)[0] ?? null,
+  get: (): SavedChanges | null => loadStates(KEY)[0] ?? null,
 
   /** The robots that were put aside, the latest first. */
-  aside: () => stored(ASIDE),
+  aside: () => loadStates(ASIDE_KEY),
 
-  setAside: (robots: SavedChanges[]) => store(ASIDE, robots.slice(0, MOST_ASIDE)),
+  setAside: (robots: SavedChanges[]) => store(ASIDE_KEY, robots.slice(0, MAX_ASIDE)),
 
   /** The gait that is being made; null if there is none that can be used. */
   gait: (): Bars | null => {
     try {
-      const gait: unknown = JSON.parse(localStorage.getItem(GAIT) ?? 'null');
+      const gait: unknown = JSON.parse(localStorage.getItem(GAIT_KEY) ?? 'null');
       return isGait(gait) ? gait : null;
     } catch {
       return null;
     }
   },
 
-  putGait: (gait: Bars) => store(GAIT, gait),
+  putGait: (gait: Bars) => store(GAIT_KEY, gait),
 };

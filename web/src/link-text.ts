@@ -4,16 +4,16 @@
 const MAX_BYTES = 200_000;
 
 async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
-  const piped = new Blob([bytes]).stream().pipeThrough(stream);
-  const reader = piped.getReader();
-  const pieces: BlobPart[] = [];
+  const output = new Blob([bytes]).stream().pipeThrough(stream);
+  const reader = output.getReader();
+  const chunks: BlobPart[] = [];
   let length = 0;
-  for (let part = await reader.read(); !part.done; part = await reader.read()) {
-    length += part.value.length;
+  for (let chunk = await reader.read(); !chunk.done; chunk = await reader.read()) {
+    length += chunk.value.length;
     if (length > MAX_BYTES) throw new Error('the robot in this address is too large');
-    pieces.push(part.value);
+    chunks.push(chunk.value);
   }
-  return new Uint8Array(await new Blob(pieces).arrayBuffer());
+  return new Uint8Array(await new Blob(chunks).arrayBuffer());
 }
 
 /** Compresses a robot.toml to the part `robot` of an address. */
@@ -30,8 +30,8 @@ export async function pack(toml: string): Promise<string> {
  */
 async function withoutComments(toml: string): Promise<string> {
   const { parse } = await import('smol-toml');
-  const short = toml.replaceAll(/^[ \t]*#.*\n/gm, '').replaceAll(/[ \t]+#[^"'\n]*$/gm, '');
-  return JSON.stringify(parse(short)) === JSON.stringify(parse(toml)) ? short : toml;
+  const shortText = toml.replaceAll(/^[ \t]*#.*\n/gm, '').replaceAll(/[ \t]+#[^"'\n]*$/gm, '');
+  return JSON.stringify(parse(shortText)) === JSON.stringify(parse(toml)) ? shortText : toml;
 }
 
 /** Returns a link to this page that opens a robot, without comments, short enough for a chat or a QR code. */
@@ -40,9 +40,9 @@ export async function linkTo(toml: string): Promise<string> {
 }
 
 /** Reads the robot.toml from the part `robot` of an address. Throws an error for the user. */
-export async function unpack(part: string): Promise<string> {
+export async function unpack(encoded: string): Promise<string> {
   try {
-    const letters = atob(part.replaceAll('-', '+').replaceAll('_', '/'));
+    const letters = atob(encoded.replaceAll('-', '+').replaceAll('_', '/'));
     const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
     return new TextDecoder('utf-8', { fatal: true }).decode(await pipe(bytes, new DecompressionStream('deflate-raw')));
   } catch {

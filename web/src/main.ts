@@ -47,9 +47,9 @@ import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
 
 /** Number of updates of the shown numbers per second. */
-const TEXTS = 10;
+const TEXT_UPDATES_PER_SECOND = 10;
 /** Number of pictures per drawing of scope, margins and maps, since painting costs most. */
-const PANELS = 3;
+const PICTURES_PER_DRAWING = 3;
 
 declare global {
   interface Window {
@@ -64,11 +64,11 @@ async function start(): Promise<void> {
   const module = await files.wasm();
   const robot = load(module);
   const choice = await Choice.load();
-  const now = () => session;
-  const address = new Address(now, choice.robot);
+  const getSession = () => session;
+  const address = new Address(getSession, choice.robot);
 
-  const connect = element<HTMLButtonElement>('connect');
-  const radio = element<HTMLButtonElement>('radio');
+  const connectButton = element<HTMLButtonElement>('connect');
+  const radioButton = element<HTMLButtonElement>('radio');
   const scope = new ScopeView();
   const margins = new MarginsView();
   const maps = new MapsView();
@@ -89,70 +89,70 @@ async function start(): Promise<void> {
   const predictor = new Predictor(module, (gait, prediction) => {
     drive.predicted(gait, prediction);
     measure?.predicted();
-    texts();
-    begin();
+    updateTexts();
+    beginWalk();
   });
   const predict = () => {
     const { toml, floor, servos, description, predicted } = session;
     predicted?.forEach((prediction, gait) => prediction && drive.predicted(gait, prediction));
     measure?.predicted();
-    const first = description.gaits.findIndex(({ command }) => command === session.gait);
-    predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, first) });
+    const firstIndex = description.gaits.findIndex(({ command }) => command === session.gait);
+    predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, firstIndex) });
     routines.predict();
   };
   // When the page opens, the robot walks slowly until the user acts, unless the system asks for reduced motion.
-  let isOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  const begin = () => {
+  let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  const beginWalk = () => {
     const gait = gaitFor({ ahead: 1, left: 0 }, drive.choices());
-    if (isOver || !gait || isBarred() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
-    isOver = true;
+    if (isIntroOver || !gait || isBarred() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+    isIntroOver = true;
     void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
   };
   // The user has taken over.
-  for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (isOver = true), { once: true });
-  const world = new World(now, predict);
-  const health = new Health(now);
-  const lengths: Lengths = new Lengths(now, (edits) => sketch.offer(edits));
-  const parts = new PartsView(now);
-  const fit = new FitView(now, parts);
-  const sketch = new Sketch(module, now, fit);
-  const keep = new Keep(now, floor, (line) => drive.ask(line), () => pace.percent);
-  const calibrate = new Calibrate(now);
-  let writing = false;
-  const writer = new Writer(now, (busy) => {
-    writing = health.isPaused = busy;
+  for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
+  const world = new World(getSession, predict);
+  const health = new Health(getSession);
+  const lengths: Lengths = new Lengths(getSession, (edits) => sketch.offer(edits));
+  const parts = new PartsView(getSession);
+  const fit = new FitView(getSession, parts);
+  const sketch = new Sketch(module, getSession, fit);
+  const keep = new Keep(getSession, floor, (line) => drive.ask(line), () => pace.percent);
+  const calibrate = new Calibrate(getSession);
+  let isWriting = false;
+  const writer = new Writer(getSession, (isBusy) => {
+    isWriting = health.isPaused = isBusy;
     // The boot loader uses the line, so nothing else may take it.
-    choice.enabled = !busy;
-    connect.disabled = busy || !hasSerial();
-    radio.disabled = busy;
+    choice.enabled = !isBusy;
+    connectButton.disabled = isBusy || !hasSerial();
+    radioButton.disabled = isBusy;
     flash.update();
     setup.update();
   });
   const alarm = new Alarm();
   const remote = new Remote();
-  const text: RobotText = new RobotText(now, writer, () => routines.show());
-  const routines = new RoutinesView(module, now, text, () => pace.percent, (line) => drive.ask(line), writer);
-  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer, (before, found, output) => {
+  const text: RobotText = new RobotText(getSession, writer, () => routines.show());
+  const routines = new RoutinesView(module, getSession, text, () => pace.percent, (line) => drive.ask(line), writer);
+  const gaits = new GaitsView(module, getSession, (line) => drive.ask(line), writer, (ownGait, foundGait, output) => {
     // The second robot is drawn from above alone.
     parts.set3d(false);
-    return keep.compare(before, found, output);
+    return keep.compare(ownGait, foundGait, output);
   });
-  const path = new PathView(module, now, (line) => drive.ask(line), writer);
-  const flash = new FlashView(now, writer);
+  const path = new PathView(module, getSession, (line) => drive.ask(line), writer);
+  const flash = new FlashView(getSession, writer);
   // Loaded when its room is opened.
   let measure: MeasureView | null = null;
   const openMeasure = async () => {
     if (element('room-measure').hidden || measure) return;
     const { MeasureView } = await import('./view/measure');
     if (measure) return;
-    measure = new MeasureView(now, () => drive.choices(), isBarred);
+    measure = new MeasureView(getSession, () => drive.choices(), isBarred);
     measure.showRobot(session.description);
     measure.link(session.isReal);
   };
   document.addEventListener(OPENED, () => void openMeasure());
-  const setup: Setup = new Setup(now, writer, () => connectBoard());
+  const setup: Setup = new Setup(getSession, writer, () => connectBoard());
 
-  const boardRobot = new BoardRobot(now, troubles, ({ file, toml }) => {
+  const boardRobot = new BoardRobot(getSession, troubles, ({ file, toml }) => {
     choice.show(file);
     void replace(async () => {
       await choose();
@@ -168,8 +168,8 @@ async function start(): Promise<void> {
       drive.showRobot(description);
       // A board that stays connected continues its gait.
       drive.doing(session.gait);
-      const strange = unknownWords([...drive.words], description.words);
-      if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
+      const strangeWords = unknownWords([...drive.words], description.words);
+      if (strangeWords.length > 0) troubles.say('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
       lengths.showRobot(description.lengths);
       fit.showRobot(description.lengths);
       sketch.showRobot();
@@ -194,7 +194,7 @@ async function start(): Promise<void> {
       if (widths) scope.frame(widths);
     },
     pulse: (pin, rise, width) => {
-      latest = rise + width;
+      latestCycle = rise + width;
       scope.pulse(pin, rise, width);
     },
     sent(line) {
@@ -217,14 +217,14 @@ async function start(): Promise<void> {
       keep.doing(gait);
       measure?.did(gait);
       routines.doing(gait);
-      texts();
+      updateTexts();
     },
     found(banner) {
       element('where').textContent = whereOf(session.link.name, banner, session.description.hash);
       setup.update();
       void boardRobot.follow();
       // On a slow machine the predictions come before the robot's banner.
-      begin();
+      beginWalk();
     },
     speed(percent) {
       pace.show(percent);
@@ -241,16 +241,16 @@ async function start(): Promise<void> {
     },
     stopping: (isStopping) => alarm.stopping(isStopping),
     link(link) {
-      latest = 0;
+      latestCycle = 0;
       element('heard').hidden = !session.isReal;
       scope.link(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
       // Reserves the row's height for the line that most likely follows.
       const { version, name, hash } = session.description;
       element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
-      connect.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
-      connect.disabled = !session.isReal && !hasSerial();
-      radio.hidden = session.isReal || bluetoothProblem() !== null;
+      connectButton.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
+      connectButton.disabled = !session.isReal && !hasSerial();
+      radioButton.hidden = session.isReal || bluetoothProblem() !== null;
       element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
       flash.update();
       measure?.link(session.isReal);
@@ -263,9 +263,9 @@ async function start(): Promise<void> {
       troubles.say(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
-  let latest = 0;
+  let latestCycle = 0;
 
-  function texts(): void {
+  function updateTexts(): void {
     const { last, gait } = session;
     const put = (id: string, text: string) => {
       const box = element(id);
@@ -286,8 +286,8 @@ async function start(): Promise<void> {
     put('cycle', formatDisplacement(measured) || '–');
     put('predicted', formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
-    const sprung = lags(session.floor);
-    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !sprung;
+    const isSprung = lags(session.floor);
+    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isSprung;
     put('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
     put('share', prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
     const refusal = last?.fault ?? last?.scene?.refusal ?? null;
@@ -305,14 +305,14 @@ async function start(): Promise<void> {
       troubles.say('robot', messageOf(error));
     }
   };
-  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
+  const ownRobot = new OwnRobot(getSession, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
   /** Loads another robot; the user's changed one is put aside instead of being erased. */
   const replace = async (load: () => Promise<unknown>) => {
-    const before = kept.get();
+    const saved = kept.get();
     await load();
-    own.putAside(before);
+    ownRobot.putAside(saved);
   };
-  choice.onChange(() => void (choice.chosenOwn === null ? replace(choose) : own.restore(choice.chosenOwn)));
+  choice.onChange(() => void (choice.chosenOwn === null ? replace(choose) : ownRobot.restore(choice.chosenOwn)));
 
   element('reset').addEventListener('click', () => void session.reset());
 
@@ -328,33 +328,33 @@ async function start(): Promise<void> {
       troubles.say('port', `No board is connected: ${messageOf(error)}`);
     }
   }
-  connect.addEventListener('click', () => void connectBoard());
-  radio.addEventListener('click', () => void connectBoard(() => BluetoothLink.open()));
+  connectButton.addEventListener('click', () => void connectBoard());
+  radioButton.addEventListener('click', () => void connectBoard(() => BluetoothLink.open()));
   document.addEventListener('visibilitychange', () => document.hidden && session.letGo());
   // A board would walk on when its page is closed: it is stopped, and the browser asks. The browser also asks while an
   // image is being written.
   addEventListener('beforeunload', (event) => {
     if (session.walksAlone) void session.stop();
-    else if (!(writing && session.isReal)) return;
+    else if (!(isWriting && session.isReal)) return;
     event.preventDefault();
   });
 
-  const before = kept.get();
-  const asked = partsOf(location.hash).get('file');
-  const wanted = asked ?? before?.file;
-  const isThere = wanted === undefined || choice.show(wanted);
+  const saved = kept.get();
+  const askedFile = partsOf(location.hash).get('file');
+  const wantedFile = askedFile ?? saved?.file;
+  const isKnownFile = wantedFile === undefined || choice.show(wantedFile);
   await choose();
-  const missing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
-  if (asked !== null && !isThere) missing(asked);
+  const reportMissing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
+  if (askedFile !== null && !isKnownFile) reportMissing(askedFile);
   // The robot in the address wins over a stored one.
-  const isAsked = asked !== null || partsOf(location.hash).has('robot');
-  if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
-    const remedy = { label: 'Download what was changed', act: () => void download(before.toml, before.floor) };
-    const message = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
+  const isAsked = askedFile !== null || partsOf(location.hash).has('robot');
+  if (saved && session.file === saved.file && !(await session.recall(saved)) && !isAsked) {
+    const remedy = { label: 'Download what was changed', act: () => void download(saved.toml, saved.floor) };
+    const message = `${saved.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
     troubles.say('robot', message, remedy);
   }
   if (await text.fromAddress()) address.begin();
-  if (isAsked) own.putAside(before);
+  if (isAsked) ownRobot.putAside(saved);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);
@@ -363,7 +363,7 @@ async function start(): Promise<void> {
     const file = partsOf(hash).get('file');
     if (file === null) return void replace(async () => (await text.fromAddress(hash)) && address.begin());
     if (choice.show(file)) void replace(choose);
-    else missing(file);
+    else reportMissing(file);
   });
   window.lizard = session;
   // Only after everything for the first step is loaded.
@@ -371,11 +371,11 @@ async function start(): Promise<void> {
     element('fresh').hidden = false;
     element('fresh-take').onclick = take;
   });
-  let sinceTexts = 0;
-  let pictures = 0;
+  let msSinceTexts = 0;
+  let pictureCount = 0;
   run(
     (ms) => {
-      sinceTexts += ms;
+      msSinceTexts += ms;
       session.advance(ms);
     },
     () => {
@@ -385,15 +385,15 @@ async function start(): Promise<void> {
       if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
       keep.drawn();
       parts.draw(session.last);
-      pictures += 1;
-      if (pictures % PANELS === 0) {
-        scope.draw(latest);
+      pictureCount += 1;
+      if (pictureCount % PICTURES_PER_DRAWING === 0) {
+        scope.draw(latestCycle);
         margins.draw(session.last?.scene ?? null);
         maps.draw();
       }
-      if (sinceTexts >= 1000 / TEXTS) {
-        sinceTexts = 0;
-        texts();
+      if (msSinceTexts >= 1000 / TEXT_UPDATES_PER_SECOND) {
+        msSinceTexts = 0;
+        updateTexts();
         keep.write();
         measure?.write();
         scope.write(session.last?.scene ?? null);
@@ -409,8 +409,8 @@ function whereOf(name: string, banner: BoardBanner, hash: string): string {
   if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
   const { robot } = banner;
   if (!robot) return `on a ${name} with this firmware and no robot in it: write this one`;
-  const known = `robot ${robot.name} ${robot.hash}`;
-  return robot.hash === hash ? `on a ${name}, ${known}` : `on a ${name} with another robot, ${known}: choose that one, or write this one`;
+  const robotText = `robot ${robot.name} ${robot.hash}`;
+  return robot.hash === hash ? `on a ${name}, ${robotText}` : `on a ${name} with another robot, ${robotText}: choose that one, or write this one`;
 }
 
 openRoom(location.hash);

@@ -4,10 +4,10 @@
 import { messageOf } from './trouble';
 
 /**
- * Stores the page on this machine. Calls `fresh` when a newer page is ready, with a function that loads the newer
+ * Stores the page on this machine. Calls `onFresh` when a newer page is ready, with a function that loads the newer
  * page.
  */
-export async function keepOffline(fresh: (take: () => void) => void): Promise<void> {
+export async function keepOffline(onFresh: (load: () => void) => void): Promise<void> {
   // Only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;
@@ -17,7 +17,7 @@ export async function keepOffline(fresh: (take: () => void) => void): Promise<vo
     const offer = () => {
       const { waiting } = registration;
       if (!waiting || isFirst) return;
-      fresh(() => {
+      onFresh(() => {
         serviceWorker.addEventListener('controllerchange', () => location.reload(), { once: true });
         waiting.postMessage('take over');
       });

@@ -15,12 +15,12 @@ export class Predictor {
   ) {}
 
   /** Predicts every gait of a robot, beginning with the gait `first`; a newer call ends it. */
-  async ask({ gaits, first, ...of }: OnFloor & { gaits: number; first: number }): Promise<void> {
+  async ask({ gaits, first, ...robotOnFloor }: OnFloor & { gaits: number; first: number }): Promise<void> {
     const question = ++this.questions;
     for (let n = 0; n < gaits; n++) {
       const gait = (first + n) % gaits;
       this.helper ??= robotHelper(this.module);
-      const prediction = await this.helper.ask((robot) => robot.predict({ ...of, gait }));
+      const prediction = await this.helper.ask((robot) => robot.predict({ ...robotOnFloor, gait }));
       if (question !== this.questions) return;
       if (prediction) this.onPrediction(gait, prediction);
     }

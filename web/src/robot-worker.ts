@@ -20,10 +20,10 @@ function loadRobot({ toml, floor, servos }: OnFloor): boolean {
 
 /** Loads a robot and returns the scene of its neutral pose; null if the robot is refused. */
 function neutralScene(toml: string): Scene | null {
-  const read = robot.read(toml);
-  if (isRefused(read)) return null;
+  const description = robot.read(toml);
+  if (isRefused(description)) return null;
   loadedToml = toml;
-  return robot.pose(read.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;
+  return robot.pose(description.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;
 }
 
 const functions = {
@@ -31,13 +31,13 @@ const functions = {
     robot = load(module);
   },
 
-  predict: (of: OnFloor & { gait: number }) => (loadRobot(of) ? robot.predict(of.gait) : null),
+  predict: (request: OnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
 
   /** Tries an edited gait; null for a refused robot or a drawn line without length. */
-  trial: (of: OnFloor & { made: EditedGait }) => (loadRobot(of) ? robot.trial(of.made) : null),
+  trial: (request: OnFloor & { made: EditedGait }) => (loadRobot(request) ? robot.trial(request.made) : null),
 
   /** The path of one round of a routine; null if the robot is refused or has no such routine. */
-  round: (of: OnFloor & { routine: string }) => (loadRobot(of) ? robot.round(of.routine) : null),
+  round: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.round(request.routine) : null),
 
   /**
    * Tries other lengths, and draws the neutral pose if they are accepted. `isLast` is true at the end of a drag: if
@@ -45,9 +45,9 @@ const functions = {
    * returns the range of values that all lengths of these keys may have together.
    */
   lengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
-    const tried = Robot.lengths(toml, edits, isLast);
+    const result = Robot.lengths(toml, edits, isLast);
     const range = keys.length === 0 ? null : Robot.lengthRange(toml, keys);
-    return { ...tried, edits, scene: tried.refusal ? null : neutralScene(tried.text), isLast, range };
+    return { ...result, edits, scene: result.refusal ? null : neutralScene(result.text), isLast, range };
   },
 };
 

@@ -1,4 +1,5 @@
-// The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. Its types are those of wasm/src.
+// The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. Its types are those of
+// wasm/src.
 import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type NoTrial, type Refused, Robot } from '../generated/lizard';
 
 export { calibrationText, isSameCalibration, parseCalibration, readCalibration, reversedServo, Robot, scaledServo, Transfer } from '../generated/lizard';

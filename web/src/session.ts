@@ -24,7 +24,7 @@ import { type Measured, WalkedPath } from './walked';
 import { DONE, GAITS, WORDS } from './words';
 
 /** Number of frames of 20 ms from one reported pose of a board to the next; a radio at 9600 baud carries no more. */
-const WATCH = { usb: 2, radio: 10, simulated: 1 };
+const WATCH_FRAMES = { usb: 2, radio: 10, simulated: 1 };
 /** Time from a reset within which this firmware sends its banner, ms. */
 const BANNER_TIMEOUT_MS = 2500;
 /**
@@ -34,7 +34,7 @@ const BANNER_TIMEOUT_MS = 2500;
 const ANSWER_TIMEOUT_MS = 500;
 const MAX_ATTEMPTS = { usb: 5, radio: 12, simulated: 1 };
 /** Time that the answer to `status` may take before `status` is sent again, ms. */
-const STATUS_ANSWERS = 1000;
+const STATUS_TIMEOUT_MS = 1000;
 /** Time a board gets to stop before the port is closed, ms. */
 const STOP_TIMEOUT_MS = 1000;
 /** Time after a reset within which `boot` has acted (three seconds), ms. */
@@ -43,7 +43,7 @@ const BOOT_TIMEOUT_MS = 4000;
 const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
 /** Longest simulated time between two updates of `clock`, ms. */
-const PART = 5;
+const CLOCK_STEP_MS = 5;
 
 /** The fault of a robot that has received nothing for the time of `deadman`. */
 const LINK_FAULT = 'link';
@@ -150,29 +150,29 @@ export class Session {
    */
   async choose(name: string): Promise<void> {
     const choice = ++this.choices;
-    const before = this.file;
+    const previousFile = this.file;
     this.file = '';
     try {
       const [toml, predictions, code] = await Promise.all([files.toml(name), files.predictions(name), this.code ?? files.code()]);
       if (choice !== this.choices) return;
       this.code = code;
-      const refused = this.loadToml(toml, null, [toml, predictions]);
-      if (refused) throw new Error(`${name}.toml: ${refused.refused}`);
+      const refusal = this.loadToml(toml, null, [toml, predictions]);
+      if (refusal) throw new Error(`${name}.toml: ${refusal.refused}`);
       await this.begin(false);
       this.file = name;
       this.keep();
     } catch (error) {
       // A later choice has replaced this one.
       if (choice !== this.choices) return;
-      this.file = before;
+      this.file = previousFile;
       throw error;
     }
   }
 
   /** Loads a changed robot.toml: the simulated UNO restarts with it and keeps its saved settings. */
   async change(toml: string): Promise<Refused | null> {
-    const refused = this.loadToml(toml);
-    if (refused) return refused;
+    const refusal = this.loadToml(toml);
+    if (refusal) return refusal;
     await this.begin(true);
     this.keep();
     return null;
@@ -199,11 +199,11 @@ export class Session {
     await this.change(this.original);
   }
 
-  private loadToml(toml: string, set = this.floorSetting, file: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
+  private loadToml(toml: string, floorSetting = this.floorSetting, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
     const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
-    [this.toml, this.floorSetting] = [toml, set];
-    [this.original, this.predictions] = file;
+    [this.toml, this.floorSetting] = [toml, floorSetting];
+    [this.original, this.predictions] = originalFile;
     this.description = answer;
     this.section = this.robot.section();
     this.robot.setFloor(this.floor);
@@ -269,7 +269,7 @@ export class Session {
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
     for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closed.has(name));
     const events = {
-      frame: (widths: Four<number>) => this.widths(widths),
+      frame: (widths: Four<number>) => this.handleWidths(widths),
       pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
     };
     await this.attach(new UnoLink(board, pins, events));
@@ -282,10 +282,10 @@ export class Session {
    */
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
-    link.onGone = (why) => {
-      void this.simulate().then(() => this.listener.trouble('port', `The board is gone: ${why} The simulation goes on.`));
+    link.onGone = (reason) => {
+      void this.simulate().then(() => this.listener.trouble('port', `The board is gone: ${reason} The simulation goes on.`));
     };
-    link.onReach = (isInReach) => void this.reach(link, isInReach);
+    link.onReach = (isInReach) => void this.handleReach(link, isInReach);
     await this.attach(link);
     this.listener.trouble('port', null);
     // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
@@ -310,7 +310,7 @@ export class Session {
    * Reports that a radio has lost its board, or continues once it is in reach again. A robot that walked has stopped
    * by itself meanwhile.
    */
-  private async reach(link: Link, isInReach: boolean): Promise<void> {
+  private async handleReach(link: Link, isInReach: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.letGo();
     this.listener.silent(!isInReach);
@@ -327,8 +327,8 @@ export class Session {
 
   /** Waits for the banner of a restarted board; returns true if it came in time. */
   async greeting(): Promise<boolean> {
-    const greeted = new Promise<boolean>((yes) => (this.onBanner = () => yes(true)));
-    return Promise.race([greeted, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
+    const bannerArrival = new Promise<boolean>((resolve) => (this.onBanner = () => resolve(true)));
+    return Promise.race([bannerArrival, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
   }
 
   /** Returns true if this firmware answers `status`: not every port resets its board, so there may be no banner. */
@@ -356,14 +356,14 @@ export class Session {
   /** Makes a board send its poses. */
   private async watch(): Promise<void> {
     this.isWatching = true;
-    await this.ask(`${WORDS.watch} ${WATCH[this.link.kind]}`);
+    await this.ask(`${WORDS.watch} ${WATCH_FRAMES[this.link.kind]}`);
   }
 
   /** Stops a board, disconnects it and returns to the simulation. */
   async disconnect(): Promise<void> {
-    const stopped = await this.stop();
+    const hasStopped = await this.stop();
     await this.simulate();
-    if (!stopped) {
+    if (!hasStopped) {
       this.listener.trouble('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
     }
   }
@@ -382,8 +382,8 @@ export class Session {
   private walks(line: string): boolean {
     const [word] = line.split(' ');
     // A board with another robot may have gaits that this robot lacks. A count may follow the gait's name.
-    const known = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
-    return known ? known.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
+    const knownGait = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
+    return knownGait ? knownGait.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
   }
 
   /** Restores the robot's own `deadman` if the robot neither walks nor is about to walk. */
@@ -417,7 +417,7 @@ export class Session {
     this.isWatching = false;
     this.mayAsk = false;
     this.listen();
-    this.doing('');
+    this.setGait('');
     for (const cause of ['line', 'board', 'fault'] as const) this.listener.trouble(cause, null);
     this.listener.link(link);
   }
@@ -425,11 +425,11 @@ export class Session {
   private listen(): void {
     this.dialogue = new Dialogue(this.link, {
       sent: (line) => this.listener.sent(line),
-      received: (line) => this.received(line),
+      received: (line) => this.handleLine(line),
       arrived: (line) => {
         this.lastLineAt = performance.now();
-        const read = parseStatus(line);
-        if (read) this.state(read);
+        const status = parseStatus(line);
+        if (status) this.handleStatus(status);
       },
       silent: (isSilent) => this.listener.silent(isSilent),
       stopping: (isStopping) => this.listener.stopping(isStopping),
@@ -437,30 +437,30 @@ export class Session {
     this.deadman = new Deadman(this.dialogue);
   }
 
-  private received(line: string): void {
+  private handleLine(line: string): void {
     const angles = reportedPose(line);
     if (angles && this.isReal) {
-      this.pose(angles);
+      this.handlePose(angles);
       return;
     }
     this.listener.received(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
-    const doing = [...this.description.gaits.map(({ command }) => command), ...this.description.routines, stop, rest, center];
+    const activities = [...this.description.gaits.map(({ command }) => command), ...this.description.routines, stop, rest, center];
     // A count may follow the gait's name.
-    const command = doing.includes(word) ? word : word.replace(/ \d+$/, '');
-    if (doing.includes(command)) this.doing(command);
-    else if (word.startsWith(`${pose} `)) this.doing(pose);
+    const command = activities.includes(word) ? word : word.replace(/ \d+$/, '');
+    if (activities.includes(command)) this.setGait(command);
+    else if (word.startsWith(`${pose} `)) this.setGait(pose);
     else if (word.startsWith(`${speed} `)) this.setPace(Number(word.slice(speed.length)));
-    else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
+    else if (line.startsWith('# boot: ')) this.setGait(line.slice('# boot: '.length).replaceAll('-', ' '));
     else if (line.startsWith(GREETING)) this.handleBanner(line);
-    else if (line.startsWith('# fault') || line === DONE) this.doing(stop);
+    else if (line.startsWith('# fault') || line === DONE) this.setGait(stop);
   }
 
   private handleBanner(line: string): void {
     const { dialogue } = this;
-    const number = ++this.banners;
-    this.doing('stand');
+    const bannerNumber = ++this.banners;
+    this.setGait('stand');
     this.setPace(FULL_PACE);
     this.isWatching = false;
     this.deadman.forget();
@@ -471,7 +471,7 @@ export class Session {
     this.mayAsk = false;
     void this.link.wait(BOOT_TIMEOUT_MS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
-      if (this.banners !== number || dialogue.isClosed) return;
+      if (this.banners !== bannerNumber || dialogue.isClosed) return;
       this.mayAsk = true;
       if (this.isReal && !this.isWatching) void this.watch();
     });
@@ -489,7 +489,7 @@ export class Session {
     this.listener.speed(percent);
   }
 
-  private doing(gait: string): void {
+  private setGait(gait: string): void {
     this.gait = gait;
     this.restoreDeadmanIfIdle();
     this.path.clear();
@@ -497,8 +497,8 @@ export class Session {
   }
 
   /** Sends a line and returns its answer. Shows an error, unless the line is quiet, and returns null. */
-  async ask(line: string, quiet = false, timeout?: number): Promise<Answer | null> {
-    if (!quiet) this.mayAsk = true;
+  async ask(line: string, isQuiet = false, timeoutMs?: number): Promise<Answer | null> {
+    if (!isQuiet) this.mayAsk = true;
     const { deadman } = this;
     const command = line.trim().toLowerCase();
     if (command === WORDS.stop) this.stops += 1;
@@ -513,17 +513,17 @@ export class Session {
         if (!isSure) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
       }
       // `cal` must print and `save` must store the robot's own setting, not the page's.
-      const isOwn = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
-      if (isOwn) deadman.end();
-      const asked = this.dialogue.ask(line, quiet, timeout);
-      if (isOwn && this.walksAlone) void deadman.begin();
-      const answer = await asked;
-      if (!quiet) this.listener.trouble('line', null);
+      const needsOwnDeadman = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
+      if (needsOwnDeadman) deadman.end();
+      const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
+      if (needsOwnDeadman && this.walksAlone) void deadman.begin();
+      const answer = await pendingAnswer;
+      if (!isQuiet) this.listener.trouble('line', null);
       deadman.follow(command, answer.ok);
       return answer;
     } catch (error) {
       // A quiet line is sent again; until then the page shows that the robot is silent.
-      if (!quiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${messageOf(error)}.`);
+      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${messageOf(error)}.`);
       return null;
     } finally {
       if (isDrive) {
@@ -534,27 +534,27 @@ export class Session {
   }
 
   async status(): Promise<Status | null> {
-    const answer = await this.ask(WORDS.status, true, STATUS_ANSWERS);
+    const answer = await this.ask(WORDS.status, true, STATUS_TIMEOUT_MS);
     return answer && parseStatus(answer.text);
   }
 
   /** Takes the robot's state as soon as its line is read: taken later, it could overwrite a newer one. */
-  private state(read: Status): void {
-    if (read.speed !== null) this.setPace(read.speed);
-    this.listener.trouble('fault', read.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
-    const gait = read.gait.replaceAll('-', ' ');
+  private handleStatus(status: Status): void {
+    if (status.speed !== null) this.setPace(status.speed);
+    this.listener.trouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
+    const gait = status.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
-    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutine && read.fault === 'none');
+    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutine && status.fault === 'none');
     // The page has missed the start of this activity, for example because its link was cut.
-    if (gait !== this.gait && !isKnown) this.doing(gait);
-    this.listener.state(read);
+    if (gait !== this.gait && !isKnown) this.setGait(gait);
+    this.listener.state(status);
   }
 
   /** Presses the reset button of the board. */
   async reset(): Promise<void> {
     this.dialogue.forget();
     this.deadman.forget();
-    this.doing('');
+    this.setGait('');
     await this.link.reset();
   }
 
@@ -565,9 +565,9 @@ export class Session {
   async flash(bytes: Uint8Array, isRobotAlone: boolean, progress: Progress): Promise<void> {
     const { link } = this;
     if (link.kind === 'radio') throw new Error(BY_CABLE);
-    const end = bytes.length + (isRobotAlone ? this.description.start : 0);
+    const endAddress = bytes.length + (isRobotAlone ? this.description.start : 0);
     await this.withBootLoader(link, async ({ Board, needsUno, upload }, line) => {
-      const board = !link.mayBeNano || !needsUno(end) ? Board.Unknown : this.listener.isUno() ? Board.Uno : Board.Nano;
+      const board = !link.mayBeNano || !needsUno(endAddress) ? Board.Unknown : this.listener.isUno() ? Board.Uno : Board.Nano;
       this.boardBanner = undefined;
       this.isWatching = false;
       this.mayAsk = false;
@@ -587,7 +587,7 @@ export class Session {
       await line.end();
       if (this.link === link) {
         this.listen();
-        this.doing('');
+        this.setGait('');
       }
     }
   }
@@ -598,9 +598,9 @@ export class Session {
    */
   async waitForBanner(hash: string | null): Promise<string | null> {
     const { link } = this;
-    const greeted = await this.greeting();
+    const hasGreeted = await this.greeting();
     if (this.link !== link) return null;
-    if (!greeted) {
+    if (!hasGreeted) {
       this.setBoardBanner(null);
       this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
       return 'it sends no banner of this firmware';
@@ -617,11 +617,11 @@ export class Session {
   advance(ms: number): void {
     try {
       const { simulated } = this;
-      // In parts, so that each line of the robot gets its own time, even if a slow machine has much to catch up.
-      for (let left = simulated ? ms : 0; left > 0; left -= PART) {
-        const part = Math.min(left, PART);
-        this.clock += part / 1000;
-        simulated?.advance(part);
+      // In short steps, so that each line of the robot gets its own time, even if a slow machine has much to catch up.
+      for (let remainingMs = simulated ? ms : 0; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
+        const stepMs = Math.min(remainingMs, CLOCK_STEP_MS);
+        this.clock += stepMs / 1000;
+        simulated?.advance(stepMs);
       }
     } catch (error) {
       this.listener.trouble('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
@@ -629,13 +629,13 @@ export class Session {
     }
   }
 
-  private widths(widths: Four<number>): void {
+  private handleWidths(widths: Four<number>): void {
     const frame = this.robot.pulses(widths);
     if (frame) this.handleFrame(frame, widths, FRAME_SECONDS);
   }
 
-  private pose(angles: Four<number>): void {
-    const frames = WATCH[this.link.kind];
+  private handlePose(angles: Four<number>): void {
+    const frames = WATCH_FRAMES[this.link.kind];
     const frame = this.robot.pose(angles, frames);
     this.clock += FRAME_SECONDS * frames;
     if (frame) this.handleFrame(frame, null, FRAME_SECONDS * frames);
@@ -690,7 +690,7 @@ export class Session {
   setContact(name: string, isClosed: boolean): void {
     if (isClosed) this.closed.add(name);
     else this.closed.delete(name);
-    const input = this.description.inputs.find(([other]) => other === name);
+    const input = this.description.inputs.find(([inputName]) => inputName === name);
     if (input) this.simulated?.setContact(input[1], isClosed);
   }
 

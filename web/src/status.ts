@@ -53,21 +53,21 @@ export function parseStatus(line: string): Status | null {
   const pairs = new Map(line.slice(3).split(' ').map((pair) => pair.split('=') as [string, string]));
   const pose = parseFourNumbers(pairs.get('pose'));
   if (!pose && pairs.get('fault') !== 'robot') return null;
-  const number = (key: string): number | null => (pairs.has(key) ? parseFloat(pairs.get(key)!) : null);
+  const numberOf = (key: string): number | null => (pairs.has(key) ? parseFloat(pairs.get(key)!) : null);
   return {
     gait: pairs.get('gait') ?? '',
     pose,
-    phase: number('phase') ?? 0,
-    frames: number('frames') ?? 0,
-    margin: number('margin'),
+    phase: numberOf('phase') ?? 0,
+    frames: numberOf('frames') ?? 0,
+    margin: numberOf('margin'),
     guard: pairs.get('guard') ?? '',
     fault: pairs.get('fault') ?? 'none',
-    late: number('late') ?? 0,
-    lost: number('rx_lost') ?? 0,
+    late: numberOf('late') ?? 0,
+    lost: numberOf('rx_lost') ?? 0,
     reset: pairs.get('reset') ?? '',
-    resets: number('resets') ?? 0,
-    vcc: number('vcc'),
-    speed: number('speed'),
+    resets: numberOf('resets') ?? 0,
+    vcc: numberOf('vcc'),
+    speed: numberOf('speed'),
   };
 }
 

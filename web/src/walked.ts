@@ -34,14 +34,14 @@ export class WalkedPath {
     while (this.places[0].time < this.time - KEPT_SECONDS) this.places.shift();
   }
 
-  /** Returns the displacement in the last `cycle` seconds; null if the path is shorter. */
-  measured(cycle: number): Measured | null {
-    const now = this.places.at(-1);
-    if (!now) return null;
+  /** Returns the displacement in the last `cycleSeconds` seconds; null if the path is shorter. */
+  measured(cycleSeconds: number): Measured | null {
+    const lastPlace = this.places.at(-1);
+    if (!lastPlace) return null;
     // The nearest known frame: a real board does not report every frame.
-    const from = this.places.findLastIndex(({ time }) => time <= now.time - cycle + this.step / 2);
-    if (from < 0) return null;
-    const lags = this.places.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    return { ...Robot.between(this.places[from].frame.place, now.frame.place), lag: Math.max(0, ...lags) };
+    const startIndex = this.places.findLastIndex(({ time }) => time <= lastPlace.time - cycleSeconds + this.step / 2);
+    if (startIndex < 0) return null;
+    const lags = this.places.slice(startIndex + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
+    return { ...Robot.between(this.places[startIndex].frame.place, lastPlace.frame.place), lag: Math.max(0, ...lags) };
   }
 }

@@ -49,8 +49,8 @@ for (const [name, options] of [
     await inEveryRoom(options, async (page, room) => {
       if (room === 'drive') await page.addScriptTag({ path: AXE });
       const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-      const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
-      assert.deepEqual(found, [], room);
+      const violationTexts = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
+      assert.deepEqual(violationTexts, [], room);
     });
   });
 }
@@ -70,28 +70,28 @@ for (const [name, options] of [
       await step.click();
       await advance(page, 1500);
       const { violations } = await page.evaluate(() => window.axe.run('#setup', { resultTypes: ['violations'] }));
-      const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
-      assert.deepEqual(found, [], await page.locator('#setup-step').innerText());
+      const violationTexts = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
+      assert.deepEqual(violationTexts, [], await page.locator('#setup-step').innerText());
     }
   });
 }
 
 // Fonts differ from machine to machine, and some are wider.
 test('no screen scrolls sideways, with narrow or wide fonts', async () => {
-  const found = [];
+  const overflows = [];
   await inEveryRoom(PHONE, async (page, room) => {
     for (const width of [320, 340, 360, 375, 390, 412, 430, 480, 560, 641, 700, 761, 1001, 1400]) {
       await page.setViewportSize({ width, height: 844 });
       for (const spacing of ['0', '0.05em', '0.1em']) {
         assert.equal(await page.evaluate(() => document.documentElement.clientWidth), width);
         await page.evaluate((spacing) => { document.body.style.letterSpacing = spacing; }, spacing);
-        const beyond = await overflow(page);
-        if (beyond > 0) found.push(`${room}: ${beyond} pixels more than ${width}, letters ${spacing} apart`);
+        const overflowPixels = await overflow(page);
+        if (overflowPixels > 0) overflows.push(`${room}: ${overflowPixels} pixels more than ${width}, letters ${spacing} apart`);
       }
     }
     await page.setViewportSize(PHONE.viewport);
   });
-  assert.deepEqual(found, []);
+  assert.deepEqual(overflows, []);
 });
 
 test('the floor is moved by keys, and drags by a pointer', async () => {

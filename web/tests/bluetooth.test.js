@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, closePages, complaints, openWithBluetooth, page, text, unfold } from './browser.js';
+import { close, closePages, complaints, openWithBluetooth, page as openPage, text, unfold } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
@@ -15,104 +15,104 @@ afterEach(async () => {
 });
 after(close);
 
-const doing = (opened) => opened.evaluate(() => window.lizard.gait);
-const now = (opened) => opened.evaluate(() => performance.now());
+const activityOf = (page) => page.evaluate(() => window.lizard.gait);
+const pageTimeOf = (page) => page.evaluate(() => performance.now());
 
 async function openDriven(module) {
   radio = await Radio.near(module);
-  const { opened } = radio;
+  const { opened: page } = radio;
   await radio.pick();
-  await radio.until('it is found', async () => (await text(opened, '#where')).includes(`board at ${module.name} that has not restarted`));
-  await radio.until('it stands', async () => (await doing(opened)) === 'stand');
-  await opened.locator('#gaits button[data-command="walk"]').click();
-  await radio.until('it walks', async () => (await doing(opened)) === 'walk');
-  return opened;
+  await radio.until('it is found', async () => (await text(page, '#where')).includes(`board at ${module.name} that has not restarted`));
+  await radio.until('it stands', async () => (await activityOf(page)) === 'stand');
+  await page.locator('#gaits button[data-command="walk"]').click();
+  await radio.until('it walks', async () => (await activityOf(page)) === 'walk');
+  return page;
 }
 
 for (const module of [HM10, NORDIC]) {
   test(`a robot behind a module of the kind ${module.name} is driven and stopped`, async () => {
-    const opened = await openDriven(module);
+    const page = await openDriven(module);
     await radio.run(3000);
-    assert.equal(await doing(opened), 'walk', 'it is kept walking');
-    assert.ok((await now(opened)) - (await opened.evaluate(() => window.moved)) < 100, 'it walks');
-    await opened.keyboard.press('Escape');
-    await radio.until('it stops', async () => (await doing(opened)) === 'stop');
+    assert.equal(await activityOf(page), 'walk', 'it is kept walking');
+    assert.ok((await pageTimeOf(page)) - (await page.evaluate(() => window.moved)) < 100, 'it walks');
+    await page.keyboard.press('Escape');
+    await radio.until('it stops', async () => (await activityOf(page)) === 'stop');
     assert.ok(Math.max(...radio.packets) <= 20, 'packets of at most 20 bytes');
-    const heard = await opened.evaluate(() => window.heard);
-    assert.ok(heard.indexOf('deadman 901\n') < heard.indexOf('walk\n'), heard);
-    assert.match(heard, /OK\+CONN.*\n/);
-    assert.equal(await opened.locator('#trouble').isVisible(), false);
-    assert.equal(await opened.locator('#setup').isVisible(), false, 'nobody is sent to write firmware by radio');
-    for (const control of ['#flash-write', '#flash-robot', '#flash-file', '#reset']) assert.ok(await opened.locator(control).isDisabled(), control);
+    const heardText = await page.evaluate(() => window.heard);
+    assert.ok(heardText.indexOf('deadman 901\n') < heardText.indexOf('walk\n'), heardText);
+    assert.match(heardText, /OK\+CONN.*\n/);
+    assert.equal(await page.locator('#trouble').isVisible(), false);
+    assert.equal(await page.locator('#setup').isVisible(), false, 'nobody is sent to write firmware by radio');
+    for (const control of ['#flash-write', '#flash-robot', '#flash-file', '#reset']) assert.ok(await page.locator(control).isDisabled(), control);
   });
 }
 
 test('a robot whose link is cut stands still, and the page reconnects by itself', async () => {
-  const opened = await openDriven(HM10);
+  const page = await openDriven(HM10);
   await radio.run(1000);
-  const at = await now(opened);
+  const cutMs = await pageTimeOf(page);
   await radio.cut();
-  await radio.until('it is said', async () => (await text(opened, '#trouble')).includes('The board at HMSoft is out of reach.'));
+  await radio.until('it is said', async () => (await text(page, '#trouble')).includes('The board at HMSoft is out of reach.'));
   await radio.run(2000);
-  assert.match(await text(opened, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
-  const last = await opened.evaluate(() => window.moved);
-  assert.ok(last - at <= 901 + 40, `it moved for ${last - at} ms`);
+  assert.match(await text(page, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
+  const lastMoveMs = await page.evaluate(() => window.moved);
+  assert.ok(lastMoveMs - cutMs <= 901 + 40, `it moved for ${lastMoveMs - cutMs} ms`);
   await radio.back();
-  await radio.until('it is stopped', async () => (await doing(opened)) === 'stop');
-  await opened.locator('#trouble', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
-  assert.ok(!(await text(opened, '#trouble')).includes('out of reach'));
-  assert.equal(await opened.locator('#alarm').isVisible(), false);
-  await opened.locator('#gaits button[data-command="walk"]').click();
-  await radio.until('it walks again', async () => (await doing(opened)) === 'walk');
+  await radio.until('it is stopped', async () => (await activityOf(page)) === 'stop');
+  await page.locator('#trouble', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
+  assert.ok(!(await text(page, '#trouble')).includes('out of reach'));
+  assert.equal(await page.locator('#alarm').isVisible(), false);
+  await page.locator('#gaits button[data-command="walk"]').click();
+  await radio.until('it walks again', async () => (await activityOf(page)) === 'walk');
 });
 
 test('a trim set while out of reach is shown with the robot\'s value once the robot answers again', async () => {
   radio = await Radio.near(HM10);
-  const { opened } = radio;
+  const { opened: page } = radio;
   await radio.pick();
-  await radio.until('it stands', async () => (await doing(opened)) === 'stand');
-  await unfold(opened, '#calibrate');
-  const trim = opened.locator('#calibration fieldset').first().getByLabel('trim');
+  await radio.until('it stands', async () => (await activityOf(page)) === 'stand');
+  await unfold(page, '#calibrate');
+  const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
   await radio.until('it is read', () => trim.isVisible());
   await radio.cut();
   await trim.fill('5');
   await radio.run(4000);
-  await opened.locator('#trouble', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
+  await page.locator('#trouble', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
   assert.equal(await trim.inputValue(), '5');
   await radio.back();
   await radio.until('it is read again', async () => (await trim.inputValue()) === '0');
 });
 
 test('a stop pressed while out of reach is the first line that the robot receives', async () => {
-  const opened = await openDriven(HM10);
+  const page = await openDriven(HM10);
   await radio.cut();
   await radio.run(300);
-  await opened.keyboard.press('Escape');
-  const before = (await opened.evaluate(() => window.heard)).length;
+  await page.keyboard.press('Escape');
+  const heardLength = (await page.evaluate(() => window.heard)).length;
   await radio.run(1000);
-  assert.ok(await opened.evaluate(() => document.body.classList.contains('stopping')));
+  assert.ok(await page.evaluate(() => document.body.classList.contains('stopping')));
   await radio.back();
-  await radio.until('it is stopped', async () => !(await opened.evaluate(() => document.body.classList.contains('stopping'))));
-  const lines = (await opened.evaluate(() => window.heard)).slice(before).split('\n');
+  await radio.until('it is stopped', async () => !(await page.evaluate(() => document.body.classList.contains('stopping'))));
+  const lines = (await page.evaluate(() => window.heard)).slice(heardLength).split('\n');
   assert.equal(lines.find((line) => line !== '' && !line.startsWith('OK+')), 'stop', lines.join('|'));
 });
 
 test('a module behind which no robot answers is named', async () => {
   radio = await Radio.near(HM10, { robot: false });
-  const { opened } = radio;
+  const { opened: page } = radio;
   await radio.pick();
-  await radio.until('it is said', async () => (await text(opened, '#trouble')).includes('no robot answers'));
-  assert.match(await text(opened, '#trouble'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
-  assert.equal(await opened.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
+  await radio.until('it is said', async () => (await text(page, '#trouble')).includes('no robot answers'));
+  assert.match(await text(page, '#trouble'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
+  assert.equal(await page.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
 });
 
 test('picking no Bluetooth module reports no problem', async () => {
   radio = await Radio.near(HM10);
-  const { opened } = radio;
+  const { opened: page } = radio;
   await radio.pick(false);
   await radio.run(500);
-  assert.equal(await opened.locator('#trouble').isVisible(), false);
-  assert.match(await text(opened, '#where'), /simulated UNO/);
+  assert.equal(await page.locator('#trouble').isVisible(), false);
+  assert.match(await text(page, '#where'), /simulated UNO/);
 });
 
 test('a machine without Bluetooth says so', async () => {
@@ -123,45 +123,45 @@ test('a machine without Bluetooth says so', async () => {
 
 test('if Bluetooth is forbidden, the page says where to allow it', async () => {
   radio = await Radio.near(HM10, { allowed: false, robot: false });
-  const { opened } = radio;
-  await opened.locator('#radio').click();
-  await opened.locator('#trouble', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
-  assert.match(await text(opened, '#trouble'), /disallowed by permissions policy/, 'the browser itself has refused it');
+  const { opened: page } = radio;
+  await page.locator('#radio').click();
+  await page.locator('#trouble', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
+  assert.match(await text(page, '#trouble'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
 test('a phone whose screen goes off stops its robot with its last line', async () => {
-  const opened = await openDriven(HM10);
+  const page = await openDriven(HM10);
   await radio.run(1000);
-  const at = await opened.evaluate(() => {
+  const hiddenMs = await page.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
     document.dispatchEvent(new Event('visibilitychange'));
     return window.boardMs();
   });
   await radio.run(60);
   await radio.sleep(3000);
-  const { last, heard } = await opened.evaluate(() => ({ last: window.movedAt, heard: window.heard }));
+  const { last, heard } = await page.evaluate(() => ({ last: window.movedAt, heard: window.heard }));
   assert.match(heard, /stop\n(deadman 0\n)?$/);
-  assert.ok(last - at < 400, `it moved for ${last - at} ms`);
+  assert.ok(last - hiddenMs < 400, `it moved for ${last - hiddenMs} ms`);
 });
 
 test('when a phone falls asleep without notice, its robot stands still, and the page learns of it on waking', async () => {
-  const opened = await openDriven(HM10);
-  const at = await opened.evaluate(() => window.boardMs());
+  const page = await openDriven(HM10);
+  const sleepMs = await page.evaluate(() => window.boardMs());
   await radio.sleep(3000);
-  const last = await opened.evaluate(() => window.movedAt);
-  assert.ok(last - at > 300 && last - at <= 901 + 40, `it moved for ${last - at} ms`);
-  await opened.clock.fastForward(3000);
-  await radio.until('it is said', async () => (await text(opened, '#trouble')).includes('no line had reached it for too long'));
-  assert.equal(await doing(opened), 'stop');
+  const lastMoveMs = await page.evaluate(() => window.movedAt);
+  assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `it moved for ${lastMoveMs - sleepMs} ms`);
+  await page.clock.fastForward(3000);
+  await radio.until('it is said', async () => (await text(page, '#trouble')).includes('no line had reached it for too long'));
+  assert.equal(await activityOf(page), 'stop');
 });
 
 test('an iPhone\'s user is told which browser works, before pressing anything', async () => {
-  const opened = await page({ userAgent: 'Mozilla/5.0 (iPhone; CPU iPhone OS 26_0 like Mac OS X) AppleWebKit/605.1.15' }, () => {
+  const page = await openPage({ userAgent: 'Mozilla/5.0 (iPhone; CPU iPhone OS 26_0 like Mac OS X) AppleWebKit/605.1.15' }, () => {
     for (const name of ['serial', 'bluetooth']) Object.defineProperty(navigator, name, { value: undefined });
     delete Object.getPrototypeOf(navigator).serial;
   });
-  await opened.locator('#no-serial', { hasText: 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can' }).waitFor();
-  assert.equal(await opened.locator('#radio').isVisible(), false);
+  await page.locator('#no-serial', { hasText: 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can' }).waitFor();
+  assert.equal(await page.locator('#radio').isVisible(), false);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -13,8 +13,8 @@ let folder;
 before(async () => {
   await open();
   folder = await mkdtemp(join(tmpdir(), 'lizard-book-'));
-  const built = spawnSync('mkdocs', ['build', '--strict', '--quiet', '--site-dir', folder], { cwd: new URL('../..', import.meta.url), encoding: 'utf8' });
-  assert.equal(built.status, 0, built.stderr);
+  const build = spawnSync('mkdocs', ['build', '--strict', '--quiet', '--site-dir', folder], { cwd: new URL('../..', import.meta.url), encoding: 'utf8' });
+  assert.equal(build.status, 0, build.stderr);
 });
 after(async () => {
   await closePages();
@@ -27,7 +27,7 @@ test('the search of the book finds a word without a server', async () => {
   await book.goto(`file://${folder}/index.html`);
   // The theme reads the input on key-up only, so the text is typed, not set.
   await book.locator('input[name=query]').pressSequentially('brownout');
-  const first = book.locator('.md-search-result__link').first();
-  await first.waitFor();
-  assert.match(await first.getAttribute('href'), /^file:.*(faults|firmware|quickstart|console)\.html/);
+  const firstResult = book.locator('.md-search-result__link').first();
+  await firstResult.waitFor();
+  assert.match(await firstResult.getAttribute('href'), /^file:.*(faults|firmware|quickstart|console)\.html/);
 });

@@ -30,24 +30,27 @@ const FIREFOX = {
   executablePath: process.env.FIREFOX ?? '/usr/bin/firefox-esr',
   firefoxUserPrefs: { 'ui.prefersReducedMotion': 1 },
 };
-/** Time limit of a wait, ms: long, so that only a hang fails on a busy machine. PATIENCE sets another while a test is written. */
+/**
+ * Time limit of a wait, ms: long, so that only a hang fails on a busy machine. PATIENCE sets another while a test is
+ * written.
+ */
 export const PATIENCE = Number(process.env.PATIENCE ?? 300_000);
 
 /** Awaits a promise; fails with the name of the wait if it does not settle in time. */
-export function within(what, promise) {
+export function within(waitName, promise) {
   let timer;
-  const late = new Promise((_, fail) => {
-    const message = `waited ${PATIENCE / 1000} s for ${what}`;
-    timer = setTimeout(() => fail(new Error(message)), PATIENCE);
+  const timeout = new Promise((_, reject) => {
+    const message = `waited ${PATIENCE / 1000} s for ${waitName}`;
+    timer = setTimeout(() => reject(new Error(message)), PATIENCE);
   });
-  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+  return Promise.race([promise, timeout]).finally(() => clearTimeout(timer));
 }
 
 /** Adds time limits to calls that Playwright leaves without one. */
 function limit(object, name, methods) {
   for (const method of methods) {
-    const unlimited = object[method].bind(object);
-    object[method] = (...values) => within(`${name}.${method} of the browser`, unlimited(...values));
+    const original = object[method].bind(object);
+    object[method] = (...args) => within(`${name}.${method} of the browser`, original(...args));
   }
 }
 
@@ -60,20 +63,23 @@ const pages = [];
 /** The servers of single tests. */
 const servers = [];
 
-/** The browser's own session of its DevTools protocol. */
+/** Opens a session of the browser's DevTools protocol. */
 export const devTools = () => browser.newBrowserCDPSession();
 
 /** Closes the pages of a test, which would go on walking. */
 export async function closePages() {
-  await within('the pages to close', Promise.all(pages.splice(0).map((opened) => opened.close())));
-  for (const strict of servers.splice(0)) strict.close();
+  await within('the pages to close', Promise.all(pages.splice(0).map((openedPage) => openedPage.close())));
+  for (const strictServer of servers.splice(0)) strictServer.close();
 }
 
-/** Starts a web server for a folder's files with some headers, below a path of its own; `asked` lists the paths of the requests. */
-export async function serve(folder, asked = [], headers = {}) {
-  const made = createServer(async (request, response) => {
+/**
+ * Starts a web server for a folder's files with some headers, below a path of its own; `requestedPaths` lists the paths
+ * of the requests.
+ */
+export async function serve(folder, requestedPaths = [], headers = {}) {
+  const webServer = createServer(async (request, response) => {
     const path = request.url.split('?')[0].replace(FOLDER, '/');
-    asked.push(path);
+    requestedPaths.push(path);
     for (const [name, value] of Object.entries(headers)) response.setHeader(name, value);
     const file = join(folder, normalize(path === '/' ? '/index.html' : path));
     try {
@@ -85,8 +91,8 @@ export async function serve(folder, asked = [], headers = {}) {
       response.end();
     }
   });
-  await within('a web server', new Promise((ready) => made.listen(0, '127.0.0.1', ready)));
-  return made;
+  await within('a web server', new Promise((resolve) => webServer.listen(0, '127.0.0.1', resolve)));
+  return webServer;
 }
 
 async function start({ type, ...options }) {
@@ -112,9 +118,9 @@ async function reveal(locator) {
   await element?.evaluate(async (element) => {
     const room = element.closest('.room');
     if (room?.hidden) {
-      const opened = new Promise((done) => addEventListener('hashchange', done, { once: true }));
+      const hashChange = new Promise((resolve) => addEventListener('hashchange', resolve, { once: true }));
       document.querySelector(`a[href="#room=${room.id.replace('room-', '')}"]`).click();
-      await opened;
+      await hashChange;
     }
     for (let panel = element.closest('details'); panel; panel = panel.parentElement.closest('details')) {
       const summary = panel.querySelector('summary');
@@ -124,20 +130,20 @@ async function reveal(locator) {
 }
 
 /** Unfolds a panel in its room, unless it is unfolded. */
-export async function unfold(opened, panel) {
-  await reveal(opened.locator(`${panel} > :not(summary)`).first());
+export async function unfold(openedPage, panel) {
+  await reveal(openedPage.locator(`${panel} > :not(summary)`).first());
 }
 
 /** Opens the room of any element that a test uses, so that tests need not mention rooms. */
-function openRooms(opened) {
-  const prototype = Object.getPrototypeOf(opened.locator('body'));
+function openRooms(openedPage) {
+  const prototype = Object.getPrototypeOf(openedPage.locator('body'));
   if (prototype.opensRooms) return;
   prototype.opensRooms = true;
   for (const name of ['click', 'fill', 'selectOption', 'tap', 'press', 'focus', 'check', 'uncheck', 'boundingBox', 'screenshot', 'dragTo', 'hover', 'scrollIntoViewIfNeeded']) {
-    const plain = prototype[name];
-    prototype[name] = async function (...values) {
+    const original = prototype[name];
+    prototype[name] = async function (...args) {
       await reveal(this);
-      return plain.apply(this, values);
+      return original.apply(this, args);
     };
   }
   const { waitFor } = prototype;
@@ -150,52 +156,52 @@ function openRooms(opened) {
   };
 }
 
-/** Address of the page. */
-export const address = (of = server) => `http://127.0.0.1:${of.address().port}${FOLDER}`;
+/** Returns the address of the page. */
+export const address = (target = server) => `http://127.0.0.1:${target.address().port}${FOLDER}`;
 
 /**
- * Opens an empty page with reduced motion, so that nothing moves unless a test asks for it. Files come from the server, unless a test
- * asks for service workers.
+ * Opens an empty page with reduced motion, so that nothing moves unless a test asks for it. Files come from the server,
+ * unless a test asks for service workers.
  */
 export async function openBlank(options = {}) {
-  const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
-  pages.push(opened);
-  openRooms(opened);
-  limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
-  limit(opened.clock, 'clock', ['install', 'pauseAt', 'runFor']);
-  limit(opened.keyboard, 'keyboard', ['press', 'down', 'up']);
-  limit(opened.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
-  opened.setDefaultTimeout(PATIENCE);
-  const wait = opened.waitForFunction.bind(opened);
-  opened.waitForFunction = (question, ...more) => {
-    assert.notEqual(question.constructor.name, 'AsyncFunction', 'a promise passes for a yes here: use until');
-    return wait(question, ...more);
+  const openedPage = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
+  pages.push(openedPage);
+  openRooms(openedPage);
+  limit(openedPage, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
+  limit(openedPage.clock, 'clock', ['install', 'pauseAt', 'runFor']);
+  limit(openedPage.keyboard, 'keyboard', ['press', 'down', 'up']);
+  limit(openedPage.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
+  openedPage.setDefaultTimeout(PATIENCE);
+  const originalWait = openedPage.waitForFunction.bind(openedPage);
+  openedPage.waitForFunction = (condition, ...args) => {
+    assert.notEqual(condition.constructor.name, 'AsyncFunction', 'a promise passes for a yes here: use until');
+    return originalWait(condition, ...args);
   };
-  return opened;
+  return openedPage;
 }
 
-/** The number of pixels by which the page is wider than its window; 0 if it fits. */
-export const overflow = (opened) =>
-  opened.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+/** Returns the number of pixels by which the page is wider than its window; 0 if it fits. */
+export const overflow = (openedPage) =>
+  openedPage.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
 /** Returns the text of an element. */
-export const text = (opened, selector) => opened.locator(selector).innerText();
+export const text = (openedPage, selector) => openedPage.locator(selector).innerText();
 
 /** Waits until a question to the page is answered with true. */
-export function until(opened, question, value) {
-  const answered = async () => {
-    while (!(await opened.evaluate(question, value))) await new Promise((next) => setTimeout(next, 50));
+export function until(openedPage, condition, value) {
+  const waitForYes = async () => {
+    while (!(await openedPage.evaluate(condition, value))) await new Promise((resolve) => setTimeout(resolve, 50));
   };
-  return within(`${question} in Chromium`, answered());
+  return within(`${condition} in Chromium`, waitForYes());
 }
 
 /**
- * Loads the page. `before` runs in it before anything else; the page's timers then run only when the test says so. `at` is the
- * address.
+ * Loads the page. `initScript` runs in it before anything else; the page's timers then run only when the test says so.
+ * `url` is the address.
  */
-export async function page(options = {}, before = undefined, at = address()) {
-  const opened = await openBlank(options);
-  opened.on('console', (message) => {
+export async function page(options = {}, initScript = undefined, url = address()) {
+  const openedPage = await openBlank(options);
+  openedPage.on('console', (message) => {
     // Expected: these pages take their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
     // Without a graphics chip the browser warns that its software painter is slow.
@@ -205,42 +211,42 @@ export async function page(options = {}, before = undefined, at = address()) {
     if (message.text().startsWith('Web Bluetooth is experimental on this platform')) return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
-  opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
-  if (before) {
+  openedPage.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
+  if (initScript) {
     // The clock needs an event-loop turn for each timer, and the browser limits nested ones to one in 4 ms.
-    await opened.addInitScript(() => {
+    await openedPage.addInitScript(() => {
       const { setTimeout } = window;
-      window.setTimeout = (then, ms, ...more) => {
-        if (ms) return setTimeout(then, ms, ...more);
+      window.setTimeout = (callback, ms, ...args) => {
+        if (ms) return setTimeout(callback, ms, ...args);
         const { port1, port2 } = new MessageChannel();
-        port1.onmessage = () => then(...more);
+        port1.onmessage = () => callback(...args);
         port2.postMessage(null);
       };
     });
-    await opened.clock.install({ time: 0 });
-    // Otherwise the clock would also advance by itself, at a pace that depends on the machine, and it has done so since it was
-    // installed: it is paused at a time that even a busy machine has not reached.
-    await opened.clock.pauseAt(60_000);
-    await opened.addInitScript(before);
+    await openedPage.clock.install({ time: 0 });
+    // Otherwise the clock would also advance by itself, at a pace that depends on the machine, and it has done so since
+    // it was installed: it is paused at a time that even a busy machine has not reached.
+    await openedPage.clock.pauseAt(60_000);
+    await openedPage.addInitScript(initScript);
   }
-  await opened.goto(at);
-  await opened.waitForFunction(() => window.lizard);
-  return opened;
+  await openedPage.goto(url);
+  await openedPage.waitForFunction(() => window.lizard);
+  return openedPage;
 }
 
 /** Opens the page from a server whose policy forbids a browser feature, such as `serial`. */
-export async function openForbidden(feature, before) {
-  const strict = await serve(DIST, [], { 'permissions-policy': `${feature}=()` });
-  servers.push(strict);
-  return page({}, before, address(strict));
+export async function openForbidden(feature, initScript) {
+  const strictServer = await serve(DIST, [], { 'permissions-policy': `${feature}=()` });
+  servers.push(strictServer);
+  return page({}, initScript, address(strictServer));
 }
 
 /** Runs the simulation as fast as possible. */
-export async function advance(opened, ms) {
-  // In parts, so that answers and their consequences come in between.
-  await opened.evaluate(async (ms) => {
-    for (let left = ms; left > 0; left -= 4) {
-      window.lizard.advance(Math.min(4, left));
+export async function advance(openedPage, ms) {
+  // In short steps, so that answers and their consequences come in between.
+  await openedPage.evaluate(async (ms) => {
+    for (let remainingMs = ms; remainingMs > 0; remainingMs -= 4) {
+      window.lizard.advance(Math.min(4, remainingMs));
       await Promise.resolve();
     }
   }, ms);
@@ -248,31 +254,33 @@ export async function advance(opened, ms) {
 
 /** Opens the page and waits until its robot stands. */
 export async function openStanding(options) {
-  const opened = await page(options);
-  await advance(opened, 2500);
-  return opened;
+  const openedPage = await page(options);
+  await advance(openedPage, 2500);
+  return openedPage;
 }
 
-/** Asserts that the robot stays where it was after Esc, except for a hair's width while the servos reach their targets. */
-export async function assertStops(opened) {
-  const place = () => opened.evaluate(() => window.lizard.last.place);
-  await opened.keyboard.press('Escape');
-  await advance(opened, 500);
-  const stopped = await place();
-  await advance(opened, 1000);
-  const later = await place();
-  for (const key of ['x', 'y']) assert.ok(Math.abs(later[key] - stopped[key]) < 0.05, `${key}: ${stopped[key]} mm, then ${later[key]}`);
+/**
+ * Asserts that the robot stays where it was after Esc, except for a hair's width while the servos reach their targets.
+ */
+export async function assertStops(openedPage) {
+  const readPlace = () => openedPage.evaluate(() => window.lizard.last.place);
+  await openedPage.keyboard.press('Escape');
+  await advance(openedPage, 500);
+  const stopPlace = await readPlace();
+  await advance(openedPage, 1000);
+  const laterPlace = await readPlace();
+  for (const key of ['x', 'y']) assert.ok(Math.abs(laterPlace[key] - stopPlace[key]) < 0.05, `${key}: ${stopPlace[key]} mm, then ${laterPlace[key]}`);
 }
 
 /** Types a line, waits for a line of the log that begins with `answer`, and returns to the room that was open. */
-export async function type(opened, line, answer) {
-  const room = await opened.evaluate(() => document.body.dataset.at);
-  await opened.getByLabel('A line for the robot').fill(line);
-  await opened.getByRole('button', { name: 'Send' }).click();
-  await advance(opened, 300);
-  const found = opened.locator('#log div', { hasText: answer }).last();
-  await found.waitFor();
-  const text = await found.innerText();
-  await reveal(opened.locator(`#${room} h2`));
-  return text;
+export async function type(openedPage, line, answer) {
+  const room = await openedPage.evaluate(() => document.body.dataset.at);
+  await openedPage.getByLabel('A line for the robot').fill(line);
+  await openedPage.getByRole('button', { name: 'Send' }).click();
+  await advance(openedPage, 300);
+  const logLine = openedPage.locator('#log div', { hasText: answer }).last();
+  await logLine.waitFor();
+  const lineText = await logLine.innerText();
+  await reveal(openedPage.locator(`#${room} h2`));
+  return lineText;
 }

@@ -36,39 +36,39 @@ const waitForTries = (page, count) => page.waitForFunction((count) => document.q
 
 test('the search finds the same gait as lizard tune with the same seed, which can be tried and undone', async () => {
   const page = await openEditor();
-  const loaded = [];
-  page.on('request', (request) => loaded.push(new URL(request.url()).pathname));
-  const words = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
+  const loadedPaths = [];
+  page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
+  const args = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
   const [{ stdout }] = await Promise.all([
-    within('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), words)),
+    within('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), args)),
     start(page).then(() => waitForEnd(page)),
   ]);
-  assert.equal(loaded.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search comes when it is asked for');
-  const known = JSON.parse(stdout);
-  const gain = Math.round(100 * (known.tuned.speeds[0] / known.gait.speeds[0] - 1));
+  assert.equal(loadedPaths.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search comes when it is asked for');
+  const tuneResult = JSON.parse(stdout);
+  const gain = Math.round(100 * (tuneResult.tuned.speeds[0] / tuneResult.gait.speeds[0] - 1));
   assert.equal(
     await text(page, 'faster-said'),
-    `Faster on ${known.faster} of 200 random robots and floors, and ${gain} % faster where only 5 % are slower. No servo turns faster than ${known.rate.toFixed(0)} °/s.`,
+    `Faster on ${tuneResult.faster} of 200 random robots and floors, and ${gain} % faster where only 5 % are slower. No servo turns faster than ${tuneResult.rate.toFixed(0)} °/s.`,
   );
-  const before = await text(page, 'gait-table');
-  const way = await text(page, 'gait-way');
-  const rows = () => page.locator('#faster-rows tr').allInnerTexts();
-  const [, ways] = (await rows()).map((row) => row.split('\t'));
-  assert.deepEqual(ways.slice(0, 2), ['distance per cycle', way]);
+  const previousTable = await text(page, 'gait-table');
+  const distanceText = await text(page, 'gait-way');
+  const readRows = () => page.locator('#faster-rows tr').allInnerTexts();
+  const [, distanceRow] = (await readRows()).map((row) => row.split('\t'));
+  assert.deepEqual(distanceRow.slice(0, 2), ['distance per cycle', distanceText]);
   await page.getByRole('button', { name: 'Use this gait' }).click();
-  await page.waitForFunction((before) => document.querySelector('#gait-table').textContent !== before, before);
-  assert.equal(await text(page, 'gait-table'), known.fragment);
-  assert.equal(await text(page, 'gait-way'), ways[2]);
+  await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent !== previousTable, previousTable);
+  assert.equal(await text(page, 'gait-table'), tuneResult.fragment);
+  assert.equal(await text(page, 'gait-way'), distanceRow[2]);
   // Back, and again.
   await page.getByRole('button', { name: 'Back to the previous gait' }).click();
-  await page.waitForFunction((before) => document.querySelector('#gait-table').textContent === before, before);
+  await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent === previousTable, previousTable);
   await page.getByRole('button', { name: 'Use this gait' }).click();
-  await page.waitForFunction((fragment) => document.querySelector('#gait-table').textContent === fragment, known.fragment);
+  await page.waitForFunction((fragment) => document.querySelector('#gait-table').textContent === fragment, tuneResult.fragment);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'mine');
-  assert.ok((await page.evaluate(() => window.lizard.toml)).includes(known.fragment));
+  assert.ok((await page.evaluate(() => window.lizard.toml)).includes(tuneResult.fragment));
   await unfold(page, '#robot-editor');
   await page.locator('#robot-undo').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.mine]'));
@@ -80,9 +80,9 @@ test('a search stopped midway returns the best gait so far, and the page can sea
   await waitForTries(page, 21);
   await page.getByRole('button', { name: 'Stop the search' }).click();
   await waitForEnd(page);
-  const said = await text(page, 'faster-said');
-  const [, done] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(said) ?? assert.fail(said);
-  assert.ok(Number(done) >= 21 && Number(done) < 8040, said);
+  const message = await text(page, 'faster-said');
+  const [, done] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
+  assert.ok(Number(done) >= 21 && Number(done) < 8040, message);
   assert.ok(await page.locator('#faster-progress').isHidden());
   await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction(() => Number(document.querySelector('#gait-amplitude').value) > 20);
@@ -102,8 +102,8 @@ test('the found gait walks beside the previous one, and goes farther by the prom
   await page.getByRole('button', { name: 'Stop the search' }).click();
   await waitForEnd(page);
   const rows = await page.locator('#faster-rows tr').allInnerTexts();
-  const [, before, found] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
-  assert.ok(found > before, rows.join());
+  const [, previousSpeed, foundSpeed] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
+  assert.ok(foundSpeed > previousSpeed, rows.join());
   await page.getByRole('button', { name: 'See both walk' }).click();
   assert.ok(await page.locator('#space').isHidden(), 'the drawing has both');
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
@@ -113,9 +113,9 @@ test('the found gait walks beside the previous one, and goes farther by the prom
   await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-ways').textContent));
   await page.keyboard.press('Escape');
   await advance(page, 1000);
-  const ways = await text(page, 'faster-ways');
-  const [, far, near] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(ways) ?? assert.fail(ways);
-  assert.ok(Math.abs(far / near / (found / before) - 1) < 0.1, `${ways} ${found} and ${before} mm/s`);
+  const comparison = await text(page, 'faster-ways');
+  const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
+  assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed} mm/s`);
   assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
   assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
 });
@@ -132,10 +132,10 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
   await page.getByRole('button', { name: 'Stop the search' }).click();
   await waitForEnd(page);
   const rows = (await page.locator('#faster-rows tr').allInnerTexts()).map((row) => row.split('\t'));
-  const [, before, found] = rows.find(([name]) => name === 'speed');
-  assert.ok([before, found].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${before} and ${found}`);
-  const promised = Number.parseFloat(found) / Number.parseFloat(before);
-  assert.ok(promised > 1.2, `${before} and ${found}`);
+  const [, previousSpeed, foundSpeed] = rows.find(([name]) => name === 'speed');
+  assert.ok([previousSpeed, foundSpeed].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${previousSpeed} and ${foundSpeed}`);
+  const promisedRatio = Number.parseFloat(foundSpeed) / Number.parseFloat(previousSpeed);
+  assert.ok(promisedRatio > 1.2, `${previousSpeed} and ${foundSpeed}`);
   await page.getByRole('button', { name: 'See both walk' }).click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
   await advance(page, 3000);
@@ -143,10 +143,10 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
   await advance(page, 40_000);
   await page.keyboard.press('Escape');
   await advance(page, 1000);
-  const ways = await text(page, 'faster-ways');
-  const [, far, near] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(ways) ?? assert.fail(ways);
-  assert.ok(Math.abs(far / near / promised - 1) < 0.1, `${ways} ${found} and ${before}`);
-  assert.ok(Number(far) > 360, `${far} is more than a whole turn`);
+  const comparison = await text(page, 'faster-ways');
+  const [, foundAngle, previousAngle] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(comparison) ?? assert.fail(comparison);
+  assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed}`);
+  assert.ok(Number(foundAngle) > 360, `${foundAngle} is more than a whole turn`);
 });
 
 test('changing the robot ends a search for the previous one', async () => {

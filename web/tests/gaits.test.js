@@ -1,4 +1,5 @@
-// A gait is made by dragging bars: its prediction comes true, and one that breaks a limit is refused with the nearest valid value.
+// A gait is made by dragging bars: its prediction comes true, and one that breaks a limit is refused with the nearest
+// valid value.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -18,17 +19,17 @@ async function openEditor(options) {
 const text = (page, id) => page.locator(`#gait-${id}`).innerText();
 /** Waits until the shown gait has been tried. */
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
-const waitForChange = (page, id, before) => page.waitForFunction(([id, before]) => document.querySelector(`#gait-${id}`).textContent !== before, [id, before]);
+const waitForChange = (page, id, previousText) => page.waitForFunction(([id, previousText]) => document.querySelector(`#gait-${id}`).textContent !== previousText, [id, previousText]);
 
 /** Drags from one phase to another, 0 to 1, on a ring of the circle, 0 to 3 from the outside. */
 async function drag(page, ring, from, to) {
   await page.locator('#gait-circle').scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator('#gait-circle').boundingBox();
   const radius = ([104, 82, 60, 38][ring] * Math.min(width, height)) / 240;
-  const at = (phase) => [x + width / 2 + radius * Math.sin(2 * Math.PI * phase), y + height / 2 - radius * Math.cos(2 * Math.PI * phase)];
-  await page.mouse.move(...at(from));
+  const pointAt = (phase) => [x + width / 2 + radius * Math.sin(2 * Math.PI * phase), y + height / 2 - radius * Math.cos(2 * Math.PI * phase)];
+  await page.mouse.move(...pointAt(from));
   await page.mouse.down();
-  for (let step = 1; step <= 10; step++) await page.mouse.move(...at(from + ((to - from) * step) / 10));
+  for (let step = 1; step <= 10; step++) await page.mouse.move(...pointAt(from + ((to - from) * step) / 10));
   await page.mouse.up();
 }
 
@@ -42,17 +43,17 @@ test('the editor\'s prediction of an unchanged gait is that of its button in Dri
 
 test('a bar and its end are dragged, and the numbers follow', async () => {
   const page = await openEditor();
-  const before = await text(page, 'way');
+  const previousDistance = await text(page, 'way');
   // walk has LF from 0.25 to 0.25 + 0.75.
   await drag(page, 0, 0.5, 0.6);
   assert.ok(Math.abs(Number(await page.getByLabel('LF starts at').inputValue()) - 0.35) < 0.011);
-  await waitForChange(page, 'way', before);
+  await waitForChange(page, 'way', previousDistance);
   await drag(page, 1, 0.5, 0.42);
   assert.ok(Math.abs(Number(await page.locator('#gait-duty').inputValue()) - 0.67) < 0.011);
   // The number boxes do the same.
   await page.getByLabel('LF starts at').fill('0.25');
   await page.locator('#gait-duty').fill('0.75');
-  await page.waitForFunction((way) => document.querySelector('#gait-way').textContent === way, before);
+  await page.waitForFunction((distance) => document.querySelector('#gait-way').textContent === distance, previousDistance);
 });
 
 test('an edited gait survives a reload, and an invalid stored one is dropped', async () => {
@@ -96,16 +97,16 @@ test('a value that breaks a limit is refused, and a button offers the nearest va
 test('a number out of range is marked and ignored, and restored when the box is left', async () => {
   const page = await openEditor();
   const table = await text(page, 'table');
-  for (const [input, wrong, own] of [
+  for (const [input, wrongValue, ownValue] of [
     [page.locator('#gait-amplitude'), '61', '20'],
     [page.locator('#gait-period'), '0.05', '1'],
     [page.getByLabel('LF starts at'), '1.5', '0.25'],
     [page.getByLabel('RH share'), '-3', '1'],
   ]) {
-    await input.fill(wrong);
-    assert.equal(await input.getAttribute('aria-invalid'), 'true', wrong);
+    await input.fill(wrongValue);
+    assert.equal(await input.getAttribute('aria-invalid'), 'true', wrongValue);
     await page.keyboard.press('Tab');
-    assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [own, null]);
+    assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [ownValue, null]);
   }
   // By now the worker has answered everything, in order.
   await page.locator('#gait-name').fill('other');
@@ -115,18 +116,18 @@ test('a number out of range is marked and ignored, and restored when the box is 
 
 test('an edited gait walks as far as predicted, and is written into robot.toml', async () => {
   const page = await openEditor();
-  const before = await text(page, 'way');
+  const previousDistance = await text(page, 'way');
   await page.locator('#gait-name').fill('stride');
   await page.locator('#gait-amplitude').fill('16');
-  await waitForChange(page, 'way', before);
-  const way = Number(/^([0-9.]+) mm$/.exec(await text(page, 'way'))[1]);
+  await waitForChange(page, 'way', previousDistance);
+  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await text(page, 'way'))[1]);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.stride]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'stride');
   await advance(page, 5000);
-  const went = await page.evaluate(() => window.lizard.measured().forward);
-  assert.ok(Math.abs(went - way) < 0.03 * way, `${went} mm of ${way}`);
+  const walkedMm = await page.evaluate(() => window.lizard.measured().forward);
+  assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `${walkedMm} mm of ${predictedMm}`);
   const toml = await page.evaluate(() => window.lizard.toml);
   assert.ok(toml.includes(await text(page, 'table')), toml.slice(-400));
   // One click restores the previous robot.
@@ -137,10 +138,10 @@ test('an edited gait walks as far as predicted, and is written into robot.toml',
 
 test('a backward gait can be edited, and any gait reversed', async () => {
   const page = await openEditor();
-  const ahead = Number.parseFloat(await text(page, 'way'));
+  const forwardMm = Number.parseFloat(await text(page, 'way'));
   await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
-  assert.ok(Math.abs(ahead + Number.parseFloat(await text(page, 'way'))) < 0.3);
+  assert.ok(Math.abs(forwardMm + Number.parseFloat(await text(page, 'way'))) < 0.3);
   assert.equal(await page.locator('#gait-circle .bar.against').count(), 4);
   assert.equal(await page.getByLabel('LF share').inputValue(), '-1');
   // `back` of robot.toml is walk in reverse.
@@ -148,8 +149,8 @@ test('a backward gait can be edited, and any gait reversed', async () => {
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) > 1);
   await page.locator('#gait-from').selectOption({ label: 'back' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
-  const back = Number.parseFloat(await page.locator('#gaits button[data-command="back"] small').innerText());
-  assert.ok(Math.abs(back - Number.parseFloat(await text(page, 'way'))) < 0.3);
+  const backMm = Number.parseFloat(await page.locator('#gaits button[data-command="back"] small').innerText());
+  assert.ok(Math.abs(backMm - Number.parseFloat(await text(page, 'way'))) < 0.3);
 });
 
 test('left and right are exchanged', async () => {

@@ -12,12 +12,12 @@ export async function imageOf(name) {
   return flash.subarray(0, start + section.length);
 }
 
-/** Bytes from address 0 on as an Intel HEX file. */
+/** Formats bytes from address 0 on as an Intel HEX file. */
 export function hexOf(bytes) {
   const lines = [];
-  for (let at = 0; at < bytes.length; at += 16) {
-    const data = bytes.subarray(at, at + 16);
-    const record = [data.length, at >> 8, at & 0xff, 0, ...data];
+  for (let address = 0; address < bytes.length; address += 16) {
+    const data = bytes.subarray(address, address + 16);
+    const record = [data.length, address >> 8, address & 0xff, 0, ...data];
     const sum = record.reduce((sum, byte) => sum + byte, 0);
     lines.push(`:${[...record, -sum & 0xff].map((byte) => byte.toString(16).padStart(2, '0')).join('')}`);
   }

@@ -16,70 +16,70 @@ async function openKeep(options) {
 }
 
 /** Cycles of the simulated board in a frame of 20 ms, and the frames since it was switched on. */
-const FRAME = 320_000;
-const frames = (page) => page.evaluate((cycles) => window.lizard.link.board.cycle / cycles, FRAME);
+const CYCLES_PER_FRAME = 320_000;
+const framesOf = (page) => page.evaluate((cycles) => window.lizard.link.board.cycle / cycles, CYCLES_PER_FRAME);
 /** Waits until the page itself has run a number of frames. */
 const waitForFrames = async (page, count) =>
-  page.waitForFunction((end) => window.lizard.link.board.cycle > end, FRAME * ((await frames(page)) + count));
-const button = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
+  page.waitForFunction((end) => window.lizard.link.board.cycle > end, CYCLES_PER_FRAME * ((await framesOf(page)) + count));
+const buttonOf = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
 
 /** Presses a button and returns the file that it saves. */
 async function save(page, name) {
   const download = page.waitForEvent('download');
-  await button(page, name).click();
+  await buttonOf(page, name).click();
   const file = await download;
   return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
 }
 
 /** Reads the rows of a CSV table as objects with the columns' names as keys. */
 function parseCsv(csv) {
-  const [head, ...lines] = csv.trim().split('\n').map((line) => line.split(','));
-  return lines.map((fields) => Object.fromEntries(head.map((name, n) => [name, fields[n]])));
+  const [header, ...lines] = csv.trim().split('\n').map((line) => line.split(','));
+  return lines.map((fields) => Object.fromEntries(header.map((name, n) => [name, fields[n]])));
 }
 
 test('the table of a run has its poses, places and pulses, frame by frame', async () => {
   const page = await openKeep();
   await type(page, 'walk', 'ok walk');
-  const begun = await frames(page);
-  await button(page, 'Record').click();
+  const startFrames = await framesOf(page);
+  await buttonOf(page, 'Record').click();
   await advance(page, 3000);
   const angles = await page.evaluate(() => window.lizard.last.scene.angles);
   await advance(page, 100);
-  await button(page, 'Stop recording').click();
-  const passed = (await frames(page)) - begun;
+  await buttonOf(page, 'Stop recording').click();
+  const passedFrames = (await framesOf(page)) - startFrames;
   const { name, bytes } = await save(page, 'Table (CSV)');
   assert.equal(name, 'run.csv');
   const rows = parseCsv(bytes.toString());
-  assert.ok(rows.length >= 150 && rows.length <= passed + 1, `${rows.length} of ${passed} frames`);
+  assert.ok(rows.length >= 150 && rows.length <= passedFrames + 1, `${rows.length} of ${passedFrames} frames`);
   rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
   assert.ok(rows.every(({ doing }) => doing === '"walk"'));
   // The angles that the pulses ask for, by the servo's line in robot.toml: 10 us per degree around 1500 us.
-  const servo = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
-  const off = rows.map((row) => Math.abs(servo(row) - Number(row.a1_deg)));
-  assert.ok(Math.max(...off) < 8, `A1 is ${Math.max(...off)} deg from what its pulse asks for`);
+  const pulseAngle = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
+  const deviations = rows.map((row) => Math.abs(pulseAngle(row) - Number(row.a1_deg)));
+  assert.ok(Math.max(...deviations) < 8, `A1 is ${Math.max(...deviations)} deg from what its pulse asks for`);
   assert.ok(Number(rows[rows.length - 1].ahead_mm) > Number(rows[0].ahead_mm) + 10, 'it went ahead');
-  const last = rows.findIndex((row) => Math.abs(Number(row.a2_deg) - angles[1]) < 0.001);
-  assert.ok(last > 0, 'a pose of the session is in it');
+  const poseIndex = rows.findIndex((row) => Math.abs(Number(row.a2_deg) - angles[1]) < 0.001);
+  assert.ok(poseIndex > 0, 'a pose of the session is in it');
 });
 
 test('a run is replayed from any moment, while the robot continues', async () => {
   const page = await openKeep();
   await type(page, 'walk', 'ok walk');
-  await button(page, 'Record').click();
+  await buttonOf(page, 'Record').click();
   await advance(page, 2000);
-  await button(page, 'Stop recording').click();
+  await buttonOf(page, 'Stop recording').click();
   await page.getByText(/s recorded\.$/).waitFor();
   await advance(page, 4000);
   await page.getByLabel('Moment').fill('1');
   await page.getByText(/^1\.0 of [0-9.]+ s$/).waitFor();
-  assert.equal(await button(page, 'Back to the robot').getAttribute('aria-pressed'), 'true');
-  await button(page, 'Back to the robot').click();
-  await button(page, 'Replay').click();
+  assert.equal(await buttonOf(page, 'Back to the robot').getAttribute('aria-pressed'), 'true');
+  await buttonOf(page, 'Back to the robot').click();
+  await buttonOf(page, 'Replay').click();
   await page.waitForFunction(() => Number(document.querySelector('#moment').value) > 1.1);
   // The recording does not belong to another robot.
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
-  assert.ok(await button(page, 'Replay').isDisabled());
+  assert.ok(await buttonOf(page, 'Replay').isDisabled());
 });
 
 test('pictures of the floor are points or lines, and a film moves', async () => {
@@ -89,13 +89,13 @@ test('pictures of the floor are points or lines, and a film moves', async () => 
   assert.equal(png.bytes.subarray(1, 4).toString(), 'PNG');
   assert.ok(png.bytes.length > 5000, `${png.bytes.length} bytes`);
   const svg = await save(page, 'Picture (SVG)');
-  const shapes = await page.evaluate((text) => {
+  const shapeCount = await page.evaluate((text) => {
     const parsed = new DOMParser().parseFromString(text, 'image/svg+xml');
     return parsed.querySelector('parsererror') ? 0 : parsed.querySelectorAll('path').length;
   }, svg.bytes.toString());
-  assert.ok(shapes > 50, `${shapes} shapes`);
+  assert.ok(shapeCount > 50, `${shapeCount} shapes`);
   assert.match(svg.bytes.toString(), />100 mm<|>50 mm</, 'its scale');
-  await button(page, 'Film').click();
+  await buttonOf(page, 'Film').click();
   await waitForFrames(page, 50);
   const film = await save(page, 'Stop the film');
   assert.match(film.name, /^run\.(webm|mp4)$/);
@@ -106,26 +106,26 @@ test('two robots walk side by side, each as far as its gait leads alone', async 
   const page = await openKeep();
   await page.getByLabel('This one').selectOption('back');
   await page.getByLabel('Beside it').selectOption('walk');
-  await button(page, 'Start both').click();
+  await buttonOf(page, 'Start both').click();
   await page.waitForFunction(() => window.lizard.gait === 'stand' || window.lizard.gait === 'stop' || window.lizard.gait === 'back');
   for (let n = 0; n < 20; n++) await advance(page, 500);
-  const said = page.locator('#keep-said');
+  const message = page.locator('#keep-said');
   await page.getByText(/^back: -[0-9.]+ mm.*Beside it, walk: [0-9.]+ mm/).waitFor();
-  const [, back, walk] = /^back: -([0-9.]+) mm.*walk: ([0-9.]+) mm/.exec(await said.innerText()).map(Number);
+  const [, backMm, walkMm] = /^back: -([0-9.]+) mm.*walk: ([0-9.]+) mm/.exec(await message.innerText()).map(Number);
   // The gait `back` is `walk` in reverse, so it covers the same distance.
-  assert.ok(walk > 40 && Math.abs(walk - back) < 0.25 * walk, `${walk} mm ahead, ${back} mm back`);
+  assert.ok(walkMm > 40 && Math.abs(walkMm - backMm) < 0.25 * walkMm, `${walkMm} mm ahead, ${backMm} mm back`);
   await page.locator('.stop').click();
   // Texts are updated ten times per second of page time.
-  const written = async () => {
+  const readMessage = async () => {
     await waitForFrames(page, 20);
-    return said.innerText();
+    return message.innerText();
   };
   await advance(page, 3000);
-  const stood = await written();
+  const stoppedText = await readMessage();
   await advance(page, 1000);
-  assert.equal(await written(), stood, 'both have stopped');
-  await button(page, 'Remove the second').click();
-  assert.equal(await said.innerText(), '');
+  assert.equal(await readMessage(), stoppedText, 'both have stopped');
+  await buttonOf(page, 'Remove the second').click();
+  assert.equal(await message.innerText(), '');
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -12,37 +12,37 @@ class FakeWorker {
 
   ask = (question) => {
     this.asked.push(question);
-    return new Promise((answer) => (this.end = answer));
+    return new Promise((resolve) => (this.end = resolve));
   };
 
   async answer() {
     this.end(`answer to ${this.asked.at(-1)}`);
-    await new Promise((settled) => setTimeout(settled));
+    await new Promise((resolve) => setTimeout(resolve));
   }
 }
 
 test('of the questions asked while the worker is busy only the last is answered', async () => {
   const worker = new FakeWorker();
-  const said = [];
-  const questions = new LatestQuestion(worker.ask, (answer) => said.push(answer));
+  const answers = [];
+  const questions = new LatestQuestion(worker.ask, (answer) => answers.push(answer));
   for (const question of ['first', 'second', 'third']) questions.ask(question);
   assert.deepEqual(worker.asked, ['first']);
   await worker.answer();
   assert.deepEqual(worker.asked, ['first', 'third']);
   await worker.answer();
-  assert.deepEqual(said, ['answer to first', 'answer to third']);
+  assert.deepEqual(answers, ['answer to first', 'answer to third']);
 });
 
 test('a question asked when an answer arrives replaces the waiting one, or is answered after it', async () => {
   const worker = new FakeWorker();
-  const said = [];
+  const answers = [];
   const questions = new LatestQuestion(worker.ask, (answer) => {
-    said.push(answer);
+    answers.push(answer);
     if (answer === 'answer to first') questions.ask('newest');
   });
   questions.ask('first');
   questions.ask('older');
   for (let n = 0; n < 2; n++) await worker.answer();
-  assert.deepEqual(said.at(-1), 'answer to newest', `${worker.asked}`);
+  assert.deepEqual(answers.at(-1), 'answer to newest', `${worker.asked}`);
   assert.equal(worker.asked.at(-1), 'newest', 'and nothing older is asked after it');
 });

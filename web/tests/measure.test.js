@@ -6,27 +6,27 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, openBlank, close, complaints, openWithCamera, page, closePages } from './browser.js';
+import { address, openBlank, close, complaints, openWithCamera, page as openPage, closePages } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
 const folder = mkdtempSync(join(tmpdir(), 'lizard-film-'));
 /** Largest differences of a mean from the truth, mm and deg: those of crates/film's own tests. */
-const BARS = { forward: 0.3, left: 0.3, turn: 0.5 };
+const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 
 /** Films with a width and number of cycles, and with hidden tags. */
-function renderFilm(name, ...more) {
+function renderFilm(name, ...args) {
   const path = join(folder, name);
-  execFileSync(join(dirname(LIZARD), 'examples/studio'), [path, ...more.map(String)]);
+  execFileSync(join(dirname(LIZARD), 'examples/studio'), [path, ...args.map(String)]);
   return path;
 }
 
-let walk;
+let walkFolder;
 let truth;
 before(() => {
-  walk = renderFilm('walk', 640, 14);
-  truth = JSON.parse(readFileSync(join(walk, 'truth.json'), 'utf8'));
+  walkFolder = renderFilm('walk', 640, 14);
+  truth = JSON.parse(readFileSync(join(walkFolder, 'truth.json'), 'utf8'));
 });
 afterEach(async () => {
   await closePages();
@@ -34,87 +34,87 @@ afterEach(async () => {
 });
 after(() => rmSync(folder, { recursive: true }));
 
-const at = () => `${address()}#room=measure&file=paper`;
+const roomUrl = () => `${address()}#room=measure&file=paper`;
 
 /** Opens the room with the paper's robot, and waits until it stands. */
 async function openRoom(options = {}) {
-  const opened = await page(options, undefined, at());
-  await opened.waitForFunction(() => window.lizard?.gait === 'stand' && window.lizard.mayAsk);
+  const page = await openPage(options, undefined, roomUrl());
+  await page.waitForFunction(() => window.lizard?.gait === 'stand' && window.lizard.mayAsk);
   // The box of the height takes keys as a user types them.
-  await opened.locator('#measure-height').pressSequentially('95');
-  return opened;
+  await page.locator('#measure-height').pressSequentially('95');
+  return page;
 }
 
-const waitForMessage = (opened, id, words) => opened.locator(`#measure-${id}`, { hasText: words }).waitFor();
+const waitForMessage = (page, id, words) => page.locator(`#measure-${id}`, { hasText: words }).waitFor();
 
-async function switchCameraOn(opened, words = 'All five tags are seen.') {
-  await opened.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(opened, 'seen', words);
+async function switchCameraOn(page, words = 'All five tags are seen.') {
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await waitForMessage(page, 'seen', words);
 }
 
 /** Types a number into a box of the room. */
-async function typeNumber(opened, id, number) {
-  const box = opened.locator(`#measure-${id}`);
+async function typeNumber(page, id, number) {
+  const box = page.locator(`#measure-${id}`);
   await box.press('Control+a');
   await box.pressSequentially(String(number));
 }
 
 /** Switches the camera on last, lets so many ms of the film pass, and lets the page drive. */
-async function startDriving(opened, gaits, cycles, ms = 0) {
-  await opened.locator('#measure-driver').selectOption('page');
-  for (const box of await opened.locator('#measure-gaits input').all()) await box.setChecked(gaits.includes(await box.getAttribute('name')));
-  await typeNumber(opened, 'cycles', cycles);
-  await typeNumber(opened, 'pause', 0.5);
-  await switchCameraOn(opened);
-  await opened.waitForTimeout(ms);
-  await opened.locator('#measure-start').click();
+async function startDriving(page, gaits, cycles, ms = 0) {
+  await page.locator('#measure-driver').selectOption('page');
+  for (const box of await page.locator('#measure-gaits input').all()) await box.setChecked(gaits.includes(await box.getAttribute('name')));
+  await typeNumber(page, 'cycles', cycles);
+  await typeNumber(page, 'pause', 0.5);
+  await switchCameraOn(page);
+  await page.waitForTimeout(ms);
+  await page.locator('#measure-start').click();
 }
 
 /** Downloads the results and returns the content of the file. */
-async function download(opened, button) {
-  const [download] = await Promise.all([opened.waitForEvent('download'), opened.locator(`#measured-${button}`).click()]);
-  return readFileSync(await download.path());
+async function download(page, button) {
+  const [downloaded] = await Promise.all([page.waitForEvent('download'), page.locator(`#measured-${button}`).click()]);
+  return readFileSync(await downloaded.path());
 }
 
 /** Returns the report of `lizard measure` on the same pictures. */
-const commandReport = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walk, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
+const runCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
 
 function assertTrue(report) {
-  for (const [part, most] of Object.entries(BARS)) {
-    assert.ok(Math.abs(report[part].mean - truth[part]) < most, `${part}: ${report[part].mean} and not ${truth[part]}`);
-    assert.ok(report[part].error > 0 && report[part].error < most, JSON.stringify(report[part]));
+  for (const [quantity, tolerance] of Object.entries(TOLERANCES)) {
+    assert.ok(Math.abs(report[quantity].mean - truth[quantity]) < tolerance, `${quantity}: ${report[quantity].mean} and not ${truth[quantity]}`);
+    assert.ok(report[quantity].error > 0 && report[quantity].error < tolerance, JSON.stringify(report[quantity]));
   }
 }
 
 test('the page drives the simulated robot before a camera, and measures the gait in the film as the command does', async () => {
-  await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await openRoom({ acceptDownloads: true });
-  await startDriving(opened, ['walk'], 5);
-  await opened.waitForFunction(() => window.lizard.gait === 'walk');
-  await opened.locator('#measure-results').waitFor();
-  const { gaits: [report] } = JSON.parse(await download(opened, 'json'));
+  await openWithCamera(join(walkFolder, 'film.y4m'));
+  const page = await openRoom({ acceptDownloads: true });
+  await startDriving(page, ['walk'], 5);
+  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await page.locator('#measure-results').waitFor();
+  const { gaits: [report] } = JSON.parse(await download(page, 'json'));
   assertTrue(report);
-  const expected = commandReport();
+  const expected = runCommand();
   assertTrue(expected);
-  for (const part of Object.keys(BARS)) {
+  for (const quantity of Object.keys(TOLERANCES)) {
     // Two libraries compute a sine to the last bit but one.
-    assert.ok(Math.abs(report[part].predicted - expected[part].predicted) < 1e-9, part);
+    assert.ok(Math.abs(report[quantity].predicted - expected[quantity].predicted) < 1e-9, quantity);
     // The browser's decoder shows some of the same cycles at other times.
-    assert.ok(Math.abs(report[part].mean - expected[part].mean) < 2 * (report[part].error + expected[part].error), part);
+    assert.ok(Math.abs(report[quantity].mean - expected[quantity].mean) < 2 * (report[quantity].error + expected[quantity].error), quantity);
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
   assert.deepEqual(report.mujoco, expected.mujoco);
   assert.ok(report.range.least < report.forward.predicted && report.forward.predicted < report.range.most, JSON.stringify(report.range));
   assert.equal(report.range.least_by, expected.range.least_by);
-  const cells = await opened.locator('#measured tr', { hasText: 'ahead, mm' }).first().locator('td').allTextContents();
+  const cells = await page.locator('#measured tr', { hasText: 'ahead, mm' }).first().locator('td').allTextContents();
   assert.equal(cells.at(-1), `+${expected.mujoco[0].toFixed(2)}`);
-  assert.match(String(await download(opened, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
-  assert.match(String(await download(opened, 'svg')), /^<svg .*walk, 100 %, .*ahead, mm.*<\/svg>$/s);
-  assert.deepEqual([...(await download(opened, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
+  assert.match(String(await download(page, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
+  assert.match(String(await download(page, 'svg')), /^<svg .*walk, 100 %, .*ahead, mm.*<\/svg>$/s);
+  assert.deepEqual([...(await download(page, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
 test('the gait in a film file recorded by the browser is found by its path; with another gait it is not measured', async () => {
-  await openWithCamera(join(walk, 'film.y4m'));
+  await openWithCamera(join(walkFolder, 'film.y4m'));
   const recorder = await openBlank();
   await recorder.goto(address());
   const bytes = await recorder.evaluate(async () => {
@@ -123,129 +123,129 @@ test('the gait in a film file recorded by the browser is found by its path; with
     const film = new MediaRecorder(stream, { mimeType: 'video/webm;codecs=vp8', videoBitsPerSecond: 5e6 });
     film.ondataavailable = ({ data }) => pieces.push(data);
     film.start();
-    await new Promise((done) => setTimeout(done, 9000));
-    await new Promise((done) => Object.assign(film, { onstop: done }).stop());
+    await new Promise((resolve) => setTimeout(resolve, 9000));
+    await new Promise((resolve) => Object.assign(film, { onstop: resolve }).stop());
     for (const track of stream.getTracks()) track.stop();
     const reader = new FileReader();
-    const read = new Promise((done) => (reader.onload = done));
+    const loading = new Promise((resolve) => (reader.onload = resolve));
     reader.readAsDataURL(new Blob(pieces));
-    await read;
+    await loading;
     return reader.result.split(',')[1];
   });
   writeFileSync(join(folder, 'film.webm'), Buffer.from(bytes, 'base64'));
-  const opened = await openRoom({ acceptDownloads: true });
-  await opened.locator('#measure-file').setInputFiles(join(folder, 'film.webm'));
-  await opened.locator('#measure-results').waitFor();
-  const { gaits: [report] } = JSON.parse(await download(opened, 'json'));
+  const page = await openRoom({ acceptDownloads: true });
+  await page.locator('#measure-file').setInputFiles(join(folder, 'film.webm'));
+  await page.locator('#measure-results').waitFor();
+  const { gaits: [report] } = JSON.parse(await download(page, 'json'));
   assertTrue(report);
   assert.equal(report.gait, 'walk');
-  await opened.locator('#measure-gait').selectOption('left');
-  await opened.getByRole('button', { name: 'Measure again' }).click();
-  await waitForMessage(opened, 'said', /^left: the path is not that of this gait.*; it is like walk\./);
-  assert.ok(!(await opened.locator('#measure-results').isVisible()));
+  await page.locator('#measure-gait').selectOption('left');
+  await page.getByRole('button', { name: 'Measure again' }).click();
+  await waitForMessage(page, 'said', /^left: the path is not that of this gait.*; it is like walk\./);
+  assert.ok(!(await page.locator('#measure-results').isVisible()));
   // A file that is no film.
-  await opened.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });
-  await waitForMessage(opened, 'said', /^words\.mp4 is no film that this browser can play/);
+  await page.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });
+  await waitForMessage(page, 'said', /^words\.mp4 is no film that this browser can play/);
 });
 
 test('if another program drives, the film recorded until Done is measured', async () => {
-  await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await openRoom({ acceptDownloads: true });
-  await switchCameraOn(opened);
-  await opened.getByRole('button', { name: 'Record' }).click();
-  await opened.waitForTimeout(6000);
-  await opened.getByRole('button', { name: 'Done' }).click();
-  await opened.locator('#measure-results').waitFor();
-  assertTrue(JSON.parse(await download(opened, 'json')).gaits[0]);
+  await openWithCamera(join(walkFolder, 'film.y4m'));
+  const page = await openRoom({ acceptDownloads: true });
+  await switchCameraOn(page);
+  await page.getByRole('button', { name: 'Record' }).click();
+  await page.waitForTimeout(6000);
+  await page.getByRole('button', { name: 'Done' }).click();
+  await page.locator('#measure-results').waitFor();
+  assertTrue(JSON.parse(await download(page, 'json')).gaits[0]);
 });
 
 test('a hidden tag is named while the camera is on, and no figure is computed', async () => {
   await openWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
-  const opened = await openRoom();
-  await switchCameraOn(opened, 'Not seen: the left tag of strip 2.');
-  await opened.getByRole('button', { name: 'Record' }).click();
-  await opened.waitForTimeout(1000);
-  await opened.getByRole('button', { name: 'Done' }).click();
-  await waitForMessage(opened, 'said', /tag 2 of the floor is not seen whole/);
-  assert.ok(!(await opened.locator('#measure-results').isVisible()));
+  const page = await openRoom();
+  await switchCameraOn(page, 'Not seen: the left tag of strip 2.');
+  await page.getByRole('button', { name: 'Record' }).click();
+  await page.waitForTimeout(1000);
+  await page.getByRole('button', { name: 'Done' }).click();
+  await waitForMessage(page, 'said', /tag 2 of the floor is not seen whole/);
+  assert.ok(!(await page.locator('#measure-results').isVisible()));
 });
 
 test('a film without any tag says so', async () => {
   await openWithCamera(join(renderFilm('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
-  const opened = await openRoom();
-  await switchCameraOn(opened, 'No tag of the sheet is seen');
+  const page = await openRoom();
+  await switchCameraOn(page, 'No tag of the sheet is seen');
 });
 
 test('without a camera, or if it is refused, the page offers an alternative', async () => {
   await openWithCamera(null);
-  const opened = await openRoom();
-  await opened.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(opened, 'said', /This machine has no camera|not allowed to use the camera/);
-  await opened.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
-  await opened.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(opened, 'said', /not allowed to use the camera.*take a film and open it here/);
+  const page = await openRoom();
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await waitForMessage(page, 'said', /This machine has no camera|not allowed to use the camera/);
+  await page.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await waitForMessage(page, 'said', /not allowed to use the camera.*take a film and open it here/);
 });
 
 test('Stop ends the protocol and stops the robot; leaving the room also does so, and switches the camera off', async () => {
-  await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await openRoom();
-  await startDriving(opened, ['walk', 'left'], 20);
-  await opened.waitForFunction(() => window.lizard.gait === 'walk');
-  await opened.keyboard.press('Escape');
-  await waitForMessage(opened, 'said', 'it was stopped');
-  await opened.waitForFunction(() => window.lizard.gait === 'stop');
+  await openWithCamera(join(walkFolder, 'film.y4m'));
+  const page = await openRoom();
+  await startDriving(page, ['walk', 'left'], 20);
+  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await page.keyboard.press('Escape');
+  await waitForMessage(page, 'said', 'it was stopped');
+  await page.waitForFunction(() => window.lizard.gait === 'stop');
   // A robot that was stopped stays stopped.
-  await opened.waitForTimeout(2000);
-  assert.equal(await opened.evaluate(() => window.lizard.gait), 'stop');
-  await opened.getByRole('button', { name: 'Drive and measure' }).click();
-  await opened.waitForFunction(() => window.lizard.gait === 'walk');
-  await opened.locator('nav a', { hasText: 'Drive' }).click();
-  await opened.waitForFunction(() => window.lizard.gait === 'stop');
-  assert.equal(await opened.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
+  await page.waitForTimeout(2000);
+  assert.equal(await page.evaluate(() => window.lizard.gait), 'stop');
+  await page.getByRole('button', { name: 'Drive and measure' }).click();
+  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await page.locator('nav a', { hasText: 'Drive' }).click();
+  await page.waitForFunction(() => window.lizard.gait === 'stop');
+  assert.equal(await page.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
 });
 
 test('a board whose link is cut is no longer driven, the room reports it, and the recorded cycles are measured', async () => {
-  await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await openRoom({ acceptDownloads: true });
-  await opened.evaluate(fakeSerial);
+  await openWithCamera(join(walkFolder, 'film.y4m'));
+  const page = await openRoom({ acceptDownloads: true });
+  await page.evaluate(fakeSerial);
   // Nobody begins to set up a robot by radio.
-  await opened.evaluate(() => Object.assign(window, { flashed: 'paper', awake: true, profile: '00001101-0000-1000-8000-00805f9b34fb' }));
-  await opened.locator('#connect').click();
-  await opened.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
+  await page.evaluate(() => Object.assign(window, { flashed: 'paper', awake: true, profile: '00001101-0000-1000-8000-00805f9b34fb' }));
+  await page.locator('#connect').click();
+  await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
   // The film begins near the end of the sheet, from where the page would first drive the robot back.
-  await startDriving(opened, ['walk', 'left'], 8, 2500);
-  await waitForMessage(opened, 'said', '1 of 2: walk');
-  await opened.waitForTimeout(6000);
-  await opened.evaluate(() => window.unplug());
-  await waitForMessage(opened, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
-  assertTrue(JSON.parse(await download(opened, 'json')).gaits[0]);
-  assert.ok(!/left/.test(await opened.evaluate(() => window.heard)), 'no further gait was sent');
-  assert.equal(await opened.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
+  await startDriving(page, ['walk', 'left'], 8, 2500);
+  await waitForMessage(page, 'said', '1 of 2: walk');
+  await page.waitForTimeout(6000);
+  await page.evaluate(() => window.unplug());
+  await waitForMessage(page, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
+  assertTrue(JSON.parse(await download(page, 'json')).gaits[0]);
+  assert.ok(!/left/.test(await page.evaluate(() => window.heard)), 'no further gait was sent');
+  assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
 });
 
 test('the sheet is that of the command, for both paper sizes', async () => {
   await openWithCamera(null);
-  const opened = await openRoom({ acceptDownloads: true });
+  const page = await openRoom({ acceptDownloads: true });
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
-    await opened.locator('#measure-paper').selectOption(name);
-    const [download] = await Promise.all([opened.waitForEvent('download'), opened.getByRole('button', { name: 'Print the sheet' }).click()]);
+    await page.locator('#measure-paper').selectOption(name);
+    const [downloaded] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Print the sheet' }).click()]);
     const file = join(folder, `${paper}.pdf`);
     execFileSync(LIZARD, ['measure', 'sheet', '--paper', paper, '-o', file]);
-    assert.deepEqual(readFileSync(await download.path()), readFileSync(file));
+    assert.deepEqual(readFileSync(await downloaded.path()), readFileSync(file));
   }
 });
 
 test('a worker that cannot be loaded is reported, and loaded when it is asked for again', async () => {
   await openWithCamera(null);
-  const opened = await openRoom({ acceptDownloads: true });
-  const before = complaints.length;
-  await opened.route(/assets\/worker-/, (route) => route.abort());
-  await opened.getByRole('button', { name: 'Print the sheet' }).click();
-  await waitForMessage(opened, 'said', /^the worker could not be loaded/);
-  await opened.unroute(/assets\/worker-/);
-  await Promise.all([opened.waitForEvent('download'), opened.getByRole('button', { name: 'Print the sheet' }).click()]);
+  const page = await openRoom({ acceptDownloads: true });
+  const previousCount = complaints.length;
+  await page.route(/assets\/worker-/, (route) => route.abort());
+  await page.getByRole('button', { name: 'Print the sheet' }).click();
+  await waitForMessage(page, 'said', /^the worker could not be loaded/);
+  await page.unroute(/assets\/worker-/);
+  await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Print the sheet' }).click()]);
   // The browser names the file that did not come, which is right.
-  for (const complaint of complaints.splice(before)) assert.match(complaint, /Failed to load|worker/i);
+  for (const complaint of complaints.splice(previousCount)) assert.match(complaint, /Failed to load|worker/i);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -18,9 +18,9 @@ before(async () => {
 });
 afterEach(async () => {
   await closePages();
-  for (const each of servers.splice(0)) {
-    each.closeAllConnections();
-    each.close();
+  for (const server of servers.splice(0)) {
+    server.closeAllConnections();
+    server.close();
   }
 });
 after(async () => {
@@ -29,107 +29,107 @@ after(async () => {
 });
 
 /** Serves a copy of the page on a server of its own. */
-async function serveCopy(name, asked = []) {
-  const own = join(folder, name);
-  await cp(DIST, own, { recursive: true });
-  const server = await serve(own, asked);
+async function serveCopy(name, requestedPaths = []) {
+  const copyFolder = join(folder, name);
+  await cp(DIST, copyFolder, { recursive: true });
+  const server = await serve(copyFolder, requestedPaths);
   servers.push(server);
-  return { own, server, asked };
+  return { own: copyFolder, server, asked: requestedPaths };
 }
 
 const openWithWorkers = () => openBlank({ serviceWorkers: 'allow' });
-const waitUntilStarted = (opened) => opened.waitForFunction(() => window.lizard);
+const waitUntilStarted = (page) => page.waitForFunction(() => window.lizard);
 
 /** Waits until the service worker has stored the page and answers its requests. */
-async function waitUntilStored(opened) {
-  await waitUntilStarted(opened);
-  await until(opened, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
+async function waitUntilStored(page) {
+  await waitUntilStarted(page);
+  await until(page, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
 }
 
 test('once opened, the page walks without a server, with any of its robots', async () => {
   const { server } = await serveCopy('offline');
-  const opened = await openWithWorkers();
-  await opened.goto(address(server));
-  await waitUntilStored(opened);
+  const page = await openWithWorkers();
+  await page.goto(address(server));
+  await waitUntilStored(page);
   server.closeAllConnections();
-  await within('the server to close', new Promise((closed) => server.close(closed)));
-  await opened.reload();
-  await waitUntilStarted(opened);
-  await opened.locator('#robot').selectOption('large');
-  await opened.waitForFunction(() => window.lizard.file === 'large');
-  await advance(opened, 3000);
-  await opened.locator('#gaits button[data-command="walk"]').click();
-  await advance(opened, 3000);
-  assert.ok((await opened.evaluate(() => window.lizard.last.place.y)) > 20);
-  assert.equal(await opened.locator('#trouble').isVisible(), false);
+  await within('the server to close', new Promise((resolve) => server.close(resolve)));
+  await page.reload();
+  await waitUntilStarted(page);
+  await page.locator('#robot').selectOption('large');
+  await page.waitForFunction(() => window.lizard.file === 'large');
+  await advance(page, 3000);
+  await page.locator('#gaits button[data-command="walk"]').click();
+  await advance(page, 3000);
+  assert.ok((await page.evaluate(() => window.lizard.last.place.y)) > 20);
+  assert.equal(await page.locator('#trouble').isVisible(), false);
 });
 
 test('a newer page is offered, loaded as a whole on request, and replaces the older one', async () => {
-  const { own, server } = await serveCopy('newer');
-  const opened = await openWithWorkers();
-  await opened.goto(address(server));
-  await waitUntilStored(opened);
-  const caches = () => opened.evaluate(() => window.caches.keys());
-  const [first] = await caches();
-  const page = await readFile(join(own, 'index.html'), 'utf8');
-  assert.ok(page.includes('>lizard</a>'));
-  await writeFile(join(own, 'index.html'), page.replace('>lizard</a>', '>lizard, newer</a>'));
-  writeServiceWorker(own);
-  await opened.reload();
-  await waitUntilStarted(opened);
-  assert.equal(await opened.locator('h1').innerText(), 'lizard', 'nothing changes under a person');
-  await opened.getByRole('button', { name: 'Load it now' }).click();
-  await opened.locator('h1', { hasText: 'lizard, newer' }).waitFor();
-  await waitUntilStarted(opened);
-  await until(opened, async (first) => !(await window.caches.keys()).includes(first), first);
-  assert.equal((await caches()).length, 1);
+  const { own: copyFolder, server } = await serveCopy('newer');
+  const page = await openWithWorkers();
+  await page.goto(address(server));
+  await waitUntilStored(page);
+  const readCacheNames = () => page.evaluate(() => window.caches.keys());
+  const [firstCache] = await readCacheNames();
+  const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
+  assert.ok(indexHtml.includes('>lizard</a>'));
+  await writeFile(join(copyFolder, 'index.html'), indexHtml.replace('>lizard</a>', '>lizard, newer</a>'));
+  writeServiceWorker(copyFolder);
+  await page.reload();
+  await waitUntilStarted(page);
+  assert.equal(await page.locator('h1').innerText(), 'lizard', 'nothing changes under a person');
+  await page.getByRole('button', { name: 'Load it now' }).click();
+  await page.locator('h1', { hasText: 'lizard, newer' }).waitFor();
+  await waitUntilStarted(page);
+  await until(page, async (firstCache) => !(await window.caches.keys()).includes(firstCache), firstCache);
+  assert.equal((await readCacheNames()).length, 1);
 });
 
 test('a new page with a missing file is rejected, and the stored one stays in use', async () => {
-  const { own, server, asked } = await serveCopy('torn');
-  const opened = await openWithWorkers();
-  await opened.goto(address(server));
-  await waitUntilStored(opened);
-  const before = await opened.evaluate(() => window.caches.keys());
-  const page = await readFile(join(own, 'index.html'), 'utf8');
-  await writeFile(join(own, 'index.html'), page.replace('>lizard</a>', '>lizard, newer</a>'));
-  writeServiceWorker(own);
+  const { own: copyFolder, server, asked: requestedPaths } = await serveCopy('torn');
+  const page = await openWithWorkers();
+  await page.goto(address(server));
+  await waitUntilStored(page);
+  const previousCaches = await page.evaluate(() => window.caches.keys());
+  const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
+  await writeFile(join(copyFolder, 'index.html'), indexHtml.replace('>lizard</a>', '>lizard, newer</a>'));
+  writeServiceWorker(copyFolder);
   // A half-finished update of the server: the list is new, the page is not.
-  await writeFile(join(own, 'index.html'), page);
-  asked.length = 0;
-  await opened.reload();
-  await waitUntilStarted(opened);
-  await until(opened, async () => {
+  await writeFile(join(copyFolder, 'index.html'), indexHtml);
+  requestedPaths.length = 0;
+  await page.reload();
+  await waitUntilStarted(page);
+  await until(page, async () => {
     const registration = await navigator.serviceWorker.ready;
     return !registration.installing && !registration.waiting;
   });
-  for (let ms = 0; ms < PATIENCE && !asked.includes('/index.html'); ms += 100) await new Promise((next) => setTimeout(next, 100));
-  assert.ok(asked.includes('/index.html'), 'it was asked for');
-  assert.equal(await opened.locator('#fresh').isVisible(), false);
-  assert.ok((await opened.evaluate(() => window.caches.keys())).includes(before[0]));
+  for (let ms = 0; ms < PATIENCE && !requestedPaths.includes('/index.html'); ms += 100) await new Promise((resolve) => setTimeout(resolve, 100));
+  assert.ok(requestedPaths.includes('/index.html'), 'it was asked for');
+  assert.equal(await page.locator('#fresh').isVisible(), false);
+  assert.ok((await page.evaluate(() => window.caches.keys())).includes(previousCaches[0]));
   server.closeAllConnections();
-  await opened.reload();
-  await waitUntilStarted(opened);
+  await page.reload();
+  await waitUntilStarted(page);
 });
 
 test('the first load is below 500 KB compressed, and nothing is asked of another origin', async () => {
-  const asked = [];
-  const { server } = await serveCopy('size', asked);
-  const opened = await openBlank();
-  const strangers = [];
-  opened.on('request', (request) => {
-    if (!request.url().startsWith(address(server)) && !/^(data|blob):/.test(request.url())) strangers.push(request.url());
+  const requestedPaths = [];
+  const { server } = await serveCopy('size', requestedPaths);
+  const page = await openBlank();
+  const foreignUrls = [];
+  page.on('request', (request) => {
+    if (!request.url().startsWith(address(server)) && !/^(data|blob):/.test(request.url())) foreignUrls.push(request.url());
   });
-  await opened.goto(address(server));
-  await waitUntilStarted(opened);
-  await advance(opened, 3000);
-  await opened.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
-  const paths = [...new Set(asked)].map((path) => (path === '/' ? '/index.html' : path));
+  await page.goto(address(server));
+  await waitUntilStarted(page);
+  await advance(page, 3000);
+  await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
+  const paths = [...new Set(requestedPaths)].map((path) => (path === '/' ? '/index.html' : path));
   assert.ok(paths.some((path) => path.endsWith('.wasm')) && paths.some((path) => path.endsWith('.js')), paths.join());
   const sizes = await Promise.all(paths.map(async (path) => [path, gzipSync(await readFile(join(DIST, path))).length]));
-  const all = sizes.reduce((sum, [, size]) => sum + size, 0);
-  assert.ok(all < 500_000, `${all} bytes: ${sizes.map(([path, size]) => `${path} ${size}`).join(', ')}`);
-  assert.deepEqual(strangers, []);
+  const totalBytes = sizes.reduce((sum, [, size]) => sum + size, 0);
+  assert.ok(totalBytes < 500_000, `${totalBytes} bytes: ${sizes.map(([path, size]) => `${path} ${size}`).join(', ')}`);
+  assert.deepEqual(foreignUrls, []);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -18,11 +18,11 @@ async function openPanel(options) {
   return page;
 }
 
-/** Screen position of a point in the head's own frame, mm. */
-const onScreen = (page, [x, y]) =>
+/** Returns the screen position of a point that is given in the head's own frame, mm. */
+const screenPoint = (page, [x, y]) =>
   page.evaluate(([x, y]) => {
-    const at = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());
-    return [at.x, at.y];
+    const point = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());
+    return [point.x, point.y];
   }, [x, y]);
 
 /** Draws a closed line about the head's neutral point with the mouse. */
@@ -30,16 +30,16 @@ async function draw(page, radius, corners = 40) {
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   const [x, y] = await page.evaluate(() => window.lizard.robot.reachArea(0).neutral);
   for (let n = 0; n <= corners; n++) {
-    const turn = (2 * Math.PI * n) / corners;
-    await page.mouse.move(...(await onScreen(page, [x + radius * Math.cos(turn), y + radius * Math.sin(turn)])));
+    const angle = (2 * Math.PI * n) / corners;
+    await page.mouse.move(...(await screenPoint(page, [x + radius * Math.cos(angle), y + radius * Math.sin(angle)])));
     if (n === 0) await page.mouse.down();
   }
   await page.mouse.up();
   return [x, y];
 }
 
-/** The head's point relative to the middle of the chassis, mm, as the page draws it. */
-const head = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
+/** Returns the head's point relative to the middle of the chassis, mm, as the page draws it. */
+const headOf = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
 
 test('a drawn circle is the path of the head, and is written into robot.toml', async () => {
   const page = await openPanel();
@@ -47,20 +47,20 @@ test('a drawn circle is the path of the head, and is written into robot.toml', a
   await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
   assert.equal(await page.locator('#path-shape').inputValue(), 'own');
   assert.match(await text(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
-  const neutral = await head(page);
+  const neutral = await headOf(page);
   await page.locator('#path-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.gesture.head]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'gesture');
   await advance(page, 3000);
-  const away = [];
+  const distances = [];
   for (let n = 0; n < 20; n++) {
     await advance(page, 200);
-    const now = await head(page);
-    away.push(Math.hypot(now[0] - neutral[0], now[1] - neutral[1]));
+    const point = await headOf(page);
+    distances.push(Math.hypot(point[0] - neutral[0], point[1] - neutral[1]));
   }
   // A servo's dead band is a fraction of a mm there.
-  for (const mm of away) assert.ok(Math.abs(mm - 6) < 0.8, `${away.map((mm) => mm.toFixed(2))} mm from the middle of a circle of 6 mm`);
+  for (const mm of distances) assert.ok(Math.abs(mm - 6) < 0.8, `${distances.map((mm) => mm.toFixed(2))} mm from the middle of a circle of 6 mm`);
 });
 
 test('a line that is too large is refused, and a button offers the largest valid size', async () => {
@@ -81,9 +81,9 @@ test('a line that is too large is refused, and a button offers the largest valid
 
 test('a shape can be chosen by the keyboard, for the tail as well', async () => {
   const page = await openPanel();
-  const before = await text(page, 'table');
+  const previousTable = await text(page, 'table');
   await page.locator('#path-end').selectOption('tail');
-  await page.waitForFunction((before) => document.querySelector('#path-table').textContent !== before, before);
+  await page.waitForFunction((previousTable) => document.querySelector('#path-table').textContent !== previousTable, previousTable);
   assert.match(await text(page, 'table'), /\[gait\.gesture\.tail\]/);
   for (const shape of ['circle', 'side', 'nod', 'eight']) {
     const table = await text(page, 'table');
@@ -95,11 +95,11 @@ test('a shape can be chosen by the keyboard, for the tail as well', async () => 
 
 test('a tap is refused, with a message that it is not a line', async () => {
   const page = await openPanel();
-  const before = await text(page, 'table');
+  const previousTable = await text(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#path-plane').click();
   assert.equal(await text(page, 'said'), 'A tap is not a line: hold and draw it.');
-  assert.equal(await text(page, 'table'), before);
+  assert.equal(await text(page, 'table'), previousTable);
 });
 
 test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {

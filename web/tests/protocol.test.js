@@ -1,5 +1,5 @@
-// The robot driven before a camera, as a person would wish it: a world of its own with a robot that walks other than predicted, hands
-// that hide it, lines that get lost, and a link that is cut.
+// The robot driven before a camera, as a person would wish it: a world of its own with a robot that walks other than
+// predicted, hands that hide it, lines that get lost, and a link that is cut.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -7,13 +7,16 @@ import { importSource } from './source.js';
 
 const { Protocol } = await importSource('measure/protocol.ts');
 
-/** Moments in a second; way of the floor's tags from their middle, and beyond that to the end that the film still measures, mm. */
-const MOMENTS = 20;
-const TAGS = 210;
-const NEAR = 50;
-const BEYOND = 200;
+/**
+ * Moments in a second; distance of the floor's tags from their middle, mm; and, counted from the tags, the distance at
+ * which a robot is near the end, and the distance of the end that the film still measures, mm.
+ */
+const MOMENTS_PER_SECOND = 20;
+const TAG_DISTANCE = 210;
+const NEAR_MARGIN = 50;
+const END_MARGIN = 200;
 /** Time after which a robot that hears nothing stops, s. */
-const DEADMAN = 0.9;
+const DEADMAN_SECONDS = 0.9;
 const WAYS = [
   { command: 'walk', forward: 33, turn: 0.1 },
   { command: 'back', forward: -30, turn: -0.1 },
@@ -62,13 +65,13 @@ class World {
   }
 
   wait(seconds) {
-    return new Promise((done) => this.timers.push({ due: this.seconds + seconds, done }));
+    return new Promise((resolve) => this.timers.push({ due: this.seconds + seconds, done: resolve }));
   }
 
   get back() {
     const { x, y, heading } = this.place;
     const [ahead, aside] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
-    return { ahead, aside, reach: TAGS + NEAR, isNear: Math.hypot(x, y) > TAGS + NEAR };
+    return { ahead, aside, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
   }
 
   /** The robot acts at once, and its answer comes later. */
@@ -77,39 +80,39 @@ class World {
     if (this.isCut) this.late.push(line);
     else this.lines.push(line);
     const [, gait = line, count] = /^(.+?) (\d+)$/.exec(line) ?? [];
-    const acts = gait !== 'speed';
-    if (acts && !this.isCut) [this.activity, this.left, this.phase] = [gait, Number(count), 0];
+    const isMotion = gait !== 'speed';
+    if (isMotion && !this.isCut) [this.activity, this.left, this.phase] = [gait, Number(count), 0];
     await this.wait(this.delay);
     if (this.isCut) return this.wait(2).then(() => false);
-    if (acts) this.protocol.setActivity(gait);
+    if (isMotion) this.protocol.setActivity(gait);
     return true;
   }
 
   async putBack() {
     this.hands += 1;
-    await Promise.race([this.wait(3), new Promise((over) => (this.protocol.onEnd = over))]);
+    await Promise.race([this.wait(3), new Promise((resolve) => (this.protocol.onEnd = resolve))]);
     this.isHidden = false;
     this.place = { x: 10, y: -15, heading: 2 };
     await this.wait(0.2);
   }
 
-  cut(isSaid) {
+  cut(cause) {
     this.isCut = true;
-    if (isSaid === 'silent') this.protocol.stop('the robot is silent');
+    if (cause === 'silent') this.protocol.stop('the robot is silent');
     else this.protocol.setActivity('');
-    void this.wait(DEADMAN).then(() => (this.activity = 'stop'));
+    void this.wait(DEADMAN_SECONDS).then(() => (this.activity = 'stop'));
   }
 
   move() {
-    const way = WAYS.find(({ command }) => command === this.activity);
-    if (!way) return;
+    const gait = WAYS.find(({ command }) => command === this.activity);
+    if (!gait) return;
     // Within a cycle a robot swings.
-    const forward = (way.forward * this.factor + 25 * Math.cos(2 * Math.PI * this.phase)) / MOMENTS;
+    const forward = (gait.forward * this.factor + 25 * Math.cos(2 * Math.PI * this.phase)) / MOMENTS_PER_SECOND;
     const { place } = this;
-    place.heading += ((way.turn * Math.PI) / 180) / MOMENTS;
+    place.heading += ((gait.turn * Math.PI) / 180) / MOMENTS_PER_SECOND;
     place.x += forward * Math.cos(place.heading);
     place.y += forward * Math.sin(place.heading);
-    this.phase += 1 / MOMENTS;
+    this.phase += 1 / MOMENTS_PER_SECOND;
     if (this.phase < this.left - 1e-9) return;
     this.activity = 'stop';
     if (this.isCut) return;
@@ -118,7 +121,7 @@ class World {
   }
 
   async moment() {
-    this.seconds += 1 / MOMENTS;
+    this.seconds += 1 / MOMENTS_PER_SECOND;
     this.move();
     this.farthest = Math.max(this.farthest, Math.hypot(this.place.x, this.place.y));
     this.protocol.setPlace(this.isHidden ? null : this.back);
@@ -128,18 +131,21 @@ class World {
     await new Promise(setImmediate);
   }
 
-  /** Runs a plan to its end, and five seconds on; `happens` is called in each moment. Returns the reason of an early end. */
-  async run(plan, happens = () => {}) {
-    let [isOver, why] = [false, null];
+  /**
+   * Runs a plan to its end, and five seconds on; `onMoment` is called in each moment. Returns the reason of an early
+   * end.
+   */
+  async run(plan, onMoment = () => {}) {
+    let [isOver, reason] = [false, null];
     this.protocol.setPlace(this.back);
-    const over = this.protocol.run(plan).catch((error) => (why = error.message)).then(() => (isOver = true));
-    for (let after = 0; after < 5 * MOMENTS; after += isOver ? 1 : 0) {
+    const runEnd = this.protocol.run(plan).catch((error) => (reason = error.message)).then(() => (isOver = true));
+    for (let extraMoments = 0; extraMoments < 5 * MOMENTS_PER_SECOND; extraMoments += isOver ? 1 : 0) {
       assert.ok(this.seconds < 1000, `it goes on: ${this.lines}`);
-      happens();
+      onMoment();
       await this.moment();
     }
-    await over;
-    return why;
+    await runEnd;
+    return reason;
   }
 }
 
@@ -147,23 +153,23 @@ class World {
 const gaits = (...commands) => commands.map((command) => ({ command, period: 1 }));
 const PLAN = { gaits: gaits('walk', 'left', 'arc left', 'back', 'walk'), cycles: 8, speed: 100, pause: 1 };
 /** Some hundred worlds, each with random places, robots and answers. */
-async function worlds(count, act) {
+async function runWorlds(count, act) {
   for (let seed = 1; seed <= count; seed++) {
     const chance = randomOf(seed);
     const world = new World();
-    const [far, side] = [chance.between(0, TAGS + NEAR), chance.between(0, 2 * Math.PI)];
-    world.place = { x: far * Math.cos(side), y: far * Math.sin(side), heading: chance.between(0, 2 * Math.PI) };
+    const [distance, direction] = [chance.between(0, TAG_DISTANCE + NEAR_MARGIN), chance.between(0, 2 * Math.PI)];
+    world.place = { x: distance * Math.cos(direction), y: distance * Math.sin(direction), heading: chance.between(0, 2 * Math.PI) };
     world.delay = chance.between(0.01, 0.5);
     await act(world, chance, seed);
-    const walks = WAYS.some(({ command }) => command === world.activity);
-    assert.ok(!walks, `world ${seed}: the robot goes on with ${world.activity}`);
-    assert.ok(world.farthest < TAGS + BEYOND, `world ${seed}: ${world.farthest} mm from the middle`);
+    const isWalking = WAYS.some(({ command }) => command === world.activity);
+    assert.ok(!isWalking, `world ${seed}: the robot goes on with ${world.activity}`);
+    assert.ok(world.farthest < TAG_DISTANCE + END_MARGIN, `world ${seed}: ${world.farthest} mm from the middle`);
   }
 }
 
 test('a robot that goes as predicted walks every gait, from the middle all cycles of it, and hands are seldom needed', async () => {
-  let [hands, whole, all] = [0, 0, 0];
-  await worlds(60, async (world, _, seed) => {
+  let [hands, wholeWalks, allWalks] = [0, 0, 0];
+  await runWorlds(60, async (world, _, seed) => {
     assert.equal(await world.run(PLAN), null);
     const { walks } = world.protocol;
     const names = walks.map(({ gait }) => gait);
@@ -171,64 +177,64 @@ test('a robot that goes as predicted walks every gait, from the middle all cycle
     for (const [i, { gait, during: [begin, end] }] of walks.entries()) {
       assert.ok(i === 0 || begin > walks[i - 1].during[1] + PLAN.pause - 0.1);
       assert.ok(end - begin < PLAN.cycles + 0.7, `world ${seed}: ${end - begin} s`);
-      const ofGait = walks.filter((walk) => walk.gait === gait).map(({ during: [from, to] }) => to - from);
-      assert.ok(ofGait.reduce((a, b) => a + b) > PLAN.cycles - 4, `world ${seed}: ${gait}, ${ofGait} s`);
-      whole += end - begin > PLAN.cycles - 0.1 ? 1 : 0;
-      all += 1;
+      const gaitSeconds = walks.filter((walk) => walk.gait === gait).map(({ during: [from, to] }) => to - from);
+      assert.ok(gaitSeconds.reduce((a, b) => a + b) > PLAN.cycles - 4, `world ${seed}: ${gait}, ${gaitSeconds} s`);
+      wholeWalks += end - begin > PLAN.cycles - 0.1 ? 1 : 0;
+      allWalks += 1;
     }
     hands += world.hands;
   });
-  assert.ok(whole > 0.8 * all, `${whole} of ${all} walks have all cycles`);
+  assert.ok(wholeWalks > 0.8 * allWalks, `${wholeWalks} of ${allWalks} walks have all cycles`);
   assert.ok(hands < 0.5 * 60, `${hands}`);
 });
 
 test('a walk of many cycles ends at the end of the sheet, the robot comes back by itself and walks the rest', async () => {
   const world = new World();
   assert.equal(await world.run({ ...PLAN, gaits: gaits('walk'), cycles: 30 }), null);
-  const times = world.protocol.walks.map(({ during: [begin, end] }) => end - begin);
-  for (const time of times) assert.ok(time > 3.9 && time < 17, `${time} s`);
-  const sum = times.reduce((a, b) => a + b);
-  assert.ok(sum > 26 && sum < 34, `${times} s`);
-  assert.ok(times.length > 2);
+  const walkSeconds = world.protocol.walks.map(({ during: [begin, end] }) => end - begin);
+  for (const seconds of walkSeconds) assert.ok(seconds > 3.9 && seconds < 17, `${seconds} s`);
+  const sum = walkSeconds.reduce((a, b) => a + b);
+  assert.ok(sum > 26 && sum < 34, `${walkSeconds} s`);
+  assert.ok(walkSeconds.length > 2);
   assert.deepEqual(world.lines.slice(0, 3), ['speed 100', 'walk 30', 'stand']);
   assert.match(world.lines.slice(3).join(), /^(back \d+,walk \d+(,stand)?,?)+$/);
   assert.equal(world.hands, 0);
 });
 
 test('a robot that walks farther, less far or the other way, and is hidden now and then, does not leave the sheet', () =>
-  worlds(150, async (world, { random, from, between }) => {
+  runWorlds(150, async (world, { random, from, between }) => {
     world.factor = from([-1, 0.5, 1.2, between(0.8, 1.2)]);
-    const happens = () => {
+    const onMoment = () => {
       if (random() < 0.005) world.isHidden = true;
       else if (random() < 0.02) world.isHidden = false;
     };
-    assert.equal(await world.run({ ...PLAN, cycles: from([4, 8, 20]) }, happens), null);
+    assert.equal(await world.run({ ...PLAN, cycles: from([4, 8, 20]) }, onMoment), null);
   }));
 
 test('after a cut, a silence or a stop the robot is not driven, the reason is said, and what it walked is kept', () =>
-  worlds(150, async (world, { from, between }, seed) => {
-    const [what, when] = [from(['', 'silent', 'stop', 'left']), between(0.5, 60)];
-    let driven = null;
-    let seen = [];
-    const happens = () => {
-      if (driven !== null || world.seconds < when) return;
-      driven = world.lines.length;
-      seen = world.protocol.walks.slice();
-      if (what === '' || what === 'silent') world.cut(what);
-      else void world.ask(what === 'stop' ? what : 'left 3');
+  runWorlds(150, async (world, { from, between }, seed) => {
+    const [event, eventSeconds] = [from(['', 'silent', 'stop', 'left']), between(0.5, 60)];
+    let lineCount = null;
+    let knownWalks = [];
+    const onMoment = () => {
+      if (lineCount !== null || world.seconds < eventSeconds) return;
+      lineCount = world.lines.length;
+      knownWalks = world.protocol.walks.slice();
+      if (event === '' || event === 'silent') world.cut(event);
+      else void world.ask(event === 'stop' ? event : 'left 3');
     };
-    const why = await world.run({ ...PLAN, gaits: gaits('walk', 'back', 'walk', 'back', 'walk', 'back', 'walk') }, happens);
-    const lines = [...world.lines.slice(driven), ...world.late].filter((line) => line !== 'stop');
-    assert.deepEqual(lines, what === 'left' ? ['left 3'] : [], `world ${seed}, ${what}`);
-    assert.match(why, { '': /cut/, silent: /silent/, stop: /stopped/, left: /the robot was sent "left 3"/ }[what]);
-    assert.deepEqual(world.protocol.walks.slice(0, seen.length), seen);
-    for (const { during: [begin, end] } of world.protocol.walks) assert.ok(begin <= end && end <= when + world.delay + 0.1, `world ${seed}: ${begin} to ${end} s`);
+    const reason = await world.run({ ...PLAN, gaits: gaits('walk', 'back', 'walk', 'back', 'walk', 'back', 'walk') }, onMoment);
+    const lines = [...world.lines.slice(lineCount), ...world.late].filter((line) => line !== 'stop');
+    assert.deepEqual(lines, event === 'left' ? ['left 3'] : [], `world ${seed}, ${event}`);
+    assert.match(reason, { '': /cut/, silent: /silent/, stop: /stopped/, left: /the robot was sent "left 3"/ }[event]);
+    assert.deepEqual(world.protocol.walks.slice(0, knownWalks.length), knownWalks);
+    for (const { during: [begin, end] } of world.protocol.walks) assert.ok(begin <= end && end <= eventSeconds + world.delay + 0.1, `world ${seed}: ${begin} to ${end} s`);
   }));
 
 test('a camera that is switched off stops a robot that walks', async () => {
   const world = new World();
-  const happens = () => world.seconds > 4 && world.activity === 'walk' && world.protocol.stop('the camera was switched off');
-  assert.equal(await world.run(PLAN, happens), 'the camera was switched off');
+  const onMoment = () => world.seconds > 4 && world.activity === 'walk' && world.protocol.stop('the camera was switched off');
+  assert.equal(await world.run(PLAN, onMoment), 'the camera was switched off');
   assert.deepEqual(world.lines, ['speed 100', 'walk 8', 'stop']);
   assert.equal(world.protocol.walks.length, 1);
 });

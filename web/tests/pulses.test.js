@@ -1,5 +1,5 @@
-// The page's image equals the compiler's, byte for byte, and its pulses equal those of the simulated UNO on libsimavr, width for
-// width, also for a robot that only the page has.
+// The page's image equals the compiler's, byte for byte, and its pulses equal those of the simulated UNO on libsimavr,
+// width for width, also for a robot that only the page has.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -8,14 +8,14 @@ import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
 import { load } from '../../tools/judge/src/hex.js';
-import { PATIENCE, close, complaints, open, page, closePages } from './browser.js';
+import { PATIENCE, close, complaints, open, page as openPage, closePages } from './browser.js';
 
 before(open);
 afterEach(closePages);
 after(close);
 
 const ROOT = new URL('../../', import.meta.url).pathname;
-const FILE = join(ROOT, 'robot.toml');
+const ROBOT_FILE = join(ROOT, 'robot.toml');
 /** The image of the same robot from the compiler. */
 const HEX = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
 
@@ -29,25 +29,25 @@ const SCRIPT = [
   [13509, 'pose 120 60 318.59 221.41'],
   [15011, 'rest'],
 ];
-const END = 16_011;
+const END_MS = 16_011;
 /** Turn of a servo for one CPU cycle of pulse width, deg. */
-const CYCLE = 1 / 160;
+const CYCLE_DEG = 1 / 160;
 
 /** The servo angles of each frame that `lizard sim` reads from the pins. */
 function simulate(toml) {
   const folder = mkdtempSync(join(tmpdir(), 'lizard-'));
   try {
-    const script = join(folder, 'script');
-    writeFileSync(script, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
-    const robot = join(folder, 'robot.toml');
-    writeFileSync(robot, toml);
-    const files = ['--robot', robot, '--svg', join(folder, 'x.svg')];
-    const said = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', script, ...files], {
+    const scriptPath = join(folder, 'script');
+    writeFileSync(scriptPath, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
+    const robotPath = join(folder, 'robot.toml');
+    writeFileSync(robotPath, toml);
+    const files = ['--robot', robotPath, '--svg', join(folder, 'x.svg')];
+    const output = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', scriptPath, ...files], {
       cwd: ROOT,
       maxBuffer: 1 << 26,
       timeout: PATIENCE,
     });
-    return JSON.parse(said).frames.flatMap(({ angles }) => (angles ? [angles] : []));
+    return JSON.parse(output).frames.flatMap(({ angles }) => (angles ? [angles] : []));
   } catch (error) {
     if (error.code === 'ETIMEDOUT') throw new Error(`waited ${PATIENCE / 1000} s for the end of lizard sim`);
     throw error;
@@ -57,18 +57,18 @@ function simulate(toml) {
 }
 
 test('the image of robot.toml is what the compiler makes, to the byte', async () => {
-  const opened = await page();
+  const page = await openPage();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   load(readFileSync(HEX, 'utf8'), flash);
-  const image = await opened.evaluate(() => Array.from(window.lizard.image));
+  const image = await page.evaluate(() => Array.from(window.lizard.image));
   assert.ok(image.length > 0x6e00 + 1000, `${image.length} bytes`);
   assert.deepEqual(image, Array.from(flash.subarray(0, image.length)));
   assert.ok(flash.subarray(image.length).every((byte) => byte === 0xff));
 });
 
-const TOML = readFileSync(FILE, 'utf8');
-/** Returns a robot with a shorter walk and a gait of its own. */
-const OWN = `${TOML.replace('amplitude = 20.0', 'amplitude = 17.0')}
+const TOML = readFileSync(ROBOT_FILE, 'utf8');
+/** A robot with a shorter walk and a gait of its own. */
+const OWN_TOML = `${TOML.replace('amplitude = 20.0', 'amplitude = 17.0')}
 [gait.limp]
 period = 1.4
 waveform = "wave"
@@ -77,11 +77,11 @@ amplitude = 12.0
 start = { LF = 0.0, RF = 0.5, RH = 0.2, LH = 0.7 }
 `;
 
-for (const [what, toml] of [['robot.toml', TOML], ['a robot that was typed into the page', OWN]]) test(`every width of ${what} is that of the simulated UNO`, async () => {
+for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed into the page', OWN_TOML]]) test(`every width of ${robotName} is that of the simulated UNO`, async () => {
   // With the page's timers at rest, only this test lets time pass.
-  const opened = await page({}, () => {});
-  if (toml !== TOML) assert.equal(await opened.evaluate((toml) => window.lizard.change(toml), toml), null);
-  const { frames, rises } = await opened.evaluate(
+  const page = await openPage({}, () => {});
+  if (toml !== TOML) assert.equal(await page.evaluate((toml) => window.lizard.change(toml), toml), null);
+  const { frames, rises } = await page.evaluate(
     ([script, end]) => {
       const { lizard } = window;
       const { board } = lizard.link;
@@ -90,35 +90,35 @@ for (const [what, toml] of [['robot.toml', TOML], ['a robot that was typed into 
       const rises = [];
       // The page's own path, frame by frame.
       lizard.robot.setServos('ideal');
-      const follow = lizard.robot.pulses.bind(lizard.robot);
+      const originalPulses = lizard.robot.pulses.bind(lizard.robot);
       lizard.robot.pulses = (widths) => {
-        const frame = follow(widths);
+        const frame = originalPulses(widths);
         if (widths.every((width) => width > 0)) frames.push(frame.scene.angles);
         return frame;
       };
-      const pulse = board.onPulse;
-      board.onPulse = (which, rise, width) => {
-        if (which === pin) rises.push(rise);
-        pulse(which, rise, width);
+      const originalOnPulse = board.onPulse;
+      board.onPulse = (pulsePin, rise, width) => {
+        if (pulsePin === pin) rises.push(rise);
+        originalOnPulse(pulsePin, rise, width);
       };
       // The page may have run for some pictures.
-      let now = board.cycle / 16_000;
+      let currentMs = board.cycle / 16_000;
       for (const [ms, line] of [...script, [end, '']]) {
-        lizard.advance(ms - now);
-        now = ms;
+        lizard.advance(ms - currentMs);
+        currentMs = ms;
         if (line !== '') void lizard.link.write(new TextEncoder().encode(`${line}\n`));
       }
       return { frames, rises };
     },
-    [SCRIPT, END],
+    [SCRIPT, END_MS],
   );
   const expected = simulate(toml);
   assert.ok(frames.length > 600, `${frames.length} frames`);
   assert.equal(frames.length, expected.length);
   frames.forEach((angles, frame) =>
     angles.forEach((angle, servo) => {
-      const off = Math.abs(angle - expected[frame][servo]);
-      assert.ok(off < CYCLE / 100, `frame ${frame}, A${servo + 1}: ${angle} and ${expected[frame][servo]}`);
+      const deviation = Math.abs(angle - expected[frame][servo]);
+      assert.ok(deviation < CYCLE_DEG / 100, `frame ${frame}, A${servo + 1}: ${angle} and ${expected[frame][servo]}`);
     }),
   );
   const periods = new Set(rises.slice(1).map((rise, n) => (rise - rises[n]) % 320_000));

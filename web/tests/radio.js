@@ -1,9 +1,10 @@
-// A Bluetooth module in Chromium's own emulation, with a simulated UNO at its serial line. The emulation delivers what the page writes.
-// It has no notifications, so the robot's bytes reach the page as the event that a notification would cause.
-import { devTools, openForbidden, page, within } from './browser.js';
+// A Bluetooth module in Chromium's own emulation, with a simulated UNO at its serial line. The emulation delivers what
+// the page writes. It has no notifications, so the robot's bytes reach the page as the event that a notification would
+// cause.
+import { devTools, openForbidden, page as openPage, within } from './browser.js';
 
-const uuid = (short) => `0000${short}-0000-1000-8000-00805f9b34fb`;
-export const HM10 = { name: 'HMSoft', service: uuid('ffe0'), to: 'ffe1', characteristics: { [uuid('ffe1')]: ['notify', 'writeWithoutResponse'] } };
+const uuidOf = (shortId) => `0000${shortId}-0000-1000-8000-00805f9b34fb`;
+export const HM10 = { name: 'HMSoft', service: uuidOf('ffe0'), to: 'ffe1', characteristics: { [uuidOf('ffe1')]: ['notify', 'writeWithoutResponse'] } };
 export const NORDIC = {
   name: 'Bluefruit',
   service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',
@@ -12,12 +13,12 @@ export const NORDIC = {
 const ADDRESS = '09:09:09:09:09:09';
 const CONFIGURATION = '00002902-0000-1000-8000-00805f9b34fb';
 /** The error of a missing module. */
-const NOBODY = 0x3e;
+const MISSING_MODULE = 0x3e;
 /** Interval at which the radio is polled, ms of page time. */
-const STEP = 20;
+const STEP_MS = 20;
 
 /** Runs in the page before anything else. */
-function inPage() {
+function initScript() {
   const { prototype } = BluetoothRemoteGATTCharacteristic;
   const { startNotifications } = prototype;
   prototype.startNotifications = function () {
@@ -44,8 +45,8 @@ function inPage() {
     // A new module, with its default name.
     board.baud = 9600;
     board.run(16_000 * 4000);
-    const out = [];
-    board.onByte = (byte) => out.push(byte);
+    const output = [];
+    board.onByte = (byte) => output.push(byte);
     window.moved = 0;
     window.boardMs = () => board.cycle / 16_000;
     const widths = {};
@@ -61,7 +62,7 @@ function inPage() {
     board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
     setInterval(() => {
       board.run(16_000 * 2);
-      while (out.length > 0) window.say(out.splice(0, 20));
+      while (output.length > 0) window.say(output.splice(0, 20));
     }, 2);
     window.otherBoard = board;
   };
@@ -77,13 +78,16 @@ export class Radio {
     Object.assign(this, { opened, root, prompts, module });
   }
 
-  /** Opens the page with such a module in reach; `adapter` is the state of the browser's radio, `allowed` its permission to use it. */
+  /**
+   * Opens the page with such a module in reach; `adapter` is the state of the browser's radio, `allowed` its permission
+   * to use it.
+   */
   static async near(module, { adapter = 'powered-on', robot = true, allowed = true } = {}) {
-    const opened = allowed ? await page({}, inPage) : await openForbidden('bluetooth', inPage);
+    const page = allowed ? await openPage({}, initScript) : await openForbidden('bluetooth', initScript);
     const root = await devTools();
     await root.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
-    const radio = new Radio(opened, root, await opened.context().newCDPSession(opened), module);
-    if (robot) await opened.evaluate(() => window.powerOn());
+    const radio = new Radio(page, root, await page.context().newCDPSession(page), module);
+    if (robot) await page.evaluate(() => window.powerOn());
     if (adapter !== 'powered-on') return radio;
     const { name, service } = module;
     await root.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
@@ -97,7 +101,7 @@ export class Radio {
   async gatt({ type }) {
     if (type === 'discovery') await this.offer();
     if (type === 'connection' && this.isInReach) await this.reached();
-    const code = this.isInReach ? 0 : NOBODY;
+    const code = this.isInReach ? 0 : MISSING_MODULE;
     await this.root.send('BluetoothEmulation.simulateGATTOperationResponse', { address: ADDRESS, type, code }).catch(() => {});
   }
 
@@ -111,8 +115,8 @@ export class Radio {
 
   async offer() {
     const { serviceId } = await this.root.send('BluetoothEmulation.addService', { address: ADDRESS, serviceUuid: this.module.service });
-    for (const [characteristicUuid, can] of Object.entries(this.module.characteristics)) {
-      const properties = Object.fromEntries(can.map((name) => [name, true]));
+    for (const [characteristicUuid, propertyNames] of Object.entries(this.module.characteristics)) {
+      const properties = Object.fromEntries(propertyNames.map((name) => [name, true]));
       const { characteristicId } = await this.root.send('BluetoothEmulation.addCharacteristic', { serviceId, characteristicUuid, properties });
       if (properties.notify) await this.root.send('BluetoothEmulation.addDescriptor', { characteristicId, descriptorUuid: CONFIGURATION });
     }
@@ -130,28 +134,28 @@ export class Radio {
 
   /** Advances the page's clock; writes arrive within the step in which they were made. */
   async run(ms) {
-    for (let left = ms; left > 0; left -= STEP) {
-      await this.opened.clock.runFor(STEP);
-      const arrived = async () => {
-        while (this.isInReach && (await this.opened.evaluate(() => window.written)) > this.packets.length) await new Promise((next) => setTimeout(next, 5));
+    for (let remainingMs = ms; remainingMs > 0; remainingMs -= STEP_MS) {
+      await this.opened.clock.runFor(STEP_MS);
+      const waitForArrival = async () => {
+        while (this.isInReach && (await this.opened.evaluate(() => window.written)) > this.packets.length) await new Promise((resolve) => setTimeout(resolve, 5));
       };
-      await within('packets to arrive', arrived());
+      await within('packets to arrive', waitForArrival());
     }
   }
 
-  async until(what, isSo) {
-    let waits = true;
-    const goes = async () => {
-      while (waits && !(await isSo())) await this.run(STEP);
+  async until(waitName, isSo) {
+    let isWaiting = true;
+    const advance = async () => {
+      while (isWaiting && !(await isSo())) await this.run(STEP_MS);
     };
-    await within(what, goes()).finally(() => (waits = false));
+    await within(waitName, advance()).finally(() => (isWaiting = false));
   }
 
   /** Presses the button and picks the module, or none. */
   async pick(isPicked = true) {
-    const prompted = new Promise((done) => this.prompts.once('DeviceAccess.deviceRequestPrompted', done));
+    const prompt = new Promise((resolve) => this.prompts.once('DeviceAccess.deviceRequestPrompted', resolve));
     await this.opened.locator('#radio').click();
-    const { id, devices } = await within('the browser to ask', prompted);
+    const { id, devices } = await within('the browser to ask', prompt);
     if (isPicked) await this.prompts.send('DeviceAccess.selectPrompt', { id, deviceId: devices[0].id });
     else await this.prompts.send('DeviceAccess.cancelPrompt', { id });
   }
@@ -159,7 +163,7 @@ export class Radio {
   /** Simulates a phone that sleeps: the page's timers stop, while the robot goes on. */
   async sleep(ms) {
     await this.opened.evaluate((ms) => {
-      for (let left = ms; left > 0; left -= 2) window.otherBoard.run(16_000 * 2);
+      for (let remainingMs = ms; remainingMs > 0; remainingMs -= 2) window.otherBoard.run(16_000 * 2);
     }, ms);
   }
 

@@ -11,24 +11,24 @@ after(close);
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
-const toml = (page) => page.evaluate(() => window.lizard.toml);
-const gait = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
-const steps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
-const step = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
+const tomlOf = (page) => page.evaluate(() => window.lizard.toml);
+const gaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
+const stepsOf = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
+const stepInput = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
 const press = async (page, name) => {
   await unfold(page, '#routines');
   await page.locator('#routines').getByRole('button', { name, exact: true }).click();
 };
 /** Waits until the panel shows these steps. */
-const waitForSteps = (page, wanted) =>
+const waitForSteps = (page, expected) =>
   page.waitForFunction(
-    (wanted) => JSON.stringify([...document.querySelectorAll('#routine-steps input')].map(({ value }) => value)) === wanted,
-    JSON.stringify(wanted),
+    (expected) => JSON.stringify([...document.querySelectorAll('#routine-steps input')].map(({ value }) => value)) === expected,
+    JSON.stringify(expected),
   );
 /** Reads the steps in the text of the robot. */
 const readSteps = (page) => page.evaluate(() => window.lizard.robot.constructor.routines(window.lizard.toml).at(-1)?.steps);
 const waitForPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
-const track = (page) => page.locator('#routine-path .track').getAttribute('d');
+const trackOf = (page) => page.locator('#routine-path .track').getAttribute('d');
 
 /** Puts a routine into the page's robot, at the end of its text. */
 async function putRoutine(page, steps, name = 'patrol') {
@@ -50,9 +50,9 @@ async function openRoutine(routine = PATROL, options = {}) {
 
 /** Runs the simulation for some seconds of its own time. */
 async function drive(page, seconds) {
-  const time = () => page.evaluate(() => window.lizard.clock);
-  const end = (await time()) + seconds;
-  for (let n = 0; (await time()) < end - 0.01; n++) {
+  const readClock = () => page.evaluate(() => window.lizard.clock);
+  const endSeconds = (await readClock()) + seconds;
+  for (let n = 0; (await readClock()) < endSeconds - 0.01; n++) {
     // The page asks for the status twice a second of real time, too rarely for a simulation this fast.
     if (n % 25 === 0) await page.evaluate(() => void window.lizard.status());
     await advance(page, 20);
@@ -65,15 +65,15 @@ test('a drive is recorded by the robot\'s motions, and its replay goes where pre
   await page.getByText('This robot has no routine yet.').waitFor();
   await press(page, 'Record a drive');
   await page.getByText('Recording: drive now').waitFor();
-  const place = () => page.evaluate(() => window.lizard.last.place);
-  const before = await place();
+  const readPlace = () => page.evaluate(() => window.lizard.last.place);
+  const startPlace = await readPlace();
   await page.keyboard.down('ArrowUp');
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await drive(page, 3.6);
   await page.keyboard.up('ArrowUp');
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   // The body's displacement shows how many cycles have passed.
-  const cycles = ((await place()).y - before.y) / 33.2;
+  const cycles = ((await readPlace()).y - startPlace.y) / 33.2;
   await drive(page, 2);
   await page.keyboard.down('ArrowLeft');
   await page.waitForFunction(() => window.lizard.gait === 'left');
@@ -82,31 +82,31 @@ test('a drive is recorded by the robot\'s motions, and its replay goes where pre
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   await drive(page, 1);
   await press(page, 'Stop recording');
-  const said = await text(page, '#routine-said');
-  const [, walked, pause, turns] = (/^Recorded: walk (\d+), stand ([\d.]+) s, left (\d+)$/.exec(said) ?? assert.fail(said)).map(Number);
-  assert.ok(walked >= 3 && walked < cycles + 0.2 && walked > cycles - 1.2, `${said}, ${cycles} cycles`);
+  const message = await text(page, '#routine-said');
+  const [, walkCycles, pauseSeconds, turnCycles] = (/^Recorded: walk (\d+), stand ([\d.]+) s, left (\d+)$/.exec(message) ?? assert.fail(message)).map(Number);
+  assert.ok(walkCycles >= 3 && walkCycles < cycles + 0.2 && walkCycles > cycles - 1.2, `${message}, ${cycles} cycles`);
   // The page also advances by itself, so this is a lower bound.
-  assert.ok(pause >= 1.9, said);
+  assert.ok(pauseSeconds >= 1.9, message);
   assert.equal(await page.locator('#routine-name').inputValue(), 'patrol');
   await press(page, 'Keep it');
-  const recorded = [`walk ${walked}`, `stand ${pause} s`, `left ${turns}`];
-  await waitForSteps(page, recorded);
-  assert.ok((await toml(page)).endsWith(`\n[routine.patrol]\nsteps = ["${recorded.join('", "')}"]\n`));
+  const recordedSteps = [`walk ${walkCycles}`, `stand ${pauseSeconds} s`, `left ${turnCycles}`];
+  await waitForSteps(page, recordedSteps);
+  assert.ok((await tomlOf(page)).endsWith(`\n[routine.patrol]\nsteps = ["${recordedSteps.join('", "')}"]\n`));
   await waitForPrediction(page);
-  const [, seconds, ahead, , , turned] = /^A round takes ([\d.]+) s and ends (-?\d+) mm ahead and (\d+) mm to the (right|left) of its start, turned by (-?\d+)°\.$/
+  const [, seconds, forwardMm, , , turnedDeg] = /^A round takes ([\d.]+) s and ends (-?\d+) mm ahead and (\d+) mm to the (right|left) of its start, turned by (-?\d+)°\.$/
     .exec(await text(page, '#routine-round'));
-  assert.ok(Math.abs(ahead - 33.2 * walked) < 15 && Math.abs(turned - 14.1 * turns) < 10, `${ahead} mm, ${turned} deg`);
+  assert.ok(Math.abs(forwardMm - 33.2 * walkCycles) < 15 && Math.abs(turnedDeg - 14.1 * turnCycles) < 10, `${forwardMm} mm, ${turnedDeg} deg`);
   await advance(page, 2500);
   await press(page, 'Start it');
   await advance(page, 100);
   await page.waitForFunction(() => window.lizard.gait === 'patrol');
-  assert.equal(await gait(page, 'patrol').getAttribute('aria-pressed'), 'true');
+  assert.equal(await gaitButton(page, 'patrol').getAttribute('aria-pressed'), 'true');
   await advance(page, seconds * 1000 + 200);
   await page.locator('#log div', { hasText: '# done' }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.gait), 'stop');
-  const { y, heading } = await place();
-  assert.ok(Math.abs(y - ahead) < 0.03 * ahead + 1, `${y} mm ahead, predicted ${ahead}`);
-  assert.ok(Math.abs(heading - turned) < 0.03 * turned + 1, `turned by ${heading} deg, predicted ${turned}`);
+  const { y, heading } = await readPlace();
+  assert.ok(Math.abs(y - forwardMm) < 0.03 * forwardMm + 1, `${y} mm ahead, predicted ${forwardMm}`);
+  assert.ok(Math.abs(heading - turnedDeg) < 0.03 * turnedDeg + 1, `turned by ${heading} deg, predicted ${turnedDeg}`);
 });
 
 test('the recording follows the robot\'s reports, not the pressed buttons', async () => {
@@ -118,10 +118,10 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
     await drive(page, seconds);
   }
   await press(page, 'Stop recording');
-  const said = await text(page, '#routine-said');
+  const message = await text(page, '#routine-said');
   // The page also advances by itself, so these times are lower bounds.
-  const [, rest, stand, look] = (/^Recorded: walk 3, stand [\d.]+ s, rest ([\d.]+) s, stand ([\d.]+) s, look ([\d.]+) s$/.exec(said) ?? assert.fail(said)).map(Number);
-  assert.ok(rest >= 2.9 && stand >= 1.4 && look >= 0.7, said);
+  const [, rest, stand, look] = (/^Recorded: walk 3, stand [\d.]+ s, rest ([\d.]+) s, stand ([\d.]+) s, look ([\d.]+) s$/.exec(message) ?? assert.fail(message)).map(Number);
+  assert.ok(rest >= 2.9 && stand >= 1.4 && look >= 0.7, message);
   await press(page, 'Drop it');
   assert.equal(await page.locator('#routine-recorded').isVisible(), false);
   await press(page, 'Record a drive');
@@ -150,13 +150,13 @@ test('a drive of a board is recorded by its own phase, even if its link was cut'
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
-  const doing = (name) => until(page, `it does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
-  await gait(page, 'walk').click();
-  await doing('walk');
+  const waitForGait = (name) => until(page, `it does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
+  await gaitButton(page, 'walk').click();
+  await waitForGait('walk');
   // A walk begins with a quarter of a second to its first pose, so less than four cycles have passed.
   await page.clock.runFor(4100);
-  await gait(page, 'back').click();
-  await doing('back');
+  await gaitButton(page, 'back').click();
+  await waitForGait('back');
   await page.clock.runFor(2600);
   // The link is lost: the robot stops by itself after 0.9 s.
   await page.evaluate(() => {
@@ -166,7 +166,7 @@ test('a drive of a board is recorded by its own phase, even if its link was cut'
     setTimeout(() => Object.assign(board, { send, onByte }), 8000);
   });
   await page.clock.runFor(8500);
-  await doing('stop');
+  await waitForGait('stop');
   await page.clock.runFor(500);
   await press(page, 'Stop recording');
   assert.match(await text(page, '#routine-said'), /^Recorded: walk 3, back [23]$/);
@@ -174,34 +174,34 @@ test('a drive of a board is recorded by its own phase, even if its link was cut'
 
 test('steps are changed, moved, copied and deleted by keys alone, and each is undone', async () => {
   const page = await openRoutine();
-  const known = [PATROL];
-  const does = async (act, wanted) => {
+  const history = [PATROL];
+  const assertSteps = async (act, expected) => {
     await act();
-    await waitForSteps(page, wanted);
-    await page.waitForFunction((wanted) => window.lizard.toml.includes(`steps = ${wanted}`), `["${wanted.join('", "')}"]`);
-    known.push(wanted);
+    await waitForSteps(page, expected);
+    await page.waitForFunction((expected) => window.lizard.toml.includes(`steps = ${expected}`), `["${expected.join('", "')}"]`);
+    history.push(expected);
   };
-  const focused = () => page.evaluate(() => document.activeElement?.getAttribute('aria-label'));
-  await does(async () => {
-    await step(page, 2).fill(' walk 5 ');
+  const readFocus = () => page.evaluate(() => document.activeElement?.getAttribute('aria-label'));
+  await assertSteps(async () => {
+    await stepInput(page, 2).fill(' walk 5 ');
     await page.keyboard.press('Enter');
   }, ['stand 1 s', 'walk 5', 'left 3', 'look 1']);
-  const key = async (label) => {
+  const pressButton = async (label) => {
     await page.getByLabel(label, { exact: true }).focus();
     await page.keyboard.press('Enter');
   };
-  await does(() => key('Move down step 2'), ['stand 1 s', 'left 3', 'walk 5', 'look 1']);
+  await assertSteps(() => pressButton('Move down step 2'), ['stand 1 s', 'left 3', 'walk 5', 'look 1']);
   await page.waitForFunction(() => document.activeElement?.getAttribute('aria-label') === 'Move down step 3');
-  await does(() => page.keyboard.press('Enter'), ['stand 1 s', 'left 3', 'look 1', 'walk 5']);
-  await does(() => key('Copy step 2'), ['stand 1 s', 'left 3', 'left 3', 'look 1', 'walk 5']);
-  await does(() => key('Delete step 1'), ['left 3', 'left 3', 'look 1', 'walk 5']);
-  await does(() => key('Move up step 4'), ['left 3', 'left 3', 'walk 5', 'look 1']);
+  await assertSteps(() => page.keyboard.press('Enter'), ['stand 1 s', 'left 3', 'look 1', 'walk 5']);
+  await assertSteps(() => pressButton('Copy step 2'), ['stand 1 s', 'left 3', 'left 3', 'look 1', 'walk 5']);
+  await assertSteps(() => pressButton('Delete step 1'), ['left 3', 'left 3', 'look 1', 'walk 5']);
+  await assertSteps(() => pressButton('Move up step 4'), ['left 3', 'left 3', 'walk 5', 'look 1']);
   await page.waitForFunction(() => document.activeElement?.getAttribute('aria-label') === 'Move up step 3');
-  assert.equal(await focused(), 'Move up step 3');
-  await does(() => press(page, 'Add a step'), ['left 3', 'left 3', 'walk 5', 'look 1', 'look 1']);
-  for (const wanted of known.slice(0, -1).reverse()) {
+  assert.equal(await readFocus(), 'Move up step 3');
+  await assertSteps(() => press(page, 'Add a step'), ['left 3', 'left 3', 'walk 5', 'look 1', 'look 1']);
+  for (const expected of history.slice(0, -1).reverse()) {
     await page.locator('#routine-undo').click();
-    await waitForSteps(page, wanted);
+    await waitForSteps(page, expected);
   }
   assert.deepEqual(await readSteps(page), PATROL);
 });
@@ -209,8 +209,8 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
 test('the list follows the text, and the text the list, with all its other lines', async () => {
   const page = await openRoutine();
   await unfold(page, '#robot-editor');
-  const own = `${await toml(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
-  await page.locator('#robot-text').fill(own);
+  const editedToml = `${await tomlOf(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
+  await page.locator('#robot-text').fill(editedToml);
   await unfold(page, '#routines');
   assert.deepEqual(await page.locator('#routine option').allInnerTexts(), ['patrol', 'about'], 'before it is used');
   await page.locator('#robot-take').click();
@@ -218,68 +218,68 @@ test('the list follows the text, and the text the list, with all its other lines
   await waitForSteps(page, ['left 12']);
   await page.locator('#routine').selectOption('patrol');
   await press(page, 'Delete step 4');
-  await page.waitForFunction((wanted) => window.lizard.toml === wanted, own.replace('"left 3", "look 1"', '"left 3"'));
-  assert.equal(await page.locator('#robot-text').inputValue(), await toml(page));
-  assert.deepEqual(await page.locator('#gaits button').allInnerTexts().then((all) => all.slice(-2).map((name) => name.trim())), ['patrol', 'about']);
+  await page.waitForFunction((expected) => window.lizard.toml === expected, editedToml.replace('"left 3", "look 1"', '"left 3"'));
+  assert.equal(await page.locator('#robot-text').inputValue(), await tomlOf(page));
+  assert.deepEqual(await page.locator('#gaits button').allInnerTexts().then((names) => names.slice(-2).map((name) => name.trim())), ['patrol', 'about']);
 });
 
 test('while a step is dragged its path is drawn, and the text changes when it is let go', async () => {
   const page = await openRoutine(['walk 3', 'left 6', 'walk 1']);
   await waitForPrediction(page);
-  const [before, first] = [await toml(page), await track(page)];
-  const grip = (number) => page.locator('#routine-steps .grip').nth(number - 1);
-  const middle = async (number) => {
-    await grip(number).scrollIntoViewIfNeeded();
-    const { x, y, width, height } = await grip(number).boundingBox();
+  const [previousToml, firstTrack] = [await tomlOf(page), await trackOf(page)];
+  const gripOf = (number) => page.locator('#routine-steps .grip').nth(number - 1);
+  const middleOf = async (number) => {
+    await gripOf(number).scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await gripOf(number).boundingBox();
     return [x + width / 2, y + height / 2];
   };
-  await page.mouse.move(...(await middle(1)));
+  await page.mouse.move(...(await middleOf(1)));
   await page.mouse.down();
-  await page.mouse.move(...(await middle(3)), { steps: 5 });
-  await page.waitForFunction((first) => document.querySelector('#routine-path .track').getAttribute('d') !== first, first);
-  assert.deepEqual(await steps(page), ['left 6', 'walk 1', 'walk 3'], 'as if it were let go');
-  assert.equal(await toml(page), before);
-  await page.mouse.move(...(await middle(1)), { steps: 5 });
-  await page.waitForFunction((first) => document.querySelector('#routine-path .track').getAttribute('d') === first, first);
+  await page.mouse.move(...(await middleOf(3)), { steps: 5 });
+  await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
+  assert.deepEqual(await stepsOf(page), ['left 6', 'walk 1', 'walk 3'], 'as if it were let go');
+  assert.equal(await tomlOf(page), previousToml);
+  await page.mouse.move(...(await middleOf(1)), { steps: 5 });
+  await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') === firstTrack, firstTrack);
   await page.mouse.up();
-  assert.equal(await toml(page), before, 'it is where it was');
-  await page.mouse.move(...(await middle(1)));
+  assert.equal(await tomlOf(page), previousToml, 'it is where it was');
+  await page.mouse.move(...(await middleOf(1)));
   await page.mouse.down();
-  await page.mouse.move(...(await middle(2)), { steps: 5 });
+  await page.mouse.move(...(await middleOf(2)), { steps: 5 });
   await page.mouse.up();
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3", "walk 1"]'));
-  await page.waitForFunction((first) => document.querySelector('#routine-path .track').getAttribute('d') !== first, first);
+  await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
 });
 
 test('a finger drags a step, too', async () => {
   const page = await openRoutine(['walk 3', 'left 6'], { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true });
-  const touch = await page.context().newCDPSession(page);
+  const session = await page.context().newCDPSession(page);
   const grip = page.locator('#routine-steps .grip');
   await grip.first().scrollIntoViewIfNeeded();
-  const [from, to] = [await grip.nth(0).boundingBox(), await grip.nth(1).boundingBox()];
-  const x = from.x + from.width / 2;
-  await touch.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y: from.y + 10 }] });
-  for (let share = 0; share <= 1; share += 0.1) await touch.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x, y: from.y + 10 + share * (to.y - from.y + 5) }] });
-  await touch.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+  const [fromBox, toBox] = [await grip.nth(0).boundingBox(), await grip.nth(1).boundingBox()];
+  const x = fromBox.x + fromBox.width / 2;
+  await session.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y: fromBox.y + 10 }] });
+  for (let share = 0; share <= 1; share += 0.1) await session.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x, y: fromBox.y + 10 + share * (toBox.y - fromBox.y + 5) }] });
+  await session.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3"]'));
 });
 
 test('a mistake is shown at its block with its line and its step, and the previous robot walks on', async () => {
   const page = await openRoutine();
-  const before = await toml(page);
-  const line = before.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;
-  await step(page, 2).fill('wolk 4');
+  const previousToml = await tomlOf(page);
+  const line = previousToml.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;
+  await stepInput(page, 2).fill('wolk 4');
   await page.keyboard.press('Enter');
-  const block = page.locator('#routine-steps li', { has: step(page, 2) });
+  const block = page.locator('#routine-steps li', { has: stepInput(page, 2) });
   const message = `robot.toml:${line}: routine.patrol.steps: step 2, "wolk 4", names the gait "wolk", which does not exist; did you mean "walk"?`;
   await block.getByText(message).waitFor();
-  assert.deepEqual(await page.locator('#routine-steps input[aria-invalid="true"]').evaluateAll((all) => all.map(({ value }) => value)), ['wolk 4']);
-  assert.equal(await toml(page), before);
+  assert.deepEqual(await page.locator('#routine-steps input[aria-invalid="true"]').evaluateAll((inputs) => inputs.map(({ value }) => value)), ['wolk 4']);
+  assert.equal(await tomlOf(page), previousToml);
   assert.ok((await page.locator('#routine-start').isDisabled()) && (await page.locator('#routine-write').isDisabled()));
   assert.equal(await page.locator('#robot-editor').getAttribute('open'), null, 'nobody is led away');
   // Unknown text moves with its block, letter by letter.
   await press(page, 'Move down step 2');
-  await page.locator('#routine-steps li', { has: step(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
+  await page.locator('#routine-steps li', { has: stepInput(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
   await waitForSteps(page, ['stand 1 s', 'left 3', 'wolk 4', 'look 1']);
   await page.locator('#routine-undo').click();
   await waitForSteps(page, PATROL);
@@ -334,16 +334,16 @@ test('a routine is written to a board, started by its name, and reports its end'
   await until(page, 'it is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#routine-said')));
   await page.clock.runFor(6000);
   await page.evaluate(() => (window.heard = ''));
-  await gait(page, 'patrol').click();
-  const doing = () => page.evaluate(() => window.lizard.gait);
-  await until(page, 'it patrols', async () => (await doing()) === 'patrol', 20);
+  await gaitButton(page, 'patrol').click();
+  const readGait = () => page.evaluate(() => window.lizard.gait);
+  await until(page, 'it patrols', async () => (await readGait()) === 'patrol', 20);
   // While the robot rests, the routine is still under way, and the page keeps sending lines.
   await page.clock.runFor(3500);
-  assert.equal(await doing(), 'patrol');
+  assert.equal(await readGait(), 'patrol');
   assert.ok(!(await page.evaluate(() => window.heard)).includes('deadman 0'));
   await until(page, 'it is done', async () => (await page.locator('#log div', { hasText: /^# done$/ }).count()) === 1, 20);
   await page.clock.runFor(600);
-  assert.equal(await doing(), 'stop');
+  assert.equal(await readGait(), 'stop');
   assert.match(await page.evaluate(() => window.heard), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
 });
 
@@ -353,7 +353,7 @@ test('a resting routine is stopped when the page is hidden', async () => {
   await page.locator('#flash-robot').evaluate((button) => button.click());
   await until(page, 'it is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
   await page.clock.runFor(6000);
-  await gait(page, 'patrol').click();
+  await gaitButton(page, 'patrol').click();
   await until(page, 'it patrols', async () => (await page.evaluate(() => window.lizard.gait)) === 'patrol', 20);
   await page.clock.runFor(3500);
   await page.evaluate(() => {
@@ -396,21 +396,21 @@ test('with a firmware for another robot format the page says what to write', asy
 });
 
 test('two pages in one browser keep a routine each', async () => {
-  const one = await openRoutine();
-  const [other] = await Promise.all([one.waitForEvent('popup'), one.evaluate((address) => void window.open(address), address())]);
-  await other.waitForFunction(() => window.lizard);
+  const firstPage = await openRoutine();
+  const [secondPage] = await Promise.all([firstPage.waitForEvent('popup'), firstPage.evaluate((address) => void window.open(address), address())]);
+  await secondPage.waitForFunction(() => window.lizard);
   // It begins with the copy that the first page has stored; later changes are its own.
-  assert.deepEqual(await readSteps(other), PATROL);
-  const own = [[one, ['right 2']], [other, ['left 2']]];
-  for (const [page, wanted] of own) {
-    const before = page.url();
-    await putRoutine(page, wanted);
-    await page.waitForFunction((before) => location.href !== before, before);
+  assert.deepEqual(await readSteps(secondPage), PATROL);
+  const ownRoutines = [[firstPage, ['right 2']], [secondPage, ['left 2']]];
+  for (const [page, expected] of ownRoutines) {
+    const previousUrl = page.url();
+    await putRoutine(page, expected);
+    await page.waitForFunction((previousUrl) => location.href !== previousUrl, previousUrl);
   }
-  for (const [page, wanted] of own) {
+  for (const [page, expected] of ownRoutines) {
     await page.reload();
     await page.waitForFunction(() => window.lizard?.toml.includes('[routine.'));
-    assert.deepEqual(await readSteps(page), wanted);
+    assert.deepEqual(await readSteps(page), expected);
   }
 });
 

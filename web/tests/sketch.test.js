@@ -1,4 +1,5 @@
-// Joints are dragged on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during the drag.
+// Joints are dragged on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during
+// the drag.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -16,8 +17,8 @@ async function openSketch(options) {
   return page;
 }
 
-const length = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((each) => each.key === key).value, key);
-const joint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
+const lengthOf = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((entry) => entry.key === key).value, key);
+const jointOf = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
 /** Grabs a joint and moves it, mm to the right and ahead, in ten steps, without releasing it. */
 async function drag(page, name, [right, ahead]) {
@@ -27,8 +28,8 @@ async function drag(page, name, [right, ahead]) {
       const mark = document.querySelector(`#sketch circle[data-joint="${name}"]`);
       const [x, y] = ['cx', 'cy'].map((axis) => Number(mark.getAttribute(axis)));
       return [new DOMPoint(x, y), new DOMPoint(x + right, y - ahead)].map((point) => {
-        const at = point.matrixTransform(mark.getScreenCTM());
-        return [at.x, at.y];
+        const position = point.matrixTransform(mark.getScreenCTM());
+        return [position.x, position.y];
       });
     },
     { name, right, ahead },
@@ -38,24 +39,24 @@ async function drag(page, name, [right, ahead]) {
   for (let step = 1; step <= 10; step++) await page.mouse.move(from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
 }
 
-const message = (page) => page.locator('#sketch-said').innerText();
-const waitForMessage = (page, what) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#sketch-said').textContent), what.source);
+const readMessage = (page) => page.locator('#sketch-said').innerText();
+const waitForMessage = (page, pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector('#sketch-said').textContent), pattern.source);
 
 test('the point of the head is dragged, and both couplers follow', async () => {
   const page = await openSketch();
-  const before = [await length(page, 'links.l2'), await length(page, 'links.l3')];
-  assert.deepEqual(before, [50, 50]);
+  const previousLengths = [await lengthOf(page, 'links.l2'), await lengthOf(page, 'links.l3')];
+  assert.deepEqual(previousLengths, [50, 50]);
   // From the tip of a crank the coupler leads inward and ahead.
-  const tip = await joint(page, "end of the head's left crank").evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
-  const point = await joint(page, 'point of the head').evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
-  const wanted = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
+  const tip = await jointOf(page, "end of the head's left crank").evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const point = await jointOf(page, 'point of the head').evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const expectedMm = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
   await drag(page, 'point of the head', [0, -4]);
-  await waitForMessage(page, new RegExp(`^l2 = l3 = ${wanted} mm\\.$`));
-  assert.equal(await length(page, 'links.l2'), 50, 'not before it is let go');
+  await waitForMessage(page, new RegExp(`^l2 = l3 = ${expectedMm} mm\\.$`));
+  assert.equal(await lengthOf(page, 'links.l2'), 50, 'not before it is let go');
   await page.mouse.up();
-  await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
-  assert.equal(await length(page, 'links.l3'), wanted);
-  assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(wanted));
+  await page.waitForFunction((expectedMm) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === expectedMm, expectedMm);
+  assert.equal(await lengthOf(page, 'links.l3'), expectedMm);
+  assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(expectedMm));
   // The simulated UNO walks with the new robot.
   await advance(page, 3000);
   await page.locator('#gaits button[data-command="walk"]').click();
@@ -72,8 +73,8 @@ test('a joint at an invalid place is refused during the drag, and goes to the ne
   await waitForMessage(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
   await page.mouse.up();
   await waitForMessage(page, /(the nearest that does|It stays as it was)\.$/);
-  const wanted = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await message(page))[1]);
-  await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
+  const expectedMm = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await readMessage(page))[1]);
+  await page.waitForFunction((expectedMm) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === expectedMm, expectedMm);
 });
 
 test('a crank is lengthened on one side alone if the sides need not be equal', async () => {
@@ -83,12 +84,12 @@ test('a crank is lengthened on one side alone if the sides need not be equal', a
     const bar = document.querySelector('#sketch line[data-key="links.l1"]');
     return [['x1', 'y1'], ['x2', 'y2']].map((names) => names.map((name) => Number(bar.getAttribute(name))));
   });
-  const long = Math.hypot(to[0] - from[0], to[1] - from[1]);
-  await drag(page, "end of the head's left crank", [to[0] - from[0], from[1] - to[1]].map((way) => (5 * way) / long));
+  const barLength = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  await drag(page, "end of the head's left crank", [to[0] - from[0], from[1] - to[1]].map((component) => (5 * component) / barLength));
   await waitForMessage(page, /^l1 = 35 mm\.$/);
   await page.mouse.up();
   await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l1').value === 35);
-  assert.equal(await length(page, 'links.l4'), 30);
+  assert.equal(await lengthOf(page, 'links.l4'), 30);
 });
 
 test('a pressed bar selects its number', async () => {
@@ -102,7 +103,7 @@ test('every joint and bar of a robot is on the drawing, also on a phone, and a t
   assert.equal(await page.locator('#sketch circle').count(), 18);
   assert.equal(await page.locator('#sketch line').count(), 36);
   const toml = await page.evaluate(() => window.lizard.toml);
-  await joint(page, 'point of the tail').tap();
+  await jointOf(page, 'point of the tail').tap();
   assert.equal(await page.evaluate(() => window.lizard.toml), toml);
   assert.equal(await overflow(page), 0);
 });

@@ -6,7 +6,7 @@ import { pathToFileURL } from 'node:url';
 export async function importSource(path) {
   const rolldown = createRequire(new URL('../package.json', import.meta.url)).resolve('rolldown');
   const { rolldown: bundle } = await import(pathToFileURL(rolldown));
-  const built = await bundle({ input: new URL(`../src/${path}`, import.meta.url).pathname });
-  const { output: [{ code }] } = await built.generate({ format: 'esm' });
+  const build = await bundle({ input: new URL(`../src/${path}`, import.meta.url).pathname });
+  const { output: [{ code }] } = await build.generate({ format: 'esm' });
   return import(`data:text/javascript,${encodeURIComponent(code)}`);
 }

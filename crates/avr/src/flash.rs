@@ -40,14 +40,14 @@ impl<T: ?Sized> Flash<'_, T> {
     /// Makes a reference to a constant. It is public only for [`flash!`](crate::flash!).
     ///
     /// # Safety
-    /// For the whole lifetime a value of `T` must be at `at` and must not be written: in the flash
+    /// For the whole lifetime a value of `T` must be at `address` and must not be written: in the flash
     /// of an AVR, and in ordinary memory elsewhere. It need not be aligned.
     #[doc(hidden)]
-    pub const unsafe fn new(at: *const T) -> Self {
+    pub const unsafe fn new(address: *const T) -> Self {
         Self {
-            // SAFETY: there is a value at `at`, and none is at address 0: in flash that
+            // SAFETY: there is a value at `address`, and none is at address 0: in flash that
             // is where the interrupt vectors are.
-            at: unsafe { NonNull::new_unchecked(at.cast_mut()) },
+            at: unsafe { NonNull::new_unchecked(address.cast_mut()) },
             lifetime: PhantomData,
         }
     }
@@ -88,7 +88,7 @@ impl<T: Copy> Flash<'_, T> {
         }
         let mut copy = MaybeUninit::<T>::uninit();
         // SAFETY: `new` vouches for `size_of::<T>()` readable bytes, `copy`
-        // has room for as many, and a bitwise copy of a `Copy` value is one.
+        // has room for as many, and a bitwise copy of a `Copy` value is a valid value.
         unsafe {
             fetch(
                 self.at.as_ptr().cast(),
@@ -138,8 +138,12 @@ impl<'a, T> Flash<'a, [T]> {
         if self.is_empty() {
             return None;
         }
-        let last = self.len() - 1;
-        let index = if index < last { index } else { last };
+        let last_index = self.len() - 1;
+        let index = if index < last_index {
+            index
+        } else {
+            last_index
+        };
         // SAFETY: `index` is below the length of the slice at `self.at`.
         Some(unsafe { Flash::new(self.at.as_ptr().cast::<T>().add(index)) })
     }
@@ -160,9 +164,9 @@ impl<'a, T> Flash<'a, [T]> {
         }
         // SAFETY: the elements are among those of the slice at `self.at`.
         let first = unsafe { self.at.as_ptr().cast::<T>().add(start) };
-        let part = core::ptr::slice_from_raw_parts(first, length);
+        let elements = core::ptr::slice_from_raw_parts(first, length);
         // SAFETY: as above, of the same lifetime.
-        Some(unsafe { Flash::new(part) })
+        Some(unsafe { Flash::new(elements) })
     }
 }
 
@@ -172,21 +176,21 @@ impl<'a> Flash<'a, [u8]> {
     pub const fn cast<T: Plain>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(
             self.at.as_ptr().cast_const().cast::<T>(),
-            self.len() / const { nonzero(size_of::<T>()) },
+            self.len() / const { require_nonzero(size_of::<T>()) },
         );
         // SAFETY: this many values fit in the bytes, any bytes are a value of a `Plain`
         // type, and `new` does not ask for alignment.
         unsafe { Flash::new(values) }
     }
 
-    /// Reads the value whose bytes begin at `at`; all zeros if it is not completely inside.
+    /// Reads the value whose bytes begin at `offset`; all zeros if it is not completely inside.
     #[inline]
-    pub fn read<T: Plain>(self, at: usize) -> T {
-        match self.part(at, size_of::<T>()) {
-            Some(part) => {
+    pub fn read<T: Plain>(self, offset: usize) -> T {
+        match self.part(offset, size_of::<T>()) {
+            Some(bytes) => {
                 // SAFETY: the part has as many bytes as a value, and any bytes are a
                 // value.
-                unsafe { Flash::new(part.at.as_ptr().cast_const().cast::<T>()) }.load()
+                unsafe { Flash::new(bytes.at.as_ptr().cast_const().cast::<T>()) }.load()
             }
             // SAFETY: zeros are a value, too.
             None => unsafe { core::mem::zeroed() },
@@ -194,7 +198,7 @@ impl<'a> Flash<'a, [u8]> {
     }
 }
 
-const fn nonzero(size: usize) -> usize {
+const fn require_nonzero(size: usize) -> usize {
     assert!(size > 0);
     size
 }
@@ -285,14 +289,14 @@ impl<T: ?Sized> core::fmt::Debug for Flash<'_, T> {
 
 #[cfg(target_arch = "avr")]
 #[inline]
-unsafe fn fetch_byte(from: *const u8) -> u8 {
+unsafe fn fetch_byte(source: *const u8) -> u8 {
     let byte: u8;
-    // SAFETY: the caller vouches for a byte of flash at `from`.
+    // SAFETY: the caller vouches for a byte of flash at `source`.
     unsafe {
         core::arch::asm!(
             "lpm {byte}, Z",
             byte = out(reg) byte,
-            in("Z") from,
+            in("Z") source,
             options(pure, readonly, nostack, preserves_flags),
         );
     }
@@ -301,15 +305,15 @@ unsafe fn fetch_byte(from: *const u8) -> u8 {
 
 #[cfg(target_arch = "avr")]
 #[inline]
-unsafe fn fetch_word(from: *const u8) -> u16 {
+unsafe fn fetch_word(source: *const u8) -> u16 {
     let word: u16;
-    // SAFETY: the caller vouches for two bytes of flash at `from`.
+    // SAFETY: the caller vouches for two bytes of flash at `source`.
     unsafe {
         core::arch::asm!(
             "lpm {word:l}, Z+",
             "lpm {word:h}, Z",
             word = out(reg_pair) word,
-            inout("Z") from => _,
+            inout("Z") source => _,
             options(pure, readonly, nostack, preserves_flags),
         );
     }
@@ -318,14 +322,14 @@ unsafe fn fetch_word(from: *const u8) -> u16 {
 
 #[cfg(target_arch = "avr")]
 #[inline(never)]
-unsafe fn fetch(from: *const u8, to: *mut u8, count: usize) {
-    let mut from = from;
+unsafe fn fetch(source: *const u8, destination: *mut u8, count: usize) {
+    let mut source = source;
     for index in 0..count {
-        // SAFETY: the caller vouches for `count` bytes of flash at `from` and
-        // of RAM at `to`.
+        // SAFETY: the caller vouches for `count` bytes of flash at `source` and
+        // of RAM at `destination`.
         unsafe {
-            to.add(index).write(fetch_byte(from));
-            from = from.add(1);
+            destination.add(index).write(fetch_byte(source));
+            source = source.add(1);
         }
     }
 }

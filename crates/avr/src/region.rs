@@ -10,7 +10,7 @@ use crate::{Flash, Plain};
 /// True for a build that avr-gcc links alone. Its code is longer, since tools/linker does not shorten it, so the
 /// region begins later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
 const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
-    Some(set) => matches!(set.as_bytes(), b"1"),
+    Some(value) => matches!(value.as_bytes(), b"1"),
     None => false,
 };
 
@@ -62,26 +62,26 @@ impl<'a> Region<'a> {
         Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
     }
 
-    /// Reads the value whose bytes begin at `at`; zeros if it is not completely inside. Debug
+    /// Reads the value whose bytes begin at `offset`; zeros if it is not completely inside. Debug
     /// builds panic in that case, unless the region is empty.
-    pub fn read<T: Plain>(self, at: u16) -> T {
-        self.assert_has(at, size_of::<T>());
-        Flash::from(self.bytes).read(at.into())
+    pub fn read<T: Plain>(self, offset: u16) -> T {
+        self.assert_has(offset, size_of::<T>());
+        Flash::from(self.bytes).read(offset.into())
     }
 
-    /// `count` values whose bytes begin at `at`; empty if they are not completely inside. Debug builds panic in that
-    /// case, unless the region is empty.
-    pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
+    /// Returns `count` values whose bytes begin at `offset`; empty if they are not completely inside. Debug builds
+    /// panic in that case, unless the region is empty.
+    pub fn values<T: Plain>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
-        self.assert_has(at, length);
-        let part = Flash::from(self.bytes).part(at.into(), length);
-        part.map_or(Flash::EMPTY, Flash::cast)
+        self.assert_has(offset, length);
+        let bytes = Flash::from(self.bytes).part(offset.into(), length);
+        bytes.map_or(Flash::EMPTY, Flash::cast)
     }
 
-    fn assert_has(self, at: u16, length: usize) {
+    fn assert_has(self, offset: u16, length: usize) {
         debug_assert!(
-            self.bytes.is_empty() || usize::from(at) + length <= self.bytes.len(),
-            "{length} bytes at {at} are not in a region of {}",
+            self.bytes.is_empty() || usize::from(offset) + length <= self.bytes.len(),
+            "{length} bytes at {offset} are not in a region of {}",
             self.bytes.len()
         );
     }
@@ -107,21 +107,21 @@ impl<'a> Region<'a> {
         self
     }
 
-    /// Reads the value whose bytes begin at `at`, without a check of the bounds.
+    /// Reads the value whose bytes begin at `offset`, without a check of the bounds.
     #[inline(always)]
-    pub fn read<T: Plain>(self, at: u16) -> T {
-        let first = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(at)));
+    pub fn read<T: Plain>(self, offset: u16) -> T {
+        let pointer = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(offset)));
         // SAFETY: every address of flash can be read, and any bytes are a value; the
         // program does not write its flash.
-        unsafe { Flash::new(first) }.load()
+        unsafe { Flash::new(pointer) }.load()
     }
 
-    /// `count` values whose bytes begin at `at`, without a check of the bounds.
+    /// Returns `count` values whose bytes begin at `offset`, without a check of the bounds.
     #[inline(always)]
-    pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
-        let first = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(at)));
+    pub fn values<T: Plain>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
+        let pointer = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(offset)));
         // SAFETY: every address of flash can be read, and any bytes are values; the
         // program does not write its flash.
-        unsafe { Flash::new(core::ptr::slice_from_raw_parts(first, usize::from(count))) }
+        unsafe { Flash::new(core::ptr::slice_from_raw_parts(pointer, usize::from(count))) }
     }
 }

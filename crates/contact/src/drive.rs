@@ -68,22 +68,22 @@ impl Drive {
         lag.clamp(stops[0], stops[1])
     }
 
-    /// The energy of this leg's lag while its servo is at this sweep, deg. Forces are in units of `force` N;
-    /// `max` bounds the torque of a pad on its leg, in those units times mm.
+    /// The energy of this leg's lag while its servo is at this sweep, deg. Forces are in units of `force_unit` N;
+    /// `max_pad_torque` bounds the torque of a pad on its leg, in those units times mm.
     pub(crate) fn lag_energy_of_leg(
         &self,
         leg: usize,
         sweep: f64,
-        force: f64,
-        max: f64,
+        force_unit: f64,
+        max_pad_torque: f64,
     ) -> LagEnergy {
         let [lower, upper] = match &self.kind {
             DriveKind::Rigid => [Side::Stop; 2],
-            DriveKind::Strut(strut) => strut.sides(leg, sweep, force),
+            DriveKind::Strut(strut) => strut.sides(leg, sweep, force_unit),
         };
         LagEnergy {
             play: self.play.to_radians(),
-            stop: 1.25 * max,
+            stop: 1.25 * max_pad_torque,
             lower,
             upper,
             motor: None,

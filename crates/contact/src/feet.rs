@@ -35,7 +35,7 @@ impl Feet {
     pub fn positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
-            let (sin, cos) = self.direction(i, sweeps[i]);
+            let (sin, cos) = self.direction_sin_cos(i, sweeps[i]);
             [
                 hips[i][0] + self.reach * sin,
                 hips[i][1] + LEFT[i] * self.reach * cos,
@@ -46,12 +46,12 @@ impl Feet {
     /// Derivative of each foot's position by its leg's sweep, mm/rad.
     pub(crate) fn sweep_derivatives(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
-            let (sin, cos) = self.direction(i, sweeps[i]);
+            let (sin, cos) = self.direction_sin_cos(i, sweeps[i]);
             [self.reach * cos, -LEFT[i] * self.reach * sin]
         })
     }
 
-    fn direction(&self, leg: usize, sweep: f64) -> (f64, f64) {
+    fn direction_sin_cos(&self, leg: usize, sweep: f64) -> (f64, f64) {
         (sweep + FRONT[leg] * self.mount).to_radians().sin_cos()
     }
 }
@@ -103,20 +103,22 @@ mod tests {
             feet.positions([0.0; 4]),
             [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
         );
-        let ahead = feet.positions([90.0; 4]);
+        let forward_feet = feet.positions([90.0; 4]);
         let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
-        for (foot, point) in ahead.into_iter().zip(expected) {
+        for (foot, point) in forward_feet.into_iter().zip(expected) {
             assert!(
                 (foot[0] - point[0]).hypot(foot[1] - point[1]) < 1e-12,
                 "{foot:?}"
             );
         }
-        let splayed = Feet {
+        let splayed_feet = Feet {
             mount: 90.0,
             ..feet
         }
         .positions([0.0; 4]);
-        assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-9);
+        assert!(
+            (splayed_feet[0][0] - 100.0).abs() < 1e-12 && (splayed_feet[2][0] + 100.0).abs() < 1e-9
+        );
     }
 
     #[test]
@@ -128,15 +130,16 @@ mod tests {
             reach: 45.0,
         };
         let sweeps = [10.0, -5.0, 20.0, -15.0];
-        let step = 1e-5;
-        let (before, after) = (
+        let step_deg = 1e-5;
+        let (positions, stepped_positions) = (
             feet.positions(sweeps),
-            feet.positions(sweeps.map(|s| s + step)),
+            feet.positions(sweeps.map(|s| s + step_deg)),
         );
-        for (i, along) in feet.sweep_derivatives(sweeps).into_iter().enumerate() {
-            for part in 0..2 {
-                let slope = (after[i][part] - before[i][part]) / step.to_radians();
-                assert!((along[part] - slope).abs() < 1e-3, "{along:?}");
+        for (i, derivative) in feet.sweep_derivatives(sweeps).into_iter().enumerate() {
+            for axis in 0..2 {
+                let slope =
+                    (stepped_positions[i][axis] - positions[i][axis]) / step_deg.to_radians();
+                assert!((derivative[axis] - slope).abs() < 1e-3, "{derivative:?}");
             }
         }
     }

@@ -25,7 +25,7 @@ const MIN_ROUNDING: f64 = 1e-8;
 /// Number of the last stage. Stage 0 rounds by the size of the slides, the last one by `MIN_ROUNDING` times that.
 const LAST_STAGE: i32 = 5;
 /// The first stage if a guess of the solution is given.
-const FIRST_STAGE_NEAR: i32 = 2;
+const FIRST_STAGE_WITH_GUESS: i32 = 2;
 /// The largest number of Newton steps in a stage; five to eight are usual.
 const MAX_STEPS: usize = 40;
 /// Largest net force that counts as balance, as a share of one pad's friction.
@@ -125,7 +125,7 @@ impl Pads {
     pub fn minimum_near(&self, guess: Option<&Displacement>) -> Displacement {
         let size = largest(&self.swing).max(self.free_move());
         if size < MAX_STILL_DISTANCE {
-            return self.moved_by([0.0; 3], [0.0; 4]);
+            return self.displacement_of([0.0; 3], [0.0; 4]);
         }
         // Turns are measured in mm at the pads' radius, slides in units of the swing.
         let scale = Scale {
@@ -135,74 +135,77 @@ impl Pads {
                 compliance.lag_derivatives.map(|[x, y]| size / x.hypot(y))
             }),
         };
-        let (mut x, mut z, first) = match guess {
+        let (mut x, mut z, first_stage) = match guess {
             Some(displacement) => (
-                scale.of_twist(displacement),
-                scale.of_lag(displacement),
-                FIRST_STAGE_NEAR,
+                scale.scaled_twist(displacement),
+                scale.scaled_lag(displacement),
+                FIRST_STAGE_WITH_GUESS,
             ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
-        let mut answers = [None, guess.map(|_| (size * MIN_ROUNDING, x, z))];
-        for stage in first..=LAST_STAGE {
+        let mut solutions = [None, guess.map(|_| (size * MIN_ROUNDING, x, z))];
+        for stage in first_stage..=LAST_STAGE {
             let eps = size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(LAST_STAGE));
-            let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
-            let mut current = around(x, z);
+            let expand_at = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
+            let mut current = expand_at(x, z);
             // The slide of a pad that holds shrinks with the rounding, so the solutions of two
             // stages extrapolate to the next one. A guess counts as the last stage's solution.
-            if let [Some((far, far_x, far_z)), Some((near, ..))] = answers {
-                let step = (near - eps) / (far - near);
-                let next_x: [f64; 3] = std::array::from_fn(|i| x[i] + step * (x[i] - far_x[i]));
-                let next_z: [f64; 4] = std::array::from_fn(|i| z[i] + step * (z[i] - far_z[i]));
-                let candidate = around(next_x, next_z);
+            if let [Some((older_eps, older_x, older_z)), Some((newer_eps, ..))] = solutions {
+                let step_ratio = (newer_eps - eps) / (older_eps - newer_eps);
+                let next_x: [f64; 3] =
+                    std::array::from_fn(|i| x[i] + step_ratio * (x[i] - older_x[i]));
+                let next_z: [f64; 4] =
+                    std::array::from_fn(|i| z[i] + step_ratio * (z[i] - older_z[i]));
+                let candidate = expand_at(next_x, next_z);
                 if candidate.cost < current.cost {
                     (x, z, current) = (next_x, next_z, candidate);
                 }
             }
             for _ in 0..MAX_STEPS {
-                let steep = current.gradient.into_iter();
-                let steep = steep.chain(current.legs.map(|leg| leg.slope));
-                if steep.map(f64::abs).all(|g| g < MAX_IMBALANCE * size) {
+                let slopes = current.gradient.into_iter();
+                let slopes = slopes.chain(current.legs.map(|leg| leg.slope));
+                if slopes.map(f64::abs).all(|g| g < MAX_IMBALANCE * size) {
                     break;
                 }
                 let dx = solve(current.hessian, current.gradient);
-                let dz = current.legs.map(|leg| leg.step(dx));
+                let dz = current.legs.map(|leg| leg.newton_step(dx));
                 let slope = dot(dx, current.gradient) + current.predicted_gain();
                 if slope < MIN_GAIN * size {
                     break;
                 }
-                let displaced_by = |share: f64| {
+                let point_at = |share: f64| {
                     let x: [f64; 3] = std::array::from_fn(|i| x[i] - share * dx[i]);
                     let z: [f64; 4] = std::array::from_fn(|i| z[i] - share * dz[i]);
                     (x, z)
                 };
                 // Halve the step until the cost falls, within rounding.
-                let min = current.cost * (1.0 + 1e-14);
+                let cost_limit = current.cost * (1.0 + 1e-14);
                 let shares = std::iter::successors(Some(1.0), |share| Some(share / 2.0));
-                let mut points = shares.take_while(|&share| share > 1e-9).map(|share| {
-                    let (x, z) = displaced_by(share);
-                    (share, x, z, around(x, z))
+                let mut candidates = shares.take_while(|&share| share > 1e-9).map(|share| {
+                    let (x, z) = point_at(share);
+                    (share, x, z, expand_at(x, z))
                 });
-                let next = points
-                    .find(|(share, _, _, candidate)| candidate.cost <= min - 1e-4 * share * slope);
-                let Some((_, to_x, to_z, candidate)) = next else {
+                let accepted = candidates.find(|(share, _, _, candidate)| {
+                    candidate.cost <= cost_limit - 1e-4 * share * slope
+                });
+                let Some((_, accepted_x, accepted_z, candidate)) = accepted else {
                     break;
                 };
-                (x, z, current) = (to_x, to_z, candidate);
+                (x, z, current) = (accepted_x, accepted_z, candidate);
             }
-            answers = [answers[1], Some((eps, x, z))];
+            solutions = [solutions[1], Some((eps, x, z))];
         }
         scale.displacement(self, x, z)
     }
 
     /// The displacement with this twist and these changes of the lags.
-    fn moved_by(&self, twist: Twist, change: [f64; 4]) -> Displacement {
-        let before = self
+    fn displacement_of(&self, twist: Twist, change: [f64; 4]) -> Displacement {
+        let previous_lags = self
             .compliance
             .map_or([0.0; 4], |compliance| compliance.previous_lags);
         Displacement {
             twist,
-            lag: std::array::from_fn(|i| before[i] + change[i]),
+            lag: std::array::from_fn(|i| previous_lags[i] + change[i]),
             change,
         }
     }
@@ -214,7 +217,7 @@ impl Pads {
         let Some(compliance) = &self.compliance else {
             return 0.0;
         };
-        let jump = |i: usize| {
+        let jump_of = |i: usize| {
             if let Some(motor) = &compliance.lag_energy[i].motor {
                 let [x, y] = compliance.lag_derivatives[i];
                 return x.hypot(y) * motor.unloaded_end().abs();
@@ -226,7 +229,7 @@ impl Pads {
                 false => 0.0,
             }
         };
-        (0..4).map(jump).fold(0.0, f64::max)
+        (0..4).map(jump_of).fold(0.0, f64::max)
     }
 
     /// The slide of each pad over the floor.
@@ -257,12 +260,12 @@ impl Pads {
         let mut legs = [Row::default(); 4];
         if let Some(Inertia {
             stiffness,
-            previous_twist: before,
+            previous_twist,
             ..
         }) = self.body
         {
             for i in 0..3 {
-                let error = displacement.twist[i] - before[i];
+                let error = displacement.twist[i] - previous_twist[i];
                 cost += stiffness[i] * error * error / 2.0;
                 gradient[i] += stiffness[i] * error * scale.twist[i];
                 hessian[i][i] += stiffness[i] * scale.twist[i] * scale.twist[i];
@@ -280,24 +283,24 @@ impl Pads {
                 [-y * scale.twist[2], x * scale.twist[2]],
             ];
             let (inertia, change) = self.body.map_or((0.0, [0.0; 2]), |body| {
-                let before = body.slides[i];
+                let previous_slide = body.slides[i];
                 (
                     body.leg_stiffness,
-                    [slide[0] - before[0], slide[1] - before[1]],
+                    [slide[0] - previous_slide[0], slide[1] - previous_slide[1]],
                 )
             });
-            let slope = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
+            let slope_of = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
             // Derivative of the pad's friction and of its leg's inertia by an unknown.
-            let pull = |row: Point| load * slope(row) + inertia * dot(row, change);
-            let bend = |a: Point, b: Point| {
-                let weighted = wx * wx * a[0] * b[0] + wy * wy * a[1] * b[1];
-                load * (weighted - slope(a) * slope(b)) / length + inertia * dot(a, b)
+            let pull_of = |row: Point| load * slope_of(row) + inertia * dot(row, change);
+            let bend_of = |a: Point, b: Point| {
+                let weighted_product = wx * wx * a[0] * b[0] + wy * wy * a[1] * b[1];
+                load * (weighted_product - slope_of(a) * slope_of(b)) / length + inertia * dot(a, b)
             };
             cost += load * length + inertia * dot(change, change) / 2.0;
             for i in 0..3 {
-                gradient[i] += pull(rows[i]);
+                gradient[i] += pull_of(rows[i]);
                 for j in 0..3 {
-                    hessian[i][j] += bend(rows[i], rows[j]);
+                    hessian[i][j] += bend_of(rows[i], rows[j]);
                 }
             }
             let Some(compliance) = &self.compliance else {
@@ -310,14 +313,14 @@ impl Pads {
                 compliance.lag_energy[i].expand(displacement.lag[i], eps / scale.size * unit);
             cost += energy;
             let leg = Row {
-                slope: pull(row) + torque * unit,
-                curvature: bend(row, row) + stiffness * unit * unit,
-                mixed: rows.map(|other| bend(other, row)),
+                slope: pull_of(row) + torque * unit,
+                curvature: bend_of(row, row) + stiffness * unit * unit,
+                mixed: rows.map(|twist_row| bend_of(twist_row, row)),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {
                 gradient[i] -= mixed * leg.slope / leg.curvature;
-                for (cell, other) in hessian[i].iter_mut().zip(leg.mixed) {
-                    *cell -= mixed * other / leg.curvature;
+                for (cell, other_mixed) in hessian[i].iter_mut().zip(leg.mixed) {
+                    *cell -= mixed * other_mixed / leg.curvature;
                 }
             }
             legs[i] = leg;
@@ -334,19 +337,19 @@ impl Pads {
 impl Scale {
     /// Converts scaled unknowns to a displacement.
     fn displacement(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Displacement {
-        pads.moved_by(
+        pads.displacement_of(
             std::array::from_fn(|i| x[i] * self.twist[i]),
             std::array::from_fn(|i| z[i] * self.lag[i]),
         )
     }
 
     /// Converts the twist of a displacement to scaled unknowns.
-    fn of_twist(&self, displacement: &Displacement) -> [f64; 3] {
+    fn scaled_twist(&self, displacement: &Displacement) -> [f64; 3] {
         std::array::from_fn(|i| displacement.twist[i] / self.twist[i])
     }
 
     /// Converts a displacement's changes of the lags to scaled unknowns.
-    fn of_lag(&self, displacement: &Displacement) -> [f64; 4] {
+    fn scaled_lag(&self, displacement: &Displacement) -> [f64; 4] {
         std::array::from_fn(|i| match self.lag[i] {
             0.0 => 0.0,
             unit => displacement.change[i] / unit,
@@ -357,17 +360,17 @@ impl Scale {
 impl CostExpansion {
     /// First-order reduction of the cost by the Newton steps of the lags, without the share of the twist.
     fn predicted_gain(&self) -> f64 {
-        let reduction = |leg: &Row| match leg.curvature {
+        let reduction_of = |leg: &Row| match leg.curvature {
             0.0 => 0.0,
             curvature => leg.slope * leg.slope / curvature,
         };
-        self.legs.iter().map(reduction).sum()
+        self.legs.iter().map(reduction_of).sum()
     }
 }
 
 impl Row {
     /// Newton step of the leg's lag that belongs to this step of the twist.
-    fn step(&self, twist: [f64; 3]) -> f64 {
+    fn newton_step(&self, twist: [f64; 3]) -> f64 {
         if self.curvature == 0.0 {
             return 0.0;
         }
@@ -376,8 +379,8 @@ impl Row {
 }
 
 fn largest(points: &[Point; 4]) -> f64 {
-    let parts = points.iter().flatten();
-    parts.fold(0.0f64, |max, part| max.max(part.abs()))
+    let components = points.iter().flatten();
+    components.fold(0.0f64, |max, component| max.max(component.abs()))
 }
 
 fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {

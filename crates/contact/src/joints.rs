@@ -47,8 +47,8 @@ impl Joints {
     }
 
     /// Torques of the sliders on the servos, N mm, at sweeps in deg and rates in rad/s. Below a slider
-    /// speed of `slow` mm/s the friction is proportional to the speed, so that it never turns a servo back.
-    pub(crate) fn torques(&self, sweeps: [f64; 4], rates: [f64; 4], slow: f64) -> [f64; 4] {
+    /// speed of `fade_speed` mm/s the friction is proportional to the speed, so that it never turns a servo back.
+    pub(crate) fn torques(&self, sweeps: [f64; 4], rates: [f64; 4], fade_speed: f64) -> [f64; 4] {
         if self.slider == 0.0 {
             return [0.0; 4];
         }
@@ -56,7 +56,7 @@ impl Joints {
         let mut torques = [0.0; 4];
         for side in SIDES {
             let speed: f64 = side.map(|i| levers[i] * rates[i]).iter().sum();
-            let force = -self.slider * (speed / slow).clamp(-1.0, 1.0);
+            let force = -self.slider * (speed / fade_speed).clamp(-1.0, 1.0);
             for i in side {
                 torques[i] = force * levers[i];
             }

@@ -119,11 +119,15 @@ impl Stretch {
         let (product, (sin, cos)) = (self.line * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
-        let extra = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
-        let length = (self.unlagged_length * self.unlagged_length + extra).sqrt();
+        let square_growth = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
+        let length = (self.unlagged_length * self.unlagged_length + square_growth).sqrt();
         let lever = product * (sin * lag_cos + cos * lag_sin) / length;
         let lever_slope = (product * (cos * lag_cos - sin * lag_sin) - lever * lever) / length;
-        (extra / (length + self.unlagged_length), lever, lever_slope)
+        (
+            square_growth / (length + self.unlagged_length),
+            lever,
+            lever_slope,
+        )
     }
 
     /// Energy of a spring that pulls the strut together with `force` and `rate`, less
@@ -153,12 +157,12 @@ impl Side {
     }
 
     /// Energy, torque and stiffness at a lag beyond the play.
-    fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
-        let (excess, slope, curvature) = rounded_ramp(beyond, eps);
-        let kink = |torque: f64| (torque * excess, torque * slope, torque * curvature);
+    fn expand(&self, excess_lag: f64, eps: f64, stop: f64) -> Expansion {
+        let (ramp_value, slope, curvature) = rounded_ramp(excess_lag, eps);
+        let kink_of = |torque: f64| (torque * ramp_value, torque * slope, torque * curvature);
         let add = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         match *self {
-            Self::Stop => kink(stop),
+            Self::Stop => kink_of(stop),
             Self::Strut {
                 stretch,
                 force,
@@ -167,31 +171,31 @@ impl Side {
             } => {
                 // The preload is the torque at a kink; the spring's further torque grows from zero.
                 let preload = force * stretch.lever().abs();
-                let stretching = match beyond > 0.0 {
-                    true => stretch.energy(beyond, force, rate, preload),
+                let spring_energy = match excess_lag > 0.0 {
+                    true => stretch.energy(excess_lag, force, rate, preload),
                     false => (0.0, 0.0, 0.0),
                 };
-                let (value, slope, curvature) = rounded_ramp(beyond - end_lag, eps);
-                let end = match end_lag.is_finite() {
+                let (value, slope, curvature) = rounded_ramp(excess_lag - end_lag, eps);
+                let end_energy = match end_lag.is_finite() {
                     true => (stop * value, stop * slope, stop * curvature),
                     false => (0.0, 0.0, 0.0),
                 };
-                add(add(kink(preload), stretching), end)
+                add(add(kink_of(preload), spring_energy), end_energy)
             }
         }
     }
 
     /// Torque of the spring at a lag beyond the play.
-    fn spring_torque(&self, beyond: f64) -> f64 {
+    fn spring_torque(&self, excess_lag: f64) -> f64 {
         match *self {
-            _ if beyond <= 0.0 => 0.0,
+            _ if excess_lag <= 0.0 => 0.0,
             Self::Stop => 0.0,
             Self::Strut {
                 stretch,
                 force,
                 rate,
                 ..
-            } => stretch.energy(beyond, force, rate, 0.0).1,
+            } => stretch.energy(excess_lag, force, rate, 0.0).1,
         }
     }
 
@@ -215,9 +219,9 @@ impl LagEnergy {
             return motor.expand(lag, eps);
         }
         // Leg and servo are in series: both have the same torque.
-        let place = self.servo_lag(lag, eps);
-        let (motor_energy, torque, motor_stiffness) = motor.expand(place, eps);
-        let (leg_energy, _, leg_stiffness) = self.expand_leg(lag - place, eps);
+        let servo_lag = self.servo_lag(lag, eps);
+        let (motor_energy, torque, motor_stiffness) = motor.expand(servo_lag, eps);
+        let (leg_energy, _, leg_stiffness) = self.expand_leg(lag - servo_lag, eps);
         (
             motor_energy + leg_energy,
             torque,
@@ -232,8 +236,8 @@ impl LagEnergy {
             Some(_) if self.is_rigid() => lag,
             Some(motor) => {
                 let kinks = [lag - self.play, lag + self.play];
-                motor.balance(kinks, self.stop, eps, |place| {
-                    let (_, torque, stiffness) = self.expand_leg(lag - place, eps);
+                motor.balance(kinks, self.stop, eps, |servo_lag| {
+                    let (_, torque, stiffness) = self.expand_leg(lag - servo_lag, eps);
                     (torque, stiffness)
                 })
             }
@@ -277,24 +281,24 @@ impl LagEnergy {
     pub fn conjugate(&self, torque: f64) -> f64 {
         let side = if torque > 0.0 { self.upper } else { self.lower };
         let torque = torque.abs();
-        let beyond = match side {
+        let gain_beyond_play = match side {
             Side::Stop if torque <= self.stop => 0.0,
             // Ternary search: torque times lag minus the energy has a single maximum.
             Side::Strut { .. } if torque <= self.stop => {
-                let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
+                let gain_at = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
                 let (mut low, mut high) = (0.0, side.max_lag().min(std::f64::consts::PI));
                 for _ in 0..200 {
                     let third = (high - low) / 3.0;
-                    match gain(low + third) < gain(high - third) {
+                    match gain_at(low + third) < gain_at(high - third) {
                         true => low += third,
                         false => high -= third,
                     }
                 }
-                gain((low + high) / 2.0).max(0.0)
+                gain_at((low + high) / 2.0).max(0.0)
             }
             _ => f64::INFINITY,
         };
-        beyond + torque * self.play
+        gain_beyond_play + torque * self.play
     }
 }
 
@@ -302,29 +306,29 @@ impl LagEnergy {
 mod tests {
     use super::*;
 
-    const STOP: f64 = 400.0;
+    const STOP_TORQUE: f64 = 400.0;
 
-    /// The triangle of a strut of 30.2 mm with arms of 22 mm, at `angle` deg to the strut.
-    fn strut(angle: f64) -> Stretch {
-        let (sin, cos) = f64::to_radians(angle).sin_cos();
+    /// The triangle of a strut of 30.2 mm with arms of 22 mm, at `angle_deg` deg to the strut.
+    fn stretch_at(angle_deg: f64) -> Stretch {
+        let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
         let line = [22.0 * cos - 30.2, 22.0 * sin];
-        let between = f64::to_radians(angle) - f64::atan2(line[1], line[0]);
-        Stretch::new(f64::hypot(line[0], line[1]), 22.0, between)
+        let enclosed_angle = f64::to_radians(angle_deg) - f64::atan2(line[1], line[0]);
+        Stretch::new(f64::hypot(line[0], line[1]), 22.0, enclosed_angle)
     }
 
     /// Compares slope and curvature of the energy with difference quotients.
     fn assert_slopes(drive: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
             let (_, slope, curvature) = drive.expand(lag, 1e-3);
-            let expanded_at = |lag| drive.expand(lag, 1e-3);
+            let expand_at = |lag| drive.expand(lag, 1e-3);
             let step = 1e-6;
-            let (before, after) = (expanded_at(lag - step), expanded_at(lag + step));
-            let measured = (after.0 - before.0) / (2.0 * step);
+            let (lower, upper) = (expand_at(lag - step), expand_at(lag + step));
+            let measured = (upper.0 - lower.0) / (2.0 * step);
             assert!(
                 (measured - slope).abs() < 1e-4 * (1.0 + slope.abs()),
                 "{lag} {measured} {slope}"
             );
-            let measured = (after.1 - before.1) / (2.0 * step);
+            let measured = (upper.1 - lower.1) / (2.0 * step);
             assert!(
                 (measured - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
                 "{lag} {measured} {curvature}"
@@ -336,26 +340,26 @@ mod tests {
     fn the_slope_of_the_energy_is_the_torque_and_its_slope_the_stiffness() {
         let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
         for play in [0.0, 0.02] {
-            let drive = |lower, upper| LagEnergy {
+            let drive_with = |lower, upper| LagEnergy {
                 play,
-                stop: STOP,
+                stop: STOP_TORQUE,
                 lower,
                 upper,
                 motor: None,
             };
-            let side = Side::strut(strut(70.0), 8.0, 0.7, 5.0);
+            let side = Side::strut(stretch_at(70.0), 8.0, 0.7, 5.0);
             for sides in [[Side::Stop; 2], [Side::Stop, side], [side; 2]] {
-                assert_slopes(drive(sides[0], sides[1]), lags.clone());
+                assert_slopes(drive_with(sides[0], sides[1]), lags.clone());
             }
         }
     }
 
     #[test]
     fn a_leg_is_free_within_its_play_and_no_further() {
-        let strut = strut(70.0);
+        let strut = stretch_at(70.0);
         let drive = LagEnergy {
             play: 0.1,
-            stop: STOP,
+            stop: STOP_TORQUE,
             lower: Side::Stop,
             upper: Side::strut(strut, 8.0, 0.7, 5.0),
             motor: None,
@@ -366,7 +370,7 @@ mod tests {
         let (growth, lever, _) = strut.growth_and_derivatives(0.01);
         let torque = (8.0 + 0.7 * growth) * lever;
         assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
-        assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
+        assert_eq!(drive.expand(-0.11, 0.0).1, -STOP_TORQUE);
         assert_eq!(drive.stops(), [-0.1, 0.1 + strut.lag_at_growth(5.0)]);
         assert!((drive.spring_torque(0.11) - torque).abs() < 1e-9);
         assert_eq!(drive.spring_torque(-0.2), 0.0, "a stop does not pull");
@@ -374,7 +378,7 @@ mod tests {
 
     #[test]
     fn a_strut_is_the_third_side_of_a_triangle() {
-        let strut = strut(70.0);
+        let strut = stretch_at(70.0);
         assert!((strut.unlagged_length - 30.2).abs() < 1e-9, "parallel arms");
         // The arm's component square to the strut.
         assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
@@ -386,18 +390,18 @@ mod tests {
 
     #[test]
     fn the_energy_of_a_tiny_lag_is_exact() {
-        let strut = strut(70.0);
+        let strut = stretch_at(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
             // A series: the lever to first order, half its slope to second order.
             let (growth, ..) = strut.growth_and_derivatives(lag);
-            let (_, lever, grows) = strut.growth_and_derivatives(0.0);
-            let series = lever * lag + grows * lag * lag / 2.0;
+            let (_, lever, lever_slope) = strut.growth_and_derivatives(0.0);
+            let series = lever * lag + lever_slope * lag * lag / 2.0;
             assert!((growth / series - 1.0).abs() < 1e-11, "{lag} {growth}");
         }
         // Far below a kink the rounded value is eps^2 / 4 |x|, even where that is 1e16 times less
         // than x.
-        let (line, slope, _) = rounded_ramp(-0.5, 1e-9);
-        assert!((line / 5e-19 - 1.0).abs() < 1e-9, "{line}");
+        let (value, slope, _) = rounded_ramp(-0.5, 1e-9);
+        assert!((value / 5e-19 - 1.0).abs() < 1e-9, "{value}");
         assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");
     }
 }

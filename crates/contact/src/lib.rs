@@ -30,9 +30,9 @@
 //! };
 //! // All four feet swing back from 20 degrees ahead to 20 degrees behind: they hold, and
 //! // the body goes ahead by their chord.
-//! let way = ground.predict([[20.0; 4], [-20.0; 4]]);
+//! let prediction = ground.predict([[20.0; 4], [-20.0; 4]]);
 //! let chord = 2.0 * 45.0 * 20f64.to_radians().sin();
-//! assert!(way.forward.is_some_and(|forward| (forward - chord).abs() < 1e-3));
+//! assert!(prediction.forward.is_some_and(|forward| (forward - chord).abs() < 1e-3));
 //! ```
 //!
 //! # Units

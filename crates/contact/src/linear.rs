@@ -4,9 +4,9 @@
 /// direction without curvature the cost is flat, and any solution is as good. So a tiny number is added
 /// to the diagonal, which selects one.
 pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
-    let largest = (0..3).fold(0.0f64, |largest, i| largest.max(a[i][i]));
+    let max_diagonal = (0..3).fold(0.0f64, |max, i| max.max(a[i][i]));
     for (i, row) in a.iter_mut().enumerate() {
-        row[i] += largest * 1e-15;
+        row[i] += max_diagonal * 1e-15;
     }
     for column in 0..3 {
         let pivot = (column..3)
@@ -16,9 +16,9 @@ pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
         b.swap(column, pivot);
         for row in column + 1..3 {
             let factor = a[row][column] / a[column][column];
-            let above = a[column];
-            for (cell, up) in a[row].iter_mut().zip(above) {
-                *cell -= factor * up;
+            let pivot_row = a[column];
+            for (cell, pivot_cell) in a[row].iter_mut().zip(pivot_row) {
+                *cell -= factor * pivot_cell;
             }
             b[row] -= factor * b[column];
         }

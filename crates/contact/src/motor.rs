@@ -68,27 +68,35 @@ impl Motors {
     /// The time step of the simulation of the motors, s: a light rotor with a high gain vibrates fast, and a
     /// long step would damp it.
     pub(crate) fn step(&self) -> f64 {
-        let swing = |motor: &Motor| match motor.spin_up > 0.0 {
+        let radian_time_of = |motor: &Motor| match motor.spin_up > 0.0 {
             true => (motor.full_torque_error / motor.no_load_speed * motor.spin_up).sqrt(),
             // Without a rotor nothing vibrates.
             false => f64::INFINITY,
         };
-        let swings = self.each.iter().map(|motor| STEP_PER_RADIAN * swing(motor));
-        swings.fold(MAX_STEP, f64::min)
+        let steps = self
+            .each
+            .iter()
+            .map(|motor| STEP_PER_RADIAN * radian_time_of(motor));
+        steps.fold(MAX_STEP, f64::min)
     }
 
     /// The speed of a slider, mm/s, below which its friction falls in proportion to the speed. So the friction
     /// cannot turn a servo back within a time step.
     pub(crate) fn fade_speed(&self, seconds: f64) -> f64 {
-        let arm = |[x, y]: [f64; 2]| x * x + y * y;
-        let square = self.joints.arms.map(arm).into_iter().fold(0.0, f64::max);
-        let resistance = |motor: &Motor| motor.inertia() + motor.damping() * seconds;
-        let smallest = self
+        let square_of = |[x, y]: [f64; 2]| x * x + y * y;
+        let arm_square = self
+            .joints
+            .arms
+            .map(square_of)
+            .into_iter()
+            .fold(0.0, f64::max);
+        let resistance_of = |motor: &Motor| motor.inertia() + motor.damping() * seconds;
+        let min_resistance = self
             .each
             .iter()
-            .map(resistance)
+            .map(resistance_of)
             .fold(f64::INFINITY, f64::min);
-        2.0 * self.joints.slider * square * seconds / smallest
+        2.0 * self.joints.slider * arm_square * seconds / min_resistance
     }
 }
 
@@ -117,7 +125,7 @@ mod tests {
     };
 
     /// A robot of this mass (g) on a floor; the feet of a light one hardly load its servos.
-    fn ground(mass: f64, friction: f64) -> Ground {
+    fn ground_with(mass: f64, friction: f64) -> Ground {
         Ground {
             feet: Feet {
                 hip_forward: 55.0,
@@ -136,7 +144,7 @@ mod tests {
         }
     }
 
-    fn motors(motor: Motor, joints: Joints) -> Motors {
+    fn motors_with(motor: Motor, joints: Joints) -> Motors {
         Motors {
             each: [motor; 4],
             joints,
@@ -144,7 +152,7 @@ mod tests {
     }
 
     /// Lets all servos turn from 0 towards `target` deg for some seconds.
-    fn turned(ground: Ground, motors: &Motors, target: f64, seconds: f64) -> Walker {
+    fn turn_servos(ground: Ground, motors: &Motors, target: f64, seconds: f64) -> Walker {
         let mut walker = Walker::new(ground, [0.0; 4]);
         walker.drive([Some(target); 4], seconds, motors);
         walker
@@ -152,9 +160,9 @@ mod tests {
 
     #[test]
     fn without_a_load_it_spins_up_as_a_motor_with_a_rotor_does() {
-        let free = ground(0.1, 0.001);
+        let light_ground = ground_with(0.1, 0.001);
         for seconds in [0.02, 0.04, 0.1] {
-            let walker = turned(free, &motors(SG90, JOINTS), 1000.0, seconds);
+            let walker = turn_servos(light_ground, &motors_with(SG90, JOINTS), 1000.0, seconds);
             // The solution of J w' = stall - b w from rest.
             let Motor {
                 no_load_speed: rate,
@@ -174,63 +182,69 @@ mod tests {
     #[test]
     fn the_load_of_a_pad_that_slides_takes_its_share_of_the_rate() {
         // Two legs that swing against the two others: each pad slides, and drags at its leg.
-        let heavy = ground(800.0, 1.0);
-        let quick = Motor {
+        let heavy_ground = ground_with(800.0, 1.0);
+        let quick_motor = Motor {
             spin_up: 0.001,
             ..SG90
         };
-        let mut walker = Walker::new(heavy, [0.0; 4]);
-        let targets = [Some(8.0), Some(8.0), Some(-8.0), Some(-8.0)].map(|at| at.map(|x| 1e3 * x));
+        let mut walker = Walker::new(heavy_ground, [0.0; 4]);
+        let targets =
+            [Some(8.0), Some(8.0), Some(-8.0), Some(-8.0)].map(|target| target.map(|x| 1e3 * x));
         let mut angle_after = || {
-            walker.drive(targets, 0.02, &motors(quick, JOINTS));
+            walker.drive(targets, 0.02, &motors_with(quick_motor, JOINTS));
             walker.servos().map(f64::abs).iter().sum::<f64>() / 4.0
         };
         // The first 20 ms, in which rotor and legs speed up, are left out.
-        let mean = (-angle_after() + angle_after()) / 0.02;
-        let torque = heavy.grip() * heavy.feet.reach;
+        let mean_rate = (-angle_after() + angle_after()) / 0.02;
+        let torque = heavy_ground.grip() * heavy_ground.feet.reach;
         let rate = SG90.no_load_speed * (1.0 - torque / SG90.stall);
-        assert!((mean / rate - 1.0).abs() < 0.1, "{mean} {rate}");
+        assert!((mean_rate / rate - 1.0).abs() < 0.1, "{mean_rate} {rate}");
     }
 
     #[test]
     fn on_ice_legs_that_swing_forward_push_the_body_back_by_their_share_of_the_mass() {
-        let ice = ground(435.0, 1e-4);
-        let walker = turned(ice, &motors(SG90, JOINTS), 20.0, 0.5);
-        let forward = ice.feet.positions(walker.legs())[0][0] - ice.feet.positions([0.0; 4])[0][0];
-        assert!(forward > 15.0, "{forward}");
+        let ice = ground_with(435.0, 1e-4);
+        let walker = turn_servos(ice, &motors_with(SG90, JOINTS), 20.0, 0.5);
+        let leg_travel =
+            ice.feet.positions(walker.legs())[0][0] - ice.feet.positions([0.0; 4])[0][0];
+        assert!(leg_travel > 15.0, "{leg_travel}");
         let share = 4.0 * ice.body.leg_mass() / ice.body.mass;
-        let back = walker.place().travel().forward;
-        assert!((back + share * forward).abs() < 0.02, "{back} {forward}");
+        let body_travel = walker.place().travel().forward;
+        assert!(
+            (body_travel + share * leg_travel).abs() < 0.02,
+            "{body_travel} {leg_travel}"
+        );
     }
 
     #[test]
     fn dry_friction_of_the_joints_is_a_load_and_may_hold_a_servo() {
-        let free = ground(0.1, 0.001);
-        let drag = |drag| Joints { drag, ..JOINTS };
-        let after = |joints| turned(free, &motors(SG90, joints), 1000.0, 0.4).servos()[0];
-        let half = after(drag(SG90.stall / 2.0)) / after(JOINTS);
-        assert!((half - 0.5).abs() < 0.03, "{half}");
-        assert!(after(drag(1.01 * SG90.stall)).abs() < 1e-6);
+        let light_ground = ground_with(0.1, 0.001);
+        let joints_with_drag = |drag| Joints { drag, ..JOINTS };
+        let angle_after =
+            |joints| turn_servos(light_ground, &motors_with(SG90, joints), 1000.0, 0.4).servos()[0];
+        let rate_ratio = angle_after(joints_with_drag(SG90.stall / 2.0)) / angle_after(JOINTS);
+        assert!((rate_ratio - 0.5).abs() < 0.03, "{rate_ratio}");
+        assert!(angle_after(joints_with_drag(1.01 * SG90.stall)).abs() < 1e-6);
     }
 
     #[test]
     fn a_slider_resists_only_servos_that_change_its_length() {
-        let free = ground(0.1, 0.001);
+        let light_ground = ground_with(0.1, 0.001);
         let joints = Joints {
             slider: 3.0,
             ..JOINTS
         };
         let angles_after = |targets: [f64; 4], joints| {
-            let mut walker = Walker::new(free, [0.0; 4]);
+            let mut walker = Walker::new(light_ground, [0.0; 4]);
             walker.drive(
-                targets.map(|at| Some(1000.0 * at)),
+                targets.map(|direction| Some(1000.0 * direction)),
                 0.04,
-                &motors(SG90, joints),
+                &motors_with(SG90, joints),
             );
             walker.servos()
         };
-        let alone = [1.0, 0.0, 0.0, 0.0];
-        let [slow, fast] = [joints, JOINTS].map(|joints| angles_after(alone, joints)[0]);
+        let one_leg = [1.0, 0.0, 0.0, 0.0];
+        let [slow, fast] = [joints, JOINTS].map(|joints| angles_after(one_leg, joints)[0]);
         let lever = JOINTS.levers([0.0; 4])[0].abs();
         assert!((lever - 19.8).abs() < 1e-9, "{lever}");
         let share = 1.0 - 3.0 * lever / SG90.stall;
@@ -242,26 +256,27 @@ mod tests {
 
     #[test]
     fn a_servo_settles_where_its_gain_bears_the_load_and_keeps_its_dead_band() {
-        let free = ground(0.1, 0.001);
-        let banded = Motor {
+        let light_ground = ground_with(0.1, 0.001);
+        let banded_motor = Motor {
             half_dead_band: 0.5,
             ..SG90
         };
-        let angle = turned(free, &motors(banded, JOINTS), 10.0, 1.0).servos()[0];
+        let angle =
+            turn_servos(light_ground, &motors_with(banded_motor, JOINTS), 10.0, 1.0).servos()[0];
         assert!((9.49..10.51).contains(&angle), "{angle}");
-        let angle = turned(free, &motors(SG90, JOINTS), 10.0, 1.0).servos()[0];
+        let angle = turn_servos(light_ground, &motors_with(SG90, JOINTS), 10.0, 1.0).servos()[0];
         assert!((angle - 10.0).abs() < 0.02, "{angle}");
     }
 
     #[test]
     fn the_share_of_the_line_is_one_at_stall_and_at_the_no_load_speed() {
-        let low = SG90.at_supply(0.875);
-        for (torque, rate, supply) in [(176.5, 0.0, 1.0), (0.0, 500.0, 1.0), (88.25, 250.0, 1.0)] {
-            assert!((SG90.line_share(torque, rate) - supply).abs() < 1e-12);
-            assert!((low.line_share(torque, rate) - supply / 0.875).abs() < 1e-12);
+        let low_supply = SG90.at_supply(0.875);
+        for (torque, rate, share) in [(176.5, 0.0, 1.0), (0.0, 500.0, 1.0), (88.25, 250.0, 1.0)] {
+            assert!((SG90.line_share(torque, rate) - share).abs() < 1e-12);
+            assert!((low_supply.line_share(torque, rate) - share / 0.875).abs() < 1e-12);
         }
         assert!(
-            (low.inertia() - SG90.inertia()).abs() < 1e-12,
+            (low_supply.inertia() - SG90.inertia()).abs() < 1e-12,
             "the rotor stays"
         );
     }
@@ -273,13 +288,13 @@ mod tests {
                 kind: DriveKind::Rigid,
                 play: 1.0,
             },
-            ..ground(400.0, 0.7)
+            ..ground_with(400.0, 0.7)
         };
         let mut walker = Walker::new(floor, [0.0; 4]);
         walker.drive(
             [Some(10.0), Some(0.0), Some(0.0), Some(0.0)],
             1.0,
-            &motors(SG90, JOINTS),
+            &motors_with(SG90, JOINTS),
         );
         let (servo, lag) = (walker.servos()[0], walker.lag()[0]);
         // While it turns, the servo drags the leg at the end of its play; at its target nothing pulls.
@@ -291,7 +306,7 @@ mod tests {
         walker.drive(
             [Some(90.0), Some(0.0), Some(0.0), Some(0.0)],
             0.1,
-            &motors(SG90, JOINTS),
+            &motors_with(SG90, JOINTS),
         );
         assert!((walker.lag()[0] - 1.0).abs() < 1e-3, "{:?}", walker.lag());
         assert!((walker.legs()[0] - (walker.servos()[0] - walker.lag()[0])).abs() < 1e-12);

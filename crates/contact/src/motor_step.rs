@@ -1,4 +1,4 @@
-//! A servo's motor in a short time step, as one convex energy of the servo's place at the end of the step. The slope
+//! A servo's motor in a short time step, as one convex energy of the servo's lag at the end of the step. The slope
 //! of that energy is the sum of the torques of the motor, its damping, its rotor's inertia and friction. So the
 //! contact problem of `friction.rs` treats a servo like a spring.
 
@@ -18,7 +18,7 @@ pub(crate) struct ServoState {
 /// The value, slope and curvature of an energy.
 pub(crate) type Expansion = (f64, f64, f64);
 
-/// The energy of a motor in a short time step, as a function of the servo's place. The place is the
+/// The energy of a motor in a short time step, as a function of the servo's lag. The lag is the
 /// angle, rad, by which the servo is behind a reference: the angle that it would have at an unchanged rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
@@ -32,9 +32,9 @@ pub(crate) struct MotorStep {
     stall: f64,
     /// Stiffness that the rotor's inertia and the damping have in a step of this length.
     inertial_stiffness: f64,
-    /// Place at the end of the step if only inertia and damping acted, rad.
+    /// Lag at the end of the step if only inertia and damping acted, rad.
     unloaded: f64,
-    /// Place of a servo that does not turn in this step, rad.
+    /// Lag of a servo that does not turn in this step, rad.
     unmoved: f64,
     /// Torque of dry friction.
     drag: f64,
@@ -44,34 +44,34 @@ pub(crate) struct MotorStep {
 
 impl MotorStep {
     /// Describes a step of `seconds`. `drag` and `slider` are the torques of dry friction and of
-    /// the slider, N mm; the unit of all forces inside is `force` N.
+    /// the slider, N mm; the unit of all forces inside is `force_unit` N.
     pub fn new(
         motor: &Motor,
-        turn: ServoState,
+        state: ServoState,
         seconds: f64,
         [drag, slider]: [f64; 2],
-        force: f64,
+        force_unit: f64,
     ) -> Self {
         let inertia = motor.inertia() / (seconds * seconds);
         let inertial_stiffness = inertia + motor.damping() / seconds;
-        let unloaded_turn = turn.rate * seconds;
+        let steady_turn = state.rate * seconds;
         Self {
-            target_ahead: turn.target - turn.servo - unloaded_turn,
+            target_ahead: state.target - state.servo - steady_turn,
             idle: motor.half_dead_band.to_radians(),
             full: motor.full_torque_error.to_radians(),
-            stall: motor.stall / force,
-            inertial_stiffness: inertial_stiffness / force,
-            unloaded: unloaded_turn * (1.0 - inertia / inertial_stiffness),
-            unmoved: unloaded_turn,
-            drag: drag / force,
-            slider: slider / force,
+            stall: motor.stall / force_unit,
+            inertial_stiffness: inertial_stiffness / force_unit,
+            unloaded: steady_turn * (1.0 - inertia / inertial_stiffness),
+            unmoved: steady_turn,
+            drag: drag / force_unit,
+            slider: slider / force_unit,
         }
     }
 
-    /// Energy at a place, its slope and its curvature, with the kink of dry friction rounded off
+    /// Energy at a lag, its slope and its curvature, with the kink of dry friction rounded off
     /// within `eps` rad.
-    pub fn expand(&self, place: f64, eps: f64) -> Expansion {
-        let error = self.target_ahead + place;
+    pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
+        let error = self.target_ahead + lag;
         let excess = (error.abs() - self.idle).max(0.0);
         let gain = self.stall / self.full;
         let (energy, torque, stiffness) = match excess < self.full {
@@ -79,18 +79,18 @@ impl MotorStep {
             true => (0.0, 0.0, 0.0),
             false => (self.stall * (excess - self.full / 2.0), self.stall, 0.0),
         };
-        let deviation = place - self.unloaded;
-        let from_still = place - self.unmoved;
-        let length = (from_still * from_still + eps * eps).sqrt();
+        let deviation = lag - self.unloaded;
+        let turn_angle = lag - self.unmoved;
+        let length = (turn_angle * turn_angle + eps * eps).sqrt();
         let (direction, curvature) = match length > 0.0 {
-            true => (from_still / length, eps * eps / (length * length * length)),
+            true => (turn_angle / length, eps * eps / (length * length * length)),
             false => (0.0, 0.0),
         };
         (
             energy
                 + self.inertial_stiffness * deviation * deviation / 2.0
                 + self.drag * length
-                + self.slider * place,
+                + self.slider * lag,
             torque.copysign(error)
                 + self.inertial_stiffness * deviation
                 + self.drag * direction
@@ -99,51 +99,52 @@ impl MotorStep {
         )
     }
 
-    /// Place of an unloaded servo at the end of the step, to first order, rad.
+    /// Lag of an unloaded servo at the end of the step, to first order, rad.
     pub fn unloaded_end(&self) -> f64 {
         -self.expand(0.0, 0.0).1 / self.inertial_stiffness
     }
 
-    /// The place at which the motor's torque equals the load's. `slope` returns the load's torque and
-    /// stiffness at a place; this torque is at most `max`, and changes fast at the `kinks`.
+    /// The lag at which the motor's torque equals the load's. `load_at` returns the load's torque and
+    /// stiffness at a lag; this torque is at most `max_load`, and changes fast at the `kinks`.
     pub fn balance(
         &self,
         kinks: [f64; 2],
-        max: f64,
+        max_load: f64,
         eps: f64,
-        slope: impl Fn(f64) -> (f64, f64),
+        load_at: impl Fn(f64) -> (f64, f64),
     ) -> f64 {
-        let reach = (self.stall + self.drag + self.slider.abs() + max) / self.inertial_stiffness;
+        let reach =
+            (self.stall + self.drag + self.slider.abs() + max_load) / self.inertial_stiffness;
         let (mut low, mut high) = (self.unloaded - reach, self.unloaded + reach);
         let guess = self.unloaded_end().max(kinks[0]).min(kinks[1]);
-        let mut place = guess.max(low).min(high);
-        let mut longest = reach;
+        let mut lag = guess.max(low).min(high);
+        let mut longest_step = reach;
         for _ in 0..MAX_ITERATIONS {
-            let (_, torque, stiffness) = self.expand(place, eps);
-            let (load, load_stiffness) = slope(place);
+            let (_, torque, stiffness) = self.expand(lag, eps);
+            let (load, load_stiffness) = load_at(lag);
             let error = torque - load;
             match error > 0.0 {
-                true => high = place,
-                false => low = place,
+                true => high = lag,
+                false => low = lag,
             }
-            let newton = place - error / (stiffness + load_stiffness);
-            let far = (newton - place).abs();
-            if far <= f64::EPSILON * (reach + place.abs()) {
+            let newton = lag - error / (stiffness + load_stiffness);
+            let step_length = (newton - lag).abs();
+            if step_length <= f64::EPSILON * (reach + lag.abs()) {
                 return newton;
             }
             // Newton's steps shrink, unless a kink lies in between.
-            let is_between = |place: &f64| low < *place && *place < high;
-            let next = match is_between(&newton) && far <= longest {
+            let is_between = |lag: &f64| low < *lag && *lag < high;
+            let next = match is_between(&newton) && step_length <= longest_step {
                 true => newton,
                 false => {
                     let kink = kinks.into_iter().find(is_between);
                     kink.unwrap_or(f64::midpoint(low, high))
                 }
             };
-            longest = (next - place).abs();
-            place = next;
+            longest_step = (next - lag).abs();
+            lag = next;
         }
-        place
+        lag
     }
 }
 
@@ -163,26 +164,26 @@ mod tests {
             full_torque_error: 3.0,
             half_dead_band: 0.0,
         };
-        let turn = ServoState {
+        let state = ServoState {
             target: 0.2,
             servo: 0.05,
             rate: 3.0,
         };
-        let motor_step = MotorStep::new(&motor, turn, 0.0025, [12.0, -4.0], 0.7);
+        let motor_step = MotorStep::new(&motor, state, 0.0025, [12.0, -4.0], 0.7);
         for step in -40..40 {
-            let place = f64::from(step) / 200.0 + 1e-4;
-            let expanded_at = |place: f64| motor_step.expand(place, 1e-3);
-            let (before, after) = (expanded_at(place - 1e-6), expanded_at(place + 1e-6));
-            let (_, torque, stiffness) = expanded_at(place);
-            let slope = (after.0 - before.0) / 2e-6;
+            let lag = f64::from(step) / 200.0 + 1e-4;
+            let expand_at = |lag: f64| motor_step.expand(lag, 1e-3);
+            let (lower, upper) = (expand_at(lag - 1e-6), expand_at(lag + 1e-6));
+            let (_, torque, stiffness) = expand_at(lag);
+            let measured_torque = (upper.0 - lower.0) / 2e-6;
             assert!(
-                (slope - torque).abs() < 1e-3 * torque.abs().max(1.0),
-                "{place}"
+                (measured_torque - torque).abs() < 1e-3 * torque.abs().max(1.0),
+                "{lag}"
             );
-            let bend = (after.1 - before.1) / 2e-6;
+            let measured_stiffness = (upper.1 - lower.1) / 2e-6;
             assert!(
-                (bend / stiffness - 1.0).abs() < 1e-2,
-                "{place} {bend} {stiffness}"
+                (measured_stiffness / stiffness - 1.0).abs() < 1e-2,
+                "{lag} {measured_stiffness} {stiffness}"
             );
         }
     }

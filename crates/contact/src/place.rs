@@ -26,9 +26,13 @@ impl Place {
     /// opposite twist leads back exactly.
     pub(crate) fn moved(self, [forward, left, turn]: Twist) -> Self {
         // The ratio of the arc's chord to its length. The chord has the direction at half of the turn.
-        let half = turn / 2.0;
-        let chord = if half == 0.0 { 1.0 } else { half.sin() / half };
-        let (sin, cos) = (self.heading + half).sin_cos();
+        let half_turn = turn / 2.0;
+        let chord = if half_turn == 0.0 {
+            1.0
+        } else {
+            half_turn.sin() / half_turn
+        };
+        let (sin, cos) = (self.heading + half_turn).sin_cos();
         Self {
             forward: self.forward + chord * (forward * cos - left * sin),
             left: self.left + chord * (forward * sin + left * cos),
@@ -91,9 +95,9 @@ mod tests {
         assert_at(Place::START.moved([10.0, 0.0, 0.0]), 10.0, 0.0, 0.0);
         assert_at(Place::START.moved([0.0, 10.0, 0.0]), 0.0, 10.0, 0.0);
         // After a turn to the left, ahead is to the left and left is behind.
-        let turned = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
-        assert_at(turned.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
-        assert_at(turned.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);
+        let turned_place = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
+        assert_at(turned_place.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
+        assert_at(turned_place.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);
     }
 
     #[test]
@@ -127,19 +131,23 @@ mod tests {
                 .abs()
                 < 1e-12
         );
-        let back = start.after(movement).travel();
-        let there = start.moved(twist).travel();
-        assert!((back.left - there.left).hypot(back.turn - there.turn) < 1e-12);
+        let movement_travel = start.after(movement).travel();
+        let twist_travel = start.moved(twist).travel();
+        assert!(
+            (movement_travel.left - twist_travel.left)
+                .hypot(movement_travel.turn - twist_travel.turn)
+                < 1e-12
+        );
     }
 
     #[test]
     fn a_point_of_the_body_goes_with_it() {
-        let at = Place {
+        let place = Place {
             forward: 1.0,
             left: 2.0,
             heading: FRAC_PI_2,
         };
-        let [forward, left] = at.on_floor([10.0, 3.0]);
+        let [forward, left] = place.on_floor([10.0, 3.0]);
         assert!((forward + 2.0).abs() < 1e-12 && (left - 12.0).abs() < 1e-12);
     }
 }

@@ -30,30 +30,30 @@ impl Uneven {
     /// Makes six walks: four in which one pad has a larger load, two with a larger or smaller ratio of backward to
     /// forward friction.
     fn variants(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
-        let uneven = |load, ratio| Self {
+        let walk_with = |load, ratio| Self {
             walker: Walker::with_unevenness(*ground, sweeps, load, ratio),
             total_difference: [0.0; 3],
         };
-        let even = [1.0; 4];
+        let even_loads = [1.0; 4];
         std::array::from_fn(|i| match i {
-            4 => uneven(even, 1.0 + UNEVEN),
-            5 => uneven(even, 1.0 - UNEVEN),
+            4 => walk_with(even_loads, 1.0 + UNEVEN),
+            5 => walk_with(even_loads, 1.0 - UNEVEN),
             pad => {
-                let mut load = even;
+                let mut load = even_loads;
                 load[pad] += UNEVEN;
-                uneven(load, 1.0)
+                walk_with(load, 1.0)
             }
         })
     }
 
-    /// Moves the servos to these sweeps, and adds up the differences between each twist and that on even pads, which
-    /// `twists` has.
+    /// Moves the servos to these sweeps, and adds up the differences between each twist and the twist of the same
+    /// step on even pads. `twists` is the list of the twists on even pads.
     fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
-        let (mut part, differs) = (twists.iter(), &mut self.total_difference);
+        let (mut even_twists, total_difference) = (twists.iter(), &mut self.total_difference);
         self.walker.move_servos(sweeps, |_, displacement| {
-            let even = part.next().copied().unwrap_or_default();
+            let even_twist = even_twists.next().copied().unwrap_or_default();
             for i in 0..3 {
-                differs[i] += (displacement.twist[i] - even[i]).abs();
+                total_difference[i] += (displacement.twist[i] - even_twist[i]).abs();
             }
         });
     }
@@ -72,41 +72,48 @@ impl Ground {
     /// legs that swing together always spread and close, and bring the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
         let mut sweeps = sweeps.into_iter();
-        let first = sweeps.next().unwrap_or_default();
-        let mut even = Walker::new(*self, first);
-        let mut uneven = Uneven::variants(self, first);
-        let (mut length, mut turned) = (0.0, 0.0);
+        let first_sweeps = sweeps.next().unwrap_or_default();
+        let mut even_walker = Walker::new(*self, first_sweeps);
+        let mut uneven_walks = Uneven::variants(self, first_sweeps);
+        let (mut path_length, mut total_turn) = (0.0, 0.0);
         let mut twists = Vec::new();
-        for next in sweeps {
+        for next_sweeps in sweeps {
             twists.clear();
-            even.move_servos(next, |_, displacement| {
+            even_walker.move_servos(next_sweeps, |_, displacement| {
                 let [forward, left, turn] = displacement.twist;
-                length += forward.hypot(left);
-                turned += turn.abs();
+                path_length += forward.hypot(left);
+                total_turn += turn.abs();
                 twists.push(displacement.twist);
             });
-            for movement in &mut uneven {
-                movement.follow(next, &twists);
+            for walk in &mut uneven_walks {
+                walk.follow(next_sweeps, &twists);
             }
         }
-        let mm = DECIDED_LENGTH.max(DECIDED_SHARE * length);
-        let rad = DECIDED_TURN.max(DECIDED_SHARE * turned);
-        let place = even.place();
-        let deviation = |movement: &Uneven| {
-            let other = movement.walker.place();
-            [other.forward - place.forward, other.left - place.left].map(f64::abs)
+        let max_mm = DECIDED_LENGTH.max(DECIDED_SHARE * path_length);
+        let max_rad = DECIDED_TURN.max(DECIDED_SHARE * total_turn);
+        let place = even_walker.place();
+        let deviation_of = |walk: &Uneven| {
+            let uneven_place = walk.walker.place();
+            [
+                uneven_place.forward - place.forward,
+                uneven_place.left - place.left,
+            ]
+            .map(f64::abs)
         };
-        let all = |within: &dyn Fn(&Uneven) -> bool| uneven.iter().all(within);
-        let decided = [
-            all(&|movement| movement.total_difference[0] <= mm && deviation(movement)[0] <= mm),
-            all(&|movement| deviation(movement)[1] <= mm),
-            all(&|movement| movement.total_difference[2] <= rad),
+        let is_true_for_all =
+            |condition: &dyn Fn(&Uneven) -> bool| uneven_walks.iter().all(condition);
+        let is_decided = [
+            is_true_for_all(&|walk| {
+                walk.total_difference[0] <= max_mm && deviation_of(walk)[0] <= max_mm
+            }),
+            is_true_for_all(&|walk| deviation_of(walk)[1] <= max_mm),
+            is_true_for_all(&|walk| walk.total_difference[2] <= max_rad),
         ];
         let travel = place.travel();
         Prediction {
-            forward: decided[0].then_some(travel.forward),
-            left: decided[1].then_some(travel.left),
-            turn: decided[2].then_some(travel.turn),
+            forward: is_decided[0].then_some(travel.forward),
+            left: is_decided[1].then_some(travel.left),
+            turn: is_decided[2].then_some(travel.turn),
         }
     }
 
@@ -115,8 +122,8 @@ impl Ground {
     pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         let mut sweeps = sweeps.into_iter();
         let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());
-        for next in sweeps {
-            walker.step(next);
+        for next_sweeps in sweeps {
+            walker.step(next_sweeps);
         }
         walker.place().travel()
     }
@@ -146,14 +153,14 @@ mod tests {
     };
 
     /// A cycle of legs that all have the same wave, each with its own phase.
-    fn cycle(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
+    fn cycle_of(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
         let sweeps_at =
             |i: i32| starts.map(|start| wave((f64::from(i) / 400.0 - start).rem_euclid(1.0)));
         (0..=400).map(sweeps_at).collect()
     }
 
     /// A wave that goes backward at constant speed over `duty` of the cycle, then forward.
-    fn stroke(duty: f64) -> impl Fn(f64) -> f64 {
+    fn stroke_wave(duty: f64) -> impl Fn(f64) -> f64 {
         move |phase| {
             20.0 * if phase < duty {
                 1.0 - 2.0 * phase / duty
@@ -172,7 +179,7 @@ mod tests {
 
     #[test]
     fn three_feet_against_one_are_decided() {
-        let walk = GROUND.predict(cycle(ONE_BY_ONE, stroke(0.75)));
+        let walk = GROUND.predict(cycle_of(ONE_BY_ONE, stroke_wave(0.75)));
         assert!(walk.is_decided() && walk.forward > Some(25.0), "{walk:?}");
     }
 
@@ -193,21 +200,26 @@ mod tests {
     #[test]
     fn two_feet_against_two_are_undecided() {
         for duty in [0.5, 0.75] {
-            assert_eq!(GROUND.predict(cycle(DIAGONAL, stroke(duty))).forward, None);
+            assert_eq!(
+                GROUND
+                    .predict(cycle_of(DIAGONAL, stroke_wave(duty)))
+                    .forward,
+                None
+            );
         }
         for starts in [DIAGONAL, ONE_BY_ONE] {
-            assert_eq!(GROUND.predict(cycle(starts, sine)).forward, None);
+            assert_eq!(GROUND.predict(cycle_of(starts, sine)).forward, None);
         }
         // In a gesture of the head, the front feet pull against the hind feet.
-        let front = |phase: f64| [sine(phase), sine(phase), 0.0, 0.0];
-        let front = (0..=100).map(|i| front(f64::from(i) / 100.0));
-        assert_eq!(GROUND.predict(front).forward, None);
+        let front_feet_at = |phase: f64| [sine(phase), sine(phase), 0.0, 0.0];
+        let front_sweeps = (0..=100).map(|i| front_feet_at(f64::from(i) / 100.0));
+        assert_eq!(GROUND.predict(front_sweeps).forward, None);
     }
 
     #[test]
     fn a_tie_too_small_to_matter_leaves_a_movement_decided() {
-        let small = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
-        let movement = GROUND.predict(cycle(DIAGONAL, sine).into_iter().map(small));
+        let shrink = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
+        let movement = GROUND.predict(cycle_of(DIAGONAL, sine).into_iter().map(shrink));
         assert!(movement.is_decided(), "{movement:?}");
     }
 }

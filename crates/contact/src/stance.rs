@@ -58,7 +58,7 @@ impl Stance {
     /// part from its own length plus a part that is linear in its position. The three equations
     /// of balance determine the linear part.
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
-        let by_length = [
+        let length_loads = [
             self.stiffness * self.twist / body.mean_load(),
             0.0,
             0.0,
@@ -66,22 +66,25 @@ impl Stance {
         ];
         // All four feet stand, or all except one: in exactly one of these five cases no standing
         // foot pulls and no lifted foot is below the floor.
-        let all_but = |lifted: Option<usize>| {
-            let stands = std::array::from_fn(|i| lifted != Some(i));
-            (stands, pressures(feet, by_length, body.centre, stands))
+        let case_of = |lifted: Option<usize>| {
+            let is_standing = std::array::from_fn(|i| lifted != Some(i));
+            (
+                is_standing,
+                compute_pressures(feet, length_loads, body.centre, is_standing),
+            )
         };
-        let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(all_but);
-        let is_consistent = |(stands, pressures): &&([bool; 4], [f64; 4])| {
-            let mut each = stands.iter().zip(pressures);
-            each.all(|(stands, pressure)| match stands {
+        let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(case_of);
+        let is_consistent = |(is_standing, pressures): &&([bool; 4], [f64; 4])| {
+            let mut pairs = is_standing.iter().zip(pressures);
+            pairs.all(|(is_standing, pressure)| match is_standing {
                 true => *pressure >= -ZERO_LOAD,
                 false => *pressure <= ZERO_LOAD,
             })
         };
         // A robot that falls over matches no case; it gets the loads of the first one.
-        let (stands, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
+        let (is_standing, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
         std::array::from_fn(|i| {
-            if stands[i] {
+            if is_standing[i] {
                 pressures[i].max(0.0)
             } else {
                 0.0
@@ -90,22 +93,27 @@ impl Stance {
     }
 }
 
-/// Computes the load of each foot as a share of the mean if only the feet in `stands` touch the
+/// Computes the load of each foot as a share of the mean if only the feet in `is_standing` touch the
 /// floor. A negative load means that a standing foot pulls, or that a lifted one is above the floor.
-fn pressures(feet: [Point; 4], by_length: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
+fn compute_pressures(
+    feet: [Point; 4],
+    length_loads: [f64; 4],
+    centre: Point,
+    is_standing: [bool; 4],
+) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut moments = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
-    for i in (0..4).filter(|&i| stands[i]) {
+    for i in (0..4).filter(|&i| is_standing[i]) {
         let row = [1.0, feet[i][0], feet[i][1]];
         for j in 0..3 {
-            moments[j] -= by_length[i] * row[j];
+            moments[j] -= length_loads[i] * row[j];
             for k in 0..3 {
                 matrix[j][k] += row[j] * row[k];
             }
         }
     }
     let [heave, pitch, roll] = solve(matrix, moments);
-    std::array::from_fn(|i| by_length[i] + heave + pitch * feet[i][0] + roll * feet[i][1])
+    std::array::from_fn(|i| length_loads[i] + heave + pitch * feet[i][0] + roll * feet[i][1])
 }
 
 #[cfg(test)]
@@ -113,16 +121,16 @@ mod tests {
     use super::*;
 
     const RECTANGLE: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
-    const SWUNG: [Point; 4] = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
+    const SWUNG_FEET: [Point; 4] = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
 
-    fn body(centre: Point) -> Body {
+    fn body_with_centre(centre: Point) -> Body {
         Body {
             centre,
             ..Body::DEFAULT
         }
     }
 
-    fn twisted(twist: f64) -> Stance {
+    fn stance_with_twist(twist: f64) -> Stance {
         Stance {
             stiffness: 2.0,
             twist,
@@ -132,41 +140,50 @@ mod tests {
 
     /// Computes the loads by iteration: heave, pitch and roll follow the unbalanced force and
     /// moments until the feet carry the body.
-    fn settled(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
+    fn loads_by_iteration(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let (mut heave, mut pitch, mut roll) = (0.0, 0.0, 0.0);
         let stiffness = stance.stiffness / body.mean_load();
-        let loads = |heave: f64, pitch: f64, roll: f64| -> [f64; 4] {
+        let loads_at = |heave: f64, pitch: f64, roll: f64| -> [f64; 4] {
             std::array::from_fn(|i| {
-                let excess = if i == 0 { stance.twist } else { 0.0 };
-                let pressed = excess + heave + pitch * feet[i][0] + roll * feet[i][1];
-                (stiffness * pressed).max(0.0)
+                let excess_length = if i == 0 { stance.twist } else { 0.0 };
+                let compression = excess_length + heave + pitch * feet[i][0] + roll * feet[i][1];
+                (stiffness * compression).max(0.0)
             })
         };
         for _ in 0..200_000 {
-            let now = loads(heave, pitch, roll);
-            let sum = |arm: &dyn Fn(usize) -> f64| -> f64 { (0..4).map(|i| now[i] * arm(i)).sum() };
-            heave += 0.05 * (4.0 - sum(&|_| 1.0));
-            pitch += 1e-5 * (4.0 * body.centre[0] - sum(&|i| feet[i][0]));
-            roll += 1e-5 * (4.0 * body.centre[1] - sum(&|i| feet[i][1]));
+            let current_loads = loads_at(heave, pitch, roll);
+            let sum_of = |arm: &dyn Fn(usize) -> f64| -> f64 {
+                (0..4).map(|i| current_loads[i] * arm(i)).sum()
+            };
+            heave += 0.05 * (4.0 - sum_of(&|_| 1.0));
+            pitch += 1e-5 * (4.0 * body.centre[0] - sum_of(&|i| feet[i][0]));
+            roll += 1e-5 * (4.0 * body.centre[1] - sum_of(&|i| feet[i][1]));
         }
-        loads(heave, pitch, roll)
+        loads_at(heave, pitch, roll)
     }
 
     #[test]
     fn the_loads_balance_the_body_and_are_those_at_which_it_settles() {
         for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
             for twist in [0.0, 0.3, -0.6, 1.0, 3.0] {
-                let loads = twisted(twist).loads(&body(centre), SWUNG);
-                let sum = |arm: fn(Point) -> f64| -> f64 {
-                    let each = loads.iter().zip(SWUNG);
-                    each.map(|(load, at)| load * arm(at)).sum()
+                let loads = stance_with_twist(twist).loads(&body_with_centre(centre), SWUNG_FEET);
+                let sum_of = |arm: fn(Point) -> f64| -> f64 {
+                    let pairs = loads.iter().zip(SWUNG_FEET);
+                    pairs.map(|(load, foot)| load * arm(foot)).sum()
                 };
-                assert!((sum(|_| 1.0) - 4.0).abs() < 1e-9);
-                assert!((sum(|at| at[0]) - 4.0 * centre[0]).abs() < 1e-6);
-                assert!((sum(|at| at[1]) - 4.0 * centre[1]).abs() < 1e-6);
-                let settled = settled(&twisted(twist), &body(centre), SWUNG);
-                for (load, other) in loads.into_iter().zip(settled) {
-                    assert!((load - other).abs() < 1e-3, "{twist} {loads:?} {settled:?}");
+                assert!((sum_of(|_| 1.0) - 4.0).abs() < 1e-9);
+                assert!((sum_of(|foot| foot[0]) - 4.0 * centre[0]).abs() < 1e-6);
+                assert!((sum_of(|foot| foot[1]) - 4.0 * centre[1]).abs() < 1e-6);
+                let settled_loads = loads_by_iteration(
+                    &stance_with_twist(twist),
+                    &body_with_centre(centre),
+                    SWUNG_FEET,
+                );
+                for (load, settled_load) in loads.into_iter().zip(settled_loads) {
+                    assert!(
+                        (load - settled_load).abs() < 1e-3,
+                        "{twist} {loads:?} {settled_loads:?}"
+                    );
                 }
             }
         }
@@ -175,7 +192,7 @@ mod tests {
     #[test]
     fn feet_in_a_rectangle_share_by_lever() {
         // The centre is halfway to the front feet, which then carry 1.5 times the mean.
-        let loads = Stance::LEVEL.loads(&body([27.5, 0.0]), RECTANGLE);
+        let loads = Stance::LEVEL.loads(&body_with_centre([27.5, 0.0]), RECTANGLE);
         for (load, expected) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
             assert!((load - expected).abs() < 1e-9, "{loads:?}");
         }
@@ -187,7 +204,7 @@ mod tests {
     #[test]
     fn a_foot_that_is_too_long_loads_itself_and_the_one_across() {
         // 2 N/mm and 0.6 mm: a quarter of 1.2 N.
-        let stance = twisted(0.6);
+        let stance = stance_with_twist(0.6);
         assert!((stance.diagonal() - 0.3).abs() < 1e-12);
         let share = 0.3 / Body::DEFAULT.mean_load();
         let loads = stance.loads(&Body::DEFAULT, RECTANGLE);
@@ -195,7 +212,7 @@ mod tests {
             assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
         }
         // A foot that is much too long and the foot diagonally opposite carry half the robot each.
-        let loads = twisted(10.0).loads(&Body::DEFAULT, RECTANGLE);
+        let loads = stance_with_twist(10.0).loads(&Body::DEFAULT, RECTANGLE);
         for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
             assert!((load - expected).abs() < 1e-6, "{loads:?}");
         }
@@ -204,12 +221,15 @@ mod tests {
     #[test]
     fn a_foot_never_pulls() {
         // The centre is beyond the diagonal through feet 1 and 3, so foot 2 leaves the floor.
-        let loads = Stance::LEVEL.loads(&body([30.0, 50.0]), RECTANGLE);
+        let loads = Stance::LEVEL.loads(&body_with_centre([30.0, 50.0]), RECTANGLE);
         assert_eq!(loads[2], 0.0);
         assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
         assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
         // No foot pulls even if the robot falls over.
-        let fallen = Stance::LEVEL.loads(&body([200.0, 0.0]), RECTANGLE);
-        assert!(fallen.iter().all(|load| *load >= 0.0), "{fallen:?}");
+        let fallen_loads = Stance::LEVEL.loads(&body_with_centre([200.0, 0.0]), RECTANGLE);
+        assert!(
+            fallen_loads.iter().all(|load| *load >= 0.0),
+            "{fallen_loads:?}"
+        );
     }
 }

@@ -38,14 +38,14 @@ impl Strut {
     /// The geometry of stretching the strut while the servo is at this sweep (deg, foot forward
     /// positive).
     fn stretch(&self, leg: usize, sweep: f64) -> Stretch {
-        let arm = self.angles[leg] + FORWARD[leg] * sweep;
-        let (sin, cos) = arm.to_radians().sin_cos();
+        let arm_deg = self.angles[leg] + FORWARD[leg] * sweep;
+        let (sin, cos) = arm_deg.to_radians().sin_cos();
         // From the leg's pivot to the servo's end of the strut.
-        let far = [self.radius * cos - self.length, self.radius * sin];
-        let between = wrap(arm - far[1].atan2(far[0]).to_degrees());
+        let servo_end = [self.radius * cos - self.length, self.radius * sin];
+        let enclosed_deg = wrap(arm_deg - servo_end[1].atan2(servo_end[0]).to_degrees());
         // A lag turns the leg's arm against the forward direction.
-        let angle = -FORWARD[leg] * between.to_radians();
-        Stretch::new(far[0].hypot(far[1]), self.radius, angle)
+        let angle = -FORWARD[leg] * enclosed_deg.to_radians();
+        Stretch::new(servo_end[0].hypot(servo_end[1]), self.radius, angle)
     }
 
     /// Lever of the strut's pull at the leg's pivot, mm, while the leg does not lag.
@@ -62,10 +62,15 @@ impl Strut {
         (lag.to_degrees(), torque)
     }
 
-    /// The resistance to a lag against the sweep's direction and along it, in units of `force` N.
-    pub(crate) fn sides(&self, leg: usize, sweep: f64, force: f64) -> [Side; 2] {
+    /// The resistance to a lag against the sweep's direction and along it, in units of `force_unit` N.
+    pub(crate) fn sides(&self, leg: usize, sweep: f64, force_unit: f64) -> [Side; 2] {
         let stretch = self.stretch(leg, sweep);
-        let side = Side::strut(stretch, self.force / force, self.rate / force, self.slot);
+        let side = Side::strut(
+            stretch,
+            self.force / force_unit,
+            self.rate / force_unit,
+            self.slot,
+        );
         match stretch.lever() > 0.0 {
             true => [Side::Stop, side],
             false => [side, Side::Stop],

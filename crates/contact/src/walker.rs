@@ -133,9 +133,9 @@ impl Walker {
     /// target does not turn, because its gears hold it.
     pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
         let mut slip = Slip::NONE;
-        let steps = (seconds / motors.step() - STEPS_ERROR).ceil().max(1.0);
-        for _ in 0..steps as usize {
-            let (pads, displacement) = self.drive_step(targets, seconds / steps, motors);
+        let step_count = (seconds / motors.step() - STEPS_ERROR).ceil().max(1.0);
+        for _ in 0..step_count as usize {
+            let (pads, displacement) = self.drive_step(targets, seconds / step_count, motors);
             self.place = self.place.moved(displacement.twist);
             slip.add(&pads, &displacement);
         }
@@ -153,7 +153,7 @@ impl Walker {
         let (servos, rates) = (self.servos, self.rates.map(f64::to_radians));
         let slider = joints.torques(servos, rates, motors.fade_speed(seconds));
         let motor_steps: [Option<MotorStep>; 4] = std::array::from_fn(|i| {
-            let turn = ServoState {
+            let state = ServoState {
                 target: targets[i]?.to_radians(),
                 servo: servos[i].to_radians(),
                 rate: rates[i],
@@ -161,7 +161,7 @@ impl Walker {
             let friction = [joints.drag, slider[i]];
             Some(MotorStep::new(
                 &motors.each[i],
-                turn,
+                state,
                 seconds,
                 friction,
                 grip,
@@ -172,28 +172,28 @@ impl Walker {
             Some(_) => servos[i] + self.rates[i] * seconds,
             None => servos[i],
         });
-        let from = self.ground.feet.positions(self.legs());
+        let start_points = self.ground.feet.positions(self.legs());
         // A loaded motor turns nearly as far as an unloaded one, so this is a good estimate.
-        let near = std::array::from_fn(|i| {
+        let lag_estimate = std::array::from_fn(|i| {
             self.lag[i].to_radians()
                 + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_end())
         });
         let pads = Pads {
             body: Some(self.inertia(seconds)),
-            ..self.pads(from, reference, near, motor_steps)
+            ..self.pads(start_points, reference, lag_estimate, motor_steps)
         };
         let displacement = pads.minimum();
-        for (i, behind) in displacement.lag.into_iter().enumerate() {
-            let servo = pads.compliance.map_or(0.0, |compliance| {
-                compliance.lag_energy[i].servo_lag(behind, KINK_WIDTH)
+        for (i, total_lag) in displacement.lag.into_iter().enumerate() {
+            let servo_lag = pads.compliance.map_or(0.0, |compliance| {
+                compliance.lag_energy[i].servo_lag(total_lag, KINK_WIDTH)
             });
-            self.servos[i] = reference[i] - servo.to_degrees();
+            self.servos[i] = reference[i] - servo_lag.to_degrees();
             self.rates[i] = (self.servos[i] - servos[i]) / seconds;
-            self.lag[i] = (behind - servo).to_degrees();
+            self.lag[i] = (total_lag - servo_lag).to_degrees();
         }
-        self.speed = displacement.twist.map(|part| part / seconds);
+        self.speed = displacement.twist.map(|component| component / seconds);
         let slides = pads.slides(&displacement);
-        self.pad_speeds = slides.map(|slide| slide.map(|part| part / seconds));
+        self.pad_speeds = slides.map(|slide| slide.map(|component| component / seconds));
         (pads, displacement)
     }
 
@@ -208,18 +208,18 @@ impl Walker {
             ..
         } = self.ground.feet;
         let Body { mass, .. } = self.ground.body;
-        let leg = self.ground.body.leg_mass();
+        let leg_mass = self.ground.body.leg_mass();
         let stiffness_of =
             |mass: f64| mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.grip());
-        let stiffness = stiffness_of(mass - 4.0 * leg);
-        let square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
+        let stiffness = stiffness_of(mass - 4.0 * leg_mass);
+        let hip_square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
         Inertia {
-            stiffness: [stiffness, stiffness, stiffness * square],
-            previous_twist: self.speed.map(|part| part * seconds),
-            leg_stiffness: stiffness_of(leg),
+            stiffness: [stiffness, stiffness, stiffness * hip_square],
+            previous_twist: self.speed.map(|component| component * seconds),
+            leg_stiffness: stiffness_of(leg_mass),
             slides: self
                 .pad_speeds
-                .map(|speed| speed.map(|part| part * seconds)),
+                .map(|speed| speed.map(|component| component * seconds)),
         }
     }
 
@@ -239,12 +239,10 @@ impl Walker {
         let servos = self.servos;
         (self.rates, self.speed) = ([0.0; 4], [0.0; 3]);
         self.pad_speeds = [[0.0; 2]; 4];
-        let furthest = (0..4).fold(0.0f64, |largest, i| {
-            largest.max((sweeps[i] - servos[i]).abs())
-        });
-        let parts = (furthest / MAX_SWEEP).ceil().max(1.0) as usize;
-        for part in 1..=parts {
-            let share = part as f64 / parts as f64;
+        let max_turn = (0..4).fold(0.0f64, |max, i| max.max((sweeps[i] - servos[i]).abs()));
+        let step_count = (max_turn / MAX_SWEEP).ceil().max(1.0) as usize;
+        for step in 1..=step_count {
+            let share = step as f64 / step_count as f64;
             let next = std::array::from_fn(|i| servos[i] + share * (sweeps[i] - servos[i]));
             let (pads, displacement) = self.find_step(next);
             self.place = self.place.moved(displacement.twist);
@@ -256,9 +254,9 @@ impl Walker {
 
     /// Finds the displacement of a small step of the servos to these sweeps.
     fn find_step(&self, servos: [f64; 4]) -> (Pads, Displacement) {
-        let from = self.ground.feet.positions(self.legs());
+        let start_points = self.ground.feet.positions(self.legs());
         let mut lag = self.lag.map(f64::to_radians);
-        let mut pads = self.pads(from, servos, lag, [None; 4]);
+        let mut pads = self.pads(start_points, servos, lag, [None; 4]);
         let mut displacement = pads.minimum();
         for _ in 1..MAX_ITERATIONS {
             let error = (0..4).fold(0.0f64, |error, i| {
@@ -268,7 +266,7 @@ impl Walker {
                 break;
             }
             lag = displacement.lag;
-            pads = self.pads(from, servos, lag, [None; 4]);
+            pads = self.pads(start_points, servos, lag, [None; 4]);
             displacement = pads.minimum_near(Some(&displacement));
         }
         (pads, displacement)
@@ -278,38 +276,38 @@ impl Walker {
     /// servos.
     fn pads(
         &self,
-        from: [Point; 4],
+        start_points: [Point; 4],
         servos: [f64; 4],
         lag: [f64; 4],
         motors: [Option<MotorStep>; 4],
     ) -> Pads {
         let feet = &self.ground.feet;
-        let ends: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
-        let to = feet.positions(ends);
-        let along = feet.sweep_derivatives(ends);
+        let end_sweeps: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
+        let end_points = feet.positions(end_sweeps);
+        let derivatives = feet.sweep_derivatives(end_sweeps);
         // Positions in the middle of the step, so that the reverse step is its exact inverse.
-        let positions = points_from(&|i, j| (from[i][j] + to[i][j]) / 2.0);
+        let positions = points_from(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
         let lag_before = self.lag.map(f64::to_radians);
-        let (load, ratio) = self.uneven;
+        let (load_factors, ratio_factor) = self.uneven;
         let loads = self.ground.loads(positions);
         let (drive, grip) = (&self.ground.drive, self.ground.grip());
         // No pad carries more than the whole robot.
-        let max = 4.0 * feet.reach * (self.ground.ratio * ratio).max(1.0);
+        let max_pad_torque = 4.0 * feet.reach * (self.ground.ratio * ratio_factor).max(1.0);
         Pads {
             at: positions,
             swing: points_from(&|i, j| {
-                to[i][j] - from[i][j] + (lag[i] - lag_before[i]) * along[i][j]
+                end_points[i][j] - start_points[i][j] + (lag[i] - lag_before[i]) * derivatives[i][j]
             }),
-            ratio: self.ground.ratio * ratio,
-            load: std::array::from_fn(|i| loads[i] * load[i]),
+            ratio: self.ground.ratio * ratio_factor,
+            load: std::array::from_fn(|i| loads[i] * load_factors[i]),
             body: None,
             compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| {
                 Compliance {
-                    lag_derivatives: along,
+                    lag_derivatives: derivatives,
                     previous_lags: lag_before,
                     lag_energy: std::array::from_fn(|i| LagEnergy {
                         motor: motors[i],
-                        ..drive.lag_energy_of_leg(i, servos[i], grip, max)
+                        ..drive.lag_energy_of_leg(i, servos[i], grip, max_pad_torque)
                     }),
                 }
             }),

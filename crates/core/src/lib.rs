@@ -36,8 +36,8 @@
 //! use lizard_core::numbers::units::{Angle, CYCLES_PER_US, Sweep, Width};
 //!
 //! let mut line = Line::new();
-//! let ended = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
-//! assert_eq!((ended, line.text()), (Some(LineEnd::Line), &b"pose 120"[..]));
+//! let line_end = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
+//! assert_eq!((line_end, line.text()), (Some(LineEnd::Line), &b"pose 120"[..]));
 //!
 //! // A servo that holds 90 degrees at 1500 us and turns 90 degrees either way, 10 us for
 //! // each degree: 57 600 cycles for a turn of 65 536 steps, and so 0.879 for a step.
@@ -54,8 +54,8 @@
 //!
 //! The goals, in this order, if two of them conflict:
 //!
-//! 1. **Safe.** No frame is sent without the guard, no two servos wake together, and a
-//!    after a fault the robot stands still and reports the reason.
+//! 1. **Safe.** No frame is sent without the guard, no two servos wake together, and after
+//!    a fault the robot stands still and reports the reason.
 //! 2. **Exact.** A pulse is right to the cycle, and a frame on the host equals the chip's
 //!    to the bit.
 //! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.

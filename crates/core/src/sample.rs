@@ -109,16 +109,19 @@ impl Sample {
             servos,
             slew,
         } = measures;
-        let end =
+        let five_bar_of =
             |end| SampleFiveBar::new(&lizard.end(end)).expect("couplers that are long enough");
-        let side = |side| {
+        let slider_of = |side| {
             let slider = lizard.side(side);
             side_of(&slider, limits.stroke_min, limits.stroke_max)
         };
-        let limit = |margin: f64| Sine((margin * 32768.0).ceil() as i16);
+        let sine_of = |margin: f64| Sine((margin * 32768.0).ceil() as i16);
         let mut names = Vec::new();
         let gaits = gaits(&mut names);
-        let ends = [end(kinematics::End::Head), end(kinematics::End::Tail)];
+        let ends = [
+            five_bar_of(kinematics::End::Head),
+            five_bar_of(kinematics::End::Tail),
+        ];
         let content = Content {
             name: "sample".to_string(),
             pins: [9, 10, 5, 6],
@@ -126,11 +129,14 @@ impl Sample {
             slow_pace: SLOW_PACE,
             maps: core::array::from_fn(|_| Map::default()),
             ends: ends.each_ref().map(SampleFiveBar::content),
-            sides: [side(kinematics::Side::Left), side(kinematics::Side::Right)],
+            sides: [
+                slider_of(kinematics::Side::Left),
+                slider_of(kinematics::Side::Right),
+            ],
             limits: Limits {
-                type2: limit(limits.type2),
-                type1: limit(limits.type1),
-                leg: limit(limits.leg),
+                type2: sine_of(limits.type2),
+                type1: sine_of(limits.type1),
+                leg: sine_of(limits.leg),
             },
             slew: Slew::new((slew * STEPS_PER_DEGREE / 50.0) as u16),
             neutral: servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u16)),
@@ -150,7 +156,7 @@ impl Sample {
             servo_hash: 0x7b5d_2e81,
         };
         Self {
-            robot: read(&content),
+            robot: robot_from(&content),
             measures,
             content,
             ends,
@@ -160,7 +166,7 @@ impl Sample {
     /// The sample with some of its numbers changed.
     pub fn with(mut self, change: impl FnOnce(&mut Content)) -> Self {
         change(&mut self.content);
-        self.robot = read(&self.content);
+        self.robot = robot_from(&self.content);
         self
     }
 
@@ -269,7 +275,7 @@ impl Robot<'_> {
 }
 
 /// Makes the robot of a section, which stays in memory until the tests end.
-fn read(content: &Content) -> Robot<'static> {
+fn robot_from(content: &Content) -> Robot<'static> {
     Robot::unchecked(Region::new(Vec::leak(content.section()))).expect("a whole section")
 }
 
@@ -285,25 +291,25 @@ pub fn sine(sine: Sine) -> f64 {
 
 /// A side in the finest step that its lengths allow, with its stroke rounded inwards.
 pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
-    let all = side.base + side.front + side.rear + side.offset.abs();
-    let across = side.front + side.rear + side.offset.abs();
+    let total = side.base + side.front + side.rear + side.offset.abs();
+    let arms = side.front + side.rear + side.offset.abs();
     let is_fine_enough = |scale: &Scale| {
-        all.max(side.nominal + stroke_max) * per_mm(*scale) < slider::MAX_STEPS
-            && across * per_mm(*scale) < slider::MAX_ARM_STEPS
+        total.max(side.nominal + stroke_max) * per_mm(*scale) < slider::MAX_STEPS
+            && arms * per_mm(*scale) < slider::MAX_ARM_STEPS
     };
     let scale = (0..=14)
         .rev()
         .map(|bits| Scale { bits })
         .find(is_fine_enough);
     let scale = scale.expect("lengths of a robot");
-    let length = |mm: f64| steps(mm, scale);
+    let to_steps = |mm: f64| steps(mm, scale);
     Slider {
         scale,
-        offset: length(side.offset) as i16,
-        base: length(side.base) as u16,
-        front: length(side.front) as i16,
-        rear: length(side.rear) as i16,
-        nominal: length(side.nominal) as u16,
+        offset: to_steps(side.offset) as i16,
+        base: to_steps(side.base) as u16,
+        front: to_steps(side.front) as i16,
+        rear: to_steps(side.rear) as i16,
+        nominal: to_steps(side.nominal) as u16,
         min: ((side.nominal + stroke_min) * per_mm(scale)).ceil() as u16,
         max: ((side.nominal + stroke_max) * per_mm(scale)).floor() as u16,
     }
@@ -327,17 +333,17 @@ pub const NOSE: Input = Input::nose(16);
 
 /// A sine, a slow rise with a quick fall, and a hump, each to be scaled by a gain.
 fn waves() -> Vec<Wave> {
-    let wave = |function: fn(f64) -> f64| -> Wave {
+    let wave_of = |function: fn(f64) -> f64| -> Wave {
         core::array::from_fn(|n| (function(n as f64 / SAMPLES as f64) * 1820.0).round() as i16)
     };
     std::vec![
-        wave(|u| (u * core::f64::consts::TAU).sin()),
-        wave(|u| if u < 0.75 {
+        wave_of(|u| (u * core::f64::consts::TAU).sin()),
+        wave_of(|u| if u < 0.75 {
             u / 0.75 - 0.5
         } else {
             3.5 - 4.0 * u
         }),
-        wave(|u| 4.0 * (1.0 - (u * core::f64::consts::TAU).cos())),
+        wave_of(|u| 4.0 * (1.0 - (u * core::f64::consts::TAU).cos())),
     ]
 }
 
@@ -351,8 +357,8 @@ fn gaits(names: &mut Vec<u8>) -> Vec<Gait> {
         channel(0, 0x6e00, 12_000),
         channel(0, 0xb000, 5_000),
     ];
-    let mut other = swaying;
-    other[0].gain = 4_000;
+    let mut swaying_left = swaying;
+    swaying_left[0].gain = 4_000;
     let swinging = [
         channel(1, 0x1234, 8_000),
         channel(1, 0x8765, -8_000),
@@ -360,18 +366,18 @@ fn gaits(names: &mut Vec<u8>) -> Vec<Gait> {
         channel(1, 0x4321, -6_500),
     ];
     let straying = [channel(2, 0, 16_384), still[1], still[2], still[3]];
-    let second = (1 << 24) / 50;
-    let all = [
-        (still, second),
-        (swaying, second),
-        (other, second * 4 / 5),
-        (swinging, second / 2),
-        (swaying, -second),
-        (straying, second),
+    let one_hertz = (1 << 24) / 50;
+    let motions = [
+        (still, one_hertz),
+        (swaying, one_hertz),
+        (swaying_left, one_hertz * 4 / 5),
+        (swinging, one_hertz / 2),
+        (swaying, -one_hertz),
+        (straying, one_hertz),
     ];
     GAITS
         .iter()
-        .zip(all)
+        .zip(motions)
         .map(|(name, (channels, increment))| {
             let name_start = names.len() as u16;
             names.extend(name.bytes());

@@ -196,10 +196,10 @@ impl Main {
                 self.console.finish_order(outcome);
             }
         } else if let Some(byte) = board.receive() {
-            let rested = self.control.motion().is_resting();
+            let was_resting = self.control.motion().is_resting();
             self.console.receive(byte, &mut self.control);
             // Stored before the answer, because a reset may follow the answer at once.
-            if self.control.motion().is_resting() != rested {
+            if self.control.motion().is_resting() != was_resting {
                 self.store_stance(board);
             }
         } else {

@@ -1,8 +1,8 @@
 //! The virtual board, for hosts: it behaves like the UNO's registers, pins and interrupts, without a chip.
 //!
 //! Every program that runs the core on a host (tests, the fuzzer, the page in a browser, the comparison with the
-//! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats. [`RunningRobot`]
-//! combines the board and the loop for them.
+//! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats.
+//! [`RunningRobot`] combines the board and the loop for them.
 //!
 //! Time passes only when [`VirtualBoard::pass_time`] is called, in milliseconds. The events in a frame of 20 ms:
 //!
@@ -164,12 +164,12 @@ impl VirtualBoard {
             if self.ms_since_fed >= 2 * WATCHDOG_MS {
                 return true;
             }
-            self.millisecond();
+            self.pass_millisecond();
         }
         false
     }
 
-    fn millisecond(&mut self) {
+    fn pass_millisecond(&mut self) {
         self.transmitter.pass_time(1);
         self.memory.pass_time();
         self.ms += 1;
@@ -210,8 +210,8 @@ impl VirtualBoard {
 
     /// Resets the processor: its state is lost, and the main loop has to start again.
     pub fn reset(&mut self, cause: Cause) {
-        let power_on = cause == Cause::Power;
-        let reported = (!self.has_boot_loader).then_some(cause);
+        let is_power_on = cause == Cause::Power;
+        let reported_cause = (!self.has_boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
         // A start takes longer than writing a byte to the memory.
@@ -221,21 +221,21 @@ impl VirtualBoard {
             converter: core::mem::take(&mut self.converter).reset(),
             has_boot_loader: self.has_boot_loader,
             closed: self.closed,
-            restart: ram.begin(reported),
+            restart: ram.begin(reported_cause),
             ram,
             ..Self::new(memory)
         };
-        if power_on {
+        if is_power_on {
             self.ram = Ram::default();
             self.restart = Restart::NONE;
         }
         self.rate = self.restart.rate;
     }
 
-    /// Turns the power off and on. If a byte is being written to the memory, it gets the value `torn`, since it may
-    /// hold anything.
-    pub fn lose_power(&mut self, torn: Option<u8>) {
-        if let Some(byte) = torn {
+    /// Turns the power off and on. If a byte is being written to the memory, it gets the value `torn_byte`, since it
+    /// may hold anything.
+    pub fn lose_power(&mut self, torn_byte: Option<u8>) {
+        if let Some(byte) = torn_byte {
             self.memory.cut_power(byte);
         }
         self.reset(Cause::Power);

@@ -31,30 +31,35 @@ const CYCLE: [f64; 3] = [0.1, 0.1, 0.002];
 const QUALITY: u8 = 85;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = env::args().skip(1);
-    let mut word = || words.next().ok_or("FOLDER WIDTH CYCLES [HIDDEN TAG]...");
-    let folder = PathBuf::from(word()?);
-    let (width, cycles): (usize, usize) = (word()?.parse()?, word()?.parse()?);
+    let mut arguments = env::args().skip(1);
+    let mut next_word = || {
+        arguments
+            .next()
+            .ok_or("FOLDER WIDTH CYCLES [HIDDEN TAG]...")
+    };
+    let folder = PathBuf::from(next_word()?);
+    let (width, cycles): (usize, usize) = (next_word()?.parse()?, next_word()?.parse()?);
     let rng = &mut Rng::with_seed(4);
     let mut studio = Studio::random(rng);
     (studio.size, studio.focal) = ([width, width * 9 / 16], 0.95);
     (studio.height, studio.tilt, studio.direction) = (800.0, 15.0, 90.0);
     (studio.roll, studio.aim) = (0.0, [0.0; 2]);
     studio.deck = 95.0;
-    studio.hidden = words.map(|id| id.parse()).collect::<Result<_, _>>()?;
+    studio.hidden = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
     let gait = gait("walk");
     let truth = truth(&gait);
     let start = -truth.forward * cycles as f64 / 2.0;
-    let varies = Variation {
+    let variation = Variation {
         cycle: CYCLE,
         ..Variation::default()
     };
-    let walk = Walk::new(&gait, [start, 0.0, 0.0], cycles, varies, rng);
+    let walk = Walk::new(&gait, [start, 0.0, 0.0], cycles, variation, rng);
     let background = studio.background(rng);
     let pictures = folder.join("pictures");
     fs::create_dir_all(&pictures)?;
-    let [across, down] = studio.size;
-    let mut film = format!("YUV4MPEG2 W{across} H{down} F{RATE}:1 Ip A1:1 C420jpeg\n").into_bytes();
+    let [film_width, film_height] = studio.size;
+    let mut film =
+        format!("YUV4MPEG2 W{film_width} H{film_height} F{RATE}:1 Ip A1:1 C420jpeg\n").into_bytes();
     for i in 0..(walk.seconds() * f64::from(RATE)) as usize {
         let seconds = i as f64 / f64::from(RATE);
         let picture = background.picture(seconds, |time| walk.at(time), rng);
@@ -64,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::write(pictures.join(format!("{:.4}s.jpg", seconds)), &jpeg)?;
         film.extend(b"FRAME\n");
         film.extend(picture.grey());
-        film.resize(film.len() + across * down / 2, COLOURLESS);
+        film.resize(film.len() + film_width * film_height / 2, COLOURLESS);
     }
     fs::write(folder.join("film.y4m"), film)?;
     let truth = format!(

@@ -7,15 +7,15 @@
 use crate::picture::{Picture, Pixel};
 
 /// Half the edge of the square of surroundings with which a pixel is compared, as a share of the picture's height.
-const AROUND: f64 = 1.0 / 24.0;
+const REACH_SHARE: f64 = 1.0 / 24.0;
 /// Largest grey of a dark pixel, percent of the mean of its surroundings.
 const DARK_PERCENT: u32 = 88;
 /// Smallest width and height of a candidate blob, px: two for each square of a tag.
-const LEAST: usize = 16;
+const MIN_SIDE: usize = 16;
 /// Smallest distance of a corner from the other diagonal, as a share of that diagonal.
-const LEAST_SLIMNESS: f64 = 0.15;
+const MIN_SLIMNESS: f64 = 0.15;
 /// Smallest and largest ratio of a blob's pixel count to the area of its quadrilateral.
-const FILLED: [f64; 2] = [0.3, 1.2];
+const FILL_RATIOS: [f64; 2] = [0.3, 1.2];
 
 /// Four corners, accurate to some pixels, clockwise as seen in the picture.
 pub(crate) type Quad = [Pixel; 4];
@@ -23,52 +23,52 @@ pub(crate) type Quad = [Pixel; 4];
 /// Half the edge of the square of surroundings with which a pixel is compared, px.
 pub(crate) fn reach(picture: &Picture) -> usize {
     let [_, height] = picture.size();
-    ((height as f64 * AROUND) as usize).max(LEAST / 2)
+    ((height as f64 * REACH_SHARE) as usize).max(MIN_SIDE / 2)
 }
 
 /// Finds the dark blobs that are nearly quadrilaterals. A pixel is compared with its surroundings up to `reach` px
 /// on each side.
 pub(crate) fn quads(picture: &Picture, reach: usize) -> Vec<Quad> {
     let [width, height] = picture.size();
-    let mut dark = dark(picture, reach);
+    let mut is_dark = find_dark_pixels(picture, reach);
     let mut quads = Vec::new();
-    let (mut blob, mut open) = (Vec::new(), Vec::new());
-    for start in 0..dark.len() {
-        if !dark[start] {
+    let (mut blob, mut to_visit) = (Vec::new(), Vec::new());
+    for start in 0..is_dark.len() {
+        if !is_dark[start] {
             continue;
         }
         blob.clear();
-        dark[start] = false;
-        open.push(start);
-        while let Some(at) = open.pop() {
-            blob.push(at);
-            let column = at % width;
+        is_dark[start] = false;
+        to_visit.push(start);
+        while let Some(index) = to_visit.pop() {
+            blob.push(index);
+            let column = index % width;
             let mut visit = |next: usize| {
-                if dark[next] {
-                    dark[next] = false;
-                    open.push(next);
+                if is_dark[next] {
+                    is_dark[next] = false;
+                    to_visit.push(next);
                 }
             };
             if column > 0 {
-                visit(at - 1);
+                visit(index - 1);
             }
             if column + 1 < width {
-                visit(at + 1);
+                visit(index + 1);
             }
-            if at >= width {
-                visit(at - width);
+            if index >= width {
+                visit(index - width);
             }
-            if at + width < width * height {
-                visit(at + width);
+            if index + width < width * height {
+                visit(index + width);
             }
         }
-        quads.extend(quad(&blob, width, height));
+        quads.extend(corners_of(&blob, width, height));
     }
     quads
 }
 
 /// True for each pixel that is darker than its surroundings.
-fn dark(picture: &Picture, reach: usize) -> Vec<bool> {
+fn find_dark_pixels(picture: &Picture, reach: usize) -> Vec<bool> {
     let [width, height] = picture.size();
     // The sums of all pixels above and to the left; the table is one wider and higher than the picture.
     let mut sums = vec![0u32; (width + 1) * (height + 1)];
@@ -101,44 +101,45 @@ fn dark(picture: &Picture, reach: usize) -> Vec<bool> {
 }
 
 /// The corners of a blob; `None` if it is small, reaches the picture's border, or is not nearly a quadrilateral.
-fn quad(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
-    if blob.len() < LEAST * LEAST / 4 {
+fn corners_of(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
+    if blob.len() < MIN_SIDE * MIN_SIDE / 4 {
         return None;
     }
-    let place = |at: usize| [(at % width) as f64, (at / width) as f64];
+    let pixel_of = |index: usize| [(index % width) as f64, (index / width) as f64];
     let (mut low, mut high) = ([f64::INFINITY; 2], [0.0f64; 2]);
-    for &at in blob {
-        let place = place(at);
+    for &index in blob {
+        let pixel = pixel_of(index);
         for i in 0..2 {
-            low[i] = low[i].min(place[i]);
-            high[i] = high[i].max(place[i]);
+            low[i] = low[i].min(pixel[i]);
+            high[i] = high[i].max(pixel[i]);
         }
     }
     let is_inside = low[0] > 0.0
         && low[1] > 0.0
         && high[0] < (width - 1) as f64
         && high[1] < (height - 1) as f64;
-    let is_large = (0..2).all(|i| high[i] - low[i] >= LEAST as f64);
+    let is_large = (0..2).all(|i| high[i] - low[i] >= MIN_SIDE as f64);
     if !is_inside || !is_large {
         return None;
     }
-    let farthest = |measure: &dyn Fn(Pixel) -> f64| {
-        let far = blob.iter().map(|&at| (measure(place(at)), at));
-        far.max_by(|a, b| a.0.total_cmp(&b.0))
+    let farthest_by = |measure: &dyn Fn(Pixel) -> f64| {
+        let distances = blob.iter().map(|&index| (measure(pixel_of(index)), index));
+        distances.max_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let from = |[x, y]: Pixel| move |[u, v]: Pixel| (u - x).hypot(v - y);
+    let distance_from = |[x, y]: Pixel| move |[u, v]: Pixel| (u - x).hypot(v - y);
     let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
-    let a = place(farthest(&from(middle))?.1);
-    let (diagonal, c) = farthest(&from(a))?;
-    let c = place(c);
+    let a = pixel_of(farthest_by(&distance_from(middle))?.1);
+    let (diagonal, c) = farthest_by(&distance_from(a))?;
+    let c = pixel_of(c);
     // Positive to the right of the line from a to c as seen in the picture, where y is down.
-    let side = |[x, y]: Pixel| ((c[0] - a[0]) * (y - a[1]) - (c[1] - a[1]) * (x - a[0])) / diagonal;
-    let (left, b) = farthest(&|at| -side(at))?;
-    let (right, d) = farthest(&side)?;
-    if left.min(right) < LEAST_SLIMNESS * diagonal {
+    let signed_distance =
+        |[x, y]: Pixel| ((c[0] - a[0]) * (y - a[1]) - (c[1] - a[1]) * (x - a[0])) / diagonal;
+    let (left, b) = farthest_by(&|point| -signed_distance(point))?;
+    let (right, d) = farthest_by(&signed_distance)?;
+    if left.min(right) < MIN_SLIMNESS * diagonal {
         return None;
     }
-    let filled = blob.len() as f64 / (diagonal * (left + right) / 2.0);
-    let is_filled = (FILLED[0]..FILLED[1]).contains(&filled);
-    is_filled.then_some([a, place(b), c, place(d)])
+    let fill_ratio = blob.len() as f64 / (diagonal * (left + right) / 2.0);
+    let is_filled = (FILL_RATIOS[0]..FILL_RATIOS[1]).contains(&fill_ratio);
+    is_filled.then_some([a, pixel_of(b), c, pixel_of(d)])
 }

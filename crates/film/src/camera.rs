@@ -34,10 +34,10 @@ impl Camera {
 
     /// The image of a point: x and y on the floor and z up from it, mm.
     pub(crate) fn project(&self, [x, y]: [f64; 2], z: f64) -> Pixel {
-        let seen = self.rotation * Vector3::new(x, y, z) + self.shift;
+        let in_camera = self.rotation * Vector3::new(x, y, z) + self.shift;
         [
-            self.middle[0] + self.focal * seen.x / seen.z,
-            self.middle[1] + self.focal * seen.y / seen.z,
+            self.middle[0] + self.focal * in_camera.x / in_camera.z,
+            self.middle[1] + self.focal * in_camera.y / in_camera.z,
         ]
     }
 
@@ -53,9 +53,9 @@ impl Camera {
 
     /// The camera's height above the floor, mm, and its tilt from straight down, deg.
     pub(crate) fn stand(&self) -> [f64; 2] {
-        let at = -(self.rotation.transpose() * self.shift);
-        let down = -self.rotation[(2, 2)];
-        [at.z, down.clamp(-1.0, 1.0).acos().to_degrees()]
+        let position = -(self.rotation.transpose() * self.shift);
+        let cos_tilt = -self.rotation[(2, 2)];
+        [position.z, cos_tilt.clamp(-1.0, 1.0).acos().to_degrees()]
     }
 }
 
@@ -83,5 +83,5 @@ pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<
     let turn = Rotation3::from_matrix_unchecked(rotation).scaled_axis();
     let shift = third * scale;
     let pose = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
-    pose.iter().all(|part| part.is_finite()).then_some(pose)
+    pose.iter().all(|value| value.is_finite()).then_some(pose)
 }

@@ -19,9 +19,9 @@ const MIN_EVEN_SHARE: f64 = 0.9;
 /// stops.
 const UNEVEN_SHARE: f64 = 0.25;
 /// Longest time for which the robot may walk unevenly before and after the even walk, in cycles.
-const UNEVEN: f64 = 1.25;
+const MAX_UNEVEN_CYCLES: f64 = 1.25;
 /// Time that is ignored after the start and before the end of the even walk, in cycles.
-const MARGIN: f64 = 0.15;
+const MARGIN_CYCLES: f64 = 0.15;
 
 /// The cycles of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +46,8 @@ pub(crate) struct Cycles {
 /// Fails if the robot does not move, moves differently from the gait, changes its movement, or walks for less than
 /// two cycles.
 pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
-    let (walked, [begin, end]) = select_even_walk(path, gait)?;
-    let steps = Steps::from_path(walked, gait.period);
+    let (walk, [begin, end]) = select_even_walk(path, gait)?;
+    let steps = Steps::from_path(walk, gait.period);
     let Clock {
         start: [start, begin_error],
         period,
@@ -60,34 +60,34 @@ pub(crate) fn find(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
     // The times of the calm phases within the walk.
     let first = ((begin - start) / period[0] - calm).ceil() as i64;
     let times = (first..).map(|i| start + (i as f64 + calm) * period[0]);
-    let near = HALF_WINDOW * gait.period;
+    let half_window = HALF_WINDOW * gait.period;
     let places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
-        .map(|time| Some((time, path::smoothed_at(path, time, near)?)))
+        .map(|time| Some((time, path::smoothed_at(path, time, half_window)?)))
         // The first calm phase may have too few pictures before it.
         .skip_while(Option::is_none)
         .map_while(|place| place)
         .collect();
     if places.len() < 3 {
-        return Err(too_short(end - begin, gait));
+        return Err(too_short_error(end - begin, gait));
     }
-    let to_calm =
-        to_calm(walked, &places, calm, period[0], gait).unwrap_or_else(|| gait.place_at(calm));
-    let from_calm = path::inverse(to_calm);
-    let travel = |pair: &[(f64, Place)]| {
+    let start_to_calm = displacement_to_calm(walk, &places, calm, period[0], gait)
+        .unwrap_or_else(|| gait.place_at(calm));
+    let calm_to_start = path::inverse(start_to_calm);
+    let travel_of = |pair: &[(f64, Place)]| {
         let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
-        path::compose(path::compose(to_calm, cycle), from_calm).travel()
+        path::compose(path::compose(start_to_calm, cycle), calm_to_start).travel()
     };
-    let begin = |(time, place): &(f64, Place)| PathPoint {
+    let beginning_of = |(time, place): &(f64, Place)| PathPoint {
         seconds: time - calm * period[0],
-        place: path::compose(*place, from_calm),
+        place: path::compose(*place, calm_to_start),
     };
     Ok(Cycles {
         period,
         pace: gait.pace(calm),
         ends: places.iter().map(|(time, _)| *time).collect(),
-        travels: places.windows(2).map(travel).collect(),
-        begins: places.iter().map(begin).collect(),
+        travels: places.windows(2).map(travel_of).collect(),
+        begins: places.iter().map(beginning_of).collect(),
         begin_error,
     })
 }
@@ -107,16 +107,16 @@ fn select_even_walk<'a>(
     gait: &Gait,
 ) -> Result<(&'a [PathPoint], [f64; 2]), Trouble> {
     let [begin, end] = find_even_walk(path, gait)?;
-    let first = path.partition_point(|seen| seen.seconds < begin);
-    let last = path.partition_point(|seen| seen.seconds <= end);
-    let walked = &path[first..last.max(first)];
-    if end - begin < 2.0 * gait.period || Steps::from_path(walked, gait.period).are_few() {
-        return Err(too_short(end - begin, gait));
+    let first = path.partition_point(|point| point.seconds < begin);
+    let last = path.partition_point(|point| point.seconds <= end);
+    let walk = &path[first..last.max(first)];
+    if end - begin < 2.0 * gait.period || Steps::from_path(walk, gait.period).are_few() {
+        return Err(too_short_error(end - begin, gait));
     }
-    Ok((walked, [begin, end]))
+    Ok((walk, [begin, end]))
 }
 
-fn too_short(seconds: f64, gait: &Gait) -> Trouble {
+fn too_short_error(seconds: f64, gait: &Gait) -> Trouble {
     Trouble::TooShort {
         cycles: seconds.max(0.0) / gait.period,
         period: gait.period,
@@ -125,25 +125,27 @@ fn too_short(seconds: f64, gait: &Gait) -> Trouble {
 
 /// The mean displacement from the beginning of a cycle to its calm phase; `None` if no cycle has pictures before
 /// and after its beginning.
-fn to_calm(
+fn displacement_to_calm(
     path: &[PathPoint],
     places: &[(f64, Place)],
     calm: f64,
     period: f64,
     gait: &Gait,
 ) -> Option<Place> {
-    let ways: Vec<Place> = places
+    let displacements: Vec<Place> = places
         .iter()
         .filter_map(|(time, place)| {
             let begin = place_at_beginning(path, time - calm * period, period, gait)?;
             Some(path::of_travel(place.seen_from(begin)))
         })
         .collect();
-    let mean = |part: fn(&Place) -> f64| ways.iter().map(part).sum::<f64>() / ways.len() as f64;
-    (!ways.is_empty()).then(|| Place {
-        forward: mean(|way| way.forward),
-        left: mean(|way| way.left),
-        heading: mean(|way| way.heading),
+    let mean_of = |coordinate: fn(&Place) -> f64| {
+        displacements.iter().map(coordinate).sum::<f64>() / displacements.len() as f64
+    };
+    (!displacements.is_empty()).then(|| Place {
+        forward: mean_of(|displacement| displacement.forward),
+        left: mean_of(|displacement| displacement.left),
+        heading: mean_of(|displacement| displacement.heading),
     })
 }
 
@@ -151,80 +153,80 @@ fn to_calm(
 /// predicted movement, then interpolated. Without the prediction, interpolation would be wrong for a gait that
 /// begins with a jerk. `None` if there is no picture before or after.
 fn place_at_beginning(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
-    let after = path.partition_point(|seen| seen.seconds < seconds);
-    let (a, b) = (path.get(after.checked_sub(1)?)?, path.get(after)?);
-    let by = |seen: &PathPoint| {
-        let phase = 1.0 + (seen.seconds - seconds) / period;
-        let moved = path::of_travel(gait.place_at(phase).seen_from(gait.place_at(1.0)));
-        path::compose(seen.place, path::inverse(moved))
+    let next_index = path.partition_point(|point| point.seconds < seconds);
+    let (a, b) = (path.get(next_index.checked_sub(1)?)?, path.get(next_index)?);
+    let moved_place = |point: &PathPoint| {
+        let phase = 1.0 + (point.seconds - seconds) / period;
+        let displacement = path::of_travel(gait.place_at(phase).seen_from(gait.place_at(1.0)));
+        path::compose(point.place, path::inverse(displacement))
     };
     let share = (seconds - a.seconds) / (b.seconds - a.seconds);
-    Some(path::interpolate(by(a), by(b), share))
+    Some(path::interpolate(moved_place(a), moved_place(b), share))
 }
 
 /// Finds the beginning and the end of the time in which the robot walks evenly, s.
 fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
     let moves: Vec<(f64, Travel)> = path
         .iter()
-        .filter_map(|seen| {
-            let later = path::interpolate_at(path, seen.seconds + gait.period)?;
-            Some((seen.seconds, later.seen_from(seen.place)))
+        .filter_map(|point| {
+            let later_place = path::interpolate_at(path, point.seconds + gait.period)?;
+            Some((point.seconds, later_place.seen_from(point.place)))
         })
         .collect();
     let sizes: Vec<f64> = moves
         .iter()
         .map(|(_, travel)| size(movement(*travel)))
         .collect();
-    let most = sizes.iter().copied().fold(0.0, f64::max);
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
     if moves.is_empty() {
-        let length = path.last().map_or(0.0, |seen| seen.seconds)
-            - path.first().map_or(0.0, |seen| seen.seconds);
-        return Err(too_short(length, gait));
+        let duration = path.last().map_or(0.0, |point| point.seconds)
+            - path.first().map_or(0.0, |point| point.seconds);
+        return Err(too_short_error(duration, gait));
     }
-    if most < MOVED {
-        let way = moves
+    if largest < MOVED {
+        let distances = moves
             .iter()
             .map(|(_, travel)| travel.forward.hypot(travel.left));
         return Err(Trouble::NotMoved {
-            way: way.fold(0.0, f64::max),
+            way: distances.fold(0.0, f64::max),
             turn: moves
                 .iter()
                 .map(|(_, travel)| travel.turn.abs())
                 .fold(0.0, f64::max),
         });
     }
-    let mut usual: Vec<f64> = sizes
+    let mut large_sizes: Vec<f64> = sizes
         .iter()
         .copied()
-        .filter(|size| *size > most / 2.0)
+        .filter(|size| *size > largest / 2.0)
         .collect();
-    usual.sort_by(f64::total_cmp);
-    let usual = usual[usual.len() / 2];
+    large_sizes.sort_by(f64::total_cmp);
+    let usual_size = large_sizes[large_sizes.len() / 2];
     // The longest run of times from which the robot moves as far as usual in a cycle.
-    let (mut best, mut run): (Option<[usize; 2]>, Option<usize>) = (None, None);
+    let (mut longest_run, mut run_start): (Option<[usize; 2]>, Option<usize>) = (None, None);
     for (i, size) in sizes.iter().enumerate() {
-        if *size < MIN_EVEN_SHARE * usual {
-            run = None;
+        if *size < MIN_EVEN_SHARE * usual_size {
+            run_start = None;
             continue;
         }
-        let from = *run.get_or_insert(i);
-        if best.is_none_or(|[a, b]| i - from > b - a) {
-            best = Some([from, i]);
+        let from = *run_start.get_or_insert(i);
+        if longest_run.is_none_or(|[a, b]| i - from > b - a) {
+            longest_run = Some([from, i]);
         }
     }
-    let [from, to] = best.unwrap_or_default();
-    let goes = |size: &f64| *size > UNEVEN_SHARE * usual;
-    let first = sizes.iter().position(goes).unwrap_or(from);
-    let last = sizes.iter().rposition(goes).unwrap_or(to);
+    let [from, to] = longest_run.unwrap_or_default();
+    let is_moving = |size: &f64| *size > UNEVEN_SHARE * usual_size;
+    let first = sizes.iter().position(is_moving).unwrap_or(from);
+    let last = sizes.iter().rposition(is_moving).unwrap_or(to);
     for (start, end, seconds) in [
         (first, from, moves[from].0),
         (to, last, moves[to].0 + gait.period),
     ] {
-        if moves[end].0 - moves[start].0 > UNEVEN * gait.period {
+        if moves[end].0 - moves[start].0 > MAX_UNEVEN_CYCLES * gait.period {
             let seconds = seconds - path[0].seconds;
             return Err(Trouble::Changes { seconds });
         }
     }
-    let margin = MARGIN * gait.period;
+    let margin = MARGIN_CYCLES * gait.period;
     Ok([moves[from].0 + margin, moves[to].0 + gait.period - margin])
 }

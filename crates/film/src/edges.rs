@@ -10,16 +10,16 @@ use crate::picture::{Picture, Pixel};
 use crate::sheet::SQUARES;
 
 /// Share of an edge's length that is ignored next to each corner, since the adjacent edge is too near.
-const ENDS: f64 = 0.12;
+const END_SHARE: f64 = 0.12;
 /// Distance to either side of an edge over which grey is sampled, px, if the tag is large enough.
-const ACROSS: f64 = 4.0;
+const MAX_ACROSS: f64 = 4.0;
 /// Largest such distance, as a share of a square's width, which limits it for small tags: the code begins one
 /// square inside, and the first corners have an error of a pixel.
-const ACROSS_SQUARE: f64 = 0.6;
+const MAX_ACROSS_SHARE: f64 = 0.6;
 /// Distance between samples across an edge, px.
-const STEP: f64 = 0.5;
+const STEP_PX: f64 = 0.5;
 /// Smallest difference of brightness that counts as an edge, in grey levels.
-const LEAST_CONTRAST: f64 = 25.0;
+const MIN_CONTRAST: f64 = 25.0;
 /// Largest root mean square distance of an edge's places from the fitted line, px.
 const MAX_EDGE_DEVIATION: f64 = 0.7;
 /// Number of iterations, each of which fits the lines again from better corners.
@@ -48,9 +48,9 @@ pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
         middle: 0.0,
     };
     for _ in 0..ROUNDS {
-        let corner = square.corners;
+        let corners = square.corners;
         let edges: [Option<(Line, f64)>; 4] =
-            std::array::from_fn(|i| edge(picture, corner[i], corner[(i + 1) % 4]));
+            std::array::from_fn(|i| fit_edge(picture, corners[i], corners[(i + 1) % 4]));
         let mut lines = Vec::with_capacity(4);
         square.middle = 0.0;
         for edge in edges {
@@ -67,68 +67,68 @@ pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
 
 /// Fits a line to the edge between two corners; returns the line, and the grey halfway between black and white.
 /// `None` if the edge is too short, too long, without contrast, or not straight.
-fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
+fn fit_edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
-    let across = ACROSS.min(ACROSS_SQUARE * length / SQUARES as f64);
-    if !(2.0 * STEP..1e4).contains(&across) {
+    let across = MAX_ACROSS.min(MAX_ACROSS_SHARE * length / SQUARES as f64);
+    if !(2.0 * STEP_PX..1e4).contains(&across) {
         return None;
     }
-    let (along, out) = ([dx / length, dy / length], [dy / length, -dx / length]);
-    let half = (across / STEP) as usize;
-    let count = ((length * (1.0 - 2.0 * ENDS)) as usize).max(4);
-    let start = ENDS * length;
-    let stride = length * (1.0 - 2.0 * ENDS) / (count - 1) as f64;
-    let mut profiles = vec![0.0; count * (2 * half + 1)];
-    for (i, profile) in profiles.chunks_mut(2 * half + 1).enumerate() {
+    let (along, normal) = ([dx / length, dy / length], [dy / length, -dx / length]);
+    let half_count = (across / STEP_PX) as usize;
+    let count = ((length * (1.0 - 2.0 * END_SHARE)) as usize).max(4);
+    let start = END_SHARE * length;
+    let stride = length * (1.0 - 2.0 * END_SHARE) / (count - 1) as f64;
+    let mut profiles = vec![0.0; count * (2 * half_count + 1)];
+    for (i, profile) in profiles.chunks_mut(2 * half_count + 1).enumerate() {
         let s = start + i as f64 * stride;
         for (j, grey) in profile.iter_mut().enumerate() {
-            let t = (j as f64 - half as f64) * STEP;
+            let t = (j as f64 - half_count as f64) * STEP_PX;
             *grey = picture.at([
-                from[0] + s * along[0] + t * out[0],
-                from[1] + s * along[1] + t * out[1],
+                from[0] + s * along[0] + t * normal[0],
+                from[1] + s * along[1] + t * normal[1],
             ]);
         }
     }
-    let column = |j: usize| {
+    let column_mean = |j: usize| {
         let sum: f64 = profiles
-            .chunks(2 * half + 1)
+            .chunks(2 * half_count + 1)
             .map(|profile| profile[j])
             .sum();
         sum / count as f64
     };
     let (black, white) = (
-        (column(0) + column(1)) / 2.0,
-        (column(2 * half) + column(2 * half - 1)) / 2.0,
+        (column_mean(0) + column_mean(1)) / 2.0,
+        (column_mean(2 * half_count) + column_mean(2 * half_count - 1)) / 2.0,
     );
-    if white - black < LEAST_CONTRAST {
+    if white - black < MIN_CONTRAST {
         return None;
     }
     // Fits the straight line t = offset + slope s by least squares; s starts at the middle of the edge.
-    let (mut sum, mut moment, mut square) = (0.0, 0.0, 0.0);
+    let (mut sum, mut moment, mut square_sum) = (0.0, 0.0, 0.0);
     let mut places = Vec::with_capacity(count);
-    for (i, profile) in profiles.chunks(2 * half + 1).enumerate() {
-        let ends = (profile[0] + profile[2 * half]) / 2.0;
-        let grey = profile.iter().sum::<f64>() - ends;
-        let bright = STEP * (grey - black * (2 * half) as f64) / (white - black);
+    for (i, profile) in profiles.chunks(2 * half_count + 1).enumerate() {
+        let ends_mean = (profile[0] + profile[2 * half_count]) / 2.0;
+        let grey = profile.iter().sum::<f64>() - ends_mean;
+        let bright_width = STEP_PX * (grey - black * (2 * half_count) as f64) / (white - black);
         let (s, t) = (
             (i as f64 - (count - 1) as f64 / 2.0) * stride,
-            half as f64 * STEP - bright,
+            half_count as f64 * STEP_PX - bright_width,
         );
         places.push((s, t));
         sum += t;
         moment += s * t;
-        square += s * s;
+        square_sum += s * s;
     }
-    let (offset, slope) = (sum / count as f64, moment / square);
-    let off = places.iter().map(|(s, t)| (t - offset - slope * s).powi(2));
-    if (off.sum::<f64>() / count as f64).sqrt() > MAX_EDGE_DEVIATION {
+    let (offset, slope) = (sum / count as f64, moment / square_sum);
+    let square_errors = places.iter().map(|(s, t)| (t - offset - slope * s).powi(2));
+    if (square_errors.sum::<f64>() / count as f64).sqrt() > MAX_EDGE_DEVIATION {
         return None;
     }
     let middle = length / 2.0;
     let line = Line {
-        at: std::array::from_fn(|i| from[i] + middle * along[i] + offset * out[i]),
-        along: std::array::from_fn(|i| along[i] + slope * out[i]),
+        at: std::array::from_fn(|i| from[i] + middle * along[i] + offset * normal[i]),
+        along: std::array::from_fn(|i| along[i] + slope * normal[i]),
     };
     Some((line, (black + white) / 2.0))
 }
@@ -137,7 +137,10 @@ fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
 fn intersect(a: &Line, b: &Line) -> Option<Pixel> {
     let cross = a.along[0] * b.along[1] - a.along[1] * b.along[0];
     let [x, y] = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
-    let far = (x * b.along[1] - y * b.along[0]) / cross;
-    let point = [a.at[0] + far * a.along[0], a.at[1] + far * a.along[1]];
-    point.iter().all(|part| part.is_finite()).then_some(point)
+    let distance = (x * b.along[1] - y * b.along[0]) / cross;
+    let point = [
+        a.at[0] + distance * a.along[0],
+        a.at[1] + distance * a.along[1],
+    ];
+    point.iter().all(|value| value.is_finite()).then_some(point)
 }

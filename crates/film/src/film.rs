@@ -12,15 +12,15 @@ use crate::trouble::Trouble;
 use crate::watched::{AnalysedFilm, Sight};
 
 /// Smallest distance of a floor tag's corner from its usual place that shows a moved camera, px.
-const MOVED: f64 = 1.0;
+const MIN_SHIFT: f64 = 1.0;
 /// Largest share of the pictures that may lack a needed tag.
-const LOST: f64 = 0.1;
+const MAX_LOST_SHARE: f64 = 0.1;
 /// Number of pictures in which the deck tag is used to find the camera.
 const SAMPLES: usize = 8;
 /// Distance beyond the floor tags, measured from their common middle, up to which places are valid, mm.
 const MAX_TAG_DISTANCE: f64 = 200.0;
 /// Largest difference between the deck tag's given height and the height found by its size, mm.
-const HEIGHT: f64 = 12.0;
+const MAX_HEIGHT_ERROR: f64 = 12.0;
 
 /// Pictures from one full search to the next, so that a second copy of a tag is noticed even if it appears later.
 const FULL_SEARCH_INTERVAL: usize = 16;
@@ -54,11 +54,11 @@ impl Film {
     /// picture, it searches the whole picture. If that search finds an id twice, both tags are returned.
     pub fn find_tags(&mut self, picture: &Picture) -> Vec<Tag> {
         self.since_whole = (self.since_whole + 1) % FULL_SEARCH_INTERVAL;
-        let last = self.last.iter().enumerate();
-        let near = last.map(|(id, corners)| tags::near(picture, id, corners.as_ref()?));
+        let last_tags = self.last.iter().enumerate();
+        let nearby_tags = last_tags.map(|(id, corners)| tags::near(picture, id, corners.as_ref()?));
         let tags = match self.since_whole {
             0 => None,
-            _ => near.collect::<Option<Vec<Tag>>>(),
+            _ => nearby_tags.collect::<Option<Vec<Tag>>>(),
         };
         let tags = tags.unwrap_or_else(|| {
             self.since_whole = 0;
@@ -81,7 +81,7 @@ impl Film {
         match self.frames.last() {
             None => self.size = picture.size(),
             Some(_) if self.size != picture.size() => return Err(Trouble::Size { number }),
-            Some(before) if seconds <= before.seconds => return Err(Trouble::Times { number }),
+            Some(previous) if seconds <= previous.seconds => return Err(Trouble::Times { number }),
             Some(_) => {}
         }
         let mut tags = [None; CODES.len()];
@@ -109,18 +109,18 @@ impl Film {
     /// floor tags.
     pub fn watch(&self, setup: Setup) -> Result<AnalysedFilm, Trouble> {
         self.check_tags()?;
-        let moved = self.is_moved();
+        let is_moved = self.is_moved();
         let measures = Measures {
             scale: setup.scale,
             height: setup.height,
             size: self.size,
         };
-        let scene = Scene::of(&self.views(moved)?, measures)?;
+        let scene = Scene::of(&self.views(is_moved)?, measures)?;
         let mut frames = Vec::with_capacity(self.frames.len());
         let mut path: Vec<PathPoint> = Vec::with_capacity(self.frames.len());
         let mut heights = Vec::with_capacity(self.frames.len());
         for frame in &self.frames {
-            if let Some(place) = frame.place(&scene, moved) {
+            if let Some(place) = frame.place(&scene, is_moved) {
                 frames.push(frame.clone());
                 path.push(PathPoint {
                     seconds: frame.seconds,
@@ -128,14 +128,14 @@ impl Film {
                 });
             }
             if let (Some(camera), Some(corners)) =
-                (frame.camera(&scene, moved), frame.tags[DECK_TAG])
+                (frame.camera(&scene, is_moved), frame.tags[DECK_TAG])
             {
                 heights.extend(scene.height(&camera, &corners));
             }
         }
         unwind(&mut path);
         let deck = heights.iter().sum::<f64>() / heights.len().max(1) as f64;
-        if (deck - setup.height).abs() > HEIGHT {
+        if (deck - setup.height).abs() > MAX_HEIGHT_ERROR {
             return Err(Trouble::Height {
                 found: deck,
                 height: setup.height,
@@ -148,7 +148,7 @@ impl Film {
             height,
             tilt,
             error: scene.error,
-            has_camera_moved: moved,
+            has_camera_moved: is_moved,
             deck,
         };
         Ok(AnalysedFilm::new(path, sight, scene, frames, setup.height))
@@ -157,7 +157,7 @@ impl Film {
     /// Checks that every floor tag is visible at least once, and the deck tag in most pictures.
     fn check_tags(&self) -> Result<(), Trouble> {
         let pictures = self.frames.len();
-        let seen = |id: usize| {
+        let count_of = |id: usize| {
             self.frames
                 .iter()
                 .filter(|frame| frame.tags[id].is_some())
@@ -166,14 +166,14 @@ impl Film {
         if pictures == 0 {
             return Err(Trouble::NoPictures);
         }
-        if (0..CODES.len()).all(|id| seen(id) == 0) {
+        if (0..CODES.len()).all(|id| count_of(id) == 0) {
             return Err(Trouble::NoTag);
         }
-        if let Some(id) = (0..FLOOR_TAGS).find(|&id| seen(id) == 0) {
+        if let Some(id) = (0..FLOOR_TAGS).find(|&id| count_of(id) == 0) {
             return Err(Trouble::FloorTag { id });
         }
-        let seen = seen(DECK_TAG);
-        if (seen as f64) < (1.0 - LOST) * pictures as f64 {
+        let seen = count_of(DECK_TAG);
+        if (seen as f64) < (1.0 - MAX_LOST_SHARE) * pictures as f64 {
             return Err(Trouble::DeckTag { seen, pictures });
         }
         Ok(())
@@ -183,13 +183,15 @@ impl Film {
     /// covered for a while seems to be elsewhere.
     fn usual_floor_corners(&self) -> FloorCorners {
         std::array::from_fn(|id| {
-            let seen: Vec<_> = self
+            let tags_seen: Vec<_> = self
                 .frames
                 .iter()
                 .filter_map(|frame| frame.tags[id])
                 .collect();
             std::array::from_fn(|corner| {
-                [0, 1].map(|i| interquartile_mean(seen.iter().map(|tag| tag[corner][i]).collect()))
+                [0, 1].map(|i| {
+                    interquartile_mean(tags_seen.iter().map(|tag| tag[corner][i]).collect())
+                })
             })
         })
     }
@@ -202,29 +204,30 @@ impl Film {
             let pairs = tag.iter().zip(usual);
             pairs
                 .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
-                .any(|far| far > MOVED)
+                .any(|distance| distance > MIN_SHIFT)
         };
-        let moved = |frame: &&Frame| {
+        let is_frame_moved = |frame: &&Frame| {
             let tags = (0..FLOOR_TAGS).filter_map(|id| Some((id, frame.tags[id]?)));
             tags.filter(|(id, tag)| is_elsewhere(tag, &usual[*id]))
                 .count()
                 > 1
         };
-        self.frames.iter().filter(moved).count() > self.frames.len() / 50
+        self.frames.iter().filter(is_frame_moved).count() > self.frames.len() / 50
     }
 
     /// Selects the pictures that are used to find the scene.
-    fn views(&self, moved: bool) -> Result<Vec<View>, Trouble> {
-        let whole: Vec<(FloorCorners, [Pixel; 4])> = self
+    fn views(&self, is_moved: bool) -> Result<Vec<View>, Trouble> {
+        let complete_frames: Vec<(FloorCorners, [Pixel; 4])> = self
             .frames
             .iter()
             .filter_map(|frame| Some((frame.floor()?, frame.tags[DECK_TAG]?)))
             .collect();
-        let spread = |count: usize| {
-            let last = SAMPLES.min(count).max(1);
-            (0..last).map(move |i| i * count.saturating_sub(1) / last.saturating_sub(1).max(1))
+        let spread_indices = |count: usize| {
+            let sample_count = SAMPLES.min(count).max(1);
+            (0..sample_count)
+                .map(move |i| i * count.saturating_sub(1) / sample_count.saturating_sub(1).max(1))
         };
-        if !moved {
+        if !is_moved {
             let decks: Vec<_> = self
                 .frames
                 .iter()
@@ -232,7 +235,7 @@ impl Film {
                 .collect();
             return Ok(vec![View {
                 floor: self.usual_floor_corners(),
-                decks: spread(decks.len()).map(|i| decks[i]).collect(),
+                decks: spread_indices(decks.len()).map(|i| decks[i]).collect(),
             }]);
         }
         let pictures = self
@@ -240,26 +243,31 @@ impl Film {
             .iter()
             .filter(|frame| frame.floor().is_none())
             .count();
-        if pictures as f64 > LOST * self.frames.len() as f64 || whole.is_empty() {
+        if pictures as f64 > MAX_LOST_SHARE * self.frames.len() as f64 || complete_frames.is_empty()
+        {
             return Err(Trouble::CameraMoved { pictures });
         }
-        let view = |i: usize| View {
-            floor: whole[i].0,
-            decks: vec![whole[i].1],
+        let view_of = |i: usize| View {
+            floor: complete_frames[i].0,
+            decks: vec![complete_frames[i].1],
         };
-        Ok(spread(whole.len()).map(view).collect())
+        Ok(spread_indices(complete_frames.len()).map(view_of).collect())
     }
 
     /// Checks that the robot stays where the floor tags give valid places.
     fn check_place(&self, scene: &Scene, path: &[PathPoint]) -> Result<(), Trouble> {
         let tags = scene.floor_tags();
         let middle = [0, 1].map(|i| tags.iter().map(|tag| tag[i]).sum::<f64>() / FLOOR_TAGS as f64);
-        let from = |[x, y]: [f64; 2]| (x - middle[0]).hypot(y - middle[1]);
-        let reach = tags.into_iter().map(from).fold(0.0, f64::max) + MAX_TAG_DISTANCE;
-        for seen in path {
-            let distance = from([seen.place.forward, seen.place.left]);
+        let distance_from_middle = |[x, y]: [f64; 2]| (x - middle[0]).hypot(y - middle[1]);
+        let reach = tags
+            .into_iter()
+            .map(distance_from_middle)
+            .fold(0.0, f64::max)
+            + MAX_TAG_DISTANCE;
+        for point in path {
+            let distance = distance_from_middle([point.place.forward, point.place.left]);
             if distance > reach {
-                let seconds = seen.seconds - self.frames[0].seconds;
+                let seconds = point.seconds - self.frames[0].seconds;
                 return Err(Trouble::OutOfSheet { distance, seconds });
             }
         }

@@ -25,16 +25,16 @@ impl Frame {
 
     /// The camera of the picture: the scene's camera, or, if the camera moved, the one found by the picture's floor
     /// tags; `None` if these do not determine it.
-    pub(crate) fn camera(&self, scene: &Scene, moved: bool) -> Option<Camera> {
-        match moved {
+    pub(crate) fn camera(&self, scene: &Scene, is_moved: bool) -> Option<Camera> {
+        match is_moved {
             false => Some(scene.camera()),
             true => Some(scene.camera_at(&scene.pose(&self.floor()?)?)),
         }
     }
 
     /// The robot's place; `None` if the needed tags are not visible or do not determine it.
-    pub(crate) fn place(&self, scene: &Scene, moved: bool) -> Option<Place> {
-        let camera = self.camera(scene, moved)?;
+    pub(crate) fn place(&self, scene: &Scene, is_moved: bool) -> Option<Place> {
+        let camera = self.camera(scene, is_moved)?;
         scene.place(&camera, self.tags[DECK_TAG].as_ref()?)
     }
 }

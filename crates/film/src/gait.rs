@@ -23,16 +23,16 @@ pub struct Gait {
 impl Gait {
     /// The displacement of a cycle divided by its duration, mm/s; a turn counts as the distance that the legs move.
     pub fn speed(&self) -> f64 {
-        let way = self.path[self.path.len() - 1].travel();
-        size(movement(way)) / self.period
+        let displacement = self.path[self.path.len() - 1].travel();
+        size(movement(displacement)) / self.period
     }
 
     /// The place at a phase, relative to the start of cycle 0.
     pub(crate) fn place_at(&self, phase: f64) -> Place {
         let count = self.path.len() - 1;
-        let within = phase.rem_euclid(1.0) * count as f64;
-        let i = (within as usize).min(count - 1);
-        let (a, b, share) = (self.path[i], self.path[i + 1], within - i as f64);
+        let position = phase.rem_euclid(1.0) * count as f64;
+        let i = (position as usize).min(count - 1);
+        let (a, b, share) = (self.path[i], self.path[i + 1], position - i as f64);
         let mut place = path::interpolate(a, b, share);
         for _ in 0..phase.floor().max(0.0) as usize {
             place = path::compose(self.path[count], place);
@@ -44,34 +44,39 @@ impl Gait {
     /// accurate.
     pub(crate) fn calm_phase(&self) -> f64 {
         let count = 50;
-        let roughness = |i: usize| {
-            let part = |j: f64| {
-                let from = (i as f64 + j) / count as f64;
-                self.step(from, from + 1.0 / count as f64)
+        let roughness_at = |i: usize| {
+            let movement_at = |j: f64| {
+                let start = (i as f64 + j) / count as f64;
+                self.step(start, start + 1.0 / count as f64)
             };
-            let parts = [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(part);
-            let changes = parts
+            let movements = [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(movement_at);
+            let changes = movements
                 .windows(2)
                 .map(|pair| size([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
             // A movement itself counts half, because the clock is not known exactly.
-            changes.sum::<f64>() + 0.5 * parts.iter().map(|part| size(*part)).sum::<f64>()
+            changes.sum::<f64>()
+                + 0.5
+                    * movements
+                        .iter()
+                        .map(|movement| size(*movement))
+                        .sum::<f64>()
         };
-        let least = (0..count).min_by(|&a, &b| roughness(a).total_cmp(&roughness(b)));
-        least.unwrap_or(0) as f64 / count as f64
+        let calmest = (0..count).min_by(|&a, &b| roughness_at(a).total_cmp(&roughness_at(b)));
+        calmest.unwrap_or(0) as f64 / count as f64
     }
 
     /// The predicted movement around a phase, scaled to an entire cycle: mm, mm, deg.
     pub(crate) fn pace(&self, phase: f64) -> [f64; 3] {
         let [forward, left, turn] = self.step(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
-        [forward, left, (turn / ARM).to_degrees()].map(|part| part / HALF_WINDOW)
+        [forward, left, (turn / ARM).to_degrees()].map(|value| value / HALF_WINDOW)
     }
 
     /// The predicted movement from a phase to a later one.
     pub(crate) fn step(&self, from: f64, to: f64) -> [f64; 3] {
-        let whole = from.floor();
+        let whole_cycles = from.floor();
         movement(
-            self.place_at(to - whole)
-                .seen_from(self.place_at(from - whole)),
+            self.place_at(to - whole_cycles)
+                .seen_from(self.place_at(from - whole_cycles)),
         )
     }
 }
@@ -83,5 +88,9 @@ pub(crate) fn movement(travel: Travel) -> [f64; 3] {
 
 /// The length of a movement, mm.
 pub(crate) fn size(movement: [f64; 3]) -> f64 {
-    movement.iter().map(|part| part * part).sum::<f64>().sqrt()
+    movement
+        .iter()
+        .map(|value| value * value)
+        .sum::<f64>()
+        .sqrt()
 }

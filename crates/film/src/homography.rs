@@ -17,36 +17,42 @@ impl Homography {
     pub(crate) fn of_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
         let rows = 2 * from.len().min(to.len());
         let mut matrix = DMatrix::zeros(rows, 8);
-        let mut right = DVector::zeros(rows);
+        let mut right_side = DVector::zeros(rows);
         // The points are scaled to at most 1, so that the columns are of similar size.
         let scale = from
             .iter()
             .flatten()
-            .fold(1e-9f64, |most, part| most.max(part.abs()));
+            .fold(1e-9f64, |largest, value| largest.max(value.abs()));
         for (i, (&[x, y], &[u, v])) in from.iter().zip(to).enumerate() {
             let [x, y] = [x / scale, y / scale];
-            for (j, (row, part)) in [
+            for (j, (row, target)) in [
                 ([x, y, 1.0, 0.0, 0.0, 0.0], u),
                 ([0.0, 0.0, 0.0, x, y, 1.0], v),
             ]
             .into_iter()
             .enumerate()
             {
-                for (column, value) in row.into_iter().chain([-part * x, -part * y]).enumerate() {
+                for (column, value) in row
+                    .into_iter()
+                    .chain([-target * x, -target * y])
+                    .enumerate()
+                {
                     matrix[(2 * i + j, column)] = value;
                 }
-                right[2 * i + j] = part;
+                right_side[2 * i + j] = target;
             }
         }
-        let solved = if rows == 8 {
-            matrix.lu().solve(&right)?
+        let solution = if rows == 8 {
+            matrix.lu().solve(&right_side)?
         } else {
-            matrix.svd(true, true).solve(&right, 1e-12).ok()?
+            matrix.svd(true, true).solve(&right_side, 1e-12).ok()?
         };
-        let h = |i: usize| solved[i];
+        let h = |i: usize| solution[i];
         let map = Matrix3::new(h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), 1.0);
         let map = map * Matrix3::from_diagonal(&Vector3::new(1.0 / scale, 1.0 / scale, 1.0));
-        map.iter().all(|part| part.is_finite()).then_some(Self(map))
+        map.iter()
+            .all(|value| value.is_finite())
+            .then_some(Self(map))
     }
 
     /// The image of a point.

@@ -10,10 +10,10 @@ use crate::path::PathPoint;
 use crate::trouble::Trouble;
 
 /// Largest misfit of an accepted gait: the misfit of a robot that moves half as far as predicted.
-const FITS: f64 = 0.25;
+const MAX_MISFIT: f64 = 0.25;
 /// Smallest ratio of the second best gait's misfit to the best gait's: Fisher's F for a probability of 1 %, if both
 /// variances come from four quarters of a cycle on three axes.
-const CLEAR: f64 = 4.16;
+const MIN_RATIO: f64 = 4.16;
 
 /// The gait that a walk resembles, by its index.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,31 +29,35 @@ pub enum Likeness {
 /// Finds the gait that a path shows.
 pub(crate) fn find_likeness(path: &[PathPoint], gaits: &[Gait]) -> Likeness {
     let mut fits: Vec<(f64, usize)> = Vec::new();
-    let mut slow = (f64::INFINITY, 1);
+    let mut best_slow = (f64::INFINITY, 1);
     let mut trouble = None;
-    for (number, gait) in gaits.iter().enumerate() {
+    for (index, gait) in gaits.iter().enumerate() {
         match cycles::steps(path, gait) {
             Ok(steps) => {
-                fits.push((steps.misfit(gait), number));
-                let longer = steps.misfit_of_longer(gait);
-                if longer.0 < slow.0 {
-                    slow = longer;
+                fits.push((steps.misfit(gait), index));
+                let slow_fit = steps.misfit_of_longer(gait);
+                if slow_fit.0 < best_slow.0 {
+                    best_slow = slow_fit;
                 }
             }
-            Err(why) => trouble = trouble.or(Some(why)),
+            Err(reason) => trouble = trouble.or(Some(reason)),
         }
     }
     fits.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = fits.first().map_or(f64::INFINITY, |fit| fit.0);
     match fits[..] {
         // A slow gait may move as far in a second as another gait at its usual pace.
-        _ if slow.0 < best.min(FITS) => Likeness::None(Trouble::AnotherPace { times: slow.1 }),
-        [(_, number), (next, rival), ..] if best < FITS && next < CLEAR * best => {
-            Likeness::Two(number, rival)
+        _ if best_slow.0 < best.min(MAX_MISFIT) => {
+            Likeness::None(Trouble::AnotherPace { times: best_slow.1 })
         }
-        [(_, number), ..] if best < FITS => Likeness::One(number),
-        [(_, number), ..] => Likeness::None(Trouble::NotThisGait {
-            period: gaits[number].period,
+        [(_, index), (second_misfit, rival), ..]
+            if best < MAX_MISFIT && second_misfit < MIN_RATIO * best =>
+        {
+            Likeness::Two(index, rival)
+        }
+        [(_, index), ..] if best < MAX_MISFIT => Likeness::One(index),
+        [(_, index), ..] => Likeness::None(Trouble::NotThisGait {
+            period: gaits[index].period,
         }),
         [] => Likeness::None(trouble.unwrap_or(Trouble::NoGait)),
     }

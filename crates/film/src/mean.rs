@@ -9,7 +9,7 @@
 //! elsewhere on the floor. Then the walks count as the samples, and not their cycles.
 
 /// Share of a normal distribution within two standard deviations.
-const WITHIN_TWO: f64 = 0.9545;
+const SHARE_WITHIN_TWO: f64 = 0.9545;
 
 /// A mean over the cycles of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,34 +30,38 @@ pub(crate) type Cycles = (Vec<f64>, f64);
 /// Computes the mean over walks of two cycles or more.
 pub(crate) fn mean_of_walks(walks: &[Cycles]) -> Mean {
     let count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
-    let own = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
-    let weighted = |value: &dyn Fn(&Cycles) -> f64| {
+    let mean_of = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
+    let weighted_mean = |value: &dyn Fn(&Cycles) -> f64| {
         let terms = walks.iter().map(|walk| walk.0.len() as f64 * value(walk));
         terms.sum::<f64>() / count as f64
     };
-    let mean = weighted(&|(cycles, _)| own(cycles));
-    let around = |cycles: &[f64], middle: f64| {
+    let mean = weighted_mean(&|(cycles, _)| mean_of(cycles));
+    let squares_around = |cycles: &[f64], middle: f64| {
         let squares = cycles.iter().map(|cycle| (cycle - middle).powi(2));
         squares.sum::<f64>()
     };
-    let all: f64 = walks.iter().map(|(cycles, _)| around(cycles, mean)).sum();
-    let inside: f64 = walks
+    let total_squares: f64 = walks
         .iter()
-        .map(|(cycles, _)| around(cycles, own(cycles)))
+        .map(|(cycles, _)| squares_around(cycles, mean))
+        .sum();
+    let inside_squares: f64 = walks
+        .iter()
+        .map(|(cycles, _)| squares_around(cycles, mean_of(cycles)))
         .sum();
     let freedom = count - walks.len();
-    let within = inside / freedom as f64;
-    let between = (all - inside) / walks.len().saturating_sub(1).max(1) as f64;
-    let (variance, freedom) = match between > within {
-        true => (between, walks.len() - 1),
-        false => (within, freedom),
+    let variance_within = inside_squares / freedom as f64;
+    let variance_between =
+        (total_squares - inside_squares) / walks.len().saturating_sub(1).max(1) as f64;
+    let (variance, freedom) = match variance_between > variance_within {
+        true => (variance_between, walks.len() - 1),
+        false => (variance_within, freedom),
     };
     let error = (variance / count as f64).sqrt() * widening(freedom);
     // Camera, clock and ruler are nearly the same for all walks, so more walks do not reduce their error.
-    let common = weighted(&|(_, common)| *common);
+    let common = weighted_mean(&|(_, common)| *common);
     Mean {
         mean,
-        spread: (all / (count - 1) as f64).sqrt(),
+        spread: (total_squares / (count - 1) as f64).sqrt(),
         error: error.hypot(common),
         common,
     }
@@ -69,7 +73,7 @@ pub(crate) fn widening(freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        *if student(2.0 * middle, freedom) < WITHIN_TWO {
+        *if student_probability(2.0 * middle, freedom) < SHARE_WITHIN_TWO {
             &mut low
         } else {
             &mut high
@@ -79,19 +83,19 @@ pub(crate) fn widening(freedom: usize) -> f64 {
 }
 
 /// The probability that Student's variable lies between `-t` and `t`.
-fn student(t: f64, freedom: usize) -> f64 {
+fn student_probability(t: f64, freedom: usize) -> f64 {
     let angle = (t / (freedom as f64).sqrt()).atan();
     let (sin, cos) = angle.sin_cos();
     // The terms of the finite series for whole degrees of freedom.
-    let odd = freedom % 2 == 1;
-    let mut term = if odd { cos } else { 1.0 };
+    let is_odd = freedom % 2 == 1;
+    let mut term = if is_odd { cos } else { 1.0 };
     let mut sum = 0.0;
     for i in 0..freedom / 2 {
         sum += term;
-        let above = if odd { 2 * i + 2 } else { 2 * i + 1 };
-        term *= cos * cos * above as f64 / (above + 1) as f64;
+        let numerator = if is_odd { 2 * i + 2 } else { 2 * i + 1 };
+        term *= cos * cos * numerator as f64 / (numerator + 1) as f64;
     }
-    match odd {
+    match is_odd {
         true => (angle + sin * sum) * std::f64::consts::FRAC_2_PI,
         false => sin * sum,
     }
@@ -111,13 +115,13 @@ mod tests {
             (9, 2.262),
             (30, 2.042),
         ] {
-            let share = student(t, freedom);
+            let share = student_probability(t, freedom);
             assert!((share - 0.95).abs() < 1e-4, "{freedom}: {share}");
         }
     }
 
     /// Random numbers of a normal distribution, the same in every run.
-    fn noise() -> impl FnMut() -> f64 {
+    fn noise_source() -> impl FnMut() -> f64 {
         let mut state = 1u64;
         let mut uniform = move || {
             state = state
@@ -130,36 +134,39 @@ mod tests {
 
     #[test]
     fn the_truth_lies_within_two_errors_as_often_for_three_cycles_as_for_ten() {
-        let mut noise = noise();
+        let mut noise = noise_source();
         for count in [3, 5, 10] {
             let films = 4000;
-            let within = (0..films).filter(|_| {
+            let hits = (0..films).filter(|_| {
                 let cycles: Vec<f64> = (0..count).map(|_| 3.0 + noise()).collect();
                 let mean = mean_of_walks(&[(cycles, 0.0)]);
                 (mean.mean - 3.0).abs() < 2.0 * mean.error
             });
-            let share = within.count() as f64 / f64::from(films);
+            let share = hits.count() as f64 / f64::from(films);
             assert!((0.945..0.965).contains(&share), "{count}: {share}");
         }
     }
 
     #[test]
     fn walks_that_differ_make_the_error_that_of_a_few_walks() {
-        let mut noise = noise();
-        for (differ, walks) in [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)] {
+        let mut noise = noise_source();
+        for (walk_spread, walks) in [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)] {
             let films = 2000;
-            let within = (0..films).filter(|_| {
+            let hits = (0..films).filter(|_| {
                 let mut walk = |_| {
-                    let own = differ * noise();
-                    ((0..4).map(|_| 3.0 + own + noise()).collect(), 0.0)
+                    let walk_offset = walk_spread * noise();
+                    ((0..4).map(|_| 3.0 + walk_offset + noise()).collect(), 0.0)
                 };
-                let all: Vec<_> = (0..walks).map(&mut walk).collect();
-                let mean = mean_of_walks(&all);
+                let values: Vec<_> = (0..walks).map(&mut walk).collect();
+                let mean = mean_of_walks(&values);
                 (mean.mean - 3.0).abs() < 2.0 * mean.error
             });
-            let share = within.count() as f64 / f64::from(films);
+            let share = hits.count() as f64 / f64::from(films);
             // Two or three walks hardly show if walks differ, so the bounds are wide.
-            assert!((0.9..0.99).contains(&share), "{differ} {walks}: {share}");
+            assert!(
+                (0.9..0.99).contains(&share),
+                "{walk_spread} {walks}: {share}"
+            );
         }
     }
 }

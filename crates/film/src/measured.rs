@@ -31,31 +31,31 @@ pub struct Measured {
 impl Measured {
     /// Computes the means over walks.
     pub(crate) fn of(walks: Vec<Walk>, gait: &Gait) -> Self {
-        let mean = |i: usize| {
-            let own = |walk: &Walk| {
+        let mean_of = |i: usize| {
+            let values_of = |walk: &Walk| {
                 (
                     parts(&walk.cycles.travels)[i].clone(),
                     walk.common_errors()[i],
                 )
             };
-            mean::mean_of_walks(&walks.iter().map(own).collect::<Vec<_>>())
+            mean::mean_of_walks(&walks.iter().map(values_of).collect::<Vec<_>>())
         };
         let cycles: Vec<Travel> = walks
             .iter()
             .flat_map(|walk| walk.cycles.travels.clone())
             .collect();
-        let share = |walk: &Walk| walk.cycles.travels.len() as f64 / cycles.len() as f64;
-        let period = |i: usize| {
+        let share_of = |walk: &Walk| walk.cycles.travels.len() as f64 / cycles.len() as f64;
+        let mean_period = |i: usize| {
             walks
                 .iter()
-                .map(|walk| share(walk) * walk.cycles.period[i])
+                .map(|walk| share_of(walk) * walk.cycles.period[i])
                 .sum()
         };
         Self {
-            forward: mean(0),
-            left: mean(1),
-            turn: mean(2),
-            period: [period(0), period(1)],
+            forward: mean_of(0),
+            left: mean_of(1),
+            turn: mean_of(2),
+            period: [mean_period(0), mean_period(1)],
             ends: walks
                 .iter()
                 .flat_map(|walk| walk.cycles.ends.clone())

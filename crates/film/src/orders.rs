@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Time from one order to the next, s.
 pub const PAUSE: f64 = 1.0;
 /// Half of a large step, deg from neutral.
-const SIDE: f64 = 30.0;
+const HALF_STEP: f64 = 30.0;
 /// Number of large steps.
 const FLIPS: usize = 8;
 /// The poses for measuring the servo's angle: deg from neutral, and true if the direction is reversed. They go from
@@ -51,14 +51,14 @@ pub fn orders(side: f64) -> Vec<Order> {
         sweep: side * sweep,
         is_reversed,
     };
-    let mut all = vec![order(0.0, false), order(SIDE, false)];
-    all.extend((0..FLIPS).map(|i| order(SIDE, i % 2 == 0)));
-    all.extend(VISITS.map(|(sweep, is_reversed)| order(sweep, is_reversed)));
-    let (rest, _) = VISITS[VISITS.len() - 1];
+    let mut orders = vec![order(0.0, false), order(HALF_STEP, false)];
+    orders.extend((0..FLIPS).map(|i| order(HALF_STEP, i % 2 == 0)));
+    orders.extend(VISITS.map(|(sweep, is_reversed)| order(sweep, is_reversed)));
+    let (last_sweep, _) = VISITS[VISITS.len() - 1];
     for swing in SWINGS {
-        all.extend([order(rest - swing, false), order(rest, false)]);
+        orders.extend([order(last_sweep - swing, false), order(last_sweep, false)]);
     }
-    all
+    orders
 }
 
 /// The indices of the orders for the large steps.
@@ -84,15 +84,15 @@ mod tests {
     #[test]
     fn large_steps_are_of_60_deg_to_both_sides_and_small_ones_go_there_and_back() {
         let orders = orders(-1.0);
-        let step = |i: usize| orders[i].pulse_angle() - orders[i - 1].pulse_angle();
+        let step_of = |i: usize| orders[i].pulse_angle() - orders[i - 1].pulse_angle();
         for i in large_step_indices() {
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
-            assert_eq!(step(i), 2.0 * SIDE * side, "{i}");
+            assert_eq!(step_of(i), 2.0 * HALF_STEP * side, "{i}");
         }
         assert_eq!(swings().end, orders.len());
         for i in swings().step_by(2) {
             assert!(
-                (step(i) + step(i + 1)).abs() < 1e-12 && step(i) > 0.0,
+                (step_of(i) + step_of(i + 1)).abs() < 1e-12 && step_of(i) > 0.0,
                 "{i}"
             );
         }
@@ -100,9 +100,10 @@ mod tests {
 
     #[test]
     fn the_last_visit_comes_from_the_side_from_which_small_steps_turn_back() {
-        let (orders, swing) = (orders(1.0), swings().start);
-        let last = orders[swing - 1].pulse_angle() - orders[swing - 2].pulse_angle();
-        let first = orders[swing].pulse_angle() - orders[swing - 1].pulse_angle();
-        assert!(last * first < 0.0);
+        let (orders, first_swing) = (orders(1.0), swings().start);
+        let visit_step =
+            orders[first_swing - 1].pulse_angle() - orders[first_swing - 2].pulse_angle();
+        let swing_step = orders[first_swing].pulse_angle() - orders[first_swing - 1].pulse_angle();
+        assert!(visit_step * swing_step < 0.0);
     }
 }

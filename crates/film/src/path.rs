@@ -5,7 +5,7 @@ use lizard_contact::{Place, Travel};
 use crate::least;
 
 /// Smallest number of pictures to which a parabola is fitted.
-const LEAST: usize = 4;
+const MIN_PICTURES: usize = 4;
 
 /// The robot's place in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,8 +17,8 @@ pub struct PathPoint {
 }
 
 /// Converts a place relative to `from` into a place on the floor.
-pub(crate) fn compose(from: Place, seen: Place) -> Place {
-    from.after(seen.travel())
+pub(crate) fn compose(from: Place, relative: Place) -> Place {
+    from.after(relative.travel())
 }
 
 /// Inverts a place: the floor's origin relative to `place`.
@@ -41,23 +41,23 @@ pub(crate) fn interpolate(a: Place, b: Place, share: f64) -> Place {
 }
 
 /// Makes the headings continuous, so that two full turns differ from none.
-pub(crate) fn unwind(seen: &mut [PathPoint]) {
-    for i in 1..seen.len() {
-        let before = seen[i - 1].place.heading;
-        let turned = seen[i].place.heading - before;
-        let whole = (turned / std::f64::consts::TAU).round() * std::f64::consts::TAU;
-        seen[i].place.heading -= whole;
+pub(crate) fn unwind(path: &mut [PathPoint]) {
+    for i in 1..path.len() {
+        let previous = path[i - 1].place.heading;
+        let turn = path[i].place.heading - previous;
+        let whole_turns = (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        path[i].place.heading -= whole_turns;
     }
 }
 
 /// The place at a time, interpolated between two pictures; `None` before the first or after the last picture.
 pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<Place> {
-    let after = path.partition_point(|seen| seen.seconds < seconds);
-    let b = path.get(after)?;
-    let a = &path[after.checked_sub(1).unwrap_or(after)];
-    let apart = b.seconds - a.seconds;
-    let share = if apart > 0.0 {
-        (seconds - a.seconds) / apart
+    let next_index = path.partition_point(|point| point.seconds < seconds);
+    let b = path.get(next_index)?;
+    let a = &path[next_index.checked_sub(1).unwrap_or(next_index)];
+    let interval = b.seconds - a.seconds;
+    let share = if interval > 0.0 {
+        (seconds - a.seconds) / interval
     } else {
         1.0
     };
@@ -65,35 +65,35 @@ pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<Place> 
         .then(|| interpolate(a.place, b.place, share))
 }
 
-/// The place at a time, by a parabola fitted to the pictures within `half` seconds of it, or to the four nearest
+/// The place at a time, by a parabola fitted to the pictures within `half_window` seconds of it, or to the four nearest
 /// ones if there are fewer. `None` if there are no pictures before or after.
-pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half: f64) -> Option<Place> {
-    let mut begin = path.partition_point(|seen| seen.seconds < seconds - half);
-    let mut end = path.partition_point(|seen| seen.seconds <= seconds + half);
-    while end - begin < LEAST {
+pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half_window: f64) -> Option<Place> {
+    let mut begin = path.partition_point(|point| point.seconds < seconds - half_window);
+    let mut end = path.partition_point(|point| point.seconds <= seconds + half_window);
+    while end - begin < MIN_PICTURES {
         if begin == 0 || end == path.len() {
             return None;
         }
         (begin, end) = (begin - 1, end + 1);
     }
-    let near = &path[begin..end];
-    if near[0].seconds > seconds || near[near.len() - 1].seconds < seconds {
+    let nearby = &path[begin..end];
+    if nearby[0].seconds > seconds || nearby[nearby.len() - 1].seconds < seconds {
         return None;
     }
-    let middle = |part: fn(&Place) -> f64| {
+    let smoothed = |coordinate: fn(&Place) -> f64| {
         // A constant curve through the first picture is a sufficient start, because the model is linear.
-        let model = |at: &[f64]| -> Vec<f64> {
-            let residual = |seen: &PathPoint| {
-                let t = (seen.seconds - seconds) / half;
-                at[0] + at[1] * t + at[2] * t * t - part(&seen.place)
+        let model = |parameters: &[f64]| -> Vec<f64> {
+            let residual_of = |point: &PathPoint| {
+                let t = (point.seconds - seconds) / half_window;
+                parameters[0] + parameters[1] * t + parameters[2] * t * t - coordinate(&point.place)
             };
-            near.iter().map(residual).collect()
+            nearby.iter().map(residual_of).collect()
         };
-        Some(least::fit(&[part(&near[0].place), 0.0, 0.0], model)?.at[0])
+        Some(least::fit(&[coordinate(&nearby[0].place), 0.0, 0.0], model)?.at[0])
     };
     Some(Place {
-        forward: middle(|place| place.forward)?,
-        left: middle(|place| place.left)?,
-        heading: middle(|place| place.heading)?,
+        forward: smoothed(|place| place.forward)?,
+        left: smoothed(|place| place.left)?,
+        heading: smoothed(|place| place.heading)?,
     })
 }

@@ -14,8 +14,8 @@ pub struct Picture {
 impl Picture {
     /// Makes a picture from its rows; `None` if the length of `grey` is not `width * height`, or is zero.
     pub fn new(width: usize, height: usize, grey: Vec<u8>) -> Option<Self> {
-        let fits = width.checked_mul(height) == Some(grey.len()) && !grey.is_empty();
-        fits.then_some(Self {
+        let is_complete = width.checked_mul(height) == Some(grey.len()) && !grey.is_empty();
+        is_complete.then_some(Self {
             width,
             height,
             grey,
@@ -70,9 +70,9 @@ impl Picture {
             (row + 1).min(self.height - 1),
         );
         let (u, v) = (x - column as f64, y - row as f64);
-        let grey = |row: usize, column: usize| f64::from(self.grey[row * self.width + column]);
-        (grey(row, column) * (1.0 - u) + grey(row, right) * u) * (1.0 - v)
-            + (grey(below, column) * (1.0 - u) + grey(below, right) * u) * v
+        let grey_at = |row: usize, column: usize| f64::from(self.grey[row * self.width + column]);
+        (grey_at(row, column) * (1.0 - u) + grey_at(row, right) * u) * (1.0 - v)
+            + (grey_at(below, column) * (1.0 - u) + grey_at(below, right) * u) * v
     }
 }
 

@@ -75,8 +75,9 @@ impl Scene {
         let best = fits.min_by(|a, b| a.squares.total_cmp(&b.squares));
         let best = best.ok_or(Trouble::NoCamera)?;
         let count = views.len() * FLOOR_TAGS * 4;
-        let floor = residuals(&best.at, views, &measures, false);
-        let error = FLOOR_SIGMA * (floor.iter().map(|r| r * r).sum::<f64>() / count as f64).sqrt();
+        let floor_errors = residuals(&best.at, views, &measures, false);
+        let error =
+            FLOOR_SIGMA * (floor_errors.iter().map(|r| r * r).sum::<f64>() / count as f64).sqrt();
         if !error.is_finite() || error > LARGEST_ERROR {
             return Err(Trouble::NotThisSheet { error });
         }
@@ -86,23 +87,23 @@ impl Scene {
                 edge: sheet::FLOOR_EDGE + 2.0 * spread / measures.scale,
             });
         }
-        let kept = SHARED + 6;
+        let kept_count = SHARED + 6;
         let freedom = (2 * count + views.iter().map(|view| 8 * view.decks.len()).sum::<usize>())
             .saturating_sub(best.at.len());
         let excess = (best.squares / freedom.max(1) as f64).max(1.0);
         Ok(Self {
             measures,
-            parameters: best.at[..kept].to_vec(),
-            covariance: best.covariance.view((0, 0), (kept, kept)) * excess,
+            parameters: best.at[..kept_count].to_vec(),
+            covariance: best.covariance.view((0, 0), (kept_count, kept_count)) * excess,
             error,
         })
     }
 
     /// The scene with one parameter changed.
-    pub(crate) fn with_parameter_changed(&self, parameter: usize, by: f64) -> Self {
-        let mut moved = self.clone();
-        moved.parameters[parameter] += by;
-        moved
+    pub(crate) fn with_parameter_changed(&self, parameter: usize, change: f64) -> Self {
+        let mut changed = self.clone();
+        changed.parameters[parameter] += change;
+        changed
     }
 
     /// The focal length, px.
@@ -140,12 +141,12 @@ impl Scene {
     /// Finds the robot's place from the corners of its deck tag; `None` if they do not determine it.
     pub(crate) fn place(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<Place> {
         let start = deck_start(camera, corners, self.measures.height)?;
-        let model = |at: &[f64]| {
+        let model = |place: &[f64]| {
             deck_residuals(
                 &self.parameters,
                 camera,
                 &self.measures,
-                at,
+                place,
                 self.measures.height,
                 corners,
             )
@@ -162,8 +163,15 @@ impl Scene {
     /// it.
     pub(crate) fn height(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<f64> {
         let [a, b, c] = deck_start(camera, corners, self.measures.height)?;
-        let model = |at: &[f64]| {
-            deck_residuals(&self.parameters, camera, &self.measures, at, at[3], corners)
+        let model = |parameters: &[f64]| {
+            deck_residuals(
+                &self.parameters,
+                camera,
+                &self.measures,
+                parameters,
+                parameters[3],
+                corners,
+            )
         };
         Some(least::fit(&[a, b, c, self.measures.height], model)?.at[3])
     }
@@ -183,7 +191,7 @@ impl Scene {
 
 /// Converts a point of a strip, in designed mm, to a place on the floor, mm.
 fn on_floor(shared: &[f64], scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] {
-    let point = point.map(|part| scale * part);
+    let point = point.map(|coordinate| scale * coordinate);
     if sheet::strip_of(id) == 0 {
         return point;
     }
@@ -196,7 +204,7 @@ fn on_floor(shared: &[f64], scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] 
 }
 
 /// The corners of a tag as printed, with the spread of its ink: relative to its middle, in designed mm.
-fn seen_corners(shared: &[f64], scale: f64, id: usize) -> [[f64; 2]; 4] {
+fn printed_corners(shared: &[f64], scale: f64, id: usize) -> [[f64; 2]; 4] {
     sheet::corners(sheet::edge(id) + 2.0 * shared[1] / scale)
 }
 
@@ -210,10 +218,13 @@ fn floor_residuals(
     let mut residuals = Vec::with_capacity(8 * FLOOR_TAGS);
     for (id, corners) in floor.iter().enumerate() {
         let [x, y] = sheet::middle_on_strip(id);
-        for ([u, v], seen) in seen_corners(shared, measures.scale, id).iter().zip(corners) {
-            let at = on_floor(shared, measures.scale, id, [x + u, y + v]);
-            let image = camera.project(at, 0.0);
-            residuals.extend([0, 1].map(|i| (image[i] - seen[i]) / FLOOR_SIGMA));
+        for ([u, v], corner) in printed_corners(shared, measures.scale, id)
+            .iter()
+            .zip(corners)
+        {
+            let point = on_floor(shared, measures.scale, id, [x + u, y + v]);
+            let image = camera.project(point, 0.0);
+            residuals.extend([0, 1].map(|i| (image[i] - corner[i]) / FLOOR_SIGMA));
         }
     }
     residuals
@@ -224,23 +235,23 @@ fn deck_residuals(
     shared: &[f64],
     camera: &Camera,
     measures: &Measures,
-    at: &[f64],
+    parameters: &[f64],
     height: f64,
     corners: &[Pixel; 4],
 ) -> Vec<f64> {
     let place = Place {
-        forward: at[0],
-        left: at[1],
-        heading: at[2],
+        forward: parameters[0],
+        left: parameters[1],
+        heading: parameters[2],
     };
-    let points = seen_corners(shared, measures.scale, DECK_TAG);
+    let points = printed_corners(shared, measures.scale, DECK_TAG);
     let pairs = points.iter().zip(corners);
     pairs
-        .flat_map(|(&[x, y], seen)| {
+        .flat_map(|(&[x, y], corner)| {
             // The upper edge of the tag is ahead, so its left edge is on the left.
-            let floor = place.on_floor([measures.scale * y, -measures.scale * x]);
-            let image = camera.project(floor, height);
-            [0, 1].map(|i| (image[i] - seen[i]) / DECK_SIGMA)
+            let floor_point = place.on_floor([measures.scale * y, -measures.scale * x]);
+            let image = camera.project(floor_point, height);
+            [0, 1].map(|i| (image[i] - corner[i]) / DECK_SIGMA)
         })
         .collect()
 }
@@ -255,12 +266,12 @@ fn deck_start(camera: &Camera, corners: &[Pixel; 4], height: f64) -> Option<[f64
         [100.0, 100.0],
         [-100.0, 100.0],
     ];
-    let images = square.map(|at| camera.project(at, height));
+    let images = square.map(|point| camera.project(point, height));
     let map = Homography::of_four(images, square)?;
     let [a, b, c, d] = corners.map(|corner| map.map(corner));
-    let mean = |i: usize| (a[i] + b[i] + c[i] + d[i]) / 4.0;
-    let ahead = |i: usize| a[i] + b[i] - c[i] - d[i];
-    Some([mean(0), mean(1), ahead(1).atan2(ahead(0))])
+    let mean_of = |i: usize| (a[i] + b[i] + c[i] + d[i]) / 4.0;
+    let ahead_sum = |i: usize| a[i] + b[i] - c[i] - d[i];
+    Some([mean_of(0), mean_of(1), ahead_sum(1).atan2(ahead_sum(0))])
 }
 
 /// A first estimate of the camera's pose, from the first strip.
@@ -275,19 +286,21 @@ fn strip_map(floor: &FloorCorners, measures: &Measures, strip: usize) -> Option<
     for id in ids.clone() {
         let [x, y] = sheet::middle_on_strip(id);
         let corners = sheet::corners(sheet::edge(id));
-        points.extend(corners.map(|[u, v]| [x + u, y + v].map(|part| measures.scale * part)));
+        points.extend(
+            corners.map(|[u, v]| [x + u, y + v].map(|coordinate| measures.scale * coordinate)),
+        );
     }
     Homography::of_points(&points, &floor[ids].concat())
 }
 
-/// The errors of all tags' corners in all views, divided by their sigma; only of the floor tags if `decks` is
+/// The errors of all tags' corners in all views, divided by their sigma; only of the floor tags if `has_decks` is
 /// false.
-fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Vec<f64> {
-    let (shared, mut rest) = at.split_at(SHARED);
-    let mut all = Vec::new();
+fn residuals(parameters: &[f64], views: &[View], measures: &Measures, has_decks: bool) -> Vec<f64> {
+    let (shared, mut rest) = parameters.split_at(SHARED);
+    let mut errors = Vec::new();
     let mut take = |count: usize| {
-        let (taken, left) = rest.split_at(count);
-        rest = left;
+        let (taken, remaining) = rest.split_at(count);
+        rest = remaining;
         taken
     };
     let cameras: Vec<Camera> = views
@@ -295,9 +308,9 @@ fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Ve
         .map(|_| Camera::new(shared[0], measures.size, take(6)))
         .collect();
     for (view, camera) in views.iter().zip(&cameras) {
-        all.extend(floor_residuals(shared, camera, measures, &view.floor));
-        for corners in view.decks.iter().filter(|_| decks) {
-            all.extend(deck_residuals(
+        errors.extend(floor_residuals(shared, camera, measures, &view.floor));
+        for corners in view.decks.iter().filter(|_| has_decks) {
+            errors.extend(deck_residuals(
                 shared,
                 camera,
                 measures,
@@ -307,24 +320,24 @@ fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Ve
             ));
         }
     }
-    all
+    errors
 }
 
 /// Fits all parameters, starting with this focal length; `None` if the tags do not determine them.
 fn fit(views: &[View], measures: &Measures, focal: f64) -> Option<Fit> {
-    let first = views.first()?;
-    let to_floor = strip_map(&first.floor, measures, 0)?.inverse()?;
-    let middle = |id: usize| {
-        let corners = first.floor[id].map(|corner| to_floor.map(corner));
+    let first_view = views.first()?;
+    let to_floor = strip_map(&first_view.floor, measures, 0)?.inverse()?;
+    let middle_of = |id: usize| {
+        let corners = first_view.floor[id].map(|corner| to_floor.map(corner));
         [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 4.0)
     };
-    let ends = [middle(TAGS_ON_STRIP), middle(TAGS_ON_STRIP + 1)];
-    let heading = (ends[1][1] - ends[0][1]).atan2(ends[1][0] - ends[0][0]);
+    let middles = [middle_of(TAGS_ON_STRIP), middle_of(TAGS_ON_STRIP + 1)];
+    let heading = (middles[1][1] - middles[0][1]).atan2(middles[1][0] - middles[0][0]);
     let mut start = vec![
         focal,
         0.0,
-        (ends[0][0] + ends[1][0]) / 2.0,
-        (ends[0][1] + ends[1][1]) / 2.0,
+        (middles[0][0] + middles[1][0]) / 2.0,
+        (middles[0][1] + middles[1][1]) / 2.0,
         heading,
     ];
     let mut decks = Vec::new();
@@ -337,5 +350,7 @@ fn fit(views: &[View], measures: &Measures, focal: f64) -> Option<Fit> {
         }
     }
     start.extend(decks);
-    least::fit(&start, |at| residuals(at, views, measures, true))
+    least::fit(&start, |parameters| {
+        residuals(parameters, views, measures, true)
+    })
 }

@@ -76,10 +76,10 @@ pub fn corners(edge: f64) -> [Point; 4] {
 
 /// True if a square of a tag is white. Row 0 is the top one, column 0 the left one.
 pub fn is_white(id: usize, row: usize, column: usize) -> bool {
-    let code = 1..SQUARES - 1;
-    let inside = code.contains(&row) && code.contains(&column);
+    let code_range = 1..SQUARES - 1;
+    let is_inside = code_range.contains(&row) && code_range.contains(&column);
     let inner = SQUARES - 2;
-    inside && CODES[id] >> (inner * inner - 1 - ((row - 1) * inner + column - 1)) & 1 == 1
+    is_inside && CODES[id] >> (inner * inner - 1 - ((row - 1) * inner + column - 1)) & 1 == 1
 }
 
 #[cfg(test)]
@@ -87,29 +87,29 @@ mod tests {
     use super::*;
 
     /// The codes of a tag in its four orientations.
-    fn turned(id: usize) -> [u64; 4] {
+    fn codes_when_turned(id: usize) -> [u64; 4] {
         let bit = |row: usize, column: usize| u64::from(is_white(id, row + 1, column + 1));
-        let read = |at: &dyn Fn(usize, usize) -> u64| {
-            (0..36).fold(0, |code, i| code << 1 | at(i / 6, i % 6))
+        let code_of = |bit_at: &dyn Fn(usize, usize) -> u64| {
+            (0..36).fold(0, |code, i| code << 1 | bit_at(i / 6, i % 6))
         };
         [
-            read(&|row, column| bit(row, column)),
-            read(&|row, column| bit(5 - column, row)),
-            read(&|row, column| bit(5 - row, 5 - column)),
-            read(&|row, column| bit(column, 5 - row)),
+            code_of(&|row, column| bit(row, column)),
+            code_of(&|row, column| bit(5 - column, row)),
+            code_of(&|row, column| bit(5 - row, 5 - column)),
+            code_of(&|row, column| bit(column, 5 - row)),
         ]
     }
 
     #[test]
     fn any_two_tags_however_turned_differ_in_eleven_squares() {
-        for (a, own) in CODES.into_iter().enumerate() {
-            assert_eq!(turned(a)[0], own);
+        for (a, first_code) in CODES.into_iter().enumerate() {
+            assert_eq!(codes_when_turned(a)[0], first_code);
             for b in 0..CODES.len() {
-                for (turn, code) in turned(b).into_iter().enumerate() {
-                    let differ = (own ^ code).count_ones();
+                for (turn, second_code) in codes_when_turned(b).into_iter().enumerate() {
+                    let difference = (first_code ^ second_code).count_ones();
                     assert!(
-                        (a == b && turn == 0) || differ >= 11,
-                        "{a} {b} {turn}: {differ}"
+                        (a == b && turn == 0) || difference >= 11,
+                        "{a} {b} {turn}: {difference}"
                     );
                 }
             }

@@ -16,21 +16,21 @@ use crate::path::PathPoint;
 use crate::watched::AnalysedFilm;
 
 /// Time at the beginning during which the board is level, s.
-const LEVEL: f64 = 1.0;
+const LEVEL_SECONDS: f64 = 1.0;
 /// Largest tilt of the board in that time, relative to its mean, deg.
-const MOVED: f64 = 1.0;
+const MAX_LEVEL_TILT: f64 = 1.0;
 /// Standard error of the vertical found while the board is level, deg.
 const LEVEL_SIGMA: f64 = 0.3;
 /// Standard error of a tilt found by the camera, deg.
 const TILT_SIGMA: f64 = 0.2;
 /// Smallest displacement that counts as a slide, mm.
-const SLID: f64 = 15.0;
+const MIN_SLIDE: f64 = 15.0;
 /// Range of displacements from which the friction is found, mm.
-const PART: [f64; 2] = [1.0, 60.0];
+const SLIDE_RANGE: [f64; 2] = [1.0, 60.0];
 /// Smallest number of pictures of a slide.
-const LEAST: usize = 6;
+const MIN_PICTURES: usize = 6;
 /// Largest angle between the slide and the downhill direction, and between the robot and that direction, deg.
-const ASIDE: f64 = 30.0;
+const MAX_ASIDE: f64 = 30.0;
 /// Largest rate at which the board is lifted, deg/s.
 const MAX_LIFT_RATE: f64 = 15.0;
 /// Half of the time over which a picture's tilt is averaged, s.
@@ -118,88 +118,89 @@ impl Slide {
     ///
     /// # Errors
     /// Fails if the film does not show a robot that slides down a board.
-    pub fn of(watched: &AnalysedFilm) -> Result<Self, SlideTrouble> {
-        let cameras: Vec<_> = watched.cameras().collect();
-        let first = watched.path.first().map_or(0.0, |seen| seen.seconds);
-        let is_level = |seen: &PathPoint| seen.seconds < first + LEVEL;
-        let level = watched
-            .path
-            .iter()
-            .take_while(|seen| is_level(seen))
-            .count();
-        let up = cameras[..level].iter().map(|camera| camera.up());
-        let vertical = up.sum::<Vector3<f64>>().normalize();
-        let moments: Vec<Moment> = watched
+    pub fn of(film: &AnalysedFilm) -> Result<Self, SlideTrouble> {
+        let cameras: Vec<_> = film.cameras().collect();
+        let first = film.path.first().map_or(0.0, |point| point.seconds);
+        let is_level = |point: &PathPoint| point.seconds < first + LEVEL_SECONDS;
+        let level = film.path.iter().take_while(|point| is_level(point)).count();
+        let up_directions = cameras[..level].iter().map(|camera| camera.up());
+        let vertical = up_directions.sum::<Vector3<f64>>().normalize();
+        let moments: Vec<Moment> = film
             .path
             .iter()
             .zip(&cameras)
-            .map(|(seen, camera)| {
-                let up = camera.on_floor(&vertical);
+            .map(|(point, camera)| {
+                let up_direction = camera.on_floor(&vertical);
                 Moment {
-                    seconds: seen.seconds,
-                    tilt: up.x.hypot(up.y).atan2(up.z),
-                    down: [-up.x, -up.y],
-                    at: [seen.place.forward, seen.place.left],
-                    heading: seen.place.heading,
+                    seconds: point.seconds,
+                    tilt: up_direction.x.hypot(up_direction.y).atan2(up_direction.z),
+                    down: [-up_direction.x, -up_direction.y],
+                    at: [point.place.forward, point.place.left],
+                    heading: point.place.heading,
                 }
             })
             .collect();
-        let most =
+        let largest_tilt =
             |moments: &[Moment]| moments.iter().map(|moment| moment.tilt).fold(0.0, f64::max);
-        let angle = most(&moments[..level]).to_degrees();
-        if angle > MOVED {
+        let angle = largest_tilt(&moments[..level]).to_degrees();
+        if angle > MAX_LEVEL_TILT {
             return Err(SlideTrouble::NotAtRest { angle });
         }
-        let rest = mean(&moments[..level]);
-        let away = |moment: &Moment| (moment.at[0] - rest[0]).hypot(moment.at[1] - rest[1]);
-        let Some(slid) = moments.iter().position(|moment| away(moment) > SLID) else {
+        let rest_place = mean_position(&moments[..level]);
+        let distance_of =
+            |moment: &Moment| (moment.at[0] - rest_place[0]).hypot(moment.at[1] - rest_place[1]);
+        let Some(slid_index) = moments
+            .iter()
+            .position(|moment| distance_of(moment) > MIN_SLIDE)
+        else {
             return Err(SlideTrouble::NotSlid {
-                slid: moments.iter().map(away).fold(0.0, f64::max),
-                tilt: most(&moments).to_degrees(),
+                slid: moments.iter().map(distance_of).fold(0.0, f64::max),
+                tilt: largest_tilt(&moments).to_degrees(),
             });
         };
-        let from = moments[..slid]
+        let from = moments[..slid_index]
             .iter()
-            .rposition(|moment| away(moment) < PART[0]);
-        let from = from.map_or(0, |at| at + 1);
-        let way = [0, 1].map(|i| moments[slid].at[i] - rest[i]);
-        check_ways(&moments[slid], way)?;
-        let length = way[0].hypot(way[1]);
-        let along = |moment: &Moment| {
+            .rposition(|moment| distance_of(moment) < SLIDE_RANGE[0]);
+        let from = from.map_or(0, |index| index + 1);
+        let displacement = [0, 1].map(|i| moments[slid_index].at[i] - rest_place[i]);
+        check_directions(&moments[slid_index], displacement)?;
+        let length = displacement[0].hypot(displacement[1]);
+        let distance_along = |moment: &Moment| {
             (0..2)
-                .map(|i| (moment.at[i] - rest[i]) * way[i])
+                .map(|i| (moment.at[i] - rest_place[i]) * displacement[i])
                 .sum::<f64>()
                 / length
         };
         let tilts = smooth(&moments);
         // The slide ends when it is long enough or when something stops it.
-        let mut to = slid;
-        let pace = |i: usize| {
-            (along(&moments[i]) - along(&moments[i - 1]))
+        let mut to = slid_index;
+        let speed_at = |i: usize| {
+            (distance_along(&moments[i]) - distance_along(&moments[i - 1]))
                 / (moments[i].seconds - moments[i - 1].seconds)
         };
         while to + 1 < moments.len()
-            && along(&moments[to]) < PART[1]
-            && pace(to + 1) > 0.8 * pace(to)
+            && distance_along(&moments[to]) < SLIDE_RANGE[1]
+            && speed_at(to + 1) > 0.8 * speed_at(to)
         {
             to += 1;
         }
         let points: Vec<[f64; 3]> = (from..=to)
-            .map(|i| [moments[i].seconds, tilts[i], along(&moments[i])])
+            .map(|i| [moments[i].seconds, tilts[i], distance_along(&moments[i])])
             .collect();
-        let sliding = sliding(&points)?;
-        let (begin, error) = begin(&points, sliding.value, moments[from.max(1) - 1].seconds);
-        let near = |seconds: f64| {
-            let at = moments.partition_point(|moment| moment.seconds < seconds);
-            at.min(moments.len() - 1)
+        let sliding = fit_sliding(&points)?;
+        let (begin, error) =
+            extrapolate_begin(&points, sliding.value, moments[from.max(1) - 1].seconds);
+        let index_near = |seconds: f64| {
+            let index = moments.partition_point(|moment| moment.seconds < seconds);
+            index.min(moments.len() - 1)
         };
-        let (now, before) = (
-            near(begin),
-            near(begin - 2.0 * HALF_AVERAGING_TIME).saturating_sub(1),
+        let (begin_index, earlier_index) = (
+            index_near(begin),
+            index_near(begin - 2.0 * HALF_AVERAGING_TIME).saturating_sub(1),
         );
-        let tilt = tilts[now].to_degrees();
-        let apart = moments[now].seconds - moments[before].seconds;
-        let rate = (tilt - tilts[before].to_degrees()) / apart.max(HALF_AVERAGING_TIME);
+        let tilt = tilts[begin_index].to_degrees();
+        let interval = moments[begin_index].seconds - moments[earlier_index].seconds;
+        let rate = (tilt - tilts[earlier_index].to_degrees()) / interval.max(HALF_AVERAGING_TIME);
         if rate > MAX_LIFT_RATE {
             return Err(SlideTrouble::Fast { rate });
         }
@@ -211,7 +212,8 @@ impl Slide {
         let resting = tilt.value.to_radians().tan();
         let slope = 1.0 + resting * resting;
         Ok(Self {
-            is_head_first: angle_between(moments[slid].heading, moments[slid].down) < 90.0,
+            is_head_first: angle_between(moments[slid_index].heading, moments[slid_index].down)
+                < 90.0,
             begin,
             tilt,
             resting: Figure {
@@ -227,14 +229,14 @@ impl Slide {
 }
 
 /// Checks that the robot slides downhill, head first or tail first.
-fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
-    let beside = angle_between(way[1].atan2(way[0]), moment.down);
-    if beside > ASIDE {
-        return Err(SlideTrouble::NotDown { aside: beside });
+fn check_directions(moment: &Moment, displacement: [f64; 2]) -> Result<(), SlideTrouble> {
+    let slide_aside = angle_between(displacement[1].atan2(displacement[0]), moment.down);
+    if slide_aside > MAX_ASIDE {
+        return Err(SlideTrouble::NotDown { aside: slide_aside });
     }
-    let head = angle_between(moment.heading, moment.down);
-    match head.min(180.0 - head) > ASIDE {
-        true => Err(SlideTrouble::Across { aside: head }),
+    let head_aside = angle_between(moment.heading, moment.down);
+    match head_aside.min(180.0 - head_aside) > MAX_ASIDE {
+        true => Err(SlideTrouble::Across { aside: head_aside }),
         false => Ok(()),
     }
 }
@@ -246,67 +248,69 @@ fn angle_between(heading: f64, [x, y]: [f64; 2]) -> f64 {
 }
 
 /// The mean position of the robot on the board, mm.
-fn mean(moments: &[Moment]) -> [f64; 2] {
+fn mean_position(moments: &[Moment]) -> [f64; 2] {
     [0, 1].map(|i| moments.iter().map(|moment| moment.at[i]).sum::<f64>() / moments.len() as f64)
 }
 
 /// The tilt in each picture, rad, by a straight line fitted to the pictures around it.
 fn smooth(moments: &[Moment]) -> Vec<f64> {
-    let at = |seconds: f64| moments.partition_point(|moment| moment.seconds < seconds);
-    let one = |moment: &Moment| {
-        let near = &moments
-            [at(moment.seconds - HALF_AVERAGING_TIME)..at(moment.seconds + HALF_AVERAGING_TIME)];
-        let count = near.len() as f64;
-        let (mut time, mut tilt) = (0.0, 0.0);
-        for other in near {
-            time += (other.seconds - moment.seconds) / count;
-            tilt += other.tilt / count;
+    let index_at = |seconds: f64| moments.partition_point(|moment| moment.seconds < seconds);
+    let tilt_at = |moment: &Moment| {
+        let nearby = &moments[index_at(moment.seconds - HALF_AVERAGING_TIME)
+            ..index_at(moment.seconds + HALF_AVERAGING_TIME)];
+        let count = nearby.len() as f64;
+        let (mut mean_time, mut mean_tilt) = (0.0, 0.0);
+        for neighbour in nearby {
+            mean_time += (neighbour.seconds - moment.seconds) / count;
+            mean_tilt += neighbour.tilt / count;
         }
-        let (mut with, mut squares) = (0.0, 1e-12);
-        for other in near {
-            let apart = other.seconds - moment.seconds - time;
-            with += apart * (other.tilt - tilt);
-            squares += apart * apart;
+        let (mut products, mut squares) = (0.0, 1e-12);
+        for neighbour in nearby {
+            let offset = neighbour.seconds - moment.seconds - mean_time;
+            products += offset * (neighbour.tilt - mean_tilt);
+            squares += offset * offset;
         }
-        tilt - time * with / squares
+        mean_tilt - mean_time * products / squares
     };
-    moments.iter().map(one).collect()
+    moments.iter().map(tilt_at).collect()
 }
 
 /// The coefficient of sliding friction, fitted to the points of a slide: each is a time in s, a tilt in rad and a
 /// displacement in mm.
-fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
-    let few = SlideTrouble::FewPictures {
+fn fit_sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
+    let too_few = SlideTrouble::FewPictures {
         pictures: points.len(),
     };
-    if points.len() < LEAST {
-        return Err(few);
+    if points.len() < MIN_PICTURES {
+        return Err(too_few);
     }
     // Distances without friction, and distances that a friction of 1 would take away; both are integrated by
     // trapezoids of the speed.
-    let mut ways = vec![[0.0; 2]];
+    let mut distances = vec![[0.0; 2]];
     let mut speeds = [0.0; 2];
     for pair in points.windows(2) {
-        let apart = pair[1][0] - pair[0][0];
-        let before = ways[ways.len() - 1];
-        let parts: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
+        let interval = pair[1][0] - pair[0][0];
+        let previous = distances[distances.len() - 1];
+        let functions: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
         let next = [0, 1].map(|i| {
-            let mean = (parts[i](pair[0][1]) + parts[i](pair[1][1])) / 2.0;
-            let gained = 1000.0 * GRAVITY * mean * apart;
-            let way = before[i] + (speeds[i] + gained / 2.0) * apart;
-            speeds[i] += gained;
-            way
+            let mean = (functions[i](pair[0][1]) + functions[i](pair[1][1])) / 2.0;
+            let speed_gain = 1000.0 * GRAVITY * mean * interval;
+            let distance = previous[i] + (speeds[i] + speed_gain / 2.0) * interval;
+            speeds[i] += speed_gain;
+            distance
         });
-        ways.push(next);
+        distances.push(next);
     }
     let begin = points[0][0];
-    let model = |at: &[f64]| -> Vec<f64> {
-        let residual = |([seconds, _, place], [down, held]): (&[f64; 3], &[f64; 2])| {
-            at[0] + at[1] * 100.0 * (seconds - begin) + down - at[2] * held - place
+    let model = |parameters: &[f64]| -> Vec<f64> {
+        let residual_of = |([seconds, _, measured], [driven, held]): (&[f64; 3], &[f64; 2])| {
+            parameters[0] + parameters[1] * 100.0 * (seconds - begin) + driven
+                - parameters[2] * held
+                - measured
         };
-        points.iter().zip(&ways).map(residual).collect()
+        points.iter().zip(&distances).map(residual_of).collect()
     };
-    let fit = least::fit(&[points[0][2], 0.0, points[0][1].tan()], model).ok_or(few)?;
+    let fit = least::fit(&[points[0][2], 0.0, points[0][1].tan()], model).ok_or(too_few)?;
     let freedom = points.len() - 3;
     let variance = fit.squares / freedom as f64 * fit.covariance[(2, 2)];
     Ok(Figure {
@@ -316,13 +320,13 @@ fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
 }
 
 /// The time at which a slide begins, with its standard error, s: extrapolated backward, by the acceleration, from
-/// the first picture that shows a movement. `before` is the time of the previous picture.
-fn begin(points: &[[f64; 3]], friction: f64, before: f64) -> (f64, f64) {
-    let [seconds, tilt, slid] = points[0];
+/// the first picture that shows a movement. `previous_seconds` is the time of the previous picture.
+fn extrapolate_begin(points: &[[f64; 3]], friction: f64, previous_seconds: f64) -> (f64, f64) {
+    let [seconds, tilt, displacement] = points[0];
     let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());
-    let back = (2.0 * slid / acceleration.max(1.0)).sqrt();
-    let gap = seconds - before;
-    let begin = (seconds - back).max(before - gap - 1.0);
-    // If the acceleration grows from zero, the true beginning is earlier, so half of `back` counts as error.
-    (begin, (gap / 2.0).hypot(back / 2.0))
+    let back_seconds = (2.0 * displacement / acceleration.max(1.0)).sqrt();
+    let gap = seconds - previous_seconds;
+    let begin = (seconds - back_seconds).max(previous_seconds - gap - 1.0);
+    // If the acceleration grows from zero, the true beginning is earlier, so half of `back_seconds` counts as error.
+    (begin, (gap / 2.0).hypot(back_seconds / 2.0))
 }

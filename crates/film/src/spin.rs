@@ -10,30 +10,30 @@ use crate::least;
 use crate::mean::widening;
 
 /// Shares of a step between which pictures are used; beyond the upper one the servo begins to brake.
-const PARTS: [f64; 2] = [0.02, 0.85];
+const USED_SHARES: [f64; 2] = [0.02, 0.85];
 /// Expected standard deviation of the logarithm of the time constant.
 const SPIN_UP_SIGMA: f64 = 0.7;
 /// Largest standard error of that logarithm with which the film determines the time constant.
 const MAX_LOG_ERROR: f64 = 0.25;
 /// Standard error of a time constant because the motor model is simple, as a share.
-const MOTOR: f64 = 0.02;
+const MOTOR_SIGMA: f64 = 0.02;
 /// First estimate of the error of an angle in one picture, deg; the residuals give the true one.
-const SIGMA: f64 = 0.3;
+const ANGLE_SIGMA: f64 = 0.3;
 /// Smallest number of steps with two pictures or more in a group.
-const LEAST_STEPS: usize = 2;
+const MIN_STEPS: usize = 2;
 /// Smallest number of pictures in a group, not counting the first picture of each step.
-const LEAST_PICTURES: usize = 6;
+const MIN_PICTURES: usize = 6;
 
 /// A large step: times in s, and angles in deg from the start of the step.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Step(Vec<(f64, f64)>);
 
 impl Step {
-    /// Selects the pictures that the fit uses, for a step of `way` deg.
-    pub(crate) fn new(pictures: impl Iterator<Item = (f64, f64)>, way: f64) -> Self {
-        let [low, high] = PARTS.map(|part| part * way.abs());
-        let turned = pictures.map(|(time, angle)| (time, angle * way.signum()));
-        let before_braking = turned.take_while(|(_, angle)| *angle < high);
+    /// Selects the pictures that the fit uses, for a step of `step_deg` deg.
+    pub(crate) fn new(pictures: impl Iterator<Item = (f64, f64)>, step_deg: f64) -> Self {
+        let [low, high] = USED_SHARES.map(|share| share * step_deg.abs());
+        let turns = pictures.map(|(time, angle)| (time, angle * step_deg.signum()));
+        let before_braking = turns.take_while(|(_, angle)| *angle < high);
         Self(before_braking.filter(|(_, angle)| *angle > low).collect())
     }
 }
@@ -54,12 +54,12 @@ impl Rates {
     pub(crate) fn of(groups: &[&[Step]], spin_up: f64) -> Option<Self> {
         let mut start = Vec::new();
         for group in groups {
-            let seen = || group.iter().filter(|step| step.0.len() > 1);
-            let more: usize = seen().map(|step| step.0.len() - 1).sum();
-            if seen().count() < LEAST_STEPS || more < LEAST_PICTURES {
+            let usable_steps = || group.iter().filter(|step| step.0.len() > 1);
+            let picture_count: usize = usable_steps().map(|step| step.0.len() - 1).sum();
+            if usable_steps().count() < MIN_STEPS || picture_count < MIN_PICTURES {
                 return None;
             }
-            start.push(seen().map(pace).sum::<f64>() / seen().count() as f64);
+            start.push(usable_steps().map(mean_rate).sum::<f64>() / usable_steps().count() as f64);
         }
         let count = start.len();
         start.push(0.0);
@@ -73,24 +73,24 @@ impl Rates {
             let (time, angle) = step.0[0];
             start.push(time - angle / start[*group] - spin_up);
         }
-        let residuals = |at: &[f64], sigma: f64| {
-            let constant = spin_up * at[count].exp();
-            let mut all = vec![at[count] / SPIN_UP_SIGMA];
-            for ((group, step), begin) in steps.iter().zip(&at[count + 1..]) {
-                let residual = |(time, angle): &(f64, f64)| {
-                    (turned(at[*group], constant, time - begin) - angle) / sigma
+        let residuals = |parameters: &[f64], sigma: f64| {
+            let constant = spin_up * parameters[count].exp();
+            let mut errors = vec![parameters[count] / SPIN_UP_SIGMA];
+            for ((group, step), begin) in steps.iter().zip(&parameters[count + 1..]) {
+                let residual_of = |(time, angle): &(f64, f64)| {
+                    (angle_after(parameters[*group], constant, time - begin) - angle) / sigma
                 };
-                all.extend(step.0.iter().map(residual));
+                errors.extend(step.0.iter().map(residual_of));
             }
-            all
+            errors
         };
-        let first = least::fit(&start, |at| residuals(at, SIGMA))?;
+        let first_fit = least::fit(&start, |parameters| residuals(parameters, ANGLE_SIGMA))?;
         let pictures: usize = steps.iter().map(|(_, step)| step.0.len()).sum();
         let freedom = pictures
             .checked_sub(steps.len() + count)
             .filter(|n| *n > 0)?;
-        let sigma = SIGMA * (first.squares / freedom as f64).sqrt().max(0.05);
-        let fit = least::fit(&first.at, |at| residuals(at, sigma))?;
+        let sigma = ANGLE_SIGMA * (first_fit.squares / freedom as f64).sqrt().max(0.05);
+        let fit = least::fit(&first_fit.at, |parameters| residuals(parameters, sigma))?;
         let widening = widening(freedom).powi(2);
         let [log, error] = [fit.at[count], fit.covariance[(count, count)].sqrt()];
         let constant = spin_up * log.exp();
@@ -105,7 +105,7 @@ impl Rates {
                 .collect(),
             spin_up: (error < MAX_LOG_ERROR).then_some(Figure {
                 value: constant,
-                error: constant * error.hypot(MOTOR),
+                error: constant * error.hypot(MOTOR_SIGMA),
             }),
         })
     }
@@ -125,14 +125,14 @@ impl Rates {
 }
 
 /// The mean rate of a step with two pictures or more.
-fn pace(step: &Step) -> f64 {
+fn mean_rate(step: &Step) -> f64 {
     let ((from, a), (to, b)) = (step.0[0], step.0[step.0.len() - 1]);
     (b - a) / (to - from)
 }
 
 /// The angle that a motor has turned a time after its start at full torque, deg; `constant` is its time constant,
 /// s.
-fn turned(rate: f64, constant: f64, seconds: f64) -> f64 {
+fn angle_after(rate: f64, constant: f64, seconds: f64) -> f64 {
     if seconds <= 0.0 {
         return 0.0;
     }

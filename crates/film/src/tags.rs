@@ -15,7 +15,7 @@ const LARGEST_ERROR: usize = 3;
 
 /// Largest movement of a tag from one picture to the next, as a share of its size, for which it is searched near its
 /// last place.
-const MOVES: f64 = 0.3;
+const MAX_MOVE_SHARE: f64 = 0.3;
 
 /// A tag in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,31 +28,33 @@ pub struct Tag {
 
 /// Finds the tags of the sheet in a picture. If an id appears twice, both tags are returned.
 pub fn read(picture: &Picture) -> Vec<Tag> {
-    tags(picture, blobs::quads(picture, blobs::reach(picture)))
+    read_tags(picture, blobs::quads(picture, blobs::reach(picture)))
 }
 
 /// Finds the tag of an id near its last place; `None` if it is not there. Finds it as [`read`] does if it moved by
-/// less than [`MOVES`] of its size.
-pub(crate) fn near(picture: &Picture, id: usize, last: &[Pixel; 4]) -> Option<Tag> {
+/// less than [`MAX_MOVE_SHARE`] of its size.
+pub(crate) fn near(picture: &Picture, id: usize, last_corners: &[Pixel; 4]) -> Option<Tag> {
     let reach = blobs::reach(picture);
     let size = picture.size();
     let (mut low, mut high) = ([0; 2], size);
     for i in 0..2 {
-        let [least, most] = [f64::min, f64::max].map(|of| last.iter().map(|at| at[i]).reduce(of));
-        let (least, most) = (least?, most?);
+        let [smallest, largest] = [f64::min, f64::max]
+            .map(|extreme| last_corners.iter().map(|corner| corner[i]).reduce(extreme));
+        let (smallest, largest) = (smallest?, largest?);
         // The part has to include the surroundings of the tag's pixels, too.
-        let around = (most - least) * MOVES + reach as f64 + 2.0;
-        low[i] = (least - around).max(0.0) as usize;
-        high[i] = size[i].min((most + around).max(0.0) as usize);
+        let margin = (largest - smallest) * MAX_MOVE_SHARE + reach as f64 + 2.0;
+        low[i] = (smallest - margin).max(0.0) as usize;
+        high[i] = size[i].min((largest + margin).max(0.0) as usize);
     }
     let quads = blobs::quads(&picture.part(low, high)?, reach).into_iter();
-    let whole = quads.map(|quad| quad.map(|[x, y]| [x + low[0] as f64, y + low[1] as f64]));
-    let mut tags = tags(picture, whole).into_iter();
+    let quads_in_picture =
+        quads.map(|quad| quad.map(|[x, y]| [x + low[0] as f64, y + low[1] as f64]));
+    let mut tags = read_tags(picture, quads_in_picture).into_iter();
     tags.find(|tag| tag.id == id)
 }
 
 /// Reads the tags among quadrilaterals of a picture.
-fn tags(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec<Tag> {
+fn read_tags(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec<Tag> {
     let quads = quads.into_iter();
     quads
         .filter_map(|quad| edges::refine(picture, quad))
@@ -70,28 +72,29 @@ fn decode(picture: &Picture, square: &Square) -> Option<Tag> {
             [[0.0, 0.0], [edge, 0.0], [edge, edge], [0.0, edge]],
             corners,
         )?;
-        let white = |row: usize, column: usize| {
-            let near = [
+        let is_seen_white = |row: usize, column: usize| {
+            let offsets = [
                 [0.0, 0.0],
                 [0.2, 0.2],
                 [0.2, -0.2],
                 [-0.2, 0.2],
                 [-0.2, -0.2],
             ];
-            let grey = near.map(|[x, y]| {
-                let at = [column as f64 + 0.5 + x, row as f64 + 0.5 + y];
-                picture.at(to_picture.map(at))
+            let grey = offsets.map(|[x, y]| {
+                let point = [column as f64 + 0.5 + x, row as f64 + 0.5 + y];
+                picture.at(to_picture.map(point))
             });
-            grey.iter().sum::<f64>() / near.len() as f64 > square.middle
+            grey.iter().sum::<f64>() / offsets.len() as f64 > square.middle
         };
-        let seen: [[bool; SQUARES]; SQUARES] =
-            std::array::from_fn(|row| std::array::from_fn(|column| white(row, column)));
-        let errors = |id: usize| {
-            let all = (0..SQUARES * SQUARES).map(|i| (i / SQUARES, i % SQUARES));
-            all.filter(|&(row, column)| seen[row][column] != is_white(id, row, column))
+        let seen_white: [[bool; SQUARES]; SQUARES] =
+            std::array::from_fn(|row| std::array::from_fn(|column| is_seen_white(row, column)));
+        let count_errors = |id: usize| {
+            let squares = (0..SQUARES * SQUARES).map(|i| (i / SQUARES, i % SQUARES));
+            squares
+                .filter(|&(row, column)| seen_white[row][column] != is_white(id, row, column))
                 .count()
         };
-        let id = (0..CODES.len()).find(|&id| errors(id) <= LARGEST_ERROR)?;
+        let id = (0..CODES.len()).find(|&id| count_errors(id) <= LARGEST_ERROR)?;
         Some(Tag { id, corners })
     })
 }

@@ -19,11 +19,11 @@ pub(crate) struct Walk {
 impl Walk {
     /// The errors of the mean cycle that all its cycles share: the errors of ruler and height, clock and camera.
     pub(crate) fn common_errors(&self) -> [f64; 3] {
-        let ways = parts(&self.cycles.travels);
+        let movements = parts(&self.cycles.travels);
         let [period, error] = self.cycles.period;
         [0, 1, 2].map(|i| {
-            let way = ways[i].iter().sum::<f64>() / ways[i].len() as f64;
-            let scale = if i < 2 { way * self.scale } else { 0.0 };
+            let mean = movements[i].iter().sum::<f64>() / movements[i].len() as f64;
+            let scale = if i < 2 { mean * self.scale } else { 0.0 };
             let clock = self.cycles.pace[i] * error / period;
             (scale.powi(2) + clock.powi(2) + self.scene_variances[i]).sqrt()
         })
@@ -43,10 +43,10 @@ pub(crate) struct Deviation {
 
 /// Forward, left and turn of every cycle.
 pub(crate) fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
-    let part = |part: fn(&Travel) -> f64| travels.iter().map(part).collect();
+    let values_of = |coordinate: fn(&Travel) -> f64| travels.iter().map(coordinate).collect();
     [
-        part(|travel| travel.forward),
-        part(|travel| travel.left),
-        part(|travel| travel.turn),
+        values_of(|travel| travel.forward),
+        values_of(|travel| travel.left),
+        values_of(|travel| travel.turn),
     ]
 }

@@ -72,18 +72,18 @@ impl AnalysedFilm {
     ///
     /// # Errors
     /// Fails if the path in that time differs from the gait's predicted path, or is too short.
-    pub fn measure(&self, gait: &Gait, during: Option<[f64; 2]>) -> Result<Measured, Trouble> {
-        let path = self.path_between(during);
+    pub fn measure(&self, gait: &Gait, interval: Option<[f64; 2]>) -> Result<Measured, Trouble> {
+        let path = self.path_between(interval);
         let cycles = cycles::find(path, gait)?;
-        let doubts = self.scene_variances(&cycles);
+        let variances = self.scene_variances(&cycles);
         // A deck tag that is higher than given seems to move farther.
         let scale = (HEIGHT_SIGMA / (self.sight.height - self.deck)).hypot(RULER_SIGMA);
-        let offs = within::find_deviations(path, &cycles, gait);
+        let deviations = within::find_deviations(path, &cycles, gait);
         let walk = Walk {
             cycles,
-            scene_variances: doubts,
+            scene_variances: variances,
             scale,
-            deviations: offs,
+            deviations,
         };
         Ok(Measured::of(vec![walk], gait))
     }
@@ -95,21 +95,21 @@ impl AnalysedFilm {
     }
 
     /// Finds which of the gaits the robot walks between two times, s.
-    pub fn likeness(&self, gaits: &[Gait], during: [f64; 2]) -> Likeness {
-        likeness::find_likeness(self.path_between(Some(during)), gaits)
+    pub fn likeness(&self, gaits: &[Gait], interval: [f64; 2]) -> Likeness {
+        likeness::find_likeness(self.path_between(Some(interval)), gaits)
     }
 
     /// The camera in each picture of the path.
     pub(crate) fn cameras(&self) -> impl Iterator<Item = Camera> {
-        let camera = |frame: &Frame| frame.camera(&self.scene, self.sight.has_camera_moved);
-        self.frames.iter().filter_map(camera)
+        let camera_of = |frame: &Frame| frame.camera(&self.scene, self.sight.has_camera_moved);
+        self.frames.iter().filter_map(camera_of)
     }
 
     /// The path between two times, s, or all of it.
-    fn path_between(&self, during: Option<[f64; 2]>) -> &[PathPoint] {
-        let [from, to] = during.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        let begin = self.path.partition_point(|seen| seen.seconds < from);
-        let end = self.path.partition_point(|seen| seen.seconds <= to);
+    fn path_between(&self, interval: Option<[f64; 2]>) -> &[PathPoint] {
+        let [from, to] = interval.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let begin = self.path.partition_point(|point| point.seconds < from);
+        let end = self.path.partition_point(|point| point.seconds <= to);
         &self.path[begin..end.max(begin)]
     }
 
@@ -118,7 +118,7 @@ impl AnalysedFilm {
         // A camera that moves has its own pose in each picture, so only the five shared parameters count.
         let count = if self.sight.has_camera_moved { 5 } else { 11 };
         let scene = &self.scene;
-        let nearest = |time: &f64| {
+        let nearest_frame = |time: &f64| {
             let frames = self.frames.iter();
             frames.min_by(|a, b| {
                 (a.seconds - time)
@@ -126,9 +126,9 @@ impl AnalysedFilm {
                     .total_cmp(&(b.seconds - time).abs())
             })
         };
-        let frames: Vec<&Frame> = cycles.ends.iter().filter_map(nearest).collect();
-        let mean = |scene: &Scene| -> [f64; 3] {
-            let mut seen: Vec<PathPoint> = frames
+        let frames: Vec<&Frame> = cycles.ends.iter().filter_map(nearest_frame).collect();
+        let mean_movement = |scene: &Scene| -> [f64; 3] {
+            let mut points: Vec<PathPoint> = frames
                 .iter()
                 .filter_map(|frame| {
                     Some(PathPoint {
@@ -137,27 +137,27 @@ impl AnalysedFilm {
                     })
                 })
                 .collect();
-            unwind(&mut seen);
-            let travels: Vec<Travel> = seen
+            unwind(&mut points);
+            let travels: Vec<Travel> = points
                 .windows(2)
                 .map(|pair| pair[1].place.seen_from(pair[0].place))
                 .collect();
-            parts(&travels).map(|part| part.iter().sum::<f64>() / part.len().max(1) as f64)
+            parts(&travels).map(|values| values.iter().sum::<f64>() / values.len().max(1) as f64)
         };
-        let here = mean(scene);
+        let base = mean_movement(scene);
         let slopes: Vec<[f64; 3]> = (0..count)
             .map(|i| {
                 let step = scene.covariance[(i, i)].sqrt().max(1e-12);
-                let there = mean(&scene.with_parameter_changed(i, step));
-                [0, 1, 2].map(|part| (there[part] - here[part]) / step)
+                let changed = mean_movement(&scene.with_parameter_changed(i, step));
+                [0, 1, 2].map(|axis| (changed[axis] - base[axis]) / step)
             })
             .collect();
-        [0, 1, 2].map(|part| {
+        [0, 1, 2].map(|axis| {
             let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
-            let term = |(i, j): (usize, usize)| {
-                slopes[i][part] * scene.covariance[(i, j)] * slopes[j][part]
+            let term_of = |(i, j): (usize, usize)| {
+                slopes[i][axis] * scene.covariance[(i, j)] * slopes[j][axis]
             };
-            pairs.map(term).sum::<f64>().max(0.0)
+            pairs.map(term_of).sum::<f64>().max(0.0)
         })
     }
 }

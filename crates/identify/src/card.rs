@@ -25,7 +25,7 @@ impl Card {
 
     /// Converts a movement of the robot to that of the card, in the card's frame at the start.
     pub(crate) fn card_travel(&self, travel: Travel) -> Travel {
-        let at = |body: Place| {
+        let card_place_of = |body: Place| {
             let [forward, left] = body.on_floor([self.ahead, self.left]);
             let heading = body.heading + self.turn.to_radians();
             Place {
@@ -39,7 +39,7 @@ impl Card {
             left: travel.left,
             heading: travel.turn.to_radians(),
         };
-        at(end).seen_from(at(Place::START))
+        card_place_of(end).seen_from(card_place_of(Place::START))
     }
 }
 
@@ -53,16 +53,19 @@ impl From<[f64; COUNT]> for Card {
 mod tests {
     use super::*;
 
-    fn assert_seen(card: [f64; COUNT], way: [f64; 3], seen: [f64; 3]) {
-        let [forward, left, turn] = way;
-        let found = Card::from(card).card_travel(Travel {
+    fn assert_seen(card: [f64; COUNT], robot_travel: [f64; 3], expected_travel: [f64; 3]) {
+        let [forward, left, turn] = robot_travel;
+        let travel = Card::from(card).card_travel(Travel {
             forward,
             left,
             turn,
         });
-        let found = [found.forward, found.left, found.turn];
-        for (found, wanted) in found.into_iter().zip(seen) {
-            assert!((found - wanted).abs() < 1e-9, "{card:?}: {found} {wanted}");
+        let travel = [travel.forward, travel.left, travel.turn];
+        for (actual, expected) in travel.into_iter().zip(expected_travel) {
+            assert!(
+                (actual - expected).abs() < 1e-9,
+                "{card:?}: {actual} {expected}"
+            );
         }
     }
 

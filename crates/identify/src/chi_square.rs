@@ -15,9 +15,12 @@ mod tests {
 
     #[test]
     fn it_is_that_of_tables() {
-        for (freedom, tabled) in [(1.0, 6.635), (2.0, 9.210), (5.0, 15.086), (15.0, 30.578)] {
-            let found = percentile_99(freedom);
-            assert!((found / tabled - 1.0).abs() < 0.02, "{freedom}: {found}");
+        for (freedom, table_value) in [(1.0, 6.635), (2.0, 9.210), (5.0, 15.086), (15.0, 30.578)] {
+            let computed_value = percentile_99(freedom);
+            assert!(
+                (computed_value / table_value - 1.0).abs() < 0.02,
+                "{freedom}: {computed_value}"
+            );
         }
     }
 }

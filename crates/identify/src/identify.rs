@@ -40,32 +40,35 @@ pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Ve
 /// range, and if no movement determines a key.
 pub fn identify(
     robot: &Robot,
-    ways: &[MeasuredMovement],
+    movements: &[MeasuredMovement],
     run_all: RunAll,
 ) -> Result<Identified, Trouble> {
-    let mut ways = ways.to_vec();
-    let mut walks = Vec::new();
-    for way in &mut ways {
-        let gait = robot.gait(&way.gait);
-        let gait = gait.ok_or_else(|| Trouble::NoSuchGait(way.gait.clone()))?;
+    let mut movements = movements.to_vec();
+    let mut gait_runs = Vec::new();
+    for movement in &mut movements {
+        let gait = robot.gait(&movement.gait);
+        let gait = gait.ok_or_else(|| Trouble::NoSuchGait(movement.gait.clone()))?;
         if !gait.moves() {
-            return Err(Trouble::MovesNoServo(way.gait.clone()));
+            return Err(Trouble::MovesNoServo(movement.gait.clone()));
         }
-        let numbers = way.mean.iter().chain(&way.error);
-        let is_all_finite = numbers.chain([&way.pace]).all(|figure| figure.is_finite());
-        if !is_all_finite || way.pace <= 0.0 || way.error.iter().any(|error| *error < 0.0) {
-            return Err(Trouble::NoNumber(way.gait.clone()));
+        let numbers = movement.mean.iter().chain(&movement.error);
+        let is_all_finite = numbers
+            .chain([&movement.pace])
+            .all(|figure| figure.is_finite());
+        if !is_all_finite || movement.pace <= 0.0 || movement.error.iter().any(|error| *error < 0.0)
+        {
+            return Err(Trouble::NoNumber(movement.gait.clone()));
         }
-        let decided = robot.predict(gait);
-        for (i, part) in [decided.forward, decided.left, decided.turn]
+        let prediction = robot.predict(gait);
+        for (i, component) in [prediction.forward, prediction.left, prediction.turn]
             .iter()
             .enumerate()
         {
-            if part.is_none() {
-                way.error[i] = f64::INFINITY;
+            if component.is_none() {
+                movement.error[i] = f64::INFINITY;
             }
         }
-        walks.push((gait, way.pace));
+        gait_runs.push((gait, movement.pace));
     }
     let motors = robot.motors();
     let predict = |values: &Values| -> Vec<Travel> {
@@ -73,80 +76,87 @@ pub fn identify(
         for (key, value) in KEYS.iter().zip(values) {
             key.set(&mut ground, *value);
         }
-        run_all(walks.len(), &|i| {
-            let (gait, pace): (&CheckedGait, f64) = walks[i];
+        run_all(gait_runs.len(), &|i| {
+            let (gait, pace): (&CheckedGait, f64) = gait_runs[i];
             gait.simulate_driven_cycle(&ground, &motors, pace)
         })
     };
     let start = std::array::from_fn(|i| KEYS[i].value_in(robot.ground()));
-    solve(&ways, start, &predict)
+    solve(&movements, start, &predict)
 }
 
 /// Finds the keys with which the model `predict` reproduces the measured movements. `start` are the file's values.
 pub(crate) fn solve(
-    ways: &[MeasuredMovement],
+    movements: &[MeasuredMovement],
     start: Values,
     predict: &dyn Fn(&Values) -> Vec<Travel>,
 ) -> Result<Identified, Trouble> {
-    let problem = Problem::new(ways, start, predict);
+    let problem = Problem::new(movements, start, predict);
     if problem.figures() == 0 {
         return Err(Trouble::NothingDetermined);
     }
-    let all: Vec<usize> = (0..UNKNOWNS).collect();
+    let all_unknowns: Vec<usize> = (0..UNKNOWNS).collect();
     let Fit {
-        full,
+        full: full_fit,
         freedom,
         limit,
-        explains,
+        explains: is_explained,
     } = fit_all(&problem)?;
     // Deviations that the model does not explain widen the errors of the keys (ratio of Birge, 1932).
-    let widened = match freedom < 1.0 {
+    let error_factor = match freedom < 1.0 {
         true => 1.0,
-        false => (full.chi_square / freedom).sqrt().max(1.0),
+        false => (full_fit.chi_square / freedom).sqrt().max(1.0),
     };
-    let errors = errors(&problem, &full).map(|error| widened * error);
-    let (last, verdicts) = choose(&problem, &full, &errors)?;
-    let card_only_fit = problem.fit(&all[KEY_COUNT..], &problem.start_unknowns());
+    let errors = errors_of(&problem, &full_fit).map(|error| error_factor * error);
+    let (last_fit, verdicts) = choose(&problem, &full_fit, &errors)?;
+    let card_only_fit = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
     let card_only = card_only_fit.ok_or(Trouble::NoFit)?;
-    let differences = problem.differences(&last.unknowns).into_iter().enumerate();
+    let differences = problem
+        .differences(&last_fit.unknowns)
+        .into_iter()
+        .enumerate();
     let all_differences = differences.flat_map(|(row, parts)| {
         let parts = parts.into_iter().enumerate();
         parts.map(move |(part, difference)| (row, part, difference))
     });
     let worst = all_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-    let after = split(&last.unknowns).0;
-    let found = |(i, key): (usize, &'static crate::Key)| KeyResult {
+    let new_values = split(&last_fit.unknowns).0;
+    let key_result_of = |(i, key): (usize, &'static crate::Key)| KeyResult {
         key,
         before: start[i],
-        after: after[i],
+        after: new_values[i],
         error: errors[i],
         verdict: verdicts[i],
     };
-    let seen = problem
+    let predictions = problem
         .predicted_on_card(&card_only.unknowns)
         .into_iter()
-        .zip(problem.predicted_on_card(&last.unknowns));
-    let rows = ways.iter().zip(seen);
-    let row = |(way, (before, after)): (&MeasuredMovement, _)| Row {
-        way: way.clone(),
+        .zip(problem.predicted_on_card(&last_fit.unknowns));
+    let rows = movements.iter().zip(predictions);
+    let row_of = |(movement, (before, after)): (&MeasuredMovement, _)| Row {
+        way: movement.clone(),
         before,
         after,
     };
-    let card: [f64; card::COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
+    let card_errors: [f64; card::COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
     Ok(Identified {
-        keys: KEYS.iter().enumerate().map(found).collect(),
-        card: [split(&last.unknowns).1, Card::from(card)],
-        correlated: correlated_pairs(&full.covariance),
+        keys: KEYS.iter().enumerate().map(key_result_of).collect(),
+        card: [split(&last_fit.unknowns).1, Card::from(card_errors)],
+        correlated: correlated_pairs(&full_fit.covariance),
         goodness: Goodness {
             figures: problem.figures(),
-            chi_square: [card_only.chi_square, last.chi_square, full.chi_square],
+            chi_square: [
+                card_only.chi_square,
+                last_fit.chi_square,
+                full_fit.chi_square,
+            ],
             freedom,
             chi_square_limit: limit,
-            is_explained: explains,
-            error_factor: widened,
+            is_explained,
+            error_factor,
             worst: worst.ok_or(Trouble::NothingDetermined)?,
         },
-        rows: rows.map(row).collect(),
+        rows: rows.map(row_of).collect(),
     })
 }
 
@@ -166,42 +176,42 @@ struct Fit {
 /// repeated from starts in which one of the nonlinear keys is far above or below the file's value. A sum below the
 /// limit of a correct model is not enough, since a local minimum may reach that limit, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
-    let all: Vec<usize> = (0..UNKNOWNS).collect();
-    let before = problem.start_unknowns();
-    let elsewhere = NONLINEAR_KEYS.iter().flat_map(|&key| {
+    let all_unknowns: Vec<usize> = (0..UNKNOWNS).collect();
+    let start = problem.start_unknowns();
+    let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
         [1.0, -1.0].map(|side| {
-            let mut guess = before;
-            guess[key] = (before[key] + side * problem.prior_errors[key]).max(KEYS[key].least);
+            let mut guess = start;
+            guess[key] = (start[key] + side * problem.prior_errors[key]).max(KEYS[key].least);
             guess
         })
     });
-    let mut best: Option<Fit> = None;
-    for guess in std::iter::once(before).chain(elsewhere) {
-        let Some(full) = problem.fit(&all, &guess) else {
+    let mut best_fit: Option<Fit> = None;
+    for guess in std::iter::once(start).chain(other_starts) {
+        let Some(full_fit) = problem.fit(&all_unknowns, &guess) else {
             continue;
         };
-        let freedom = freedom(problem, &full);
+        let freedom = freedom_of(problem, &full_fit);
         let limit = if freedom < 1.0 {
             0.0
         } else {
             percentile_99(freedom)
         };
-        let explains = freedom < 1.0 || full.chi_square <= limit;
-        let is_common = freedom < 1.0 || full.chi_square <= freedom;
-        let is_better = |best: &Fit| full.chi_square < best.full.chi_square;
-        if best.as_ref().is_none_or(is_better) {
-            best = Some(Fit {
-                full,
+        let is_explained = freedom < 1.0 || full_fit.chi_square <= limit;
+        let is_common = freedom < 1.0 || full_fit.chi_square <= freedom;
+        let is_better = |best_fit: &Fit| full_fit.chi_square < best_fit.full.chi_square;
+        if best_fit.as_ref().is_none_or(is_better) {
+            best_fit = Some(Fit {
+                full: full_fit,
                 freedom,
                 limit,
-                explains,
+                explains: is_explained,
             });
         }
         if is_common {
             break;
         }
     }
-    best.ok_or(Trouble::NoFit)
+    best_fit.ok_or(Trouble::NoFit)
 }
 
 /// Standard errors of a fit of all unknowns.
@@ -210,65 +220,66 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
 /// little longer takes over a load, and an even longer one changes nothing more. So each key is moved by two errors
 /// in both directions, and the others follow by their correlation with it. In a linear model the sum of squares
 /// would rise by four; where it rises less, the error is enlarged accordingly.
-fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
-    let least = problem.cost(&full.unknowns);
+fn errors_of(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWNS] {
+    let least_cost = problem.cost(&full_fit.unknowns);
     std::array::from_fn(|i| {
-        let error = full.covariance[(i, i)].max(0.0).sqrt();
+        let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
         if i >= KEY_COUNT || error > MAX_ERROR_SHARE * problem.prior_errors[i] {
             return error;
         }
-        let rise = |side: f64| {
-            let along = |j: usize| {
-                full.unknowns[j] + side * MIN_DISTANCE_ERRORS * full.covariance[(j, i)] / error
+        let rise_on_side = |side: f64| {
+            let moved_unknown_at = |j: usize| {
+                full_fit.unknowns[j]
+                    + side * MIN_DISTANCE_ERRORS * full_fit.covariance[(j, i)] / error
             };
-            problem.cost(&std::array::from_fn(along)) - least
+            problem.cost(&std::array::from_fn(moved_unknown_at)) - least_cost
         };
-        let rise = rise(1.0).min(rise(-1.0)).max(LEAST_RISE);
+        let rise = rise_on_side(1.0).min(rise_on_side(-1.0)).max(LEAST_RISE);
         error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)
     })
 }
 
 /// Degrees of freedom of a fit of all unknowns: the figures less the share of each unknown that the measurements,
 /// and not its prior, determine.
-fn freedom(problem: &Problem, full: &Solution) -> f64 {
-    let told =
-        (0..UNKNOWNS).map(|i| 1.0 - full.covariance[(i, i)] / problem.prior_errors[i].powi(2));
-    problem.figures() as f64 - told.sum::<f64>()
+fn freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
+    let shares =
+        (0..UNKNOWNS).map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
+    problem.figures() as f64 - shares.sum::<f64>()
 }
 
 /// Returns keys to the file's values until every free key differs from its file value by at least
 /// [`MIN_DISTANCE_ERRORS`] standard errors.
 fn choose(
     problem: &Problem,
-    full: &Solution,
+    full_fit: &Solution,
     errors: &[f64; UNKNOWNS],
 ) -> Result<(Solution, [Verdict; KEY_COUNT]), Trouble> {
     let mut verdicts = [Verdict::Moved; KEY_COUNT];
-    let mut guess = full.unknowns;
-    let mut covariance = full.covariance.clone();
-    let before = problem.start_unknowns();
+    let mut guess = full_fit.unknowns;
+    let mut covariance = full_fit.covariance.clone();
+    let start = problem.start_unknowns();
     for key in 0..KEY_COUNT {
         if errors[key] > MAX_ERROR_SHARE * problem.prior_errors[key] {
             verdicts[key] = Verdict::Undetermined;
-            hold(key, &before, &mut guess, &mut covariance);
+            hold(key, &start, &mut guess, &mut covariance);
         }
     }
     loop {
         // The linear model comes first, since it needs no run of the gaits.
-        while let Some((key, verdict)) = next_to_hold(&verdicts, &guess, &before, errors) {
+        while let Some((key, verdict)) = next_to_hold(&verdicts, &guess, &start, errors) {
             verdicts[key] = verdict;
-            hold(key, &before, &mut guess, &mut covariance);
+            hold(key, &start, &mut guess, &mut covariance);
         }
         let is_free = |i: &usize| {
             verdicts
                 .get(*i)
                 .is_none_or(|verdict| *verdict == Verdict::Moved)
         };
-        let free: Vec<usize> = (0..UNKNOWNS).filter(is_free).collect();
-        let last = problem.fit(&free, &guess).ok_or(Trouble::NoFit)?;
-        guess = last.unknowns;
-        if next_to_hold(&verdicts, &guess, &before, errors).is_none() {
-            return Ok((last, verdicts));
+        let free_unknowns: Vec<usize> = (0..UNKNOWNS).filter(is_free).collect();
+        let last_fit = problem.fit(&free_unknowns, &guess).ok_or(Trouble::NoFit)?;
+        guess = last_fit.unknowns;
+        if next_to_hold(&verdicts, &guess, &start, errors).is_none() {
+            return Ok((last_fit, verdicts));
         }
     }
 }
@@ -276,37 +287,37 @@ fn choose(
 /// The next key to return to the file's value, and the reason; `None` if all free keys may keep their new values.
 fn next_to_hold(
     verdicts: &[Verdict; KEY_COUNT],
-    at: &[f64; UNKNOWNS],
-    before: &[f64; UNKNOWNS],
+    unknowns: &[f64; UNKNOWNS],
+    start: &[f64; UNKNOWNS],
     errors: &[f64; UNKNOWNS],
 ) -> Option<(usize, Verdict)> {
-    let free = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
-    let distance = |i: usize| (at[i] - before[i]).abs() / errors[i];
-    let nearest = free().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-    if distance(nearest) < MIN_DISTANCE_ERRORS {
-        return Some((nearest, Verdict::Unchanged));
+    let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
+    let distance_of = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
+    let nearest_key = free_keys().min_by(|&a, &b| distance_of(a).total_cmp(&distance_of(b)))?;
+    if distance_of(nearest_key) < MIN_DISTANCE_ERRORS {
+        return Some((nearest_key, Verdict::Unchanged));
     }
-    let low = free().find(|&i| at[i] < KEYS[i].least)?;
-    Some((low, Verdict::Impossible(at[low])))
+    let low_key = free_keys().find(|&i| unknowns[i] < KEYS[i].least)?;
+    Some((low_key, Verdict::Impossible(unknowns[low_key])))
 }
 
 /// Holds a key at the file's value, and moves the other unknowns according to their correlation with it.
 fn hold(
     key: usize,
-    before: &[f64; UNKNOWNS],
-    at: &mut [f64; UNKNOWNS],
+    start: &[f64; UNKNOWNS],
+    unknowns: &mut [f64; UNKNOWNS],
     covariance: &mut DMatrix<f64>,
 ) {
     let variance = covariance[(key, key)];
     let column: Vec<f64> = covariance.column(key).iter().copied().collect();
-    let back = (at[key] - before[key]) / variance;
+    let shift = (unknowns[key] - start[key]) / variance;
     for i in 0..UNKNOWNS {
-        at[i] -= column[i] * back;
+        unknowns[i] -= column[i] * shift;
         for j in 0..UNKNOWNS {
             covariance[(i, j)] -= column[i] * column[j] / variance;
         }
     }
-    at[key] = before[key];
+    unknowns[key] = start[key];
 }
 
 /// Pairs of keys whose errors are strongly correlated, with the correlation.

@@ -84,14 +84,14 @@ impl Identified {
     /// The keys that are moved.
     pub fn moved(&self) -> impl Iterator<Item = &KeyResult> {
         let keys = self.keys.iter();
-        keys.filter(|found| found.verdict == Verdict::Moved)
+        keys.filter(|result| result.verdict == Verdict::Moved)
     }
 }
 
 impl KeyResult {
     /// Number of decimals of the value: enough to show two digits of the standard error.
     pub fn digits(&self) -> usize {
-        let first = -self.error.log10().floor();
-        (first + 1.0).clamp(0.0, 6.0) as usize
+        let first_decimal = -self.error.log10().floor();
+        (first_decimal + 1.0).clamp(0.0, 6.0) as usize
     }
 }

@@ -72,11 +72,11 @@ impl<'a> Problem<'a> {
         predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     ) -> Self {
         let keys = KEYS.iter().map(|key| key.prior_error());
-        let mut doubts = keys.chain(Card::PRIOR_ERRORS);
+        let mut prior_errors = keys.chain(Card::PRIOR_ERRORS);
         Self {
             ways,
             start,
-            prior_errors: std::array::from_fn(|_| doubts.next().unwrap_or_default()),
+            prior_errors: std::array::from_fn(|_| prior_errors.next().unwrap_or_default()),
             predict,
             computed: RefCell::default(),
             slopes_at: RefCell::default(),
@@ -85,7 +85,7 @@ impl<'a> Problem<'a> {
 
     /// Number of measured figures with a finite error.
     pub fn figures(&self) -> usize {
-        let errors = self.ways.iter().flat_map(|way| way.error);
+        let errors = self.ways.iter().flat_map(|movement| movement.error);
         errors.filter(|error| error.is_finite()).count()
     }
 
@@ -95,60 +95,74 @@ impl<'a> Problem<'a> {
     }
 
     /// The movements of the model, as seen on the card.
-    pub fn predicted_on_card(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
-        let (values, card) = split(at);
+    pub fn predicted_on_card(&self, unknowns: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
+        let (values, card) = split(unknowns);
         let travels = self.travels(&values);
-        let seen = travels.into_iter().map(|travel| card.card_travel(travel));
-        seen.map(|seen| [seen.forward, seen.left, seen.turn])
+        let seen_travels = travels.into_iter().map(|travel| card.card_travel(travel));
+        seen_travels
+            .map(|travel| [travel.forward, travel.left, travel.turn])
             .collect()
     }
 
     /// Differences of the measured movements from those of the model, in standard errors.
-    pub fn differences(&self, at: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
-        self.divide_by_errors(&self.predicted_on_card(at), |part, mean| mean - part)
+    pub fn differences(&self, unknowns: &[f64; UNKNOWNS]) -> Vec<[f64; 3]> {
+        self.divide_by_errors(&self.predicted_on_card(unknowns), |part, mean| mean - part)
     }
 
     /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior
     /// values.
-    pub fn cost(&self, at: &[f64; UNKNOWNS]) -> f64 {
-        let ways = self.differences(at).into_flattened();
-        let before = self.start_unknowns();
-        let known = (0..UNKNOWNS).map(|i| (at[i] - before[i]) / self.prior_errors[i]);
-        ways.into_iter().chain(known).map(|part| part * part).sum()
+    pub fn cost(&self, unknowns: &[f64; UNKNOWNS]) -> f64 {
+        let differences = self.differences(unknowns).into_flattened();
+        let start = self.start_unknowns();
+        let prior_deviations =
+            (0..UNKNOWNS).map(|i| (unknowns[i] - start[i]) / self.prior_errors[i]);
+        differences
+            .into_iter()
+            .chain(prior_deviations)
+            .map(|difference| difference * difference)
+            .sum()
     }
 
-    /// Combines each predicted part with the measured one by `of`, and divides the result by its standard error, which
-    /// includes the model's roughness.
-    fn divide_by_errors(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
-        let each = self.ways.iter().zip(parts);
-        let scaled = |(way, parts): (&MeasuredMovement, &[f64; 3])| {
-            std::array::from_fn(|i| of(parts[i], way.mean[i]) / way.error[i].hypot(MODEL_ERROR))
+    /// Combines each predicted part with the measured one by `combine`, and divides the result by its standard error,
+    /// which includes the model's roughness.
+    fn divide_by_errors(
+        &self,
+        parts: &[[f64; 3]],
+        combine: impl Fn(f64, f64) -> f64,
+    ) -> Vec<[f64; 3]> {
+        let rows = self.ways.iter().zip(parts);
+        let divided_row_of = |(movement, parts): (&MeasuredMovement, &[f64; 3])| {
+            std::array::from_fn(|i| {
+                combine(parts[i], movement.mean[i]) / movement.error[i].hypot(MODEL_ERROR)
+            })
         };
-        each.map(scaled).collect()
+        rows.map(divided_row_of).collect()
     }
 
     /// The movements that the model predicts. Those for a negative play are extrapolated as 2 f(0) - f(-play), so
     /// that the fit of a robot without play may err in both directions. Other keys are limited to their least values.
     fn travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY] < 0.0 {
-            let with = |play: f64| {
+            let travels_with_play = |play: f64| {
                 let mut values = *values;
                 values[PLAY] = play;
                 self.travels(&values)
             };
-            let mirrored = with(0.0).into_iter().zip(with(-values[PLAY]));
-            let continued = |at: f64, beyond: f64| 2.0 * at - beyond;
-            return mirrored
-                .map(|(at, beyond)| Travel {
-                    forward: continued(at.forward, beyond.forward),
-                    left: continued(at.left, beyond.left),
-                    turn: continued(at.turn, beyond.turn),
+            let travel_pairs = travels_with_play(0.0)
+                .into_iter()
+                .zip(travels_with_play(-values[PLAY]));
+            let extrapolate = |at_zero: f64, mirrored: f64| 2.0 * at_zero - mirrored;
+            return travel_pairs
+                .map(|(at_zero, mirrored)| Travel {
+                    forward: extrapolate(at_zero.forward, mirrored.forward),
+                    left: extrapolate(at_zero.left, mirrored.left),
+                    turn: extrapolate(at_zero.turn, mirrored.turn),
                 })
                 .collect();
         }
-        let values = above_least(*values);
-        let known = |(at, _): &&(Values, Vec<Travel>)| *at == values;
-        if let Some((_, travels)) = self.computed.borrow().iter().find(known) {
+        let values = raise_to_least(*values);
+        let has_values = |(known_values, _): &&(Values, Vec<Travel>)| *known_values == values;
+        if let Some((_, travels)) = self.computed.borrow().iter().find(has_values) {
             return travels.clone();
         }
         let travels = (self.predict)(&values);
@@ -162,56 +176,61 @@ impl<'a> Problem<'a> {
     /// The method is Gauss-Newton, with steps that are halved while they gain nothing. A finer search is useless,
     /// since the model is rough: servos have a dead band and pads stick.
     pub fn fit(&self, free: &[usize], guess: &[f64; UNKNOWNS]) -> Option<Solution> {
-        let before = self.start_unknowns();
-        let mut at = before;
+        let start = self.start_unknowns();
+        let mut unknowns = start;
         for &unknown in free {
-            at[unknown] = guess[unknown];
+            unknowns[unknown] = guess[unknown];
         }
-        let residuals = |at: &[f64; UNKNOWNS]| {
-            let ways = self.differences(at).into_flattened().into_iter();
-            let known = free
+        let residuals_at = |unknowns: &[f64; UNKNOWNS]| {
+            let differences = self.differences(unknowns).into_flattened().into_iter();
+            let prior_deviations = free
                 .iter()
-                .map(|&i| (at[i] - before[i]) / self.prior_errors[i]);
-            DVector::from_iterator(3 * self.ways.len() + free.len(), ways.chain(known))
+                .map(|&i| (unknowns[i] - start[i]) / self.prior_errors[i]);
+            DVector::from_iterator(
+                3 * self.ways.len() + free.len(),
+                differences.chain(prior_deviations),
+            )
         };
-        let mut here = residuals(&at);
+        let mut current_residuals = residuals_at(&unknowns);
         let mut covariance = DMatrix::zeros(0, 0);
         for _ in 0..MAX_STEPS {
-            let slopes = self.slopes(free, &at);
-            let gradient = slopes.tr_mul(&here);
+            let slopes = self.slopes(free, &unknowns);
+            let gradient = slopes.tr_mul(&current_residuals);
             covariance = slopes.tr_mul(&slopes).cholesky()?.inverse();
             let step = &covariance * &gradient;
-            let promised = step.dot(&gradient);
-            if promised < MIN_PROMISED_GAIN {
+            let promised_gain = step.dot(&gradient);
+            if promised_gain < MIN_PROMISED_GAIN {
                 // The errors come from the derivatives, which beyond a fold differ from those at the start of the
                 // fit.
-                match self.forget_slopes(split(&at).0, NEAR_STEPS) {
+                match self.forget_slopes(split(&unknowns).0, NEAR_STEPS) {
                     true => continue,
                     false => break,
                 }
             }
-            let shorter = (0..=HALVINGS).map(|halvings| {
-                let mut next = at;
+            let shortened_steps = (0..=HALVINGS).map(|halvings| {
+                let mut next_unknowns = unknowns;
                 for (unknown, step) in free.iter().zip(step.iter()) {
-                    next[*unknown] -= step / f64::from(1 << halvings);
+                    next_unknowns[*unknown] -= step / f64::from(1 << halvings);
                 }
-                (next, residuals(&next))
+                (next_unknowns, residuals_at(&next_unknowns))
             });
-            let mut better =
-                shorter.filter(|(_, there)| there.norm_squared() < here.norm_squared());
-            match better.next() {
-                Some(next) => (at, here) = next,
+            let mut better_steps = shortened_steps.filter(|(_, residuals)| {
+                residuals.norm_squared() < current_residuals.norm_squared()
+            });
+            match better_steps.next() {
+                Some(next_step) => (unknowns, current_residuals) = next_step,
                 // Derivatives from another point may give a wrong direction.
-                None if promised > ROUGHNESS_GAIN && self.forget_slopes(split(&at).0, 0.0) => {}
-                None if self.forget_slopes(split(&at).0, NEAR_STEPS) => {}
+                None if promised_gain > ROUGHNESS_GAIN
+                    && self.forget_slopes(split(&unknowns).0, 0.0) => {}
+                None if self.forget_slopes(split(&unknowns).0, NEAR_STEPS) => {}
                 None => break,
             }
         }
-        let differences = self.differences(&at).into_flattened();
+        let differences = self.differences(&unknowns).into_flattened();
         let chi_square: f64 = differences.iter().map(|part| part * part).sum();
         let is_known = chi_square.is_finite() && covariance.iter().all(|part| part.is_finite());
         is_known.then_some(Solution {
-            unknowns: at,
+            unknowns,
             covariance,
             chi_square,
         })
@@ -221,7 +240,8 @@ impl<'a> Problem<'a> {
     /// true if none are left.
     fn forget_slopes(&self, values: Values, steps: f64) -> bool {
         let mut slopes_at = self.slopes_at.borrow_mut();
-        let is_elsewhere = !slopes_at.is_some_and(|at| is_within(steps, at, above_least(values)));
+        let is_elsewhere =
+            !slopes_at.is_some_and(|point| is_within(steps, point, raise_to_least(values)));
         if is_elsewhere {
             *slopes_at = None;
         }
@@ -229,26 +249,27 @@ impl<'a> Problem<'a> {
     }
 
     /// Derivatives of the residuals with respect to the free unknowns.
-    fn slopes(&self, free: &[usize], at: &[f64; UNKNOWNS]) -> DMatrix<f64> {
-        let near = self.slopes_near(split(at).0);
-        let base = std::array::from_fn(|i| near.get(i).copied().unwrap_or(at[i]));
-        let here = self.predicted_on_card(&base);
+    fn slopes(&self, free: &[usize], unknowns: &[f64; UNKNOWNS]) -> DMatrix<f64> {
+        let near_values = self.slopes_near(split(unknowns).0);
+        let base = std::array::from_fn(|i| near_values.get(i).copied().unwrap_or(unknowns[i]));
+        let base_movements = self.predicted_on_card(&base);
         let mut slopes = DMatrix::zeros(3 * self.ways.len() + free.len(), free.len());
         for (column, &unknown) in free.iter().enumerate() {
             let step = KEYS.get(unknown).map_or(0.1, |key| key.step);
-            let mut moved = base;
-            moved[unknown] += step;
-            let mut there = self.predicted_on_card(&moved);
-            for (there, here) in there.iter_mut().zip(&here) {
-                *there = std::array::from_fn(|i| (here[i] - there[i]) / step);
+            let mut moved_unknowns = base;
+            moved_unknowns[unknown] += step;
+            let mut moved_movements = self.predicted_on_card(&moved_unknowns);
+            for (moved_movement, base_movement) in moved_movements.iter_mut().zip(&base_movements) {
+                *moved_movement =
+                    std::array::from_fn(|i| (base_movement[i] - moved_movement[i]) / step);
             }
-            let scaled = self
-                .divide_by_errors(&there, |slope, _| slope)
+            let scaled_slopes = self
+                .divide_by_errors(&moved_movements, |slope, _| slope)
                 .into_flattened();
-            for (row, slope) in scaled.iter().enumerate() {
+            for (row, slope) in scaled_slopes.iter().enumerate() {
                 slopes[(row, column)] = *slope;
             }
-            slopes[(scaled.len() + column, column)] = 1.0 / self.prior_errors[unknown];
+            slopes[(scaled_slopes.len() + column, column)] = 1.0 / self.prior_errors[unknown];
         }
         slopes
     }
@@ -257,11 +278,11 @@ impl<'a> Problem<'a> {
     /// enough.
     fn slopes_near(&self, values: Values) -> Values {
         let mut slopes_at = self.slopes_at.borrow_mut();
-        if let Some(at) = slopes_at.filter(|at| is_within(FAR_STEPS, *at, values)) {
-            return at;
+        if let Some(point) = slopes_at.filter(|point| is_within(FAR_STEPS, *point, values)) {
+            return point;
         }
         // At a key's least value, the derivatives are those of its feasible side.
-        let values = above_least(values);
+        let values = raise_to_least(values);
         *slopes_at = Some(values);
         values
     }
@@ -269,17 +290,17 @@ impl<'a> Problem<'a> {
 
 /// True if each key differs by at most `steps` of its steps.
 fn is_within(steps: f64, a: Values, b: Values) -> bool {
-    let mut each = a.iter().zip(b).zip(&KEYS);
-    each.all(|((a, b), key)| (a - b).abs() <= steps * key.step)
+    let mut pairs = a.iter().zip(b).zip(&KEYS);
+    pairs.all(|((a, b), key)| (a - b).abs() <= steps * key.step)
 }
 
 /// The values, each raised to the least possible value of its key if it is below it.
-fn above_least(values: Values) -> Values {
+fn raise_to_least(values: Values) -> Values {
     std::array::from_fn(|i| values[i].max(KEYS[i].least))
 }
 
 /// Splits the unknowns into the values of the keys and the card.
-pub(crate) fn split(at: &[f64; UNKNOWNS]) -> (Values, Card) {
-    let card: [f64; card::COUNT] = std::array::from_fn(|i| at[KEY_COUNT + i]);
-    (std::array::from_fn(|i| at[i]), card.into())
+pub(crate) fn split(unknowns: &[f64; UNKNOWNS]) -> (Values, Card) {
+    let card: [f64; card::COUNT] = std::array::from_fn(|i| unknowns[KEY_COUNT + i]);
+    (std::array::from_fn(|i| unknowns[i]), card.into())
 }

@@ -12,30 +12,33 @@ impl Identified {
     /// # Errors
     /// Fails if the text has no place for a key, or if the robot with the new values is refused.
     pub fn text(&self, text: &str) -> Result<String, Trouble> {
-        let mut new = text.to_owned();
-        let mut names: Vec<&str> = self.moved().map(|found| found.key.name).collect();
+        let mut new_text = text.to_owned();
+        let mut names: Vec<&str> = self.moved().map(|result| result.key.name).collect();
         names.dedup();
         for name in names {
-            let of_key = self.keys.iter().filter(|found| found.key.name == name);
-            new = with_key(&new, &of_key.collect::<Vec<_>>())
+            let key_results = self.keys.iter().filter(|result| result.key.name == name);
+            new_text = write_key(&new_text, &key_results.collect::<Vec<_>>())
                 .map_err(|error| Trouble::Text(error.to_string()))?;
         }
-        Robot::parse(&new).map_err(|error| Trouble::Refused(error.to_string()))?;
-        Ok(new)
+        Robot::parse(&new_text).map_err(|error| Trouble::Refused(error.to_string()))?;
+        Ok(new_text)
     }
 }
 
 /// Writes the value of a key, which is one number or a list, with a comment about the numbers that moved.
-fn with_key(text: &str, numbers: &[&KeyResult]) -> Result<String, edit::NoSuchKey> {
-    let name = numbers[0].key.name;
-    let values: Vec<f64> = numbers.iter().map(|found| found.written()).collect();
-    let new = match numbers[0].key.list_index {
+fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::NoSuchKey> {
+    let name = results[0].key.name;
+    let values: Vec<f64> = results
+        .iter()
+        .map(|result| result.written_value())
+        .collect();
+    let new_text = match results[0].key.list_index {
         Some(_) => edit::with_numbers(text, name, &values)?,
         None => edit::with_number(text, name, values[0])?,
     };
-    let moved = numbers.iter().filter(|found| found.is_moved());
-    let words: Vec<String> = moved.map(|found| found.comment()).collect();
-    edit::with_comment(&new, name, "measured:", &words.join("; "))
+    let moved_results = results.iter().filter(|result| result.is_moved());
+    let comments: Vec<String> = moved_results.map(|result| result.comment_text()).collect();
+    edit::with_comment(&new_text, name, "measured:", &comments.join("; "))
 }
 
 impl KeyResult {
@@ -44,7 +47,7 @@ impl KeyResult {
     }
 
     /// The value for the new file, rounded if it moved.
-    fn written(&self) -> f64 {
+    fn written_value(&self) -> f64 {
         if !self.is_moved() {
             return self.before;
         }
@@ -52,14 +55,14 @@ impl KeyResult {
         (self.after * scale).round() / scale
     }
 
-    fn comment(&self) -> String {
+    fn comment_text(&self) -> String {
         let digits = self.digits();
-        let place = match self.key.list_index {
+        let index_text = match self.key.list_index {
             Some(index) => format!("[{index}] "),
             None => String::new(),
         };
         format!(
-            "{place}{:.digits$} +- {:.digits$}, was {:?}",
+            "{index_text}{:.digits$} +- {:.digits$}, was {:?}",
             self.after, self.error, self.before
         )
     }

@@ -14,7 +14,7 @@ const GAITS: usize = 8;
 /// Possible change of each key, in the order of `KEYS`; a robot gets up to three of these changes.
 const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
-fn set(ground: &mut Ground, key: usize, change: f64) {
+fn change_key(ground: &mut Ground, key: usize, change: f64) {
     let value = match key {
         0 => &mut ground.feet.mount,
         1 => &mut ground.drive.play,
@@ -28,27 +28,28 @@ fn set(ground: &mut Ground, key: usize, change: f64) {
 }
 
 /// A random number with an approximately normal distribution: mean 0, standard deviation 1.
-fn normal(rng: &mut Rng) -> f64 {
+fn normal_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
 
 /// Runs the walks one after another.
-fn in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
+fn run_in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
     (0..count).map(walk).collect()
 }
 
 /// Movements of the fastest gaits of a robot on another ground, with the random errors of a film.
 fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
-    let far = |gait: &CheckedGait| {
-        let way = robot.predict(gait);
-        let [ahead, turn] = [way.forward, way.turn].map(|part| part.unwrap_or(0.0).abs());
+    let speed_of = |gait: &CheckedGait| {
+        let prediction = robot.predict(gait);
+        let [ahead, turn] =
+            [prediction.forward, prediction.turn].map(|part| part.unwrap_or(0.0).abs());
         (ahead + turn) / gait.period()
     };
     let mut gaits: Vec<&CheckedGait> = robot.gaits().iter().filter(|gait| gait.moves()).collect();
-    gaits.sort_by(|a, b| far(b).total_cmp(&far(a)));
+    gaits.sort_by(|a, b| speed_of(b).total_cmp(&speed_of(a)));
     gaits.truncate(GAITS);
     let motors = robot.motors();
-    let way = |gait: &&CheckedGait| {
+    let movement_of = |gait: &&CheckedGait| {
         let Travel {
             forward,
             left,
@@ -57,11 +58,11 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
         MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
-            mean: [forward, left, turn].map(|part| part + ERROR * normal(rng)),
+            mean: [forward, left, turn].map(|part| part + ERROR * normal_deviate(rng)),
             error: [ERROR; 3],
         }
     };
-    gaits.iter().map(way).collect()
+    gaits.iter().map(movement_of).collect()
 }
 
 /// A robot with changed keys: the true changes, and the identification from its movements.
@@ -85,16 +86,17 @@ impl Trial {
             changes[key] = sign * CHANGES[key];
         }
         for (key, change) in changes.into_iter().enumerate() {
-            set(&mut ground, key, change);
+            change_key(&mut ground, key, change);
         }
-        let ways = filmed_movements(&robot, &ground, &mut rng);
+        let movements = filmed_movements(&robot, &ground, &mut rng);
         Self {
             name: format!(
                 "{} {seed}",
                 file.file_stem().expect("a name").to_string_lossy()
             ),
             changes,
-            identified: identify(&robot, &ways, &in_turn).expect("the ways tell something"),
+            identified: identify(&robot, &movements, &run_in_turn)
+                .expect("the ways tell something"),
         }
     }
 
@@ -118,50 +120,65 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
     let seed = std::env::var("SEED")
         .ok()
         .and_then(|word| word.parse().ok());
-    let first = 2 * seed.unwrap_or(1) - 1;
+    let first_seed = 2 * seed.unwrap_or(1) - 1;
     let trials: Vec<Trial> = thread::scope(|scope| {
         let robots = files
             .iter()
-            .flat_map(|file| [(file, first), (file, first + 1)]);
+            .flat_map(|file| [(file, first_seed), (file, first_seed + 1)]);
         let run = |(file, seed): (&PathBuf, u64)| {
             let file = file.clone();
             scope.spawn(move || Trial::new(&file, seed))
         };
         let threads: Vec<_> = robots.map(run).collect();
-        let ended = threads.into_iter().map(|thread| thread.join());
-        ended.map(|trial| trial.expect("a trial")).collect()
+        let results = threads.into_iter().map(|thread| thread.join());
+        results.map(|trial| trial.expect("a trial")).collect()
     });
-    let (mut told, mut within, mut right, mut moved) = (0, 0, 0, 0);
+    let (mut changed_count, mut near_count, mut unchanged_count, mut moved_count) = (0, 0, 0, 0);
     for trial in &trials {
         let goodness = &trial.identified.goodness;
         println!(
             "{}: chi-square {:.0} of {:.0}",
             trial.name, goodness.chi_square[1], goodness.chi_square_limit
         );
-        for (change, found) in trial.keys() {
-            let by = found.after - found.before;
-            let is_near = (by - change).abs() < 2.0 * found.error;
+        for (change, result) in trial.keys() {
+            let shift = result.after - result.before;
+            let is_near = (shift - change).abs() < 2.0 * result.error;
             println!(
-                "  {:<34} {change:+.3}: {by:+.3} +- {:.3} {:?}{}",
-                found.key.full_name(),
-                found.error,
-                found.verdict,
+                "  {:<34} {change:+.3}: {shift:+.3} +- {:.3} {:?}{}",
+                result.key.full_name(),
+                result.error,
+                result.verdict,
                 if is_near { "" } else { " !" }
             );
-            if found.verdict == Verdict::Undetermined {
+            if result.verdict == Verdict::Undetermined {
                 continue;
             }
             match change == 0.0 {
-                true => (right, moved) = (right + 1, moved + usize::from(by != 0.0)),
-                false => (told, within) = (told + 1, within + usize::from(is_near)),
+                true => {
+                    (unchanged_count, moved_count) =
+                        (unchanged_count + 1, moved_count + usize::from(shift != 0.0))
+                }
+                false => {
+                    (changed_count, near_count) =
+                        (changed_count + 1, near_count + usize::from(is_near))
+                }
             }
         }
     }
     println!(
-        "{within} of {told} changed keys within two errors, {moved} of {right} right ones moved"
+        "{near_count} of {changed_count} changed keys within two errors, {moved_count} of {unchanged_count} right ones moved"
     );
-    assert!(told >= 12 && right >= 20, "{told} {right}");
-    assert!(within as f64 >= 0.9 * f64::from(told), "{within} of {told}");
-    assert!(moved as f64 <= 0.1 * f64::from(right), "{moved} of {right}");
+    assert!(
+        changed_count >= 12 && unchanged_count >= 20,
+        "{changed_count} {unchanged_count}"
+    );
+    assert!(
+        near_count as f64 >= 0.9 * f64::from(changed_count),
+        "{near_count} of {changed_count}"
+    );
+    assert!(
+        moved_count as f64 <= 0.1 * f64::from(unchanged_count),
+        "{moved_count} of {unchanged_count}"
+    );
     assert_eq!(KEYS.len(), CHANGES.len());
 }

@@ -18,7 +18,7 @@ const NEUTRAL: [f64; 4] = [138.59, 41.41, 318.59, 221.41];
 
 /// A pose within 34 degrees of neutral, the paper's safe box. Multiples of these irrational
 /// steps fill the box evenly.
-fn pose(number: usize) -> [f64; 4] {
+fn pose_of(number: usize) -> [f64; 4] {
     let steps = [0.856_674_883, 0.733_891_856, 0.628_706_720, 0.538_597_257];
     std::array::from_fn(|servo| {
         NEUTRAL[servo] + 68.0 * (number as f64 * steps[servo]).fract() - 34.0
@@ -36,7 +36,7 @@ fn main() {
         links: LINKS.into(),
         leg,
     };
-    let poses: Vec<[f64; 4]> = (0..POSES).map(pose).collect();
+    let poses: Vec<[f64; 4]> = (0..POSES).map(pose_of).collect();
     // The fastest of five passes over all poses.
     let seconds = (0..5).map(|_| {
         let start = Instant::now();

@@ -1,11 +1,11 @@
 //! Degrees, the one angle unit of the interface, and their trigonometry.
 //!
 //! Reducing degrees by multiples of 90 is exact, reducing radians is not: so sin 180 is exactly 0,
-//! and an angle and the same angle a turn later have the same sine, bit for bit (except for the
-//! last bit exactly on a diagonal, where either octant may answer). The functions do not branch on
-//! their arguments, so they are several times faster than the general functions of a mathematics
-//! library. Only IEEE additions, multiplications, divisions and comparisons are used, never fused:
-//! the same bits on every host.
+//! and an angle and the same angle a turn later have the same sine, bit for bit. Only exactly on a
+//! diagonal the last bit may differ, since either of the two neighbouring octants may be used. The
+//! functions do not branch on their arguments, so they are several times faster than the general
+//! functions of a mathematics library. Only IEEE additions, multiplications, divisions and
+//! comparisons are used, never fused: the same bits on every host.
 //!
 //! The polynomials come from `src/angle/polynomials.rs`, which computes them with
 //! 256 bits; their own errors are at most 2.1e-17 of the result, a fifth of an
@@ -80,7 +80,7 @@ fn choose(mask: u64, yes: f64, no: f64) -> f64 {
 
 /// Returns a mask of all ones if the condition is true, otherwise zero.
 #[inline(always)]
-fn mask(condition: bool) -> u64 {
+fn mask_of(condition: bool) -> u64 {
     u64::from(condition).wrapping_neg()
 }
 
@@ -107,11 +107,11 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
 pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     let mut degrees = degrees;
-    let mut far = false;
+    let mut has_far_angle = false;
     for angle in &degrees {
-        far |= angle.abs() >= MAX_REDUCED;
+        has_far_angle |= angle.abs() >= MAX_REDUCED;
     }
-    if far {
+    if has_far_angle {
         reduce(&mut degrees);
     }
     for i in 0..N {
@@ -121,16 +121,16 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
         let z = r * r;
         let sin = r + r * (z * horner(&SIN, z));
         // 1 - z/2 is rounded; the rounding error is added with the small terms.
-        let half = 0.5 * z;
-        let near = 1.0 - half;
-        let cos = near + (((1.0 - near) - half) + z * (z * horner(&COS, z)));
+        let half_square = 0.5 * z;
+        let main_term = 1.0 - half_square;
+        let cos = main_term + (((1.0 - main_term) - half_square) + z * (z * horner(&COS, z)));
         // In quarters 1 and 3 sine and cosine change places; quarters 2 and 3 negate the sine, 1
         // and 2 the cosine. + 0.0 makes a negative zero positive.
-        let odd = (quarter & 1).wrapping_neg();
-        let below = (quarter & 2) << 62;
-        let behind = below ^ (odd & SIGN);
-        sines[i] = f64::from_bits(choose(odd, cos, sin).to_bits() ^ below) + 0.0;
-        cosines[i] = f64::from_bits(choose(odd, sin, cos).to_bits() ^ behind) + 0.0;
+        let odd_mask = (quarter & 1).wrapping_neg();
+        let sine_sign = (quarter & 2) << 62;
+        let cosine_sign = sine_sign ^ (odd_mask & SIGN);
+        sines[i] = f64::from_bits(choose(odd_mask, cos, sin).to_bits() ^ sine_sign) + 0.0;
+        cosines[i] = f64::from_bits(choose(odd_mask, sin, cos).to_bits() ^ cosine_sign) + 0.0;
     }
     (sines, cosines)
 }
@@ -153,20 +153,20 @@ fn reduce(degrees: &mut [f64]) {
 #[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
-    let steep = mask(ay > ax);
-    let (long, short) = (choose(steep, ay, ax), choose(steep, ax, ay));
+    let steep_mask = mask_of(ay > ax);
+    let (long, short) = (choose(steep_mask, ay, ax), choose(steep_mask, ax, ay));
     // Within the first 45 degrees, the polynomial is that about 0 or about 45, whichever is nearer.
-    let diagonal = mask(short > HALF_EIGHTH * long);
-    let numerator = choose(diagonal, short - long, short);
-    let denominator = choose(diagonal, short + long, long);
-    let zero = mask(denominator == 0.0);
-    let u = numerator / choose(zero, 1.0, denominator);
+    let diagonal_mask = mask_of(short > HALF_EIGHTH * long);
+    let numerator = choose(diagonal_mask, short - long, short);
+    let denominator = choose(diagonal_mask, short + long, long);
+    let zero_mask = mask_of(denominator == 0.0);
+    let u = numerator / choose(zero_mask, 1.0, denominator);
     let z = u * u;
-    let base = choose(diagonal, 45.0, 0.0);
+    let base = choose(diagonal_mask, 45.0, 0.0);
     let eighth = base + (u + u * (z * horner(&ATAN, z))) * (180.0 / PI);
-    let quarter = choose(steep, 90.0 - eighth, eighth);
-    let half = choose(mask(x < 0.0), 180.0 - quarter, quarter);
-    choose(mask(y < 0.0), -half, half)
+    let quarter = choose(steep_mask, 90.0 - eighth, eighth);
+    let half = choose(mask_of(x < 0.0), 180.0 - quarter, quarter);
+    choose(mask_of(y < 0.0), -half, half)
 }
 
 /// Wraps an angle to the same direction in (-180, 180] degrees, exactly. Not a number if the angle
@@ -236,9 +236,9 @@ mod tests {
             x in -1.0..1.0f64, y in -1.0..1.0f64, size in -300..300i32,
         ) {
             let scale = 10f64.powi(size);
-            let ours = atan2(y * scale, x * scale);
-            let truth = libm::atan2(y * scale, x * scale).to_degrees();
-            prop_assert!((ours - truth).abs() <= 3.0 * f64::EPSILON * truth.abs(), "{ours} {truth}");
+            let computed = atan2(y * scale, x * scale);
+            let expected = libm::atan2(y * scale, x * scale).to_degrees();
+            prop_assert!((computed - expected).abs() <= 3.0 * f64::EPSILON * expected.abs(), "{computed} {expected}");
         }
 
         #[test]
@@ -272,8 +272,8 @@ mod tests {
 
     #[test]
     fn nan_and_infinity_give_nan() {
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert!(sin_cos(bad).0.is_nan() && sin_cos(bad).1.is_nan());
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(sin_cos(value).0.is_nan() && sin_cos(value).1.is_nan());
         }
         assert!(atan2(f64::NAN, 1.0).is_nan() && atan2(1.0, f64::NAN).is_nan());
         let (sin, cos) = sin_cos(1e300);
@@ -282,8 +282,8 @@ mod tests {
 
     #[test]
     fn the_polynomials_are_what_the_generator_gives() {
-        let here: [&[f64]; 3] = [&SIN, &COS, &ATAN];
-        for (polynomial, coefficients) in polynomials::POLYNOMIALS.iter().zip(here) {
+        let tables: [&[f64]; 3] = [&SIN, &COS, &ATAN];
+        for (polynomial, coefficients) in polynomials::POLYNOMIALS.iter().zip(tables) {
             let name = polynomial.name;
             assert_eq!(polynomial.coefficients(), coefficients, "{name}");
             let error = polynomial.error(coefficients);
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn wrapping_is_exact_for_any_angle() {
-        for (degrees, wrapped) in [
+        for (degrees, expected) in [
             (540.0, 180.0),
             (-540.0, 180.0),
             (-179.5, -179.5),
@@ -304,11 +304,11 @@ mod tests {
             (-1e308, -1e308 % 360.0),
         ] {
             // The expected angle is the one of these three, a turn apart, that is in range.
-            let turns = [wrapped - 360.0, wrapped, wrapped + 360.0];
-            let wrapped = turns
+            let turns = [expected - 360.0, expected, expected + 360.0];
+            let expected = turns
                 .into_iter()
                 .find(|degrees_in_turn| *degrees_in_turn > -180.0 && *degrees_in_turn <= 180.0);
-            assert_eq!(Some(wrap(degrees)), wrapped, "{degrees}");
+            assert_eq!(Some(wrap(degrees)), expected, "{degrees}");
             assert_eq!(sin_cos(degrees), sin_cos(wrap(degrees)), "{degrees}");
         }
         assert!(wrap(f64::INFINITY).is_nan() && wrap(f64::NAN).is_nan());

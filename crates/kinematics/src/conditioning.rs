@@ -52,11 +52,11 @@ impl FiveBarPose {
         // The index has no scale, so the factor 1/type2 is left out and nothing
         // blows up near the type-2 singularity.
         let (left, right) = self.coupler_velocities();
-        let scaled = Jacobian {
+        let scaled_jacobian = Jacobian {
             left: self.right_coupler.rotated_right() * left,
             right: self.left_coupler.rotated_left() * right,
         };
-        let [largest, smallest] = scaled.singular_values();
+        let [largest, smallest] = scaled_jacobian.singular_values();
         if largest > 0.0 {
             smallest / largest
         } else {
@@ -86,16 +86,16 @@ mod tests {
 
         #[test]
         fn the_jacobian_moves_the_head_as_the_rates_do(
-            (_, _, solved) in any_solved(), rate in [-300.0..300.0, -300.0..300.0f64],
+            (_, _, solution) in any_solved(), rate in [-300.0..300.0, -300.0..300.0f64],
         ) {
-            prop_assume!(solved.head.type2 > 1e-3);
+            prop_assume!(solution.head.type2 > 1e-3);
             let drive = Drive { rate: [rate[0], rate[1], 0.0, 0.0], ..Drive::default() };
-            let truth = solved.derivatives(&drive).head.rate;
-            let j = solved.head.jacobian();
-            let ours = j.left * rate[0].to_radians() + j.right * rate[1].to_radians();
-            prop_assert!((truth - ours).length() < 1e-9 * (1.0 + truth.length()) / solved.head.type2);
+            let expected = solution.derivatives(&drive).head.rate;
+            let j = solution.head.jacobian();
+            let computed = j.left * rate[0].to_radians() + j.right * rate[1].to_radians();
+            prop_assert!((expected - computed).length() < 1e-9 * (1.0 + expected.length()) / solution.head.type2);
             let [largest, smallest] = j.singular_values();
-            prop_assert!((smallest / largest - solved.head.lci()).abs() < 1e-9);
+            prop_assert!((smallest / largest - solution.head.lci()).abs() < 1e-9);
             prop_assert!((largest * smallest - j.determinant().abs()).abs() < 1e-9 * largest * largest);
         }
     }

@@ -26,19 +26,19 @@ impl<T: Real> FiveBarPose<T> {
     /// type-2 margin, the type-1 and leg margins, the left crank's first, and the distance
     /// of the crank tips from crossing.
     pub fn conditions(&self, end: End) -> [(Check, T); 6] {
-        let of_end = |[head, tail]: [Check; 2]| match end {
+        let check_of_end = |[head, tail]: [Check; 2]| match end {
             End::Head => head,
             End::Tail => tail,
         };
         let [arm_left, arm_right] = end.pick(Check::TYPE1);
         let [leg_left, leg_right] = end.pick(Check::LEG);
         [
-            (of_end(Check::TYPE2), self.type2),
+            (check_of_end(Check::TYPE2), self.type2),
             (arm_left, self.type1_left()),
             (arm_right, self.type1_right()),
             (leg_left, leg::margin(self.left_crank)),
             (leg_right, leg::margin(self.right_crank)),
-            (of_end(Check::UNCROSSED), self.gap.x),
+            (check_of_end(Check::UNCROSSED), self.gap.x),
         ]
     }
 }

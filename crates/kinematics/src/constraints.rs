@@ -110,15 +110,15 @@ impl Solution {
 
     /// The determinants of the blocks of K*, whose product is det K*.
     pub fn blocks(&self) -> BlockDeterminants {
-        let block = |end: End| {
+        let block_of = |end: End| {
             let pose = self.end(end);
             let lengths = pose.bars.coupler_left * pose.bars.coupler_right;
             // Mirroring changes the sign of the sine.
             -end.sign() * lengths * pose.type2
         };
         BlockDeterminants {
-            head: block(End::Head),
-            tail: block(End::Tail),
+            head: block_of(End::Head),
+            tail: block_of(End::Tail),
             left: -self.left.d,
             right: -self.right.d,
         }
@@ -186,38 +186,38 @@ mod tests {
 
         #[test]
         fn k_and_k_star_are_the_derivatives_of_the_loop_equations(
-            (robot, pose, solved) in any_solved(),
+            (robot, pose, solution) in any_solved(),
         ) {
-            let passive = solved.passive();
+            let passive = solution.passive();
             let step = 1e-4;
             let radian = 1f64.to_degrees();
-            let k = solved.active_matrix();
+            let k = solution.active_matrix();
             for column in 0..4 {
                 let residual_after = |step_size: f64| {
                     let mut active = pose;
                     active[column] += step_size * radian;
                     robot.residual(active, &passive)
                 };
-                let (up, down) = (residual_after(step), residual_after(-step));
+                let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
-                    let slope = (up[row] - down[row]) / (2.0 * step);
+                    let slope = (residual_above[row] - residual_below[row]) / (2.0 * step);
                     prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K {row} {column}");
                 }
             }
-            let k = solved.passive_matrix();
+            let k = solution.passive_matrix();
             for column in 0..8 {
                 let residual_after = |step_size: f64| {
-                    let mut p = passive;
+                    let mut shifted = passive;
                     let field = [
-                        &mut p.theta2, &mut p.theta3, &mut p.theta6, &mut p.theta7,
-                        &mut p.phi_left, &mut p.s_left, &mut p.phi_right, &mut p.s_right,
+                        &mut shifted.theta2, &mut shifted.theta3, &mut shifted.theta6, &mut shifted.theta7,
+                        &mut shifted.phi_left, &mut shifted.s_left, &mut shifted.phi_right, &mut shifted.s_right,
                     ].into_iter().nth(column).unwrap();
                     *field += if matches!(column, 5 | 7) { step_size } else { step_size * radian };
-                    robot.residual(pose, &p)
+                    robot.residual(pose, &shifted)
                 };
-                let (up, down) = (residual_after(step), residual_after(-step));
+                let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
-                    let slope = (up[row] - down[row]) / (2.0 * step);
+                    let slope = (residual_above[row] - residual_below[row]) / (2.0 * step);
                     prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K* {row} {column}");
                 }
             }
@@ -225,18 +225,18 @@ mod tests {
 
         #[test]
         fn the_blocks_multiply_to_the_determinant_of_k_star(
-            (robot, _, solved) in any_solved(),
+            (robot, _, solution) in any_solved(),
         ) {
-            let product = solved.blocks().determinant();
-            let eliminated = determinant(solved.passive_matrix());
+            let product = solution.blocks().determinant();
+            let eliminated_determinant = determinant_of(solution.passive_matrix());
             let l = robot.links;
-            let scale = l.l2 * l.l3 * l.l7 * l.l8 * solved.left.d * solved.right.d;
-            prop_assert!((product - eliminated).abs() < 1e-9 * scale, "{product} {eliminated}");
+            let scale = l.l2 * l.l3 * l.l7 * l.l8 * solution.left.d * solution.right.d;
+            prop_assert!((product - eliminated_determinant).abs() < 1e-9 * scale, "{product} {eliminated_determinant}");
         }
     }
 
     /// The determinant by Gaussian elimination with pivoting.
-    fn determinant(mut m: [[f64; 8]; 8]) -> f64 {
+    fn determinant_of(mut m: [[f64; 8]; 8]) -> f64 {
         let mut product = 1.0;
         for i in 0..8 {
             let pivot = (i..8)

@@ -65,28 +65,28 @@ impl Solution {
     /// Rates and accelerations of the passive joints. Not finite at a type-2 singularity, where the servos'
     /// rates do not determine them.
     pub fn derivatives(&self, drive: &Drive) -> Derivatives {
-        let spin = |servo: usize| Spin::new(drive.rate[servo], drive.acceleration[servo]);
-        let spins = [0, 1, 2, 3].map(|servo| spin(servo).map(|degrees| degrees * (PI / 180.0)));
-        let of_end = |end: End| {
-            let signed = |w: f64| end.sign() * w;
-            let [left, right] = end.pick(spins).map(|spin| spin.map(signed));
+        let spin_of = |servo: usize| Spin::new(drive.rate[servo], drive.acceleration[servo]);
+        let spins = [0, 1, 2, 3].map(|servo| spin_of(servo).map(|degrees| degrees * (PI / 180.0)));
+        let loop_of_end = |end: End| {
+            let apply_sign = |w: f64| end.sign() * w;
+            let [left, right] = end.pick(spins).map(|spin| spin.map(apply_sign));
             let LoopDerivatives { left, right, point } =
                 loop_derivatives(self.end(end), left, right);
             LoopDerivatives {
-                left: left.map(signed).map(degrees),
-                right: right.map(signed).map(degrees),
+                left: left.map(apply_sign).map(degrees_of),
+                right: right.map(apply_sign).map(degrees_of),
                 point: point.map(|v| end.mirror(v)),
             }
         };
-        let (head, tail) = (of_end(End::Head), of_end(End::Tail));
-        let of_side = |side: Side| {
+        let (head, tail) = (loop_of_end(End::Head), loop_of_end(End::Tail));
+        let slider_of_side = |side: Side| {
             let ([front, rear], pose) = (side.pick(spins), self.side(side));
             let (phi, s) =
                 slider_derivatives(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
-            (phi.map(degrees), s)
+            (phi.map(degrees_of), s)
         };
-        let (phi_left, s_left) = of_side(Side::Left);
-        let (phi_right, s_right) = of_side(Side::Right);
+        let (phi_left, s_left) = slider_of_side(Side::Left);
+        let (phi_right, s_right) = slider_of_side(Side::Right);
         Derivatives {
             theta2: head.left,
             theta3: head.right,
@@ -112,7 +112,7 @@ impl<T> Derivative<T> {
     }
 }
 
-fn degrees(radians: f64) -> f64 {
+fn degrees_of(radians: f64) -> f64 {
     radians * (180.0 / PI)
 }
 
@@ -132,17 +132,17 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
     let (u2, u3) = (pose.left_coupler, pose.right_coupler);
     // The unknown rates x of theta2 and y of theta3 obey x left(r2) - y left(r3) = c; the dot product with u3
     // isolates x, that with u2 isolates y.
-    let free = |c: Vector| {
+    let solve_couplers = |c: Vector| {
         (
             c.dot(u3) / (pose.bars.coupler_left * pose.type2),
             c.dot(u2) / (pose.bars.coupler_right * pose.type2),
         )
     };
     let (w1, w4) = (crank_left.rate, crank_right.rate);
-    let (w2, w3) = free(r4.rotated_left() * w4 - r1.rotated_left() * w1);
+    let (w2, w3) = solve_couplers(r4.rotated_left() * w4 - r1.rotated_left() * w1);
     let inward = r1 * (w1 * w1) + r2 * (w2 * w2) - r3 * (w3 * w3) - r4 * (w4 * w4);
     let (e1, e4) = (crank_left.acceleration, crank_right.acceleration);
-    let (e2, e3) = free(inward + r4.rotated_left() * e4 - r1.rotated_left() * e1);
+    let (e2, e3) = solve_couplers(inward + r4.rotated_left() * e4 - r1.rotated_left() * e1);
     LoopDerivatives {
         left: Spin::new(w2, e2),
         right: Spin::new(w3, e3),
@@ -165,13 +165,16 @@ fn slider_derivatives(
     (rear, rear_spin): (Vector, Spin),
     (front, front_spin): (Vector, Spin),
 ) -> (Spin, Derivative<f64>) {
-    let along = pose.span * (1.0 / pose.d);
+    let slider_direction = pose.span * (1.0 / pose.d);
     let v = front.rotated_left() * front_spin.rate - rear.rotated_left() * rear_spin.rate;
     let a = end_acceleration(front, front_spin) - end_acceleration(rear, rear_spin);
-    let (slide, turn) = (v.dot(along), along.cross(v) / pose.d);
+    let (slide, turn) = (v.dot(slider_direction), slider_direction.cross(v) / pose.d);
     (
-        Spin::new(turn, (along.cross(a) - 2.0 * slide * turn) / pose.d),
-        Derivative::new(slide, a.dot(along) + pose.d * turn * turn),
+        Spin::new(
+            turn,
+            (slider_direction.cross(a) - 2.0 * slide * turn) / pose.d,
+        ),
+        Derivative::new(slide, a.dot(slider_direction) + pose.d * turn * turn),
     )
 }
 
@@ -191,39 +194,47 @@ mod tests {
 
     /// Every passive quantity: angles of the couplers and sliders, coordinates of head and tail, travels of
     /// the sliders.
-    fn values(s: &Solution) -> [f64; 12] {
-        let (head, tail) = (s.head_point(), s.tail_point());
+    fn values_of(solution: &Solution) -> [f64; 12] {
+        let (head, tail) = (solution.head_point(), solution.tail_point());
         [
-            s.theta2(),
-            s.theta3(),
-            s.theta6(),
-            s.theta7(),
-            s.left.phi(),
-            s.right.phi(),
+            solution.theta2(),
+            solution.theta3(),
+            solution.theta6(),
+            solution.theta7(),
+            solution.left.phi(),
+            solution.right.phi(),
             head.x,
             head.y,
             tail.x,
             tail.y,
-            s.left.s,
-            s.right.s,
+            solution.left.s,
+            solution.right.s,
         ]
     }
 
-    /// Rates and accelerations of all passive quantities, in the order of [`values`].
-    fn numbers(s: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
-        let m = s.derivatives(drive);
+    /// Rates and accelerations of all passive quantities, in the order of [`values_of`].
+    fn derivatives_of(solution: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
+        let derivatives = solution.derivatives(drive);
         let angles = [
-            m.theta2,
-            m.theta3,
-            m.theta6,
-            m.theta7,
-            m.phi_left,
-            m.phi_right,
+            derivatives.theta2,
+            derivatives.theta3,
+            derivatives.theta6,
+            derivatives.theta7,
+            derivatives.phi_left,
+            derivatives.phi_right,
         ];
-        let points =
-            [m.head, m.tail].map(|points_of| [points_of.map(|v| v.x), points_of.map(|v| v.y)]);
-        let all = [&angles[..], points.as_flattened(), &[m.s_left, m.s_right]].concat();
-        let (rates, accelerations) = (|i: usize| all[i].rate, |i: usize| all[i].acceleration);
+        let points = [derivatives.head, derivatives.tail]
+            .map(|points_of| [points_of.map(|v| v.x), points_of.map(|v| v.y)]);
+        let all_derivatives = [
+            &angles[..],
+            points.as_flattened(),
+            &[derivatives.s_left, derivatives.s_right],
+        ]
+        .concat();
+        let (rates, accelerations) = (
+            |i: usize| all_derivatives[i].rate,
+            |i: usize| all_derivatives[i].acceleration,
+        );
         (
             std::array::from_fn(rates),
             std::array::from_fn(accelerations),
@@ -232,16 +243,17 @@ mod tests {
 
     /// Solves the robot's pose `t` seconds later, under constant servo accelerations.
     fn solve_after(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
-        let mut there = pose;
-        for (i, angle) in there.iter_mut().enumerate() {
+        let mut moved_pose = pose;
+        for (i, angle) in moved_pose.iter_mut().enumerate() {
             *angle += drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0;
         }
-        robot.solve(&Pose::from(there)).ok()
+        robot.solve(&Pose::from(moved_pose)).ok()
     }
 
-    fn drives() -> impl Strategy<Value = Drive> {
-        let four = |max: f64| [-max..max, -max..max, -max..max, -max..max];
-        (four(300.0), four(2000.0)).prop_map(|(rate, acceleration)| Drive { rate, acceleration })
+    fn any_drive() -> impl Strategy<Value = Drive> {
+        let four_ranges = |max: f64| [-max..max, -max..max, -max..max, -max..max];
+        (four_ranges(300.0), four_ranges(2000.0))
+            .prop_map(|(rate, acceleration)| Drive { rate, acceleration })
     }
 
     proptest! {
@@ -249,32 +261,32 @@ mod tests {
 
         #[test]
         fn rates_and_accelerations_are_the_differences_of_positions(
-            (robot, pose, now) in any_solved(), drive in drives(),
+            (robot, pose, solution) in any_solved(), drive in any_drive(),
         ) {
             // Near a singularity the third derivative swamps any fixed step.
-            prop_assume!(now.margins.type2[0] > 0.3 && now.margins.type2[1] > 0.3);
-            prop_assume!(now.head.gap.length() > 5.0 && now.tail.gap.length() > 5.0);
-            prop_assume!(now.left.d > 20.0 && now.right.d > 20.0);
-            let (rates, accelerations) = numbers(&now, &drive);
-            let largest = |all: &[f64; 12]| all.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
-            let (fast, hard) = (largest(&rates), largest(&accelerations));
-            let step = STEP.min(TURN / fast);
+            prop_assume!(solution.margins.type2[0] > 0.3 && solution.margins.type2[1] > 0.3);
+            prop_assume!(solution.head.gap.length() > 5.0 && solution.tail.gap.length() > 5.0);
+            prop_assume!(solution.left.d > 20.0 && solution.right.d > 20.0);
+            let (rates, accelerations) = derivatives_of(&solution, &drive);
+            let largest_of = |values: &[f64; 12]| values.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
+            let (largest_rate, largest_acceleration) = (largest_of(&rates), largest_of(&accelerations));
+            let step = STEP.min(TURN / largest_rate);
             // Five points: error of the fourth order in the step.
-            let at = |steps: f64| solve_after(&robot, pose, &drive, steps * step).map(|s| values(&s));
-            let here = values(&now);
-            let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(at) else {
+            let values_at = |steps: f64| solve_after(&robot, pose, &drive, steps * step).map(|s| values_of(&s));
+            let start_values = values_of(&solution);
+            let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(values_at) else {
                 return Err(TestCaseError::fail("a neighbour does not close"));
             };
             for i in 0..12 {
-                let from_here = |there: f64| {
-                    if i < 6 { wrap(there - here[i]) } else { there - here[i] }
+                let difference_from_start = |value: f64| {
+                    if i < 6 { wrap(value - start_values[i]) } else { value - start_values[i] }
                 };
-                let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(from_here);
+                let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(difference_from_start);
                 let rate = (a - 8.0 * b + 8.0 * d - e) / (12.0 * step);
                 let acceleration = (16.0 * (b + d) - a - e) / (12.0 * step * step);
-                prop_assert!((rate - rates[i]).abs() < 1e-6 * fast, "{i}: {rate} {}", rates[i]);
+                prop_assert!((rate - rates[i]).abs() < 1e-6 * largest_rate, "{i}: {rate} {}", rates[i]);
                 prop_assert!(
-                    (acceleration - accelerations[i]).abs() < 1e-6 * hard.max(100.0),
+                    (acceleration - accelerations[i]).abs() < 1e-6 * largest_acceleration.max(100.0),
                     "{i}: {acceleration} {}", accelerations[i]
                 );
             }

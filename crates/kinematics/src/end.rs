@@ -71,9 +71,9 @@ impl End {
 
     /// The values of the left and the right crank, picked from four in servo order.
     #[inline(always)]
-    pub fn pick<T: Copy>(self, four: [T; 4]) -> [T; 2] {
+    pub fn pick<T: Copy>(self, values: [T; 4]) -> [T; 2] {
         let [left, right] = self.servos();
-        [four[left], four[right]]
+        [values[left], values[right]]
     }
 }
 

@@ -150,8 +150,9 @@ impl FiveBar {
     /// that the robot is built in. Loops of this size close within 1e-12 mm.
     ///
     /// # Errors
-    /// Returns [`Fault::TooFarApart`] and [`Fault::TooClose`] if the couplers cannot reach each other, [`Fault::Coincident`]
-    /// if the end point is free, [`Fault::NotFinite`] for input that is not finite or that overflows.
+    /// Returns [`Fault::TooFarApart`] and [`Fault::TooClose`] if the couplers cannot reach each other,
+    /// [`Fault::Coincident`] if the end point is free, [`Fault::NotFinite`] for input that is not finite or that
+    /// overflows.
     ///
     /// ```
     /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
@@ -204,11 +205,11 @@ impl FiveBar {
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.probe());
-        let mut closes = [false; N];
+        let mut is_closed = [false; N];
         for i in 0..N {
-            closes[i] = self.check_numbers(d[i], probe[i]).is_ok();
+            is_closed[i] = self.check_numbers(d[i], probe[i]).is_ok();
         }
-        closes
+        is_closed
     }
 
     #[inline(always)]
@@ -250,19 +251,19 @@ impl FiveBar {
         };
         // Foot of the perpendicular from the end point to the line between the tips, and the end point's height over
         // that line, both in units of the gap.
-        let along = (square + T::of((l2 - l3) * (l2 + l3))) / (square * 2.0);
+        let foot = (square + T::of((l2 - l3) * (l2 + l3))) / (square * 2.0);
         let rise = gap.rotated_left().scaled(area / square);
-        let from_left = gap.scaled(along) + rise;
-        let from_right = gap.scaled(along - T::of(1.0)) + rise;
+        let left_vector = gap.scaled(foot) + rise;
+        let right_vector = gap.scaled(foot - T::of(1.0)) + rise;
         FiveBarPose {
             bars: *self,
             left_crank: left,
             right_crank: right,
             left_tip,
             right_tip,
-            left_coupler: from_left * (1.0 / l2),
-            right_coupler: from_right * (1.0 / l3),
-            end_point: left_tip + from_left,
+            left_coupler: left_vector * (1.0 / l2),
+            right_coupler: right_vector * (1.0 / l3),
+            end_point: left_tip + left_vector,
             gap,
             type2: area * (1.0 / (l2 * l3)),
         }

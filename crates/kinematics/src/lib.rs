@@ -33,7 +33,7 @@
 //!     let point = solution.head_point();
 //!     println!("head at {:.2}, {:.2} mm; left slider at {:.2} mm", point.x, point.y, solution.left.s);
 //!
-//!     // How far it is from a singularity: 1 is the farthest, 0 is there.
+//!     // The least distance from a singularity: 1 is the farthest, 0 is a singularity.
 //!     let (check, margin) = solution.margins.min();
 //!     assert!(margin > 0.3, "{check} has only {margin}");
 //!
@@ -41,7 +41,7 @@
 //!     let [theta1, theta4] = lizard.point_angles(End::Head, lizard.to_end(End::Head, point))?;
 //!     assert!((theta1 - 130.0).abs() < 1e-9 && (theta4 - 45.0).abs() < 1e-9);
 //!
-//!     // What no linkage can do is an error that names the place.
+//!     // A point that is out of reach is an error that names the mechanism.
 //!     let error = lizard.point_angles(End::Head, Vector::new(0.0, 500.0)).unwrap_err();
 //!     let message = "head: the point is 500.100 mm from the left shaft, which reaches 20.000 to 80.000 mm";
 //!     assert_eq!(error.to_string(), message);

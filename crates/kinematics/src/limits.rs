@@ -37,32 +37,32 @@ pub struct Violation {
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            check: what,
+            check,
             value,
             limit,
         } = *self;
         // Rounded to the digits that are shown, without the sign of a zero.
-        let rounded = |scale: f64| libm::round(value * scale) / scale + 0.0;
-        let (thousandths, hundredths) = (rounded(1e3), rounded(100.0));
-        let stroke = |f: &mut fmt::Formatter<'_>, side: Side| {
-            let passes = if value < limit { "below" } else { "above" };
+        let round_to = |scale: f64| libm::round(value * scale) / scale + 0.0;
+        let (thousandths, hundredths) = (round_to(1e3), round_to(100.0));
+        let write_stroke = |f: &mut fmt::Formatter<'_>, side: Side| {
+            let relation = if value < limit { "below" } else { "above" };
             write!(
                 f,
-                "{side} slider travel {hundredths:+.2} mm is {passes} {limit:+.2} mm"
+                "{side} slider travel {hundredths:+.2} mm is {relation} {limit:+.2} mm"
             )
         };
-        let crossed = |f: &mut fmt::Formatter<'_>, end: End| {
+        let write_crossed = |f: &mut fmt::Formatter<'_>, end: End| {
             write!(
                 f,
                 "{end} crank tips are crossed: {hundredths:+.2} mm from left to right"
             )
         };
-        match what {
-            Check::StrokeLeft => stroke(f, Side::Left),
-            Check::StrokeRight => stroke(f, Side::Right),
-            Check::UncrossedHead => crossed(f, End::Head),
-            Check::UncrossedTail => crossed(f, End::Tail),
-            _ => write!(f, "margin {what} {thousandths:.3} is below {limit:.3}"),
+        match check {
+            Check::StrokeLeft => write_stroke(f, Side::Left),
+            Check::StrokeRight => write_stroke(f, Side::Right),
+            Check::UncrossedHead => write_crossed(f, End::Head),
+            Check::UncrossedTail => write_crossed(f, End::Tail),
+            _ => write!(f, "margin {check} {thousandths:.3} is below {limit:.3}"),
         }
     }
 }
@@ -71,14 +71,16 @@ impl Limits {
     /// The violation of a condition's limit by a value (a sine, or mm); `None` if the value is
     /// safe. A value at its limit is safe, but crank tips at 0 mm count as crossed.
     pub fn violation_of(&self, check: Check, value: f64) -> Option<Violation> {
-        let below = |limit: f64| (value < limit).then_some(limit);
+        let limit_if_below = |limit: f64| (value < limit).then_some(limit);
         let limit = match check {
-            Check::Type2Head | Check::Type2Tail => below(self.type2),
-            Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4 => below(self.type1),
-            Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh => below(self.leg),
+            Check::Type2Head | Check::Type2Tail => limit_if_below(self.type2),
+            Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4 => {
+                limit_if_below(self.type1)
+            }
+            Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh => limit_if_below(self.leg),
             Check::StrokeLeft | Check::StrokeRight => {
                 let max = self.stroke_max;
-                below(self.stroke_min).or((value > max).then_some(max))
+                limit_if_below(self.stroke_min).or((value > max).then_some(max))
             }
             Check::UncrossedHead | Check::UncrossedTail => (value <= 0.0).then_some(0.0),
         };
@@ -99,7 +101,7 @@ impl Limits {
         let limits = *self;
         solution
             .conditions()
-            .filter_map(move |(what, value)| limits.violation_of(what, value))
+            .filter_map(move |(check, value)| limits.violation_of(check, value))
     }
 
     /// Every limit that the five-bar of one end breaks, whatever the pose of the rest of the robot.
@@ -111,7 +113,7 @@ impl Limits {
         let limits = *self;
         pose.conditions(end)
             .into_iter()
-            .filter_map(move |(what, value)| limits.violation_of(what, value))
+            .filter_map(move |(check, value)| limits.violation_of(check, value))
     }
 
     /// True if a solved pose breaks no limit.

@@ -222,12 +222,12 @@ impl Lizard {
     fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
         let infeasible_at = |part: Part| move |fault: Fault| Infeasible { part, fault };
         for end in End::ALL {
-            let checked = self.end(end).check(solution.end(end));
-            checked.map_err(infeasible_at(Part::End(end)))?;
+            let check_result = self.end(end).check(solution.end(end));
+            check_result.map_err(infeasible_at(Part::End(end)))?;
         }
         for side in Side::ALL {
-            let checked = self.side(side).check(solution.side(side));
-            checked.map_err(infeasible_at(Part::Side(side)))?;
+            let check_result = self.side(side).check(solution.side(side));
+            check_result.map_err(infeasible_at(Part::Side(side)))?;
         }
         Ok(())
     }
@@ -240,8 +240,8 @@ impl Lizard {
         let cranks = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
         let head = self.shape_end(End::Head, cranks);
         let tail = self.shape_end(End::Tail, cranks);
-        let leg = |i: usize| self.leg.shape(End::of_servo(i), angles[i], cranks[i]);
-        let legs: [LegPose; 4] = core::array::from_fn(leg);
+        let leg_pose_of = |i: usize| self.leg.shape(End::of_servo(i), angles[i], cranks[i]);
+        let legs: [LegPose; 4] = core::array::from_fn(leg_pose_of);
         let mut type1 = [head.type2; 4];
         for (end, bars) in [(End::Head, &head), (End::Tail, &tail)] {
             let [left, right] = end.servos();
@@ -300,8 +300,8 @@ impl Lizard {
     pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
         let part = Part::End(end);
         let solutions = self.end(end).inverse(point);
-        let [outward, ..] = solutions.map_err(|fault| Infeasible { part, fault })?;
-        let angles = [outward.theta_left, outward.theta_right];
+        let [solution, ..] = solutions.map_err(|fault| Infeasible { part, fault })?;
+        let angles = [solution.theta_left, solution.theta_right];
         let [left, right] = angles.map(|theta| end.mirror_angle(theta));
         Ok(match end {
             End::Head => [left, right],

@@ -94,10 +94,10 @@ pub struct Margins {
 impl Margins {
     /// Every margin with its condition.
     pub fn iter(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
-        let named = |checks, values| core::iter::zip(checks, values);
+        let pairs_of = |checks, values| core::iter::zip(checks, values);
         core::iter::zip(Check::TYPE2, self.type2)
-            .chain(named(Check::TYPE1, self.type1))
-            .chain(named(Check::LEG, self.leg))
+            .chain(pairs_of(Check::TYPE1, self.type1))
+            .chain(pairs_of(Check::LEG, self.leg))
     }
 
     /// The smallest margin with its condition; the first one if several are equal.

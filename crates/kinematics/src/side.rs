@@ -72,9 +72,9 @@ impl Side {
 
     /// The values of the front and the rear servo, picked from four in servo order.
     #[inline(always)]
-    pub fn pick<T: Copy>(self, four: [T; 4]) -> [T; 2] {
+    pub fn pick<T: Copy>(self, values: [T; 4]) -> [T; 2] {
         let [front, rear] = self.servos();
-        [four[front], four[rear]]
+        [values[front], values[rear]]
     }
 }
 
@@ -101,11 +101,11 @@ mod tests {
 
     #[test]
     fn with_the_cranks_straight_out_every_arm_points_away_from_the_middle_line() {
-        let (ahead, behind) = (Vector::new(0.0, 1.0), Vector::new(0.0, -1.0));
+        let (forward_crank, backward_crank) = (Vector::new(0.0, 1.0), Vector::new(0.0, -1.0));
         for side in Side::ALL {
-            let outward = Vector::new(-side.sign(), 0.0);
-            assert_eq!(side.front_arm(ahead), outward);
-            assert_eq!(side.rear_arm(behind), outward);
+            let outward_arm = Vector::new(-side.sign(), 0.0);
+            assert_eq!(side.front_arm(forward_crank), outward_arm);
+            assert_eq!(side.rear_arm(backward_crank), outward_arm);
         }
     }
 }

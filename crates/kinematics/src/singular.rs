@@ -80,9 +80,9 @@ impl FiveBar {
     /// circle; none if the couplers differ in length.
     pub fn coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
         let (left, right) = (self.left_shaft(), self.right_shaft());
-        let equal = self.coupler_left == self.coupler_right;
+        let has_equal_couplers = self.coupler_left == self.coupler_right;
         circle_intersections(left, self.crank_left, right, self.crank_right)
-            .filter(move |_| equal)
+            .filter(move |_| has_equal_couplers)
             .map(move |tip| SingularPose {
                 kind: Singularity::Couplers,
                 theta_left: (tip - left).angle(),
@@ -103,7 +103,7 @@ impl FiveBar {
     fn is_singular(&self, pose: &SingularPose) -> bool {
         match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
-            Ok(closed) => pose.kind.margin(&closed).abs() < 1e-6,
+            Ok(closed_pose) => pose.kind.margin(&closed_pose).abs() < 1e-6,
         }
     }
 }
@@ -121,15 +121,15 @@ impl Singularity {
 
 /// The intersections of two circles: none or two, which are equal if the circles touch.
 fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
-    let between = b - a;
-    let square = between.length_squared();
-    let along = (square + (r - s) * (r + s)) / (2.0 * square);
-    let rise = (r * r / square - along * along).sqrt();
+    let centre_vector = b - a;
+    let square = centre_vector.length_squared();
+    let foot_share = (square + (r - s) * (r + s)) / (2.0 * square);
+    let height_share = (r * r / square - foot_share * foot_share).sqrt();
     // Circles that do not intersect, or are concentric, give NaN or infinity.
-    let points = rise.is_finite().then(|| {
-        let foot = a + between * along;
-        let up = between.rotated_left() * rise;
-        [foot + up, foot - up]
+    let points = height_share.is_finite().then(|| {
+        let foot = a + centre_vector * foot_share;
+        let height = centre_vector.rotated_left() * height_share;
+        [foot + height, foot - height]
     });
     points.into_iter().flatten()
 }
@@ -139,36 +139,37 @@ mod tests {
     use super::*;
     use crate::reference::HEAD;
 
-    fn margin(bars: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
+    fn margin_of(bars: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
         let pose = bars.forward(left, right).ok()?;
         Some(kind.margin(&pose))
     }
 
     #[test]
     fn every_sign_change_of_a_type_1_margin_lies_on_a_named_curve() {
-        let unequal = FiveBar::new([20.0, 25.0, 55.0, 50.0, 30.0]);
+        let unequal_bars = FiveBar::new([20.0, 25.0, 55.0, 50.0, 30.0]);
         let mut crossings = 0;
-        for bars in [HEAD, unequal] {
+        for bars in [HEAD, unequal_bars] {
             for left in (-175..180).step_by(10).map(f64::from) {
-                let named: Vec<_> = bars.singular_with(left).collect();
+                let named_poses: Vec<_> = bars.singular_with(left).collect();
                 for kind in [Singularity::LeftArm, Singularity::RightArm] {
                     for step in 0..3600 {
                         let (a, b) = (f64::from(step) / 10.0 + 0.03, f64::from(step) / 10.0 + 0.13);
-                        let (Some(before), Some(after)) =
-                            (margin(&bars, kind, left, a), margin(&bars, kind, left, b))
-                        else {
+                        let (Some(value_a), Some(value_b)) = (
+                            margin_of(&bars, kind, left, a),
+                            margin_of(&bars, kind, left, b),
+                        ) else {
                             continue;
                         };
                         // Near d = 0 the end point turns fast and signs change abruptly.
                         let gap = bars.forward(left, a).unwrap().gap.length();
-                        if before * after >= 0.0 || gap < 1.0 {
+                        if value_a * value_b >= 0.0 || gap < 1.0 {
                             continue;
                         }
                         crossings += 1;
-                        let near = named.iter().any(|pose| {
+                        let is_near = named_poses.iter().any(|pose| {
                             pose.kind == kind && wrap(pose.theta_right - (a + b) / 2.0).abs() < 0.2
                         });
-                        assert!(near, "{kind:?} at {left} {a}: {named:?}");
+                        assert!(is_near, "{kind:?} at {left} {a}: {named_poses:?}");
                     }
                 }
             }
@@ -178,20 +179,24 @@ mod tests {
 
     #[test]
     fn every_named_position_is_singular() {
-        let short = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
-        let mut kinds = [0; 3];
-        for bars in [HEAD, short] {
+        let short_bars = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
+        let mut kind_counts = [0; 3];
+        for bars in [HEAD, short_bars] {
             for left in -180..180 {
                 for pose in bars.singular_with(f64::from(left)) {
-                    kinds[pose.kind as usize] += 1;
-                    if let Some(value) = margin(&bars, pose.kind, pose.theta_left, pose.theta_right)
+                    kind_counts[pose.kind as usize] += 1;
+                    if let Some(value) =
+                        margin_of(&bars, pose.kind, pose.theta_left, pose.theta_right)
                     {
                         assert!(value.abs() < 1e-6, "{pose:?} {value}");
                     }
                 }
             }
         }
-        assert!(kinds.iter().all(|count| *count > 100), "{kinds:?}");
+        assert!(
+            kind_counts.iter().all(|count| *count > 100),
+            "{kind_counts:?}"
+        );
         assert!(
             (0..360).all(|left| HEAD
                 .singular_with(f64::from(left))
@@ -216,37 +221,40 @@ mod tests {
         // half-degree grid between the legs' change points at 0 and 180, are divided into
         // connected regions: no region has both signs of K2.
         const N: usize = 360;
-        let state = |left: usize, right: usize| {
+        let state_of = |left: usize, right: usize| {
             let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);
             let pose = HEAD.forward(left, right).ok()?;
             let leg = pose.left_crank.y.abs().min(pose.right_crank.y.abs());
             (pose.margin().min(leg) >= 0.3).then_some(pose.gap.x > 0.0)
         };
-        let grid: Vec<Option<bool>> = (0..N * N).map(|i| state(i / N, i % N)).collect();
-        let mut seen = vec![false; N * N];
-        let (mut crossed, mut uncrossed) = (0, 0);
+        let grid: Vec<Option<bool>> = (0..N * N).map(|i| state_of(i / N, i % N)).collect();
+        let mut is_seen = vec![false; N * N];
+        let (mut crossed_count, mut uncrossed_count) = (0, 0);
         for start in 0..N * N {
-            if grid[start].is_none() || seen[start] {
+            if grid[start].is_none() || is_seen[start] {
                 continue;
             }
-            let mut open = vec![start];
-            seen[start] = true;
-            while let Some(i) = open.pop() {
+            let mut open_cells = vec![start];
+            is_seen[start] = true;
+            while let Some(i) = open_cells.pop() {
                 let (left, right) = (i / N, i % N);
                 assert_eq!(grid[i], grid[start], "a way across at {left} {right}");
                 match grid[i] {
-                    Some(true) => uncrossed += 1,
-                    _ => crossed += 1,
+                    Some(true) => uncrossed_count += 1,
+                    _ => crossed_count += 1,
                 }
                 for (dl, dr) in [(1, 0), (N - 1, 0), (0, 1), (0, N - 1)] {
-                    let next = (left + dl) % N * N + (right + dr) % N;
-                    if grid[next].is_some() && !seen[next] {
-                        seen[next] = true;
-                        open.push(next);
+                    let next_cell = (left + dl) % N * N + (right + dr) % N;
+                    if grid[next_cell].is_some() && !is_seen[next_cell] {
+                        is_seen[next_cell] = true;
+                        open_cells.push(next_cell);
                     }
                 }
             }
         }
-        assert!(crossed > 100 && uncrossed > 100, "{crossed} {uncrossed}");
+        assert!(
+            crossed_count > 100 && uncrossed_count > 100,
+            "{crossed_count} {uncrossed_count}"
+        );
     }
 }

@@ -93,11 +93,11 @@ impl Slider {
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
-        let mut closes = [false; N];
+        let mut is_closed = [false; N];
         for i in 0..N {
-            closes[i] = check_numbers(d[i], s[i]).is_ok();
+            is_closed[i] = check_numbers(d[i], s[i]).is_ok();
         }
-        closes
+        is_closed
     }
 
     /// The pose at arm directions of length one, without checking that the slider has a

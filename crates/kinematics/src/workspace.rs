@@ -40,8 +40,9 @@ impl Workspace {
     /// True if the end point can reach a point of the five-bar's frame.
     pub fn contains(&self, point: Vector) -> bool {
         [-self.half_base, self.half_base].into_iter().all(|x| {
-            let square = (point - Vector::new(x, 0.0)).length_squared();
-            square >= self.inner * self.inner && square <= self.outer * self.outer
+            let distance_squared = (point - Vector::new(x, 0.0)).length_squared();
+            distance_squared >= self.inner * self.inner
+                && distance_squared <= self.outer * self.outer
         })
     }
 
@@ -66,9 +67,9 @@ impl Workspace {
     /// stays outside the inscribed circle, too.
     pub fn inscribed_circle(&self) -> Option<Circle> {
         let middle = (self.outer + self.inner) / 2.0;
-        let rise = (middle - self.half_base) * (middle + self.half_base);
-        let (height, radius) = if rise >= 0.0 {
-            (libm::sqrt(rise), (self.outer - self.inner) / 2.0)
+        let height_squared = (middle - self.half_base) * (middle + self.half_base);
+        let (height, radius) = if height_squared >= 0.0 {
+            (libm::sqrt(height_squared), (self.outer - self.inner) / 2.0)
         } else {
             (0.0, self.outer - self.half_base)
         };
@@ -81,17 +82,20 @@ impl Workspace {
 
 /// Area common to two discs of radii `a`, `b` with centres at a `distance`.
 fn lens_area(a: f64, b: f64, distance: f64) -> f64 {
-    let small = a.min(b);
+    let min_radius = a.min(b);
     if distance >= a + b {
         return 0.0;
     }
     if distance <= (a - b).abs() {
-        return PI * small * small;
+        return PI * min_radius * min_radius;
     }
-    let angle = |r: f64, other: f64| {
-        let cosine = (distance * distance + r * r - other * other) / (2.0 * distance * r);
+    let angle_of = |r: f64, other_radius: f64| {
+        let cosine =
+            (distance * distance + r * r - other_radius * other_radius) / (2.0 * distance * r);
         libm::acos(cosine.clamp(-1.0, 1.0))
     };
-    let sector = |half: f64, r: f64| r * r * (half - libm::sin(half) * libm::cos(half));
-    sector(angle(a, b), a) + sector(angle(b, a), b)
+    let segment_area_of = |half_angle: f64, r: f64| {
+        r * r * (half_angle - libm::sin(half_angle) * libm::cos(half_angle))
+    };
+    segment_area_of(angle_of(a, b), a) + segment_area_of(angle_of(b, a), b)
 }

@@ -25,15 +25,15 @@ struct Answers {
 /// Movement per cycle at full pace: mm ahead, mm to the left, deg. `None` if the text differs in more than
 /// comments from each of the project's own robots, or if there is no result for the gait.
 pub fn mujoco(text: &str, gait: &str) -> Option<[f64; 3]> {
-    let (robot, _) = FILES
-        .into_iter()
-        .find(|(_, own)| without_comments(own).eq(without_comments(text)))?;
+    let (robot, _) = FILES.into_iter().find(|(_, file_text)| {
+        lines_without_comments(file_text).eq(lines_without_comments(text))
+    })?;
     let figures: BTreeMap<&str, BTreeMap<&str, BTreeMap<&str, Answers>>> =
         serde_json::from_str(FIGURES).ok()?;
     Some(figures.get(robot)?.get(gait)?.get(CASE)?.mujoco)
 }
 
 /// The lines of a text that are not comments.
-fn without_comments(text: &str) -> impl Iterator<Item = &str> {
+fn lines_without_comments(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with('#'))
 }

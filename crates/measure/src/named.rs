@@ -53,12 +53,12 @@ pub struct Gaits<'a> {
 impl<'a> Gaits<'a> {
     /// Takes the gaits that the user names, in their order, or none. `pace` is a multiple of each gait's own
     /// pace.
-    pub fn new(robot: &'a Robot, named: &[&'a CheckedGait], pace: f64) -> Self {
-        let candidate = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
+    pub fn new(robot: &'a Robot, named_gaits: &[&'a CheckedGait], pace: f64) -> Self {
+        let candidate_of = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
         Self {
             robot,
             pace,
-            named: named.iter().map(candidate).collect(),
+            named: named_gaits.iter().map(candidate_of).collect(),
             all: OnceCell::new(),
         }
     }
@@ -73,11 +73,12 @@ impl<'a> Gaits<'a> {
 
     fn all(&self) -> &[Candidate<'a>] {
         self.all.get_or_init(|| {
-            let moving = self.robot.gaits().iter().filter(|gait| gait.moves());
-            let all = moving.map(|gait| Candidate::new(self.robot, gait, self.pace));
+            let moving_gaits = self.robot.gaits().iter().filter(|gait| gait.moves());
+            let candidates = moving_gaits.map(|gait| Candidate::new(self.robot, gait, self.pace));
             // A gait that stays in its place would lengthen the least rest between two walks too much.
-            let goes = |own: &Candidate| own.expected.speed() > MIN_SPEED * self.pace;
-            all.filter(goes).collect()
+            let is_fast =
+                |candidate: &Candidate| candidate.expected.speed() > MIN_SPEED * self.pace;
+            candidates.filter(is_fast).collect()
         })
     }
 
@@ -87,18 +88,21 @@ impl<'a> Gaits<'a> {
     /// Fails with a sentence for the user if the number of names differs from that of the walks, if a walk
     /// resembles no gait clearly, or if a walk does not fit its gait.
     pub fn walks<'f>(&self, films: &'f [WatchedFilm]) -> Result<Vec<NamedWalk<'f>>, String> {
-        let expected: Vec<Gait> = self
+        let expected_gaits: Vec<Gait> = self
             .candidates()
             .iter()
-            .map(|own| own.expected.clone())
+            .map(|candidate| candidate.expected.clone())
             .collect();
-        let rest = rest(&expected);
-        let walks: Vec<Walk> = films.iter().flat_map(|film| film.walks(rest)).collect();
+        let least_rest = rest(&expected_gaits);
+        let walks: Vec<Walk> = films
+            .iter()
+            .flat_map(|film| film.walks(least_rest))
+            .collect();
         let names = self.named.len();
         if names > 1 && names != walks.len() {
-            return Err(self.count_mismatch_message(&walks, rest));
+            return Err(self.count_mismatch_message(&walks, least_rest));
         }
-        let measured = walks.into_iter().enumerate().map(|(i, walk)| {
+        let named_walks = walks.into_iter().enumerate().map(|(i, walk)| {
             let gait = match names {
                 0 => self.recognize_gait(walk)?,
                 1 => 0,
@@ -123,7 +127,7 @@ impl<'a> Gaits<'a> {
                 measured,
             })
         });
-        measured.collect()
+        named_walks.collect()
     }
 
     /// Measures one of the named gaits, given by its index, between two times of a film, s, or in all of it.
@@ -137,14 +141,15 @@ impl<'a> Gaits<'a> {
         film: &'f WatchedFilm,
         during: Option<[f64; 2]>,
     ) -> Result<NamedWalk<'f>, String> {
-        let own = self.named.get(gait);
-        let own = own.ok_or_else(|| Trouble::NoGait.to_string())?;
+        let candidate = self.named.get(gait);
+        let candidate = candidate.ok_or_else(|| Trouble::NoGait.to_string())?;
         let walk = Walk {
             film,
             during: during.or_else(|| film.time_range()).unwrap_or_default(),
         };
-        let measured = film.watched.measure(&own.expected, during);
-        let measured = measured.map_err(|trouble| self.mismatch_message(walk, own, trouble))?;
+        let measured = film.watched.measure(&candidate.expected, during);
+        let measured =
+            measured.map_err(|trouble| self.mismatch_message(walk, candidate, trouble))?;
         Ok(NamedWalk {
             walk,
             gait,
@@ -155,14 +160,14 @@ impl<'a> Gaits<'a> {
     /// Recognises the gait of a walk and returns its index; fails with a message if the walk resembles no
     /// gait, or two.
     fn recognize_gait(&self, walk: Walk) -> Result<usize, String> {
-        let name = |number: usize| self.all()[number].name();
-        let (why, hint) = match self.likeness(walk) {
-            Likeness::One(number) => return Ok(number),
+        let name_of = |index: usize| self.all()[index].name();
+        let (reason, has_hint) = match self.likeness(walk) {
+            Likeness::One(index) => return Ok(index),
             Likeness::Two(best, rival) => (
                 format!(
                     "the path is most like {}, and nearly as much like {}",
-                    name(best),
-                    name(rival)
+                    name_of(best),
+                    name_of(rival)
                 ),
                 true,
             ),
@@ -172,68 +177,77 @@ impl<'a> Gaits<'a> {
             ),
             Likeness::None(trouble) => (trouble.to_string(), false),
         };
-        let hint = match hint {
+        let hint = match has_hint {
             true => "; name the gait of each walk",
             false => "",
         };
-        Err(format!("{}: {why}{hint}", walk.label()))
+        Err(format!("{}: {reason}{hint}", walk.label()))
     }
 
     /// The gait of robot.toml that a walk resembles.
     fn likeness(&self, walk: Walk) -> Likeness {
-        let all: Vec<Gait> = self.all().iter().map(|own| own.expected.clone()).collect();
-        walk.film.watched.likeness(&all, walk.during)
+        let expected_gaits: Vec<Gait> = self
+            .all()
+            .iter()
+            .map(|candidate| candidate.expected.clone())
+            .collect();
+        walk.film.watched.likeness(&expected_gaits, walk.during)
     }
 
     /// Name of the gait that a walk clearly resembles; `None` if it resembles no gait, or two.
     pub(crate) fn resembled_gait(&self, walk: Walk) -> Option<&'a str> {
         match self.likeness(walk) {
-            Likeness::One(number) => Some(self.all()[number].name()),
+            Likeness::One(index) => Some(self.all()[index].name()),
             _ => None,
         }
     }
 
     /// The message for a walk that does not fit its gait, with the gait that it resembles instead.
-    fn mismatch_message(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
-        let like = match trouble {
+    fn mismatch_message(&self, walk: Walk, candidate: &Candidate, trouble: Trouble) -> String {
+        let resembled_name = match trouble {
             Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.resembled_gait(walk),
             _ => None,
         };
-        let like = like.filter(|name| *name != own.name());
-        let like = like.map_or(String::new(), |name| format!("; it is like {name}"));
-        format!("{trouble}{like}")
+        let resembled_name = resembled_name.filter(|name| *name != candidate.name());
+        let resembled_name =
+            resembled_name.map_or(String::new(), |name| format!("; it is like {name}"));
+        format!("{trouble}{resembled_name}")
     }
 
     /// The message for films whose number of walks differs from the number of names.
-    fn count_mismatch_message(&self, walks: &[Walk], rest: f64) -> String {
+    fn count_mismatch_message(&self, walks: &[Walk], least_rest: f64) -> String {
         let names: Vec<&str> = self.named.iter().map(Candidate::name).collect();
         let mut text = format!(
-            "{} walks between rests of {rest:.1} s or more, and --gait names {}: {}",
+            "{} walks between rests of {least_rest:.1} s or more, and --gait names {}: {}",
             walks.len(),
             names.len(),
             names.join(", ")
         );
-        let mut missing = names;
+        let mut missing_names = names;
         let mut is_clear = true;
         for walk in walks {
-            let like = self.resembled_gait(*walk);
+            let resembled_name = self.resembled_gait(*walk);
             let [from, to] = walk.during;
             let _ = write!(
                 text,
                 "\n  {}, {:.1} s long: like {}",
                 walk.label(),
                 to - from,
-                like.unwrap_or("no gait clearly")
+                resembled_name.unwrap_or("no gait clearly")
             );
-            match like.and_then(|like| missing.iter().position(|name| *name == like)) {
-                Some(at) => {
-                    missing.remove(at);
+            match resembled_name.and_then(|resembled_name| {
+                missing_names
+                    .iter()
+                    .position(|name| *name == resembled_name)
+            }) {
+                Some(index) => {
+                    missing_names.remove(index);
                 }
                 None => is_clear = false,
             }
         }
-        if is_clear && !missing.is_empty() {
-            let _ = write!(text, "\nno walk is like {}", missing.join(", "));
+        if is_clear && !missing_names.is_empty() {
+            let _ = write!(text, "\nno walk is like {}", missing_names.join(", "));
         }
         text
     }

@@ -26,12 +26,16 @@ pub struct Part {
 }
 
 /// Describes a difference of so many standard errors: `agrees`, or its size and direction.
-pub fn verdict(differs: f64) -> String {
-    if differs.abs() <= MAX_AGREEING_ERRORS {
+pub fn verdict(difference_errors: f64) -> String {
+    if difference_errors.abs() <= MAX_AGREEING_ERRORS {
         return "agrees".to_owned();
     }
-    let word = if differs > 0.0 { "more" } else { "less" };
-    format!("{:.1} errors {word}", differs.abs())
+    let word = if difference_errors > 0.0 {
+        "more"
+    } else {
+        "less"
+    };
+    format!("{:.1} errors {word}", difference_errors.abs())
 }
 
 impl Part {

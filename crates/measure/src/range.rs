@@ -24,25 +24,25 @@ impl Range {
     /// Computes the range of a gait at a pace, as a multiple of the gait's own.
     pub(crate) fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let range = MovementRange::of(robot, gait, pace);
-        let [least, most] = [range.least, range.most];
+        let [least_end, most_end] = [range.least, range.most];
         Self {
             part: PARTS[if range.is_turn { 2 } else { 0 }],
-            least: least.movement,
-            most: most.movement,
-            least_by: least.assumption,
-            most_by: most.assumption,
+            least: least_end.movement,
+            most: most_end.movement,
+            least_by: least_end.assumption,
+            most_by: most_end.assumption,
         }
     }
 
     /// The range as a line of text.
     pub(crate) fn line(&self) -> String {
         let (name, unit) = self.part.split_once(", ").unwrap_or((self.part, ""));
-        let end = |movement: f64, by: Option<&str>| {
-            let by = by.unwrap_or("as in robot.toml");
-            format!("{movement:+.2} {unit} ({by})")
+        let end_text = |movement: f64, assumption: Option<&str>| {
+            let assumption = assumption.unwrap_or("as in robot.toml");
+            format!("{movement:+.2} {unit} ({assumption})")
         };
-        let least = end(self.least, self.least_by);
-        let most = end(self.most, self.most_by);
-        format!("predicted {name} if one assumption is otherwise: {least} to {most}\n")
+        let least_text = end_text(self.least, self.least_by);
+        let most_text = end_text(self.most, self.most_by);
+        format!("predicted {name} if one assumption is otherwise: {least_text} to {most_text}\n")
     }
 }

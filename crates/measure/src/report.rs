@@ -133,20 +133,20 @@ struct CameraLine {
 }
 
 impl<'a> Span<'a> {
-    fn new(gaits: &Gaits<'a>, own: &NamedWalk<'a>, differs: bool) -> Self {
-        let [from, to] = own.walk.during;
-        let name = gaits.candidates()[own.gait].name();
+    fn new(gaits: &Gaits<'a>, named_walk: &NamedWalk<'a>, is_different: bool) -> Self {
+        let [from, to] = named_walk.walk.during;
+        let name = gaits.candidates()[named_walk.gait].name();
         // The likeness matters only if the walk differs from its prediction.
-        let like = if differs {
-            gaits.resembled_gait(own.walk)
+        let resembled_name = if is_different {
+            gaits.resembled_gait(named_walk.walk)
         } else {
             None
         };
         Self {
-            film: &own.walk.film.name,
+            film: &named_walk.walk.film.name,
             from,
             to,
-            like: like.filter(|like| *like != name),
+            like: resembled_name.filter(|resembled_name| *resembled_name != name),
         }
     }
 }
@@ -154,12 +154,13 @@ impl<'a> Span<'a> {
 impl LargestDifference {
     /// The point with the largest difference in standard errors, among the parts that are predicted.
     fn of(points: &[Point], predicted: [Option<f64>; 3]) -> Option<Self> {
-        let all = points.iter().flat_map(|point| {
+        let differences = points.iter().flat_map(|point| {
             let differs = point.standardized_differences();
             (0..3).map(move |axis| (point, axis, differs[axis]))
         });
-        let known = all.filter(|(_, axis, _)| predicted[*axis].is_some());
-        let (point, axis, differs) = known.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
+        let known_differences = differences.filter(|(_, axis, _)| predicted[*axis].is_some());
+        let (point, axis, differs) =
+            known_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         Some(Self {
             phase: point.phase,
             part: PARTS[axis],
@@ -193,61 +194,61 @@ impl<'a> GaitReport<'a> {
         robot: &Robot,
         speed: u8,
         gaits: &Gaits<'a>,
-        own: &'a Candidate,
+        candidate: &'a Candidate,
         walks: &[&NamedWalk<'a>],
     ) -> Self {
         let results: Vec<Measured> = walks.iter().map(|walk| walk.measured.clone()).collect();
-        let measured = Measured::together(&results, &own.expected);
-        let way = own.expected.path.last().map(|place| place.travel());
-        let decided = robot.predict(own.gait);
+        let measured = Measured::together(&results, &candidate.expected);
+        let travel = candidate.expected.path.last().map(|place| place.travel());
+        let prediction = robot.predict(candidate.gait);
         let Prediction {
             forward,
             left,
             turn,
-        } = way.map_or(decided, |way| decided.keep_known(way));
+        } = travel.map_or(prediction, |travel| prediction.keep_known(travel));
         let predicted = [forward, left, turn];
         let means = [measured.forward, measured.left, measured.turn];
         let [forward, left, turn] = [0, 1, 2].map(|i| Part::new(means[i], predicted[i]));
-        let differs = [&forward, &left, &turn]
+        let is_different = [&forward, &left, &turn]
             .iter()
             .any(|part| part.agrees == Some(false));
-        let within = |point: &Point| {
-            let part = |i: usize| {
-                let known = predicted[i].is_some().then_some(point.predicted[i]);
-                Part::new(point.measured[i], known)
+        let phase_point_of = |point: &Point| {
+            let part_of = |i: usize| {
+                let known_value = predicted[i].is_some().then_some(point.predicted[i]);
+                Part::new(point.measured[i], known_value)
             };
             PhasePoint {
                 phase: point.phase,
-                forward: part(0),
-                left: part(1),
-                turn: part(2),
+                forward: part_of(0),
+                left: part_of(1),
+                turn: part_of(2),
             }
         };
-        let way = |travel: &Travel| CycleMovement {
+        let movement_of = |travel: &Travel| CycleMovement {
             forward: travel.forward,
             left: travel.left,
             turn: travel.turn,
         };
         Self {
-            gait: own.name(),
+            gait: candidate.name(),
             speed,
             walks: walks
                 .iter()
-                .map(|walk| Span::new(gaits, walk, differs))
+                .map(|walk| Span::new(gaits, walk, is_different))
                 .collect(),
             cycles: measured.cycles.len(),
             period: measured.period[0],
             period_error: measured.period[1],
-            period_expected: own.expected.period,
+            period_expected: candidate.expected.period,
             forward,
             left,
             turn,
-            each: measured.cycles.iter().map(way).collect(),
-            within: measured.within.iter().map(within).collect(),
+            each: measured.cycles.iter().map(movement_of).collect(),
+            within: measured.within.iter().map(phase_point_of).collect(),
             farthest: LargestDifference::of(&measured.within, predicted),
             mujoco: None,
             range: None,
-            expected: &own.expected.path,
+            expected: &candidate.expected.path,
         }
     }
 
@@ -268,8 +269,8 @@ impl<'a> GaitReport<'a> {
             like,
         } in &self.walks
         {
-            let like = like.map_or(String::new(), |name| format!(", more like {name}"));
-            let _ = writeln!(text, "{film}, {from:.1} to {to:.1} s{like}");
+            let like_text = like.map_or(String::new(), |name| format!(", more like {name}"));
+            let _ = writeln!(text, "{film}, {from:.1} to {to:.1} s{like_text}");
         }
         text += "a cycle      measured      sd   error  predicted\n";
         for (name, part) in PARTS.iter().zip(self.parts()) {
@@ -301,18 +302,18 @@ impl<'a> Report<'a> {
         gaits: &'a Gaits<'a>,
         walks: &[NamedWalk<'a>],
     ) -> Self {
-        let mut of_gaits: Vec<(&Candidate, Vec<&NamedWalk>)> = Vec::new();
+        let mut gait_walks: Vec<(&Candidate, Vec<&NamedWalk>)> = Vec::new();
         for walk in walks {
-            let own = &gaits.candidates()[walk.gait];
-            match of_gaits
+            let candidate = &gaits.candidates()[walk.gait];
+            match gait_walks
                 .iter_mut()
-                .find(|(other, _)| other.name() == own.name())
+                .find(|(other, _)| other.name() == candidate.name())
             {
                 Some((_, walks)) => walks.push(walk),
-                None => of_gaits.push((own, vec![walk])),
+                None => gait_walks.push((candidate, vec![walk])),
             }
         }
-        let film = |film: &'a WatchedFilm| {
+        let film_line_of = |film: &'a WatchedFilm| {
             let sight = &film.watched.sight;
             FilmLine {
                 film: &film.name,
@@ -328,12 +329,12 @@ impl<'a> Report<'a> {
                 },
             }
         };
-        let gait = |(own, walks): &(&'a Candidate, Vec<&NamedWalk<'a>>)| {
-            GaitReport::new(robot, speed, gaits, own, walks)
+        let gait_report_of = |(candidate, walks): &(&'a Candidate, Vec<&NamedWalk<'a>>)| {
+            GaitReport::new(robot, speed, gaits, candidate, walks)
         };
         Self {
-            films: films.iter().map(film).collect(),
-            gaits: of_gaits.iter().map(gait).collect(),
+            films: films.iter().map(film_line_of).collect(),
+            gaits: gait_walks.iter().map(gait_report_of).collect(),
         }
     }
 
@@ -361,11 +362,11 @@ impl<'a> Report<'a> {
         let mut text = String::new();
         for line in &self.films {
             let camera = &line.camera;
-            let moves = if camera.moved { ", moving" } else { "" };
+            let movement_text = if camera.moved { ", moving" } else { "" };
             let _ = writeln!(
                 text,
                 "{}: {} pictures\n\
-                 camera {:.0} mm above the floor{moves}, {:.0} deg from straight down; corners to {:.2} px\n\
+                 camera {:.0} mm above the floor{movement_text}, {:.0} deg from straight down; corners to {:.2} px\n\
                  deck's tag {:.0} mm above the floor, by its size {:.0} mm",
                 line.film,
                 line.pictures,

@@ -10,16 +10,16 @@ use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 const POINT: f64 = 25.4 / 72.0;
 const FONT: Name = Name(b"F1");
 /// Font size, and distance from one line to the next, mm.
-const TYPE: f64 = 3.3;
-const LINE: f64 = 4.7;
+const FONT_SIZE: f64 = 3.3;
+const LINE_DISTANCE: f64 = 4.7;
 /// Thickness of the cut lines, and of the ruler's lines, mm.
-const CUT: f64 = 0.15;
-const RULED: f64 = 0.3;
+const CUT_THICKNESS: f64 = 0.15;
+const RULER_THICKNESS: f64 = 0.3;
 /// Grey of the cut lines.
 const CUT_GREY: f32 = 0.6;
 
 /// Instructions to print, cut, lay and glue the sheet, printed beside the card.
-const WORDS: [&str; 9] = [
+const INSTRUCTIONS: [&str; 9] = [
     "1. Print at 100 % (\"actual size\"). Measure the line between the tags of a strip: if it is not 100 mm",
     "    long, tell lizard measure its length with --ruler.",
     "2. Cut along the thin lines, and leave each strip in one piece: the distance of its tags counts.",
@@ -53,7 +53,7 @@ impl Paper {
     /// The sheet of tags as PDF.
     pub fn sheet(self) -> Vec<u8> {
         let [catalog, pages, page, font, content, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
-        let size = self.size().map(points);
+        let size = self.size().map(points_of);
         let mut pdf = Pdf::new();
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
@@ -64,69 +64,81 @@ impl Paper {
         pdf.document_info(info)
             .title(TextStr("Tags for lizard measure"));
         pdf.pages(pages).kids([page]).count(1);
-        let mut only = pdf.page(page);
-        only.media_box(Rect::new(0.0, 0.0, size[0], size[1]));
-        only.parent(pages).contents(content);
-        only.resources().fonts().pair(FONT, font);
-        only.finish();
+        let mut page_writer = pdf.page(page);
+        page_writer.media_box(Rect::new(0.0, 0.0, size[0], size[1]));
+        page_writer.parent(pages).contents(content);
+        page_writer.resources().fonts().pair(FONT, font);
+        page_writer.finish();
         pdf.type1_font(font).base_font(Name(b"Helvetica"));
-        pdf.stream(content, &drawing(self).finish());
+        pdf.stream(content, &draw_page(self).finish());
         pdf.finish()
     }
 }
 
 /// Converts mm to points.
-fn points(mm: f64) -> f32 {
+fn points_of(mm: f64) -> f32 {
     (mm / POINT) as f32
 }
 
 /// Draws the whole page.
-fn drawing(paper: Paper) -> Content {
+fn draw_page(paper: Paper) -> Content {
     let mut content = Content::new();
     let [width, height] = paper.size();
     let left = (width - STRIP[0]) / 2.0;
-    let used = STRIPS as f64 * STRIP[1] + CARD[1];
-    let mut top = f64::midpoint(height, used);
+    let used_height = STRIPS as f64 * STRIP[1] + CARD[1];
+    let mut top = f64::midpoint(height, used_height);
     for strip in 0..STRIPS {
         draw_strip(&mut content, strip, [left, top - STRIP[1]]);
         top -= STRIP[1];
     }
     draw_card(&mut content, [left, top - CARD[1]]);
-    let words = [left + CARD[0] + 8.0, top - 8.0];
-    for (i, line) in WORDS.iter().enumerate() {
-        write(&mut content, line, [words[0], words[1] - i as f64 * LINE]);
+    let text_corner = [left + CARD[0] + 8.0, top - 8.0];
+    for (i, line) in INSTRUCTIONS.iter().enumerate() {
+        write(
+            &mut content,
+            line,
+            [text_corner[0], text_corner[1] - i as f64 * LINE_DISTANCE],
+        );
     }
     content
 }
 
 /// Draws a strip with its lower left corner at a point.
 fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
-    cut_line(content, [x, y], STRIP);
+    draw_cut_line(content, [x, y], STRIP);
     let middle = [x + STRIP[0] / 2.0, y + STRIP[1] / 2.0];
     for id in strip * TAGS_ON_STRIP..(strip + 1) * TAGS_ON_STRIP {
         let [u, v] = middle_on_strip(id);
         draw_tag(content, id, [middle[0] + u, middle[1] + v]);
     }
-    let begin = middle[0] - RULER / 2.0;
-    fill(content, [begin, middle[1] - RULED / 2.0], [RULER, RULED]);
+    let ruler_start = middle[0] - RULER / 2.0;
+    fill(
+        content,
+        [ruler_start, middle[1] - RULER_THICKNESS / 2.0],
+        [RULER, RULER_THICKNESS],
+    );
     for i in 0..=10 {
         // The outer edges of the first and the last mark are the ends of the ruler.
-        let at = begin + f64::from(i) * (RULER - RULED) / 10.0;
-        let long = if i % 10 == 0 { 8.0 } else { 3.0 };
-        fill(content, [at, middle[1] - long / 2.0], [RULED, long]);
+        let mark_x = ruler_start + f64::from(i) * (RULER - RULER_THICKNESS) / 10.0;
+        let mark_length = if i % 10 == 0 { 8.0 } else { 3.0 };
+        fill(
+            content,
+            [mark_x, middle[1] - mark_length / 2.0],
+            [RULER_THICKNESS, mark_length],
+        );
     }
-    let words = format!(
+    let text = format!(
         "strip {} of {STRIPS}: flat on the floor, beside the robot's way",
         strip + 1
     );
-    write(content, &words, [begin, middle[1] + 8.0]);
-    let words = "from end to end: 100 mm";
-    write(content, words, [begin, middle[1] - 10.0]);
+    write(content, &text, [ruler_start, middle[1] + 8.0]);
+    let text = "from end to end: 100 mm";
+    write(content, text, [ruler_start, middle[1] - 10.0]);
 }
 
 /// Draws the deck's card with its lower left corner at a point.
 fn draw_card(content: &mut Content, [x, y]: Point) {
-    cut_line(content, [x, y], CARD);
+    draw_cut_line(content, [x, y], CARD);
     let middle = x + CARD[0] / 2.0;
     draw_tag(
         content,
@@ -136,9 +148,9 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
     // The arrow begins beyond the white margin of the tag.
     let base = y + CARD_MARGIN + DECK_EDGE + CARD_MARGIN;
     let tip = y + CARD[1] - 1.0;
-    content.move_to(points(middle - 4.0), points(base + 1.0));
-    content.line_to(points(middle + 4.0), points(base + 1.0));
-    content.line_to(points(middle), points(tip));
+    content.move_to(points_of(middle - 4.0), points_of(base + 1.0));
+    content.line_to(points_of(middle + 4.0), points_of(base + 1.0));
+    content.line_to(points_of(middle), points_of(tip));
     content.close_path().fill_nonzero();
     write(content, FORWARD_WORD, [middle + 6.0, base + 2.0]);
 }
@@ -153,36 +165,46 @@ fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     for row in 0..SQUARES {
         let mut column = 0;
         while column < SQUARES {
-            let white = (column..SQUARES).take_while(|&at| is_white(id, row, at));
-            let run = white.count();
-            if run > 0 {
+            let white_squares = (column..SQUARES).take_while(|&index| is_white(id, row, index));
+            let run_length = white_squares.count();
+            if run_length > 0 {
                 let corner = [
                     x - half + column as f64 * square,
                     y + half - (row + 1) as f64 * square,
                 ];
-                fill(content, corner, [run as f64 * square, square]);
+                fill(content, corner, [run_length as f64 * square, square]);
             }
-            column += run.max(1);
+            column += run_length.max(1);
         }
     }
     content.set_fill_gray(0.0);
 }
 
 fn fill(content: &mut Content, [x, y]: Point, [width, height]: Point) {
-    content.rect(points(x), points(y), points(width), points(height));
+    content.rect(
+        points_of(x),
+        points_of(y),
+        points_of(width),
+        points_of(height),
+    );
     content.fill_nonzero();
 }
 
-fn cut_line(content: &mut Content, [x, y]: Point, [width, height]: Point) {
+fn draw_cut_line(content: &mut Content, [x, y]: Point, [width, height]: Point) {
     content
-        .set_line_width(points(CUT))
+        .set_line_width(points_of(CUT_THICKNESS))
         .set_stroke_gray(CUT_GREY);
-    content.rect(points(x), points(y), points(width), points(height));
+    content.rect(
+        points_of(x),
+        points_of(y),
+        points_of(width),
+        points_of(height),
+    );
     content.stroke();
 }
 
-fn write(content: &mut Content, words: &str, [x, y]: Point) {
-    content.begin_text().set_font(FONT, points(TYPE));
-    content.next_line(points(x), points(y));
-    content.show(Str(words.as_bytes())).end_text();
+fn write(content: &mut Content, text: &str, [x, y]: Point) {
+    content.begin_text().set_font(FONT, points_of(FONT_SIZE));
+    content.next_line(points_of(x), points_of(y));
+    content.show(Str(text.as_bytes())).end_text();
 }

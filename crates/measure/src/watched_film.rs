@@ -21,8 +21,8 @@ impl WatchedFilm {
         if walks.is_empty() {
             walks.extend(self.time_range());
         }
-        let walk = |during| Walk { film: self, during };
-        walks.into_iter().map(walk).collect()
+        let walk_of = |during| Walk { film: self, during };
+        walks.into_iter().map(walk_of).collect()
     }
 
     /// Times of the first and the last position of the robot, s; `None` if there are fewer than two
@@ -37,12 +37,12 @@ impl WatchedFilm {
     /// The robot's path as CSV: seconds,forward,left,heading; mm and degrees on the floor.
     pub fn path(&self) -> String {
         let mut text = "seconds,forward,left,heading\n".to_owned();
-        for seen in &self.watched.path {
-            let place = seen.place;
+        for position in &self.watched.path {
+            let place = position.place;
             let _ = writeln!(
                 text,
                 "{:.4},{:.3},{:.3},{:.3}",
-                seen.seconds,
+                position.seconds,
                 place.forward,
                 place.left,
                 place.heading.to_degrees()

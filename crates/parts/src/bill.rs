@@ -38,11 +38,11 @@ const BOARD_GRAMS: f64 = 25.0;
 const BATTERY_DENSITY: f64 = 1.1e-3;
 const STEEL_DENSITY: f64 = 7.85e-3;
 const SCREW_GRAMS_PER_MM: f64 = 0.044;
-const SCREW_HEAD: f64 = 0.25;
+const SCREW_HEAD_GRAMS: f64 = 0.25;
 const STANDOFF_GRAMS_PER_MM: f64 = 0.06;
 const NUT_GRAMS: f64 = 0.4;
-const HORN_SCREW: f64 = 0.1;
-const SERVO_SCREW: f64 = 0.2;
+const HORN_SCREW_GRAMS: f64 = 0.1;
+const SERVO_SCREW_GRAMS: f64 = 0.2;
 
 /// A line of the bill.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -82,10 +82,10 @@ impl Item {
         }
     }
 
-    fn bought(count: usize, what: String, grams: f64, price: Price) -> Self {
+    fn bought(count: usize, name: String, grams: f64, price: Price) -> Self {
         Self {
             count,
-            what,
+            what: name,
             grams,
             price: Some(price),
             hours: None,
@@ -98,8 +98,8 @@ impl Item {
     }
 
     /// A row for a thing that is not modelled as a body of the robot.
-    fn loose((count, what, grams, price): Row) -> Self {
-        Self::bought(count, what.to_owned(), grams, price)
+    fn loose((count, name, grams, price): Row) -> Self {
+        Self::bought(count, name.to_owned(), grams, price)
     }
 }
 
@@ -133,7 +133,11 @@ pub struct Bill {
 
 /// Returns the text of the bill's row for a bought body and the body's mass, g. The text is empty if the body is
 /// printed or comes with another one.
-fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (String, f64) {
+fn row_text_and_grams(
+    body: &Body,
+    assembly: &Assembly,
+    hold: Option<&SpringEffect>,
+) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
     match body.kind {
@@ -148,46 +152,47 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (Str
                 Kind::Screw(_) => "button head (ISO 7380)",
                 _ => "hexagon head (ISO 4017)",
             };
-            let what = format!("screw M{diameter} x {length}, {head}");
-            (what, SCREW_HEAD + SCREW_GRAMS_PER_MM * length)
+            let text = format!("screw M{diameter} x {length}, {head}");
+            (text, SCREW_HEAD_GRAMS + SCREW_GRAMS_PER_MM * length)
         }
-        Kind::ServoScrew => (String::new(), SERVO_SCREW),
+        Kind::ServoScrew => (String::new(), SERVO_SCREW_GRAMS),
         Kind::HornScrew(length) => {
             let size = format!("1.7 to 2 mm thick, {length} mm long and no longer");
-            let what = format!("self-tapping screw, {size}, for the horns");
-            (what, HORN_SCREW)
+            let text = format!("self-tapping screw, {size}, for the horns");
+            (text, HORN_SCREW_GRAMS)
         }
         Kind::Lead => (String::new(), 0.0),
         Kind::Fitting(fitting) => (fitting.what(), fitting.facts().grams),
         Kind::Pad => (String::new(), PAD_DENSITY * volume(&body.prisms)),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
         Kind::Standoff(length) => {
-            let what = format!("standoff M{diameter}, {length} mm, thread in both ends");
-            (what, STANDOFF_GRAMS_PER_MM * length)
+            let text = format!("standoff M{diameter}, {length} mm, thread in both ends");
+            (text, STANDOFF_GRAMS_PER_MM * length)
         }
         Kind::Spring => {
             let (wire, outer, length) =
                 (parts.spring.wire, parts.spring.outer, parts.spring.length);
-            let coil = format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
-            let pull = hold.map_or(String::new(), |hold| {
+            let coil_text =
+                format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
+            let pull_text = hold.map_or(String::new(), |hold| {
                 format!(", {:.1} N at {:.1} mm", hold.force, hold.installed)
             });
             (
-                format!("tension spring, {coil}{pull}"),
+                format!("tension spring, {coil_text}{pull_text}"),
                 spring_grams(&parts.spring),
             )
         }
         Kind::Board => ("Arduino UNO".to_owned(), BOARD_GRAMS),
         Kind::Battery => {
             let [x, y, z] = parts.battery;
-            let what = format!("battery, two lithium cells, at most {x} x {y} x {z} mm");
-            (what, BATTERY_DENSITY * x * y * z)
+            let text = format!("battery, two lithium cells, at most {x} x {y} x {z} mm");
+            (text, BATTERY_DENSITY * x * y * z)
         }
     }
 }
 
 /// The price class of the row of a bought body.
-fn price(kind: Kind) -> Price {
+fn price_of(kind: Kind) -> Price {
     match kind {
         Kind::Fitting(fitting) => fitting.price(),
         Kind::Servo | Kind::Board | Kind::Battery => Price::D,
@@ -203,7 +208,7 @@ pub(crate) fn spring_grams(coil: &Coil) -> f64 {
 
 /// Mass of a body, g.
 pub(crate) fn grams(body: &Body, assembly: &Assembly) -> f64 {
-    bought(body, assembly, None).1
+    row_text_and_grams(body, assembly, None).1
 }
 
 /// Volume of a spring's wire, mm^3: its coils, and three more for the hooks.
@@ -213,23 +218,23 @@ fn coil_volume(coil: &Coil) -> f64 {
 }
 
 /// The row for strips with a grain; `None` for plain pads.
-fn strip(parts: &Parts) -> Option<Item> {
+fn strip_item(parts: &Parts) -> Option<Item> {
     /// Mass of a strip, g for each mm of its width: climbing skin of 1.2 kg/m^2, 30 mm long.
-    const STRIP: f64 = 0.036;
-    let what = format!(
+    const STRIP_GRAMS_PER_MM: f64 = 0.036;
+    let name = format!(
         "strip with a grain, {} x 30 mm, at most {NOTCH} mm thick: climbing skin of a ski (Pomoca Climb, Colltex; ~1.5 mm \
          without hairs), or a strip of a brush with short, slanted bristles",
         parts.strip
     );
-    (parts.strip > 0.0).then(|| Item::bought(4, what, STRIP * parts.strip, Price::C))
+    (parts.strip > 0.0).then(|| Item::bought(4, name, STRIP_GRAMS_PER_MM * parts.strip, Price::C))
 }
 
 /// The rows for the inputs and strips that a robot has.
-fn inputs(robot: &Robot) -> Vec<Item> {
+fn input_items(robot: &Robot) -> Vec<Item> {
     let has_input = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
     let rows = INPUTS.into_iter().filter(|(name, _)| has_input(name));
     let rows = rows.map(|(_, row)| Item::loose(row));
-    rows.chain(strip(robot.parts())).collect()
+    rows.chain(strip_item(robot.parts())).collect()
 }
 
 impl Bill {
@@ -239,35 +244,35 @@ impl Bill {
         let mut list: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let (what, mass) = bought(body, assembly, hold.as_ref());
-            if !what.is_empty() {
-                list.entry(what).or_insert((0, mass, price(body.kind))).0 += 1;
+            let (text, mass) = row_text_and_grams(body, assembly, hold.as_ref());
+            if !text.is_empty() {
+                list.entry(text).or_insert((0, mass, price_of(body.kind))).0 += 1;
             }
             let [x, y, z] = centroid(&body.prisms);
-            let at = assembly.place(body.mount, pose).map(Vector::new(x, y));
+            let position = assembly.place(body.mount, pose).map(Vector::new(x, y));
             grams += mass;
-            for (sum, part) in moment.iter_mut().zip([at.y, -at.x, z]) {
-                *sum += mass * part;
+            for (sum, coordinate) in moment.iter_mut().zip([position.y, -position.x, z]) {
+                *sum += mass * coordinate;
             }
         }
-        let printed = |is_alternative: bool| -> Vec<Item> {
+        let items_of = |is_alternative: bool| -> Vec<Item> {
             let parts = parts.iter();
             let parts_listed = parts.filter(|part| part.instead_of.is_some() == is_alternative);
             parts_listed.map(Item::printed).collect()
         };
         let bought = list.into_iter();
         let bought =
-            bought.map(|(what, (count, grams, price))| Item::bought(count, what, grams, price));
+            bought.map(|(text, (count, grams, price))| Item::bought(count, text, grams, price));
         let loose_items = LOOSE_ITEMS.map(Item::loose);
         grams += loose_items.iter().map(Item::total_grams).sum::<f64>();
         let bought: Vec<_> = bought.chain(loose_items).collect();
         Self {
-            printed: printed(false),
-            instead: printed(true),
+            printed: items_of(false),
+            instead: items_of(true),
             euros: Price::sum(bought.iter().filter_map(|item| item.price)),
             bought,
             radio: RADIO.map(Item::loose).into(),
-            inputs: inputs(assembly.robot()),
+            inputs: input_items(assembly.robot()),
             grams,
             centre: moment.map(|sum| sum / grams),
             hold,
@@ -284,16 +289,17 @@ impl Bill {
 
     /// Hours to print all parts.
     pub fn hours(&self) -> f64 {
-        let each = self.printed.iter();
-        each.map(|item| item.count as f64 * item.hours.unwrap_or_default())
+        let items = self.printed.iter();
+        items
+            .map(|item| item.count as f64 * item.hours.unwrap_or_default())
             .sum()
     }
 
-    /// The number of bought things whose name begins with `what`.
-    pub fn count(&self, what: &str) -> usize {
+    /// The number of bought things whose name begins with `name_start`.
+    pub fn count(&self, name_start: &str) -> usize {
         let bought = self.bought.iter();
-        let alike = bought.filter(|item| item.what.starts_with(what));
-        alike.map(|item| item.count).sum()
+        let matching_items = bought.filter(|item| item.what.starts_with(name_start));
+        matching_items.map(|item| item.count).sum()
     }
 }
 
@@ -302,14 +308,14 @@ fn centroid(prisms: &[Prism]) -> [f64; 3] {
     let (mut volume, mut sum) = (0.0, [0.0; 3]);
     for prism in prisms {
         let outline = Outline::of(prism);
-        let high = prism.z[1] - prism.z[0];
+        let height = prism.z[1] - prism.z[0];
         let (area, moment) = (outline.area(), outline.moment());
-        volume += area * high;
-        sum[0] += moment.x * high;
-        sum[1] += moment.y * high;
-        sum[2] += area * high * (prism.z[0] + prism.z[1]) / 2.0;
+        volume += area * height;
+        sum[0] += moment.x * height;
+        sum[1] += moment.y * height;
+        sum[2] += area * height * (prism.z[0] + prism.z[1]) / 2.0;
     }
-    sum.map(|part| part / volume)
+    sum.map(|moment| moment / volume)
 }
 
 impl fmt::Display for Bill {
@@ -317,30 +323,30 @@ impl fmt::Display for Bill {
         writeln!(f, "To print:\n")?;
         writeln!(f, "| pieces | part | g each | h each |\n|---|---|---|---|")?;
         for item in &self.printed {
-            let (count, what, grams) = (item.count, &item.what, item.grams);
+            let (count, name, grams) = (item.count, &item.what, item.grams);
             let hours = item.hours.unwrap_or_default();
-            writeln!(f, "| {count} | {what} | {grams:.1} | {hours:.2} |")?;
+            writeln!(f, "| {count} | {name} | {grams:.1} | {hours:.2} |")?;
         }
         writeln!(
             f,
             "\nAbout {:.0} hours on a printer like an Ender 3, in layers of 0.2 mm with 30 % infill.",
             self.hours()
         )?;
-        writeln!(f, "\n{PADS}")?;
-        let (other, kind) = match self.hold {
+        writeln!(f, "\n{PADS_TEXT}")?;
+        let (leg_text, kind) = match self.hold {
             Some(_) => ("without springs", "rigid"),
             None => ("with springs", "strut"),
         };
         for item in &self.instead {
-            let (count, what, grams) = (item.count, &item.what, item.grams);
+            let (count, name, grams) = (item.count, &item.what, item.grams);
             writeln!(
                 f,
-                "\nInstead of the struts, {count} x {what}, {grams:.1} g each, which make legs {other}; with \
+                "\nInstead of the struts, {count} x {name}, {grams:.1} g each, which make legs {leg_text}; with \
                  `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide is about them."
             )?;
         }
         writeln!(f, "\nTo buy:\n\n{}", buying_table(&self.bought))?;
-        writeln!(f, "{}\n\n{SERVOS}", self.prices())?;
+        writeln!(f, "{}\n\n{SERVOS_TEXT}", self.prices())?;
         writeln!(
             f,
             "\nOnly to drive it without a cable, by radio:\n\n{}",
@@ -355,10 +361,10 @@ impl fmt::Display for Bill {
             "Where everything has its place, and what fits there:\n\n{}",
             places(self.battery)
         )?;
-        let (grams, beside, up) = (self.grams, self.centre_in_words(), self.centre[2]);
+        let (grams, position_text, height) = (self.grams, self.centre_in_words(), self.centre[2]);
         writeln!(
             f,
-            "\nIn all about {grams:.0} g; the mass centre is {beside} the middle of the plate, {up:.1} mm above its top.\n"
+            "\nIn all about {grams:.0} g; the mass centre is {position_text} the middle of the plate, {height:.1} mm above its top.\n"
         )?;
         let drive = match &self.hold {
             Some(hold) => {
@@ -380,43 +386,47 @@ impl fmt::Display for Bill {
 }
 
 /// The guide's text about the pads.
-const PADS: &str = "The pads are of TPU (95A), all four of one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. An edge \
+const PADS_TEXT: &str = "The pads are of TPU (95A), all four of one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. An edge \
                     catches on sharp terraces: smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
 
 /// The guide's text about the servos.
-const SERVOS: &str = "Take plain analog servos, all four of one make: by the model, digital ones lose 15 % of `walk`, and one with a light rotor more than half.";
+const SERVOS_TEXT: &str = "Take plain analog servos, all four of one make: by the model, digital ones lose 15 % of `walk`, and one with a light rotor more than half.";
 
 /// Rows to buy as a table.
 pub fn buying_table(items: &[Item]) -> String {
     let mut text = "| pieces | what | price |\n|---|---|---|\n".to_owned();
     for item in items {
         let price = item.price.map(|price| price.to_string());
-        let (count, what, price) = (item.count, &item.what, price.unwrap_or_default());
-        text += &format!("| {count} | {what} | {price} |\n");
+        let (count, name, price) = (item.count, &item.what, price.unwrap_or_default());
+        text += &format!("| {count} | {name} | {price} |\n");
     }
     text
 }
 
 /// A table of the places for the battery and the fittings: space, what holds the thing, and examples that fit.
 pub fn places(battery: [f64; 3]) -> String {
-    let size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
-    let list = |examples: &mut dyn Iterator<Item = Example>| {
+    let size_text = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
+    let list_text = |examples: &mut dyn Iterator<Item = Example>| {
         let names: Vec<_> = examples.map(|example| example.to_string()).collect();
         names.join("; ")
     };
     let mut text =
         "| thing | place | room, mm | held by | for example, mm |\n|---|---|---|---|---|\n"
             .to_owned();
-    let fits = |example: &Example| (0..3).all(|axis| example.size[axis] <= battery[axis]);
+    let is_small_enough =
+        |example: &Example| (0..3).all(|axis| example.size[axis] <= battery[axis]);
     text += &format!(
         "| battery | on the plate, in the middle | {} | the battery strap | {} |\n",
-        size(battery),
-        list(&mut BATTERIES.into_iter().filter(fits))
+        size_text(battery),
+        list_text(&mut BATTERIES.into_iter().filter(is_small_enough))
     );
     for fitting in Fitting::ALL {
         let facts = fitting.facts();
         let (name, place, hold) = (facts.name, facts.place, facts.hold);
-        let (room, examples) = (size(facts.size), list(&mut facts.examples.into_iter()));
+        let (room, examples) = (
+            size_text(facts.size),
+            list_text(&mut facts.examples.into_iter()),
+        );
         text += &format!("| {name} | {place} | {room} | {hold} | {examples} |\n");
     }
     text + SIZES_TEXT

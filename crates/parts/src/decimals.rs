@@ -2,25 +2,28 @@
 
 use serde::{Serialize, Serializer};
 
-type Written<S> = Result<<S as Serializer>::Ok, <S as Serializer>::Error>;
+type SerializeResult<S> = Result<<S as Serializer>::Ok, <S as Serializer>::Error>;
 
 /// Rounds a number, without leaving a minus before 0.
-fn rounded<const UNIT: u32>(value: f64) -> f64 {
+fn round_to_unit<const UNIT: u32>(value: f64) -> f64 {
     let unit = f64::from(UNIT);
     (unit * value).round() / unit + 0.0
 }
 
 /// Serializes a rounded number.
-pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Written<S> {
-    rounded::<UNIT>(*value).serialize(out)
+pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> SerializeResult<S> {
+    round_to_unit::<UNIT>(*value).serialize(out)
 }
 
 /// Serializes a rounded number that may be missing.
-pub(crate) fn optional<const UNIT: u32, S: Serializer>(value: &Option<f64>, out: S) -> Written<S> {
-    value.map(rounded::<UNIT>).serialize(out)
+pub(crate) fn optional<const UNIT: u32, S: Serializer>(
+    value: &Option<f64>,
+    out: S,
+) -> SerializeResult<S> {
+    value.map(round_to_unit::<UNIT>).serialize(out)
 }
 
 /// Serializes a list of rounded numbers.
-pub(crate) fn each<const UNIT: u32, S: Serializer>(values: &[f64], out: S) -> Written<S> {
-    out.collect_seq(values.iter().map(|value| rounded::<UNIT>(*value)))
+pub(crate) fn each<const UNIT: u32, S: Serializer>(values: &[f64], out: S) -> SerializeResult<S> {
+    out.collect_seq(values.iter().map(|value| round_to_unit::<UNIT>(*value)))
 }

@@ -66,7 +66,7 @@ impl SpringEffect {
                 }
             }
         }
-        let [lever, way, end] = ranges;
+        let [lever, lag_range, torque_range] = ranges;
         let ground = robot.ground();
         Some(Self {
             installed: robot.mounted_spring_length(),
@@ -74,8 +74,8 @@ impl SpringEffect {
             rate: strut.rate,
             lever,
             preload: strut.force * lever[0],
-            way,
-            end,
+            way: lag_range,
+            end: torque_range,
             friction: ground.grip() * ground.feet.reach,
             stall: robot.motors().each[0].stall,
         })
@@ -86,8 +86,9 @@ impl fmt::Display for SpringEffect {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (installed, force, rate) = (self.installed, self.force, self.rate);
         let (preload, friction, stall) = (self.preload, self.friction, self.stall);
-        let ([near, far], [smallest, largest], [low, high]) = (self.lever, self.way, self.end);
-        let spared = match self.lets_servo_turn() {
+        let ([least_lever, most_lever], [least_lag, most_lag], [least_torque, most_torque]) =
+            (self.lever, self.way, self.end);
+        let stall_text = match self.lets_servo_turn() {
             true => "So much less spares it.",
             false => {
                 "So a caught foot can stall its servo as with a rigid strut: switch the servos' supply off."
@@ -96,11 +97,11 @@ impl fmt::Display for SpringEffect {
         writeln!(
             f,
             "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm), at a lever of \
-             {near:.1} to {far:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
+             {least_lever:.1} to {most_lever:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
              asks for about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot \
              and body both held, a front foot on its way forward or a hind foot on its way back, the slot ends after \
-             {smallest:.0} to {largest:.0} deg, at {low:.0} to {high:.0} N mm; the other way the strut is a bar. Its servo stalls \
-             at {stall:.0} N mm. {spared}"
+             {least_lag:.0} to {most_lag:.0} deg, at {least_torque:.0} to {most_torque:.0} N mm; the other way the strut is a bar. Its servo stalls \
+             at {stall:.0} N mm. {stall_text}"
         )?;
         match preload < friction {
             true => writeln!(

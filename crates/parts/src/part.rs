@@ -78,7 +78,7 @@ impl Part {
         PrintToBody {
             flipped: self.is_turned_over,
             lift: if self.is_turned_over { high } else { low },
-            frame: frame(body),
+            frame: print_frame(body),
         }
     }
 
@@ -110,16 +110,16 @@ impl Assembly {
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = distinct_parts(self.bodies());
         let is_strut = |part: &&Part| {
-            let first = self.body(&part.bodies[0]);
-            first.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
+            let first_body = self.body(&part.bodies[0]);
+            first_body.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
         };
-        let strut = parts.iter().find(is_strut).map(|part| part.name.clone());
+        let strut_name = parts.iter().find(is_strut).map(|part| part.name.clone());
         for mut part in distinct_parts(self.alternatives()) {
-            part.instead_of.clone_from(&strut);
+            part.instead_of.clone_from(&strut_name);
             parts.push(part);
         }
-        let first = |part: &Part| noun_and_owner(&part.bodies[0]).0.to_owned();
-        let nouns: Vec<_> = parts.iter().map(first).collect();
+        let noun_of = |part: &Part| noun_and_owner(&part.bodies[0]).0.to_owned();
+        let nouns: Vec<_> = parts.iter().map(noun_of).collect();
         for (part, noun) in parts.iter_mut().zip(&nouns) {
             if nouns.iter().filter(|other| *other == noun).count() > 1 {
                 part.mark = servo_digits(&part.bodies);
@@ -138,10 +138,10 @@ fn noun_and_owner(name: &str) -> (&str, &str) {
 fn servo_digits(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
-        let (_, of) = noun_and_owner(name);
-        let servo = |list: [&str; 4]| list.iter().position(|name| *name == of);
-        let side = Side::ALL.into_iter().find(|side| side.name() == of);
-        numbers.extend(servo(NAMES).or(servo(LEGS)));
+        let (_, owner) = noun_and_owner(name);
+        let index_in = |list: [&str; 4]| list.iter().position(|name| *name == owner);
+        let side = Side::ALL.into_iter().find(|side| side.name() == owner);
+        numbers.extend(index_in(NAMES).or(index_in(LEGS)));
         numbers.extend(side.into_iter().flat_map(Side::servos));
     }
     numbers.sort_unstable();
@@ -153,25 +153,25 @@ fn servo_digits(names: &[String]) -> String {
 fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
-        let (prisms, turned) = print_layers(body);
+        let (prisms, is_turned_over) = print_layers(body);
         match parts
             .iter_mut()
             .find(|part| are_equal(&part.prisms, &prisms))
         {
             Some(part) => part.bodies.push(body.name.clone()),
             None => parts.push(Part {
-                is_turned_over: turned,
+                is_turned_over,
                 rubbery: body.kind == Kind::Pad,
                 ..Part::single(&body.name, prisms)
             }),
         }
     }
     for part in &mut parts {
-        let ring = part
+        let top_layer = part
             .prisms
             .last()
             .filter(|_| part.bodies[0].contains(SPACER));
-        part.name = match ring {
+        part.name = match top_layer {
             Some(top) => format!("{SPACER} {:.1}", top.z[1]),
             None => shared_name(&part.bodies),
         };
@@ -182,43 +182,47 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
 /// A body's layers as printed, and true if the body is turned over for printing. The first shape is at the origin
 /// and the first bar along x, so equal parts have equal layers wherever they are used.
 fn print_layers(body: &Body) -> (Vec<Prism>, bool) {
-    let area = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
-    let turned = area(body.prisms.first()) < 0.7 * area(body.prisms.last());
+    let area_of = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
+    let is_turned_over = area_of(body.prisms.first()) < 0.7 * area_of(body.prisms.last());
     let [low, high] = body.z();
-    let frame = frame(body);
-    let lay = |shape: &Shape| {
+    let frame = print_frame(body);
+    let to_print_frame = |shape: &Shape| {
         let points = shape.points.iter().map(|&point| frame.unmap(point));
         let shape = Shape {
             points: points.collect(),
             radius: shape.radius,
         };
-        if turned { shape.mirrored() } else { shape }
+        if is_turned_over {
+            shape.mirrored()
+        } else {
+            shape
+        }
     };
-    let prism = |prism: &Prism| Prism {
-        filled_shapes: prism.filled_shapes.iter().map(lay).collect(),
-        cut_shapes: prism.cut_shapes.iter().map(lay).collect(),
-        z: match turned {
+    let to_printed_prism = |prism: &Prism| Prism {
+        filled_shapes: prism.filled_shapes.iter().map(to_print_frame).collect(),
+        cut_shapes: prism.cut_shapes.iter().map(to_print_frame).collect(),
+        z: match is_turned_over {
             true => [high - prism.z[1], high - prism.z[0]],
             false => prism.z.map(|z| z - low),
         },
-        inset: match turned {
+        inset: match is_turned_over {
             true => [prism.inset[1], prism.inset[0]],
             false => prism.inset,
         },
     };
-    let mut prisms: Vec<Prism> = body.prisms.iter().map(prism).collect();
+    let mut prisms: Vec<Prism> = body.prisms.iter().map(to_printed_prism).collect();
     prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
-    (prisms, turned)
+    (prisms, is_turned_over)
 }
 
 /// The frame in which a body's part is printed.
-fn frame(body: &Body) -> Placement {
+fn print_frame(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }
     let shapes = || body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
-    let first = shapes().next();
-    let at = first.map_or(Vector::default(), |shape| shape.points[0]);
+    let first_shape = shapes().next();
+    let origin = first_shape.map_or(Vector::default(), |shape| shape.points[0]);
     // A pad has no bar; only its notch gives it a direction.
     let cuts = body.prisms.iter().flat_map(|prism| &prism.cut_shapes);
     let bar = shapes()
@@ -228,27 +232,28 @@ fn frame(body: &Body) -> Placement {
             _ => None,
         });
     Placement {
-        origin: at,
+        origin,
         x_axis: bar.map_or(Placement::CHASSIS.x_axis, |bar| bar * (1.0 / bar.length())),
     }
 }
 
 /// True if two parts are equal except for rounding.
 fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
-    let points = |a: &Shape, b: &Shape| {
+    let are_near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    let have_equal_points = |a: &Shape, b: &Shape| {
         a.points.len() == b.points.len()
-            && zip(&a.points, &b.points).all(|(a, b)| near(a.x, b.x) && near(a.y, b.y))
+            && zip(&a.points, &b.points).all(|(a, b)| are_near(a.x, b.x) && are_near(a.y, b.y))
     };
-    let shapes = |a: &[Shape], b: &[Shape]| {
-        a.len() == b.len() && zip(a, b).all(|(a, b)| near(a.radius, b.radius) && points(a, b))
+    let are_equal_shapes = |a: &[Shape], b: &[Shape]| {
+        a.len() == b.len()
+            && zip(a, b).all(|(a, b)| are_near(a.radius, b.radius) && have_equal_points(a, b))
     };
     a.len() == b.len()
         && zip(a, b).all(|(a, b)| {
-            let heights = near(a.z[0], b.z[0]) && near(a.z[1], b.z[1]);
-            heights
-                && shapes(&a.filled_shapes, &b.filled_shapes)
-                && shapes(&a.cut_shapes, &b.cut_shapes)
+            let have_equal_heights = are_near(a.z[0], b.z[0]) && are_near(a.z[1], b.z[1]);
+            have_equal_heights
+                && are_equal_shapes(&a.filled_shapes, &b.filled_shapes)
+                && are_equal_shapes(&a.cut_shapes, &b.cut_shapes)
         })
 }
 

@@ -71,11 +71,11 @@ impl BuildProblem {
                 mm: seen.mm,
                 pose: Some(seen.pose),
             }),
-            Self::Clash(Clash::Unsure(near)) => Some(Meeting {
-                first: near.first.clone(),
-                second: near.second.clone(),
-                mm: near.proved,
-                pose: near.doubt,
+            Self::Clash(Clash::Unsure(pair)) => Some(Meeting {
+                first: pair.first.clone(),
+                second: pair.second.clone(),
+                mm: pair.proved,
+                pose: pair.doubt,
             }),
             Self::Together { first, second, mm } => Some(Meeting {
                 first: first.clone(),
@@ -118,10 +118,10 @@ impl Assembly {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
         let refuse = |message: String| Err(BuildProblem::Measure(message));
-        let min = parts.screw.head + 2.0 * parts.fit + 1.2;
-        if parts.bar < min {
+        let min_bar_mm = parts.screw.head + 2.0 * parts.fit + 1.2;
+        if parts.bar < min_bar_mm {
             return refuse(format!(
-                "parts.bar is {} mm, but the head of a screw and a wall on each side need {min:.1} mm",
+                "parts.bar is {} mm, but the head of a screw and a wall on each side need {min_bar_mm:.1} mm",
                 parts.bar
             ));
         }
@@ -152,10 +152,10 @@ impl Assembly {
                 parts.pad.radius, parts.pad.width, parts.pad.height
             ));
         }
-        let min = OFF_FLOOR - stack.servo;
-        if parts.height < min {
+        let min_height_mm = OFF_FLOOR - stack.servo;
+        if parts.height < min_height_mm {
             return refuse(format!(
-                "parts.height is {} mm; the feet need {min:.1} mm to keep the servos off the floor",
+                "parts.height is {} mm; the feet need {min_height_mm:.1} mm to keep the servos off the floor",
                 parts.height
             ));
         }
@@ -172,9 +172,9 @@ impl Assembly {
         for side in lizard_kinematics::Side::ALL {
             let range = slider_range(robot, side);
             if SliderLengths::new(side, range).sleeve < MIN_SLEEVE_LENGTH {
-                let [shortest, longest] = range;
+                let [shortest_mm, longest_mm] = range;
                 return refuse(format!(
-                    "the {side} slider is {shortest:.1} mm at its shortest and {longest:.1} mm at its longest; a rod \
+                    "the {side} slider is {shortest_mm:.1} mm at its shortest and {longest_mm:.1} mm at its longest; a rod \
                      that stays in its sleeve does not fit between: raise limits.stroke_min or lower limits.stroke_max"
                 ));
             }
@@ -202,12 +202,12 @@ impl Assembly {
         let bodies = self.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
-                let air = clearance(self.outside_threads(a), self.outside_threads(b));
-                if air < -TOUCH {
+                let gap_mm = clearance(self.outside_threads(a), self.outside_threads(b));
+                if gap_mm < -TOUCH {
                     return Err(BuildProblem::Together {
                         first: a.name.clone(),
                         second: b.name.clone(),
-                        mm: -air,
+                        mm: -gap_mm,
                     });
                 }
             }
@@ -217,13 +217,15 @@ impl Assembly {
 
     /// The layers of a body without a thread that it cuts: of a screw without a nut, only the head.
     fn outside_threads<'a>(&self, body: &'a Body) -> &'a [Prism] {
-        let nut = body.name.replacen("screw", "nut", 1);
+        let nut_name = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
-            (Kind::Screw(_) | Kind::HornScrew(_), [low, high]) if self.body(&nut).is_none() => {
-                let head_above = high.filled_shapes[0].width() > low.filled_shapes[0].width();
-                &body.prisms[usize::from(head_above)..][..1]
+            (Kind::Screw(_) | Kind::HornScrew(_), [low, high])
+                if self.body(&nut_name).is_none() =>
+            {
+                let is_head_above = high.filled_shapes[0].width() > low.filled_shapes[0].width();
+                &body.prisms[usize::from(is_head_above)..][..1]
             }
-            (_, all) => all,
+            (_, layers) => layers,
         }
     }
 }
@@ -231,21 +233,21 @@ impl Assembly {
 /// The least distance of two bodies' layers in plan view, at the heights that they share, mm: beside each other or
 /// inside each other's holes; negative if they overlap.
 fn clearance(a: &[Prism], b: &[Prism]) -> f64 {
-    let within = |shape: &Shape, holes: &[Shape], beside: f64| {
+    let gap_to_layer = |shape: &Shape, holes: &[Shape], gap_beside: f64| {
         let depths = holes
             .iter()
             .map(|hole| shape.depth_in(hole, Vector::default()));
-        depths.fold(beside, f64::max)
+        depths.fold(gap_beside, f64::max)
     };
-    let mut smallest = f64::INFINITY;
+    let mut least_gap = f64::INFINITY;
     let layers = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     for (p, q) in layers.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
         for first in &p.filled_shapes {
             for second in &q.filled_shapes {
-                let air = within(first, &q.cut_shapes, first.distance(second));
-                smallest = smallest.min(within(second, &p.cut_shapes, air));
+                let gap = gap_to_layer(first, &q.cut_shapes, first.distance(second));
+                least_gap = least_gap.min(gap_to_layer(second, &p.cut_shapes, gap));
             }
         }
     }
-    smallest
+    least_gap
 }

@@ -18,7 +18,7 @@ impl Bill {
         let [ahead, left, _] = self.centre;
         let centre = match ahead.abs() < MIDDLE && left.abs() < MIDDLE {
             true => [0.0; 2],
-            false => [ahead, left].map(|part| (part * 10.0).round() / 10.0 + 0.0),
+            false => [ahead, left].map(|coordinate| (coordinate * 10.0).round() / 10.0 + 0.0),
         };
         Body {
             mass: self.grams.round(),
@@ -48,14 +48,14 @@ impl Bill {
     /// right of".
     pub fn centre_in_words(&self) -> String {
         let [ahead, left, _] = self.centre;
-        let direction = |value: f64, [positive, negative]: [&str; 2]| {
+        let distance_text = |value: f64, [positive, negative]: [&str; 2]| {
             let word = if value < 0.0 { negative } else { positive };
             format!("{:.1} mm {word}", value.abs())
         };
         format!(
             "{} and {} of",
-            direction(ahead, ["ahead", "behind"]),
-            direction(left, ["to the left", "to the right"])
+            distance_text(ahead, ["ahead", "behind"]),
+            distance_text(left, ["to the left", "to the right"])
         )
     }
 }

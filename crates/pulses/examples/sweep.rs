@@ -45,11 +45,11 @@ static RECEIVED: Byte = Byte::new(0);
 
 /// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. Each servo has its own
 /// step per frame.
-fn width(servo: u8, frame: u16) -> u16 {
+fn width_cycles(servo: u8, frame: u16) -> u16 {
     let step = 16 * u16::from(servo) + 5;
     let ramp = frame.wrapping_mul(step) % 32_000;
-    let up = if ramp < 16_000 { ramp } else { 32_000 - ramp };
-    1000 * CYCLES_PER_US + up
+    let added_cycles = if ramp < 16_000 { ramp } else { 32_000 - ramp };
+    1000 * CYCLES_PER_US + added_cycles
 }
 
 #[avr_device::entry]
@@ -73,8 +73,8 @@ fn main() -> ! {
         if servos::ticks() != tick {
             tick = servos::ticks();
             let mut widths = [0; PINS.len()];
-            for (servo, slot) in widths.iter_mut().enumerate() {
-                *slot = width(servo as u8, frame);
+            for (servo, width) in widths.iter_mut().enumerate() {
+                *width = width_cycles(servo as u8, frame);
             }
             servos::submit(widths);
             frame = frame.wrapping_add(1);

@@ -197,7 +197,7 @@ mod tests {
     }
 
     /// The plan of each slot of a frame: slot, mask and falling edge.
-    fn frame<const SERVOS: usize, const SIZE: usize>(
+    fn plan_frame<const SERVOS: usize, const SIZE: usize>(
         engine: &Engine<'_, SERVOS, SIZE>,
     ) -> [(u8, u8, u16); 9] {
         let mut slots = [(0, 0, 0); 9];
@@ -219,16 +219,16 @@ mod tests {
         engine.submit(widths);
         assert!(!engine.is_taken(), "and the first has not been taken");
         for frames in 0..3 {
-            let played = frame(&engine);
-            for (servo, slot) in played.into_iter().enumerate().take(SERVOS) {
+            let slots = plan_frame(&engine);
+            for (servo, slot) in slots.into_iter().enumerate().take(SERVOS) {
                 let fall = 24_000 + servo as u16 + u16::from(LEAD);
                 let expected = (servo as u8, servo as u8 + 1, fall);
                 assert_eq!(slot, expected, "{SERVOS} servos, frame {frames}");
             }
-            let close = slot_cycles(SERVOS) - 1_000 + u16::from(LEAD);
+            let close_count = slot_cycles(SERVOS) - 1_000 + u16::from(LEAD);
             assert_eq!(
-                played[SERVOS],
-                (SERVOS as u8, 0, close),
+                slots[SERVOS],
+                (SERVOS as u8, 0, close_count),
                 "the tick has no pin"
             );
         }
@@ -251,9 +251,9 @@ mod tests {
     fn a_width_too_long_for_a_slot_makes_no_pulse() {
         let variables = Variables::<8>::of::<6>();
         let engine = variables.engine::<6>();
-        let max = max_width(6);
-        engine.submit([0, 999, 1_000, max, max + 1, u16::MAX]);
-        let masks = frame(&engine).map(|(_, mask, _)| mask);
+        let max_cycles = max_width(6);
+        engine.submit([0, 999, 1_000, max_cycles, max_cycles + 1, u16::MAX]);
+        let masks = plan_frame(&engine).map(|(_, mask, _)| mask);
         assert_eq!(masks[..7], [0, 0, 3, 4, 0, 0, 0]);
     }
 

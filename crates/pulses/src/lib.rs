@@ -75,7 +75,7 @@
 //!   interrupt can split.
 
 #![cfg_attr(not(test), no_std)]
-#![allow(unsafe_code)] // It stores to ports and timer; each block says what it rests on.
+#![allow(unsafe_code)] // The crate writes to ports and to the timer; each block states why this is safe.
 #![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
 
 pub mod cells;

@@ -35,15 +35,15 @@ pub const fn slot_cycles(servos: usize) -> u16 {
         1 <= servos && servos <= 8,
         "an engine has one to eight servos"
     );
-    let even = FRAME_CYCLES / (servos as u32 + 1);
+    let even_share = FRAME_CYCLES / (servos as u32 + 1);
     // With fewer than four servos an even share of the frame would not fit 16 bits.
-    if even > MAX_SLOT_CYCLES {
+    if even_share > MAX_SLOT_CYCLES {
         return MAX_SLOT_CYCLES as u16;
     }
-    if even < MIN_SLOT_CYCLES {
+    if even_share < MIN_SLOT_CYCLES {
         return MIN_SLOT_CYCLES as u16;
     }
-    even as u16
+    even_share as u16
 }
 
 /// Cycles from one pulse of a servo to its next.

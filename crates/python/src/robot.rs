@@ -31,18 +31,18 @@ impl Robot {
     /// Reads and checks the text of a robot.toml.
     #[new]
     fn parse(py: Python<'_>, text: &str) -> PyResult<Self> {
-        checked(py, py.detach(|| lizard_robot::Robot::parse(text)))
+        wrap_robot(py, py.detach(|| lizard_robot::Robot::parse(text)))
     }
 
     /// Reads and checks a file.
     #[staticmethod]
     fn load(py: Python<'_>, path: &str) -> PyResult<Self> {
-        checked(py, py.detach(|| lizard_robot::Robot::load(path)))
+        wrap_robot(py, py.detach(|| lizard_robot::Robot::load(path)))
     }
 
     /// The same robot with `stand` and the gait of this table as its only gaits.
     fn with_gait(&self, py: Python<'_>, table: &str) -> PyResult<Self> {
-        checked(py, py.detach(|| self.0.with_gait(table)))
+        wrap_robot(py, py.detach(|| self.0.with_gait(table)))
     }
 
     fn name(&self) -> &str {
@@ -66,12 +66,12 @@ impl Robot {
     /// All joints and margins of poses: a row of [`COLUMNS`] for each row of four angles. A row is
     /// NaN, and its last column 0, if there is no solution.
     fn solve<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
-        rows(py, &poses, |angles| self.row(angles))
+        compute_rows(py, &poses, |angles| self.row(angles))
     }
 
     /// K and K* of poses, each row by row: 8 x 4 and 8 x 8 numbers, NaN if there is no solution.
     fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
-        rows(py, &poses, |angles: [f64; 4]| {
+        compute_rows(py, &poses, |angles: [f64; 4]| {
             let mut row = [f64::NAN; 96];
             if let Ok(solution) = self.0.lizard().solve(&angles.into()) {
                 let (active, passive) = (solution.active_matrix(), solution.passive_matrix());
@@ -92,11 +92,11 @@ impl Robot {
     ) -> Rows<'py> {
         let end = if head { End::Head } else { End::Tail };
         let lizard = self.0.lizard();
-        rows(py, &points, |[x, y]: [f64; 2]| {
-            let found = lizard
+        compute_rows(py, &points, |[x, y]: [f64; 2]| {
+            let solutions = lizard
                 .end(end)
                 .inverse(lizard.to_end(end, Vector::new(x, y)));
-            let angles = found.map(|modes| {
+            let angles = solutions.map(|modes| {
                 modes.map(|mode| [mode.theta_left, mode.theta_right].map(|a| end.mirror_angle(a)))
             });
             let mut row = [f64::NAN; 8];
@@ -117,7 +117,7 @@ impl Robot {
 
     /// Pulse widths of servo angles, us.
     fn pulses<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
-        rows(py, &poses, |angles: [f64; 4]| -> [f64; 4] {
+        compute_rows(py, &poses, |angles: [f64; 4]| -> [f64; 4] {
             core::array::from_fn(|i| self.0.servos()[i].pulse(angles[i]))
         })
     }
@@ -151,22 +151,22 @@ impl Robot {
             .unzip();
         let audit = gait.audit();
         let margins = [audit.type2, audit.type1, audit.leg];
-        let least = margins
+        let least_margin = margins
             .into_iter()
-            .reduce(|least, next| {
-                if next.value < least.value {
-                    next
+            .reduce(|least_margin, next_margin| {
+                if next_margin.value < least_margin.value {
+                    next_margin
                 } else {
-                    least
+                    least_margin
                 }
             })
-            .map_or(("", f64::NAN), |least| {
-                (Check::name(least.what), least.value)
+            .map_or(("", f64::NAN), |least_margin| {
+                (Check::name(least_margin.what), least_margin.value)
             });
         Ok((
             gait.period(),
             audit.peak.speed,
-            least,
+            least_margin,
             PyArray1::from_vec(py, times),
             PyArray2::from_vec2(py, &angles)?,
         ))
@@ -181,17 +181,17 @@ impl Robot {
             left,
             turn,
         } = py.detach(|| {
-            let ideal = self.0.predict(gait);
+            let prediction = self.0.predict(gait);
             match with_servos {
-                true => ideal.keep_known(gait.simulate_driven_cycle(
+                true => prediction.keep_known(gait.simulate_driven_cycle(
                     self.0.ground(),
                     &self.0.motors(),
                     1.0,
                 )),
-                false => ideal,
+                false => prediction,
             }
         });
-        Ok([forward, left, turn].map(|part| part.unwrap_or(f64::NAN)))
+        Ok([forward, left, turn].map(|component| component.unwrap_or(f64::NAN)))
     }
 
     /// The robot's section of flash.
@@ -205,38 +205,42 @@ impl Robot {
             true => file::robot_alone(&self.0),
             false => file::image(&self.0),
         });
-        image.map(|image| image.to_hex()).map_err(refused)
+        image.map(|image| image.to_hex()).map_err(to_value_error)
     }
 
     /// The model for MuJoCo; without the parts' shapes it is a fiftieth as long.
     fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);
-            assembly.check_measures().map_err(refused)?;
-            let neutral = self.0.lizard().solve(&self.0.neutral()).map_err(refused)?;
+            assembly.check_measures().map_err(to_value_error)?;
+            let neutral = self
+                .0
+                .lizard()
+                .solve(&self.0.neutral())
+                .map_err(to_value_error)?;
             let scene = Scene {
                 has_shapes: shapes,
                 ..Scene::of(&assembly)
             };
-            mjcf(&assembly, &neutral, &scene).map_err(refused)
+            mjcf(&assembly, &neutral, &scene).map_err(to_value_error)
         })
     }
 }
 
 impl Robot {
     fn find(&self, name: &str) -> PyResult<&CheckedGait> {
-        let unknown = || {
-            let all = self.gaits().join(", ");
-            PyKeyError::new_err(format!("there is no gait {name}; the gaits are {all}"))
+        let gait_error = || {
+            let names = self.gaits().join(", ");
+            PyKeyError::new_err(format!("there is no gait {name}; the gaits are {names}"))
         };
-        self.0.gait(name).ok_or_else(unknown)
+        self.0.gait(name).ok_or_else(gait_error)
     }
 
     fn row(&self, angles: [f64; 4]) -> [f64; COLUMNS] {
         let mut row = [f64::NAN; COLUMNS];
         row[COLUMNS - 1] = 0.0;
-        if let Ok(s) = self.0.lizard().solve(&angles.into()) {
-            fill(&mut row, &s);
+        if let Ok(solution) = self.0.lizard().solve(&angles.into()) {
+            fill(&mut row, &solution);
             let is_safe = self.0.accepted(angles).is_some();
             row[COLUMNS - 1] = f64::from(u8::from(is_safe));
         }
@@ -245,55 +249,60 @@ impl Robot {
 }
 
 /// Writes a solution into its row, in the order of [`COLUMNS`], except for the last column.
-fn fill(row: &mut [f64; COLUMNS], s: &Solution) {
-    let (head, tail, p) = (s.head_point(), s.tail_point(), s.passive());
+fn fill(row: &mut [f64; COLUMNS], solution: &Solution) {
+    let (head, tail, passive) = (
+        solution.head_point(),
+        solution.tail_point(),
+        solution.passive(),
+    );
     let joints = [
         head.x,
         head.y,
         tail.x,
         tail.y,
-        p.theta2,
-        p.theta3,
-        p.theta6,
-        p.theta7,
-        p.phi_left,
-        p.phi_right,
-        p.s_left,
-        p.s_right,
+        passive.theta2,
+        passive.theta3,
+        passive.theta6,
+        passive.theta7,
+        passive.phi_left,
+        passive.phi_right,
+        passive.s_left,
+        passive.s_right,
     ];
     let values = joints
         .into_iter()
-        .chain(s.margins.iter().map(|(_, value)| value));
+        .chain(solution.margins.iter().map(|(_, value)| value));
     for (cell, value) in row.iter_mut().zip(values) {
         *cell = value;
     }
 }
 
 /// Computes a row of `N` numbers for each row of `M`.
-fn rows<'py, const M: usize, const N: usize>(
+fn compute_rows<'py, const M: usize, const N: usize>(
     py: Python<'py>,
-    given: &PyReadonlyArray2<'py, f64>,
+    input: &PyReadonlyArray2<'py, f64>,
     compute: impl Fn([f64; M]) -> [f64; N],
 ) -> Rows<'py> {
-    let given = given.as_array();
-    let row = |row: numpy::ndarray::ArrayView1<'_, f64>| compute(core::array::from_fn(|i| row[i]));
-    let made: Vec<f64> = given.rows().into_iter().flat_map(row).collect();
-    PyArray1::from_vec(py, made).reshape([given.nrows(), N])
+    let input = input.as_array();
+    let compute_row =
+        |row: numpy::ndarray::ArrayView1<'_, f64>| compute(core::array::from_fn(|i| row[i]));
+    let numbers: Vec<f64> = input.rows().into_iter().flat_map(compute_row).collect();
+    PyArray1::from_vec(py, numbers).reshape([input.nrows(), N])
 }
 
 /// Wraps a robot for Python, or converts its error to a [`RobotFileError`] with the file, line and key.
-fn checked(py: Python<'_>, robot: Result<lizard_robot::Robot, Error>) -> PyResult<Robot> {
+fn wrap_robot(py: Python<'_>, robot: Result<lizard_robot::Robot, Error>) -> PyResult<Robot> {
     robot.map(Robot).map_err(|error| {
-        let raised = RobotFileError::new_err(error.to_string());
-        let value = raised.value(py);
-        let place = value
+        let python_error = RobotFileError::new_err(error.to_string());
+        let exception = python_error.value(py);
+        let outcome = exception
             .setattr("file", &error.file)
-            .and_then(|()| value.setattr("line", error.line))
-            .and_then(|()| value.setattr("key", &error.key));
-        place.err().unwrap_or(raised)
+            .and_then(|()| exception.setattr("line", error.line))
+            .and_then(|()| exception.setattr("key", &error.key));
+        outcome.err().unwrap_or(python_error)
     })
 }
 
-fn refused(error: impl core::fmt::Display) -> PyErr {
+fn to_value_error(error: impl core::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

@@ -1,7 +1,7 @@
 //! The calibration of one robot, which `save` stores: as lines of the console, and as a file.
 //!
-//! Two robots built from one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The host
-//! program and the page measure these differences and store them; the rules for both are here.
+//! Two robots built from one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The
+//! host program and the page measure these differences and store them; the rules for both are here.
 
 use std::collections::VecDeque;
 
@@ -13,13 +13,13 @@ use crate::measures::servo::NAMES;
 
 /// The value of the key `format`. The number rises when a key changes its meaning.
 const FORMAT: &str = "lizard calibration 1";
-const HEAD: &str = "\
+const HEADER: &str = "\
 # A lizard's calibration. `lizard calibrate restore` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 
 ";
 /// Tolerance for equal numbers: slightly less than half of the last digit that the console prints, 0.01.
-const NEAR: f64 = 0.0049;
+const TOLERANCE: f64 = 0.0049;
 
 /// The settings of a robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,9 +62,9 @@ impl ServoSettings {
     /// The settings with another scale, us/deg. The horn stays where it is: the trim is converted to the new degrees.
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
-        let scale = hundredths(scale);
+        let scale = round_to_hundredths(scale);
         Self {
-            trim: hundredths(self.trim * self.scale / scale),
+            trim: round_to_hundredths(self.trim * self.scale / scale),
             scale,
             ..self
         }
@@ -98,7 +98,7 @@ impl ServoSettings {
     }
 
     fn read(section: &Section) -> Checked<Self> {
-        let number = |key| {
+        let read_number = |key| {
             let value = section.number(key, -360.0, 360.0, "deg")?;
             require_two_decimals(section, key, value)
         };
@@ -109,16 +109,16 @@ impl ServoSettings {
         let dir = match section.text("dir")? {
             "+" => '+',
             "-" => '-',
-            other => {
-                let problem = format!("is \"{other}\"; it must be \"+\" or \"-\"");
+            direction => {
+                let problem = format!("is \"{direction}\"; it must be \"+\" or \"-\"");
                 return Err(section.fault("dir", problem));
             }
         };
         Ok(Self {
-            trim: number("trim")?,
+            trim: read_number("trim")?,
             limit,
             dir,
-            scale: number("scale")?,
+            scale: read_number("scale")?,
         })
     }
 }
@@ -127,20 +127,20 @@ impl Calibration {
     /// Reads the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
     #[must_use]
     pub fn from_lines(lines: &[String]) -> Option<Self> {
-        let after = |word: &str| {
-            let mut found = lines.iter().filter_map(|line| {
+        let rest_after = |word: &str| {
+            let mut rests = lines.iter().filter_map(|line| {
                 let rest = line.strip_prefix("# ")?.strip_prefix(word)?;
                 rest.strip_prefix(' ')
             });
-            found.next()
+            rests.next()
         };
         let servos: Option<Vec<_>> = NAMES
             .iter()
-            .map(|name| ServoSettings::parse(after(name)?))
+            .map(|name| ServoSettings::parse(rest_after(name)?))
             .collect();
         Some(Self {
-            boot: after("boot").filter(|boot| is_name(boot))?.to_owned(),
-            deadman: after("deadman")?.parse().ok()?,
+            boot: rest_after("boot").filter(|boot| is_name(boot))?.to_owned(),
+            deadman: rest_after("deadman")?.parse().ok()?,
             servos: servos?.try_into().ok()?,
         })
     }
@@ -148,29 +148,29 @@ impl Calibration {
     /// The console's lines that set all these settings.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
-        let servos = self.servos.iter().zip(1..).flat_map(|(servo, n)| {
+        let servos = self.servos.iter().zip(1..).flat_map(|(servo, number)| {
             let [min, max] = servo.limit;
             [
-                format!("dir {n} {}", servo.dir),
-                format!("scale {n} {:.2}", servo.scale),
-                format!("trim {n} {:.2}", servo.trim),
-                format!("limit {n} {min:.2} {max:.2}"),
+                format!("dir {number} {}", servo.dir),
+                format!("scale {number} {:.2}", servo.scale),
+                format!("trim {number} {:.2}", servo.trim),
+                format!("limit {number} {min:.2} {max:.2}"),
             ]
         });
-        let rest = [
+        let general_lines = [
             format!("boot {}", self.boot),
             format!("deadman {}", self.deadman),
         ];
-        servos.chain(rest).collect()
+        servos.chain(general_lines).collect()
     }
 
     /// True if a robot would print the same settings for both calibrations; limits may differ by full turns.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
-        let is_near = |a: f64, b: f64| (a - b).abs() < NEAR;
+        let is_near = |a: f64, b: f64| (a - b).abs() < TOLERANCE;
         let is_same_angle = |a: f64, b: f64| {
             let turn = (a - b).rem_euclid(360.0);
-            turn.min(360.0 - turn) < NEAR
+            turn.min(360.0 - turn) < TOLERANCE
         };
         let mut servos = self.servos.iter().zip(&other.servos);
         self.boot == other.boot
@@ -189,7 +189,7 @@ impl Calibration {
     pub fn text(&self) -> String {
         let Self { boot, deadman, .. } = self;
         let mut text =
-            format!("{HEAD}format = \"{FORMAT}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n");
+            format!("{HEADER}format = \"{FORMAT}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n");
         for (name, servo) in NAMES.iter().zip(&self.servos) {
             let ServoSettings {
                 trim,
@@ -231,7 +231,7 @@ impl Calibration {
             return Err(root.fault("deadman", "must be a whole number of ms"));
         }
         let servos = root.section("servo", &NAMES)?;
-        let servo = |name| {
+        let read_servo = |name| {
             let keys = ["trim", "limit", "dir", "scale"];
             ServoSettings::read(&servos.section(name, &keys)?)
         };
@@ -239,7 +239,12 @@ impl Calibration {
         Ok(Self {
             boot: boot.to_owned(),
             deadman: deadman as u16,
-            servos: [servo(a1)?, servo(a2)?, servo(a3)?, servo(a4)?],
+            servos: [
+                read_servo(a1)?,
+                read_servo(a2)?,
+                read_servo(a3)?,
+                read_servo(a4)?,
+            ],
         })
     }
 }
@@ -265,14 +270,14 @@ impl Transfer {
     /// Makes a transfer that has sent no line yet.
     #[must_use]
     pub fn new(calibration: &Calibration) -> Self {
-        let all = calibration.lines();
+        let lines = calibration.lines();
         Self {
-            unsent_lines: all.clone().into(),
+            unsent_lines: lines.clone().into(),
             last: String::new(),
             refused: Vec::new(),
-            round: all.len(),
+            round: lines.len(),
             is_from_factory: false,
-            all,
+            all: lines,
         }
     }
 
@@ -308,8 +313,8 @@ impl Transfer {
 
 /// True if a text has the form of a gait's name and may be sent to the robot unchanged.
 fn is_name(text: &str) -> bool {
-    let letters = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
-    !text.is_empty() && text.len() <= 48 && text.chars().all(letters)
+    let is_allowed = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
+    !text.is_empty() && text.len() <= 48 && text.chars().all(is_allowed)
 }
 
 /// Returns a number that has at most two decimals, and refuses any other number: the console accepts no more.
@@ -324,7 +329,7 @@ fn require_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64
 }
 
 /// Rounds to hundredths, as the robot does, without a negative zero.
-fn hundredths(value: f64) -> f64 {
+fn round_to_hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 

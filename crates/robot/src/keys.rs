@@ -16,7 +16,7 @@ const MARK: &str = "<!-- keys of robot.toml -->\n";
 
 /// A robot with every table, and with each key whose default the reader does not record.
 fn robot() -> String {
-    let more = "
+    let more_text = "
         [leg.drive]\nkind = \"strut\"
         [joints]
         [supply]
@@ -37,7 +37,7 @@ fn robot() -> String {
         .replace("mass = 435.0", "mass = 435.0\ncentre = [0.0, 0.0]")
         .replace("mount = ", "hip_forward = 55.0\nhip_side = 35.0\nmount = ")
         .replace("[servo.A1]", "[servo]\nmodel = \"SG-90\"\n[servo.A1]");
-    text + &more
+    text + &more_text
         .lines()
         .map(|line| format!("{}\n", line.trim()))
         .collect::<String>()
@@ -45,9 +45,9 @@ fn robot() -> String {
 
 /// The name of a key in keys.txt, where all names chosen by the author, all four servos or legs, and both ends
 /// share one entry.
-fn plain(key: &str) -> String {
+fn generic_name(key: &str) -> String {
     let names: Vec<&str> = key.split('.').collect();
-    let plain = names.iter().enumerate().map(|(index, name)| {
+    let parts = names.iter().enumerate().map(|(index, name)| {
         let name = name.split('[').next().unwrap_or(name);
         match (index, name) {
             (1, _) if ["gait", "routine"].contains(&names[0]) => "NAME",
@@ -58,7 +58,7 @@ fn plain(key: &str) -> String {
             (_, name) => name,
         }
     });
-    plain.collect::<Vec<_>>().join(".")
+    parts.collect::<Vec<_>>().join(".")
 }
 
 /// The values and the default of a key, as the reader records them.
@@ -69,13 +69,13 @@ struct Words {
 }
 
 /// All keys that the reader knows, except keys whose values are tables.
-fn keys() -> BTreeMap<String, Words> {
+fn recorded_keys() -> BTreeMap<String, Words> {
     READS.with_borrow_mut(Vec::clear);
     read(&robot()).expect("a robot with every key");
     let reads = READS.with_borrow_mut(std::mem::take);
     let mut keys = BTreeMap::<String, Words>::new();
     for (key, read) in &reads {
-        let words = keys.entry(plain(key)).or_default();
+        let recorded = keys.entry(generic_name(key)).or_default();
         if let KeyRead::Number {
             range: (min, max),
             unit,
@@ -84,15 +84,15 @@ fn keys() -> BTreeMap<String, Words> {
         {
             let unit = unit.trim_start_matches('(').trim_end_matches(')');
             let [min, max] = [*min, *max].map(format_number);
-            words.values = Some(format!("{min} to {max}, {unit}"));
-            words.default = default.map(format_number).or(words.default.take());
+            recorded.values = Some(format!("{min} to {max}, {unit}"));
+            recorded.default = default.map(format_number).or(recorded.default.take());
         }
     }
     let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
     for (table, _) in reads.iter().filter(is_table) {
         // Lists of harmonics are recorded as tables, but are keys, too.
         if !table.ends_with(".x") && !table.ends_with(".y") {
-            keys.remove(&plain(table));
+            keys.remove(&generic_name(table));
         }
     }
     keys
@@ -105,7 +105,7 @@ struct Line {
 }
 
 /// The tables of keys.txt: name, meaning, keys.
-fn tables() -> Vec<(&'static str, &'static str, Vec<Line>)> {
+fn reference_tables() -> Vec<(&'static str, &'static str, Vec<Line>)> {
     let mut tables: Vec<(_, _, Vec<Line>)> = Vec::new();
     let lines = include_str!("keys.txt").lines();
     for line in lines.filter(|line| !line.is_empty() && !line.starts_with("# ")) {
@@ -130,49 +130,51 @@ fn tables() -> Vec<(&'static str, &'static str, Vec<Line>)> {
 
 #[test]
 fn every_key_that_is_read_is_in_the_reference_and_no_other() {
-    let read: BTreeSet<String> = keys().into_keys().collect();
-    let listed = tables().into_iter().flat_map(|(.., lines)| lines);
-    let listed: BTreeSet<String> = listed.map(|line| line.key).collect();
+    let read_keys: BTreeSet<String> = recorded_keys().into_keys().collect();
+    let listed_keys = reference_tables().into_iter().flat_map(|(.., lines)| lines);
+    let listed_keys: BTreeSet<String> = listed_keys.map(|line| line.key).collect();
     assert_eq!(
-        read.symmetric_difference(&listed).collect::<Vec<_>>(),
+        read_keys
+            .symmetric_difference(&listed_keys)
+            .collect::<Vec<_>>(),
         Vec::<&String>::new(),
         "keys that are read are in src/keys.txt"
     );
-    assert!(read.len() > 120, "{}", read.len());
+    assert!(read_keys.len() > 120, "{}", read_keys.len());
 }
 
 #[test]
 fn the_page_of_keys_is_what_the_reader_checks() {
-    let keys = keys();
+    let keys = recorded_keys();
     let mut text = String::new();
-    for (table, meaning, lines) in tables() {
+    for (table, meaning, lines) in reference_tables() {
         match table {
             "" => _ = write!(text, "## Top\n\n{meaning}\n\n"),
             _ => _ = write!(text, "## [{table}]\n\n{meaning}\n\n"),
         }
         text += "| key | values | default | meaning |\n|---|---|---|---|\n";
         for Line { key, cells } in lines {
-            let read = &keys[&key];
+            let recorded = &keys[&key];
             let [name, values, default, meaning] = cells;
-            let own = |cell: &str, words: &Option<String>| match (cell, words) {
+            let cell_text = |cell: &str, words: &Option<String>| match (cell, words) {
                 (".", Some(words)) => words.clone(),
                 (".", None) => panic!("the reader does not say it: {key}"),
                 (cell, _) => cell.to_owned(),
             };
-            let values = own(values, &read.values);
-            let default = own(default, &read.default);
+            let values = cell_text(values, &recorded.values);
+            let default = cell_text(default, &recorded.default);
             _ = writeln!(text, "| `{name}` | {values} | {default} | {meaning} |");
         }
         text.push('\n');
     }
     let page = std::fs::read_to_string(PAGE).expect(PAGE);
-    let (head, _) = page.split_once(MARK).expect(MARK);
-    let now = format!("{head}{MARK}\n{}\n", text.trim_end());
+    let (text_before, _) = page.split_once(MARK).expect(MARK);
+    let expected = format!("{text_before}{MARK}\n{}\n", text.trim_end());
     if std::env::var_os("BLESS_KEYS").is_some() {
-        std::fs::write(PAGE, now).expect(PAGE);
+        std::fs::write(PAGE, expected).expect(PAGE);
     } else {
         assert!(
-            page == now,
+            page == expected,
             "docs/robot-toml.md is out of date; run with BLESS_KEYS=1"
         );
     }
@@ -193,7 +195,7 @@ fn read(text: &str) -> Result<(), Error> {
 fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
     let text = robot();
     let mut count = 0;
-    for (table, _, lines) in tables() {
+    for (table, _, lines) in reference_tables() {
         let start = match table {
             "" => 0,
             _ => match text.find(&format!("\n[{}]", table.replace("NAME", "walk"))) {
@@ -211,9 +213,9 @@ fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
                 assert_ne!(cells[2], "needed", "{table}.{}", cells[0]);
                 continue;
             };
-            let without = format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
-            let refused = read(&without).err().map(|error| error.to_string());
-            let is_needed = refused.is_some_and(|words| words.contains("is missing"));
+            let shorter_text = format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
+            let message = read(&shorter_text).err().map(|error| error.to_string());
+            let is_needed = message.is_some_and(|message| message.contains("is missing"));
             assert_eq!(
                 is_needed,
                 cells[2].starts_with("needed"),

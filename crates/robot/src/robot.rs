@@ -78,29 +78,29 @@ impl Robot {
             Self::with_measures(self.name(), self.measures.clone(), &root)
         });
         robot.map_err(|mut error| {
-            let lines = STAND.lines().count();
+            let added_lines = STAND.lines().count();
             error.line = error
                 .line
-                .filter(|line| *line > lines)
-                .map(|line| line - lines);
+                .filter(|line| *line > added_lines)
+                .map(|line| line - added_lines);
             error
         })
     }
 
     fn read(table: &DeTable) -> Checked<Self> {
         let root = Section::root(table, &KEYS)?;
-        let name = name(&root)?;
+        let name = read_name(&root)?;
         let mut measures = Measures::read(&root)?;
         let robot = Self::with_measures(name, measures.clone(), &root)?;
         let Some(rail) = &mut measures.supplies.rail else {
             return Ok(robot);
         };
         let (ground, motors) = (robot.ground(), robot.motors());
-        let effort = |gait: &CheckedGait| Effort::of(gait, ground, &motors);
-        let efforts: Vec<Effort> = robot.gaits().iter().map(effort).collect();
+        let effort_of = |gait: &CheckedGait| Effort::of(gait, ground, &motors);
+        let efforts: Vec<Effort> = robot.gaits().iter().map(effort_of).collect();
         let volts = robot.servo_type().volts;
-        let lines = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
-        rail.set_slow_threshold(lines.fold(0.0, f64::max), HIGH_LINE_SHARE, volts);
+        let shares = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
+        rail.set_slow_threshold(shares.fold(0.0, f64::max), HIGH_LINE_SHARE, volts);
         // The torque-speed line shrinks in proportion to the supply, so a share of the line at one supply is the
         // whole line at that share of the supply.
         let [_, stop, _] = rail.thresholds;
@@ -121,21 +121,22 @@ impl Robot {
         let tables = Arc::new(tables);
         let length = content.length();
         if length > usize::from(SPACE) {
-            return Err(too_large(&content, length));
+            return Err(size_fault(&content, length));
         }
         let section: Arc<[u8]> = content.section().into();
         let flash = Region::new(&section);
-        let impossible = || {
+        let core_fault = || {
             let message =
                 "the firmware would not take this robot: its numbers cannot be worked with";
             Fault::new("", message)
         };
-        let unchecked =
-            lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
-        let check = |(index, gait)| CheckedGait::new(gait, index, &tables, &measures, &unchecked);
-        let gaits = gaits.into_iter().enumerate().map(check);
+        let core_robot =
+            lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(core_fault)?;
+        let check_gait =
+            |(index, gait)| CheckedGait::new(gait, index, &tables, &measures, &core_robot);
+        let gaits = gaits.into_iter().enumerate().map(check_gait);
         let gaits = gaits.collect::<Checked<_>>()?;
-        lizard_core::numbers::robot::Robot::open(flash).map_err(|_| impossible())?;
+        lizard_core::numbers::robot::Robot::open(flash).map_err(|_| core_fault())?;
         Ok(Self {
             gaits,
             routines,
@@ -154,12 +155,13 @@ impl Robot {
     /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified cells, if there is
     /// room; without them the firmware computes the distance from the limits at every pose.
     pub fn section(&self) -> Vec<u8> {
-        self.with_maps().unwrap_or_else(|| self.content.section())
+        self.section_with_maps()
+            .unwrap_or_else(|| self.content.section())
     }
 
     /// True if the section has room for the maps of certified cells.
     pub fn has_room_for_maps(&self) -> bool {
-        self.with_maps().is_some()
+        self.section_with_maps().is_some()
     }
 
     /// An upper bound, in CPU cycles, of the console's search for the name of the last gait or routine. A test
@@ -172,7 +174,7 @@ impl Robot {
     }
 
     /// Makes the section with the maps; `None` if it is longer than [`SPACE`].
-    fn with_maps(&self) -> Option<Vec<u8>> {
+    fn section_with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {
             head,
             tail,
@@ -226,9 +228,9 @@ impl Robot {
 
     /// The motors of another type of servo at a supply voltage in V, and the friction of the joints.
     pub fn motors_of(&self, servo: &ServoType, volts: f64) -> Motors {
-        let of = |own: &Servo| servo.motor(volts, own.us_per_degree);
+        let motor_of = |settings: &Servo| servo.motor(volts, settings.us_per_degree);
         Motors {
-            each: self.servos().each_ref().map(of),
+            each: self.servos().each_ref().map(motor_of),
             joints: self.measures.joints,
         }
     }
@@ -322,8 +324,8 @@ impl Robot {
     /// Finds the gait that a console line names. A blank and a number of cycles may follow the name.
     pub fn gait_of_line(&self, line: &str) -> Option<&CheckedGait> {
         let name = line.trim_end_matches(|c: char| c.is_ascii_digit());
-        let counted = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
-        self.gait(line).or_else(counted)
+        let counted_gait = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
+        self.gait(line).or_else(counted_gait)
     }
 
     /// The core's view of this robot on a host, without the maps of certified cells, which change no decision.
@@ -411,13 +413,13 @@ pub(crate) const KEYS: [&str; 14] = [
 ];
 
 /// Reads the robot's name from the top of the file.
-fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
+fn read_name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     if !root.has("name") {
         return Ok("robot");
     }
     let name = root.text("name")?;
-    let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(letters) {
+    let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(is_allowed) {
         let message =
             format!("must be at most {MAX_NAME_BYTES} lower-case letters, digits and dashes");
         return Err(Fault::new("name", message));
@@ -427,24 +429,24 @@ fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
 
 /// Makes the error for a robot whose section is too large. It tells the bytes that waveforms, gaits and routines
 /// take.
-fn too_large(content: &Content, bytes: usize) -> Fault {
-    let over = bytes - usize::from(SPACE);
+fn size_fault(content: &Content, bytes: usize) -> Fault {
+    let excess_bytes = bytes - usize::from(SPACE);
     let waves = content.waves.len();
-    let of_waves = std::mem::size_of_val(content.waves.as_slice());
+    let wave_bytes = std::mem::size_of_val(content.waves.as_slice());
     let gaits = content.gaits.len();
-    let of_gaits = gaits * size_of::<Gait>() + content.names.len();
+    let gait_bytes = gaits * size_of::<Gait>() + content.names.len();
     let routines = content
         .gaits
         .iter()
         .filter(|gait| gait.is_routine())
         .count();
-    let of_steps = std::mem::size_of_val(content.steps.as_slice());
-    let and_routines = match routines {
+    let step_bytes = std::mem::size_of_val(content.steps.as_slice());
+    let routines_text = match routines {
         0 => String::new(),
-        _ => format!(", {routines} of them routines, whose steps take {of_steps}"),
+        _ => format!(", {routines} of them routines, whose steps take {step_bytes}"),
     };
     let message = format!(
-        "the robot takes {over} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {of_waves}, {gaits} gaits and their names {of_gaits}{and_routines}: leave out gaits, first those whose waveform no other has"
+        "the robot takes {excess_bytes} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {wave_bytes}, {gaits} gaits and their names {gait_bytes}{routines_text}: leave out gaits, first those whose waveform no other has"
     );
     Fault::new("gait", message)
 }

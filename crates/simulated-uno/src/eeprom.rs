@@ -90,12 +90,12 @@ impl Uno {
     ///
     /// With [`Fidelity::Stock`](crate::Fidelity), only [`PowerCut::AtCycle`] has an effect, and it never tears a
     /// byte.
-    pub fn cut_power(&mut self, when: PowerCut, ones: u8) {
+    pub fn cut_power(&mut self, cut: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number until
         // then.
         unsafe {
-            match when {
+            match cut {
                 PowerCut::AtCycle(cycle) => ffi::uno_cut_power_at(self.raw, cycle.max(1)),
                 PowerCut::InErase(skip) => ffi::uno_cut_power_in_operation(self.raw, skip, false),
                 PowerCut::InWrite(skip) => ffi::uno_cut_power_in_operation(self.raw, skip, true),

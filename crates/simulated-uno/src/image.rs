@@ -88,14 +88,14 @@ impl Symbol {
         let mut path = String::new();
         let mut brackets: Vec<bool> = Vec::new();
         for letter in name.chars() {
-            let dropping = brackets.contains(&true);
+            let is_dropping = brackets.contains(&true);
             match letter {
                 '<' => brackets
                     .push(path.ends_with(|last: char| last.is_alphanumeric() || last == ':')),
                 '>' if !path.ends_with('-') => {
                     brackets.pop();
                 }
-                _ if dropping => {}
+                _ if is_dropping => {}
                 _ => path.push(letter),
             }
         }
@@ -125,14 +125,14 @@ impl Image {
     /// See [`LoadError`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, LoadError> {
         let path = path.as_ref();
-        let failure = |source| LoadError::Read {
+        let read_error_of = |source| LoadError::Read {
             path: path.to_owned(),
             source,
         };
         let mut bytes = Vec::new();
-        let file = std::fs::File::open(path).map_err(failure)?;
-        let limited = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
-        if limited.map_err(failure)? as u64 > MAX_FILE_BYTES {
+        let file = std::fs::File::open(path).map_err(read_error_of)?;
+        let read_result = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
+        if read_result.map_err(read_error_of)? as u64 > MAX_FILE_BYTES {
             return Err(LoadError::TooLong);
         }
         #[cfg(feature = "hex")]
@@ -157,30 +157,30 @@ impl Image {
         let mut data_end = SRAM_START;
         for segment in file.segments() {
             let header = segment.elf_program_header();
-            let load = u64::from(header.p_paddr(endian));
-            let run = segment.address();
-            if (DATA_SPACE..EEPROM_SPACE).contains(&run) {
-                let end = run + segment.size() - DATA_SPACE;
+            let load_address = u64::from(header.p_paddr(endian));
+            let run_address = segment.address();
+            if (DATA_SPACE..EEPROM_SPACE).contains(&run_address) {
+                let end = run_address + segment.size() - DATA_SPACE;
                 if end > u64::from(SRAM_END) {
                     return Err(LoadError::TooLarge {
-                        address: run,
+                        address: run_address,
                         size: segment.size(),
                     });
                 }
                 data_end = data_end.max(end as u16);
             }
             let data = segment.data()?;
-            if load >= DATA_SPACE || data.is_empty() {
+            if load_address >= DATA_SPACE || data.is_empty() {
                 continue; // EEPROM and fuses are not flash; .bss has no bytes
             }
             let size = data.len() as u64;
-            if load + size > u64::from(FLASH_SIZE) {
+            if load_address + size > u64::from(FLASH_SIZE) {
                 return Err(LoadError::TooLarge {
-                    address: load,
+                    address: load_address,
                     size,
                 });
             }
-            segments.push((load as u32, data.to_vec()));
+            segments.push((load_address as u32, data.to_vec()));
         }
         if segments.is_empty() {
             return Err(LoadError::Empty);
@@ -266,12 +266,12 @@ impl Image {
     /// The symbol of a kind whose path ends with `path`. `None` if no symbol matches, or if several match and have
     /// different addresses.
     fn unique_symbol(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
-        let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
-        let mut matching = self.symbols.iter().filter(matches);
-        let first = matching.next()?;
-        matching
-            .all(|other| other.address == first.address)
-            .then_some(first)
+        let is_match = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
+        let mut matching_symbols = self.symbols.iter().filter(is_match);
+        let first_match = matching_symbols.next()?;
+        matching_symbols
+            .all(|symbol| symbol.address == first_match.address)
+            .then_some(first_match)
     }
 
     /// The contents of flash from address 0 to the last byte used; 0xff where the image has no data.
@@ -301,11 +301,11 @@ impl Image {
         let mut segments = Vec::new();
         for (start, bytes) in self.segments.drain(..) {
             let length = bytes.len();
-            let before = (range.start.saturating_sub(start) as usize).min(length);
-            let behind = (range.end.saturating_sub(start) as usize).min(length);
-            for kept in [0..before, behind..length] {
-                if !kept.is_empty() {
-                    segments.push((start + kept.start as u32, bytes[kept].to_vec()));
+            let head_end = (range.start.saturating_sub(start) as usize).min(length);
+            let tail_start = (range.end.saturating_sub(start) as usize).min(length);
+            for kept_range in [0..head_end, tail_start..length] {
+                if !kept_range.is_empty() {
+                    segments.push((start + kept_range.start as u32, bytes[kept_range].to_vec()));
                 }
             }
         }
@@ -316,7 +316,7 @@ impl Image {
 
     /// The address of the first byte of flash used; 0 if the image is empty.
     pub(crate) fn code_start(&self) -> u32 {
-        let starts = self.segments.iter().map(|(at, _)| *at);
+        let starts = self.segments.iter().map(|(address, _)| *address);
         starts.min().unwrap_or(0)
     }
 
@@ -325,7 +325,7 @@ impl Image {
         let ends = self
             .segments
             .iter()
-            .map(|(at, data)| at + data.len() as u32);
+            .map(|(address, data)| address + data.len() as u32);
         ends.max().unwrap_or(0)
     }
 }

@@ -82,12 +82,12 @@ pub struct Pulse {
 /// Returns the complete pulses of one pin: those whose rising and falling edge are among the edges.
 #[must_use]
 pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
-    let mut rise = None;
+    let mut rise_cycle = None;
     let mut pulses = Vec::new();
     for edge in edges.iter().filter(|edge| edge.pin == pin) {
         if edge.high {
-            rise = Some(edge.cycle);
-        } else if let Some(start) = rise.take() {
+            rise_cycle = Some(edge.cycle);
+        } else if let Some(start) = rise_cycle.take() {
             pulses.push(Pulse {
                 start,
                 width: edge.cycle - start,
@@ -101,7 +101,7 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
 #[must_use]
 pub fn most_pins_high(edges: &[Edge]) -> u32 {
     let mut levels = 0u32;
-    let mut largest = 0;
+    let mut largest_count = 0;
     let mut edges = edges.to_vec();
     // At equal cycles, falling edges come first, so that consecutive pulses do not overlap.
     edges.sort_by_key(|edge| (edge.cycle, edge.high));
@@ -112,7 +112,7 @@ pub fn most_pins_high(edges: &[Edge]) -> u32 {
         } else {
             levels &= !bit;
         }
-        largest = largest.max(levels.count_ones());
+        largest_count = largest_count.max(levels.count_ones());
     }
-    largest
+    largest_count
 }

@@ -123,9 +123,9 @@ impl Port {
     ) -> io::Result<Background> {
         let path = self.path().to_owned();
         let stop = Arc::new(AtomicBool::new(false));
-        let stopped = Arc::clone(&stop);
+        let thread_stop = Arc::clone(&stop);
         let serve = move || {
-            while !stopped.load(Ordering::Relaxed) {
+            while !thread_stop.load(Ordering::Relaxed) {
                 self.tick(&mut uno)?;
                 watch(&mut uno);
                 thread::sleep(TICK);
@@ -138,9 +138,9 @@ impl Port {
     }
 
     fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
-        let look = self.pty.poll_state()?;
-        self.is_open = look.is_open;
-        if look.was_opened {
+        let port_state = self.pty.poll_state()?;
+        self.is_open = port_state.is_open;
+        if port_state.was_opened {
             self.unread.clear();
             if self.radio.is_none() {
                 uno.take_transmitted();
@@ -154,31 +154,32 @@ impl Port {
         uno.set_baud(baud);
         let room = MAX_UNSENT_BYTES.saturating_sub(uno.unsent());
         let mut bytes = [0; MAX_UNSENT_BYTES];
-        let read = self.pty.read(&mut bytes[..room])?;
+        let read_count = self.pty.read(&mut bytes[..room])?;
         match &mut self.radio {
-            Some(radio) => radio.write(&bytes[..read], uno.cycle()),
-            None => uno.send(&bytes[..read]),
+            Some(radio) => radio.write(&bytes[..read_count], uno.cycle()),
+            None => uno.send(&bytes[..read_count]),
         }
         if *uno.state() == State::Alive {
             uno.run_until_cycle(self.target_cycle(uno.cycle()));
         }
         uno.forget_received();
-        let arrived = match &mut self.radio {
+        let arrived_bytes = match &mut self.radio {
             Some(radio) => radio.exchange(uno),
             None => {
                 let ratio = uno.chip_baud() / baud;
-                let sent = uno.take_transmitted();
-                sent.iter()
+                let sent_bytes = uno.take_transmitted();
+                sent_bytes
+                    .iter()
                     .map(|sample| sample_byte(sample.byte, ratio))
                     .collect()
             }
         };
         // The program at the port may have closed it meanwhile, so check again.
         if self.is_open && self.pty.is_open()? {
-            self.unread.extend(arrived);
+            self.unread.extend(arrived_bytes);
             self.unread.truncate(MAX_UNREAD_BYTES);
-            let written = self.pty.write(&self.unread)?;
-            self.unread.drain(..written);
+            let written_count = self.pty.write(&self.unread)?;
+            self.unread.drain(..written_count);
         }
         Ok(())
     }
@@ -188,16 +189,16 @@ impl Port {
     fn target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
-        let due = anchor_cycle + cycles(now - anchor_time);
-        let max = cycle + cycles(MAX_CATCH_UP);
-        if due > max {
-            self.anchor = Some((now, max));
+        let due_cycle = anchor_cycle + cycles_of(now - anchor_time);
+        let max_cycle = cycle + cycles_of(MAX_CATCH_UP);
+        if due_cycle > max_cycle {
+            self.anchor = Some((now, max_cycle));
         }
-        due.min(max)
+        due_cycle.min(max_cycle)
     }
 }
 
-fn cycles(time: Duration) -> u64 {
+fn cycles_of(time: Duration) -> u64 {
     (time.as_nanos() * u128::from(FREQUENCY) / 1_000_000_000) as u64
 }
 

@@ -25,7 +25,7 @@ use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
 /// The baud rate until a program sets another one.
-const BAUD: u32 = 115_200;
+const DEFAULT_BAUD: u32 = 115_200;
 /// The longest time from the fork to the exec of a new process, on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
@@ -65,24 +65,24 @@ impl Pty {
         let path = PathBuf::from(name.to_string_lossy().into_owned());
         // The system reports that no program has the port open only after it was opened and closed once. The
         // settings persist after the closing.
-        let theirs = other_end(&path, OFlags::RDWR)?;
+        let theirs = open_other_end(&path, OFlags::RDWR)?;
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
-        settings.set_speed(BAUD)?;
+        settings.set_speed(DEFAULT_BAUD)?;
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
         drop(theirs);
         let ours = File::from(ours);
         // No other program knows the port's name yet.
         if !wait_until(|| Ok(!is_open(&ours)?))? {
-            let words = "a program that was started meanwhile keeps the new port open";
-            return Err(io::Error::new(ErrorKind::TimedOut, words));
+            let message = "a program that was started meanwhile keeps the new port open";
+            return Err(io::Error::new(ErrorKind::TimedOut, message));
         }
-        let opens = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
-        let of_interest = WatchFlags::OPEN | WatchFlags::CLOSE;
-        inotify::add_watch(&opens, &path, of_interest)?;
+        let open_events = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
+        let watched_events = WatchFlags::OPEN | WatchFlags::CLOSE;
+        inotify::add_watch(&open_events, &path, watched_events)?;
         Ok(Self {
             ours,
-            open_events: opens,
+            open_events,
             path,
             was_open: false,
             may_be_reopened: false,
@@ -100,30 +100,30 @@ impl Pty {
     /// Fails if the system is out of memory.
     pub(crate) fn poll_state(&mut self) -> io::Result<Look> {
         let was_open = self.was_open;
-        let (mut closed, mut opened) = (!was_open || self.may_be_reopened, false);
-        let mut closing = false;
+        let (mut was_closed, mut was_opened) = (!was_open || self.may_be_reopened, false);
+        let mut has_close_event = false;
         self.events(|event| {
             if event.contains(ReadFlags::OPEN) {
-                opened |= closed;
+                was_opened |= was_closed;
             } else {
-                closed = true;
-                closing = true;
+                was_closed = true;
+                has_close_event = true;
             }
         })?;
-        let mut open = self.is_open()?;
-        opened |= open && !was_open;
+        let mut is_port_open = self.is_open()?;
+        was_opened |= is_port_open && !was_open;
         // Unread bytes are discarded only if all programs have closed the port, not if another still has it open.
-        if was_open && (opened || !open) {
+        if was_open && (was_opened || !is_port_open) {
             self.drop_unread()?;
-            let now = self.is_open()?;
-            opened |= now && !open;
-            open = now;
+            let is_port_still_open = self.is_open()?;
+            was_opened |= is_port_still_open && !is_port_open;
+            is_port_open = is_port_still_open;
         }
-        self.was_open = open;
-        self.may_be_reopened = closing && open && !opened;
+        self.was_open = is_port_open;
+        self.may_be_reopened = has_close_event && is_port_open && !was_opened;
         Ok(Look {
-            is_open: open,
-            was_opened: opened,
+            is_open: is_port_open,
+            was_opened,
         })
     }
 
@@ -136,8 +136,8 @@ impl Pty {
     }
 
     fn events(&self, mut on_event: impl FnMut(ReadFlags)) -> io::Result<()> {
-        let mut space = [MaybeUninit::uninit(); 512];
-        let mut events = inotify::Reader::new(&self.open_events, &mut space);
+        let mut buffer = [MaybeUninit::uninit(); 512];
+        let mut events = inotify::Reader::new(&self.open_events, &mut buffer);
         loop {
             match events.next() {
                 Ok(event) => on_event(event.events()),
@@ -151,17 +151,17 @@ impl Pty {
     fn drop_unread(&self) -> io::Result<()> {
         // The port cannot be opened while a program has exclusive use of it. Such a program has itself discarded
         // the bytes that it found.
-        let Ok(theirs) = other_end(&self.path, OFlags::RDONLY) else {
+        let Ok(theirs) = open_other_end(&self.path, OFlags::RDONLY) else {
             return self.events(|_anything| {});
         };
         tcflush(&theirs, QueueSelector::IFlush)?;
         drop(theirs);
         // A port that was opened only for reading closes without CLOSE_WRITE, which distinguishes this opening from
         // a program's. If the port is open at the end, a program has opened it.
-        let mut closed = false;
+        let mut was_closed = false;
         wait_until(|| {
-            self.events(|event| closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
-            Ok(closed || !self.is_open()?)
+            self.events(|event| was_closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
+            Ok(was_closed || !self.is_open()?)
         })?;
         self.events(|_rest| {})
     }
@@ -173,7 +173,7 @@ impl Pty {
     pub(crate) fn baud(&self) -> io::Result<f64> {
         // Linux returns the settings that programs have made at the port. Speed 0 means "hang up".
         Ok(match tcgetattr(&self.ours)?.output_speed() {
-            0 => f64::from(BAUD),
+            0 => f64::from(DEFAULT_BAUD),
             baud => f64::from(baud),
         })
     }
@@ -182,11 +182,11 @@ impl Pty {
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
-    pub(crate) fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        match self.ours.read(into) {
+    pub(crate) fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self.ours.read(buffer) {
             // EIO: no program has the port open, and nothing is left to read.
             Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
-            other => bytes_or_zero(other),
+            result => bytes_or_zero(result),
         }
     }
 
@@ -217,7 +217,7 @@ fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<boo
     Ok(true)
 }
 
-fn other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
+fn open_other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
     let flags = access | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
     rustix::fs::open(path, flags, Mode::empty())
 }
@@ -230,6 +230,6 @@ fn bytes_or_zero(transfer: io::Result<usize>) -> io::Result<usize> {
         Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
             Ok(0)
         }
-        other => other,
+        result => result,
     }
 }

@@ -70,18 +70,22 @@ struct Flight {
 impl Flight {
     fn send(&mut self, bytes: &[u8], now: u64, air: Air, random: &mut fastrand::Rng) {
         for packet in bytes.chunks(PACKET_BYTES) {
-            let delay = DELAY_MS.start + random.f64() * (DELAY_MS.end - DELAY_MS.start);
-            let last = self.packets.back().map_or(0, |(due, _)| *due);
-            let due = last.max(now + (delay * CYCLES_PER_MS as f64) as u64);
+            let delay_ms = DELAY_MS.start + random.f64() * (DELAY_MS.end - DELAY_MS.start);
+            let last_due = self.packets.back().map_or(0, |(due_cycle, _)| *due_cycle);
+            let due_cycle = last_due.max(now + (delay_ms * CYCLES_PER_MS as f64) as u64);
             if random.f64() >= air.loss {
-                self.packets.push_back((due, packet.to_vec()));
+                self.packets.push_back((due_cycle, packet.to_vec()));
             }
         }
     }
 
     fn arrive(&mut self, now: u64) -> Vec<u8> {
         let mut bytes = Vec::new();
-        while self.packets.front().is_some_and(|(due, _)| *due <= now) {
+        while self
+            .packets
+            .front()
+            .is_some_and(|(due_cycle, _)| *due_cycle <= now)
+        {
             bytes.extend(
                 self.packets
                     .pop_front()
@@ -96,9 +100,9 @@ impl Flight {
     /// lost.
     fn take_remains(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
-        let mut next = packets.into_iter().next().unwrap_or_default().1;
-        next.truncate(random.usize(..=next.len()));
-        next
+        let mut next_packet = packets.into_iter().next().unwrap_or_default().1;
+        next_packet.truncate(random.usize(..=next_packet.len()));
+        next_packet
     }
 }
 
@@ -164,40 +168,43 @@ impl Radio {
     /// returns those that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.air.baud);
-        let sent: Vec<u8> = uno
+        let sent_bytes: Vec<u8> = uno
             .take_transmitted()
             .iter()
             .map(|sample| sample.byte)
             .collect();
-        let received = self.received_bytes(&sent, uno.chip_baud());
+        let received = self.received_bytes(&sent_bytes, uno.chip_baud());
         let [to_uno, to_phone] = self.pass(&received, uno.cycle());
         uno.send(&to_uno);
         to_phone
     }
 
-    /// Returns the bytes as the module reads them at its own baud rate, if the chip sends `sent` at `chip_baud`.
+    /// Returns the bytes as the module reads them at its own baud rate, if the chip sends `sent_bytes` at `chip_baud`.
     #[must_use]
-    pub fn received_bytes(&self, sent: &[u8], chip_baud: f64) -> Vec<u8> {
+    pub fn received_bytes(&self, sent_bytes: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.air.baud;
-        sent.iter().map(|byte| sample_byte(*byte, ratio)).collect()
+        sent_bytes
+            .iter()
+            .map(|byte| sample_byte(*byte, ratio))
+            .collect()
     }
 
     /// Takes the bytes that the module has received from the chip, and returns the bytes that have
     /// arrived by now at the chip and at the phone.
     pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
-        if self.next_change.is_some_and(|turn| turn <= now) {
+        if self.next_change.is_some_and(|change| change <= now) {
             return self.toggle_link(now);
         }
         let to_uno = self.to_uno.arrive(now);
         if !self.is_in_reach {
             return [to_uno, Vec::new()];
         }
-        let (bytes, since) = &mut self.gathered;
+        let (bytes, gathering_start) = &mut self.gathered;
         if bytes.is_empty() {
-            *since = now;
+            *gathering_start = now;
         }
         bytes.extend(received);
-        if bytes.len() >= PACKET_BYTES || now >= *since + GATHERING_MS * CYCLES_PER_MS {
+        if bytes.len() >= PACKET_BYTES || now >= *gathering_start + GATHERING_MS * CYCLES_PER_MS {
             let bytes = std::mem::take(bytes);
             self.to_phone.send(&bytes, now, self.air, &mut self.random);
         }
@@ -220,13 +227,13 @@ impl Radio {
             return [to_uno, Vec::new()];
         }
         self.gathered.0.clear();
-        let back = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
-        self.next_change = (!self.has_left).then_some(back);
+        let return_cycle = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
+        self.next_change = (!self.has_left).then_some(return_cycle);
         [to_uno, self.to_phone.take_remains(&mut self.random)]
     }
 
     fn next_link_end(&mut self, now: u64) -> Option<u64> {
-        let max = 2 * self.air.mean_link_ms * CYCLES_PER_MS;
-        (max > 0).then(|| now + self.random.u64(..max))
+        let max_cycles = 2 * self.air.mean_link_ms * CYCLES_PER_MS;
+        (max_cycles > 0).then(|| now + self.random.u64(..max_cycles))
     }
 }

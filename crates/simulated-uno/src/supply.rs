@@ -46,9 +46,9 @@ impl Uno {
     /// Sets the brown-out level in mV; `None` disables brown-out detection. The default is 2700 mV, as set by the
     /// UNO's fuses; the level of a given chip may be 2500 to 2900 mV. Without brown-out detection, the chip runs down
     /// to 1.3 V and starts above 1.4 V.
-    pub fn set_brown_out_mv(&mut self, level: Option<f64>) {
+    pub fn set_brown_out_mv(&mut self, level_mv: Option<f64>) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
-        unsafe { ffi::uno_set_brown_out(self.raw, level.unwrap_or(0.0)) }
+        unsafe { ffi::uno_set_brown_out(self.raw, level_mv.unwrap_or(0.0)) }
     }
 
     /// True while the supply holds the chip in reset.

@@ -64,8 +64,8 @@ impl Uno {
     ///
     /// # Errors
     /// See [`LoadError`].
-    pub fn load(elf: impl AsRef<Path>, fidelity: Fidelity) -> Result<Self, LoadError> {
-        Ok(Self::with_image(Image::read(elf)?, fidelity))
+    pub fn load(path: impl AsRef<Path>, fidelity: Fidelity) -> Result<Self, LoadError> {
+        Ok(Self::with_image(Image::read(path)?, fidelity))
     }
 
     /// Returns a board with this image in flash, at the moment of power-on. Its pins D2 to D13 and A0 to A5 are
@@ -118,10 +118,10 @@ impl Uno {
         &self.state
     }
 
-    /// Runs until the cycle `until`, or a few hundred cycles longer if an instruction re-arms a timer just before
-    /// `until`. Several short runs give the same result as one long run.
-    pub fn run_until_cycle(&mut self, until: u64) -> &State {
-        self.run_to(until, false);
+    /// Runs until the cycle `end_cycle`, or a few hundred cycles longer if an instruction re-arms a timer just before
+    /// `end_cycle`. Several short runs give the same result as one long run.
+    pub fn run_until_cycle(&mut self, end_cycle: u64) -> &State {
+        self.run_to(end_cycle, false);
         &self.state
     }
 
@@ -155,14 +155,14 @@ impl Uno {
         }
     }
 
-    pub(crate) fn run_to(&mut self, until: u64, stop_at_line: bool) -> bool {
+    pub(crate) fn run_to(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim stops at any cycle,
         // and every value that it returns is one of `Stop`.
-        let stop = unsafe {
+        let stop_reason = unsafe {
             ffi::uno_stop_at_line(self.raw, stop_at_line);
-            ffi::uno_run(self.raw, until)
+            ffi::uno_run(self.raw, end_cycle)
         };
-        match stop {
+        match stop_reason {
             ffi::Stop::Time => {}
             ffi::Stop::Line => return true,
             ffi::Stop::Halted => self.state = State::Halted,
@@ -294,16 +294,17 @@ impl Uno {
         // instance, and nothing runs while they are borrowed.
         let vectors =
             unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTORS) };
-        let used = vectors
+        let served = vectors
             .iter()
             .enumerate()
             .filter(|(_, raw)| raw.entries > 0);
-        used.map(|(vector, raw)| VectorUse {
-            vector: vector as u8,
-            entries: raw.entries,
-            cycles: raw.cycles,
-        })
-        .collect()
+        served
+            .map(|(vector, raw)| VectorUse {
+                vector: vector as u8,
+                entries: raw.entries,
+                cycles: raw.cycles,
+            })
+            .collect()
     }
 
     /// The chip's time since power-on, s.
@@ -313,12 +314,12 @@ impl Uno {
     }
 
     /// Copies the items of one of the shim's lists.
-    pub(crate) fn list<Item: Copy>(&self, kind: ListOf) -> Vec<Item> {
+    pub(crate) fn list<Item: Copy>(&self, list_of: ListOf) -> Vec<Item> {
         // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
         // the shim keeps in it, whose size is compared; `count` items of it are filled in,
         // and nothing runs while they are copied.
         unsafe {
-            let list = &*kind(self.raw);
+            let list = &*list_of(self.raw);
             assert_eq!(list.size, size_of::<Item>());
             match list.count {
                 0 => Vec::new(),
@@ -328,16 +329,16 @@ impl Uno {
     }
 
     /// Removes and returns the items of one of the shim's lists.
-    pub(crate) fn take<Item: Copy>(&mut self, kind: ListOf) -> Vec<Item> {
-        let items = self.list(kind);
-        self.clear(kind);
+    pub(crate) fn take<Item: Copy>(&mut self, list_of: ListOf) -> Vec<Item> {
+        let items = self.list(list_of);
+        self.clear(list_of);
         items
     }
 
-    pub(crate) fn clear(&mut self, kind: ListOf) {
+    pub(crate) fn clear(&mut self, list_of: ListOf) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
         // the shim writes after its `count`, so that 0 empties it.
-        unsafe { (*kind(self.raw)).count = 0 }
+        unsafe { (*list_of(self.raw)).count = 0 }
     }
 }
 

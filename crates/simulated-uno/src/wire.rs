@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use crate::FREQUENCY;
 
 /// The number of bits of a byte on the wire: a start bit, eight data bits and a stop bit.
-const FRAME: f64 = 10.0;
+const FRAME_BITS: f64 = 10.0;
 /// The time from the start of a byte to the middle of its stop bit, at which a receiver has read the byte; in bits.
 const STOP_BIT_MIDDLE: f64 = 9.5;
 /// Number of bytes of each sender that are searched for edges: more than the fastest sender sends while the slowest
@@ -28,13 +28,13 @@ struct Frame {
 
 impl Frame {
     fn end(&self) -> f64 {
-        self.start + FRAME * self.bit
+        self.start + FRAME_BITS * self.bit
     }
 
-    fn is_high(&self, time: f64) -> bool {
-        let index = ((time - self.start) / self.bit).floor();
+    fn is_high(&self, cycle: f64) -> bool {
+        let index = ((cycle - self.start) / self.bit).floor();
         let bits = 1u32 << 9 | u32::from(self.byte) << 1;
-        !(0.0..FRAME).contains(&index) || bits >> index as u32 & 1 == 1
+        !(0.0..FRAME_BITS).contains(&index) || bits >> index as u32 & 1 == 1
     }
 }
 
@@ -64,8 +64,8 @@ impl Wire {
     pub fn write(&mut self, talker: usize, bytes: &[u8], now: u64) {
         let bit = self.bits[talker];
         for byte in bytes {
-            let free = self.talkers[talker].back().map_or(0.0, Frame::end);
-            let start = free.max(now as f64);
+            let free_cycle = self.talkers[talker].back().map_or(0.0, Frame::end);
+            let start = free_cycle.max(now as f64);
             self.talkers[talker].push_back(Frame {
                 start,
                 bit,
@@ -84,9 +84,11 @@ impl Wire {
             if end > now as f64 {
                 break;
             }
-            let sampled = |index: u8| self.is_high(start + (f64::from(index) + 1.5) * bit);
-            let byte = (0..8).fold(0, |byte, index| byte | u8::from(sampled(index)) << index);
-            received.push(sampled(8).then_some(byte));
+            let is_bit_high = |index: u8| self.is_high(start + (f64::from(index) + 1.5) * bit);
+            let byte = (0..8).fold(0, |byte, index| {
+                byte | u8::from(is_bit_high(index)) << index
+            });
+            received.push(is_bit_high(8).then_some(byte));
             self.idle_from = end;
             for talker in &mut self.talkers {
                 while talker.front().is_some_and(|frame| frame.end() <= end) {
@@ -104,13 +106,13 @@ impl Wire {
             (0..9).map(|index| (frame.start + f64::from(index) * frame.bit, frame.bit))
         });
         edges
-            .filter(|(at, _)| *at > self.idle_from)
-            .filter(|(at, bit)| {
+            .filter(|(cycle, _)| *cycle > self.idle_from)
+            .filter(|(cycle, bit)| {
                 // Samples on both sides of the edge, since the sums are rounded.
-                let beside = bit / 100.0;
-                self.is_high(at - beside) && !self.is_high(at + beside)
+                let margin = bit / 100.0;
+                self.is_high(cycle - margin) && !self.is_high(cycle + margin)
             })
-            .map(|(at, _)| at)
+            .map(|(cycle, _)| cycle)
             .min_by(f64::total_cmp)
     }
 
@@ -121,8 +123,8 @@ impl Wire {
             .flat_map(|talker| talker.iter().take(NEAR_BYTES))
     }
 
-    fn is_high(&self, time: f64) -> bool {
-        self.pending_frames().all(|frame| frame.is_high(time))
+    fn is_high(&self, cycle: f64) -> bool {
+        self.pending_frames().all(|frame| frame.is_high(cycle))
     }
 }
 
@@ -131,25 +133,28 @@ mod tests {
     use super::*;
 
     /// Duration of a byte at 115200 baud, cycles.
-    const BYTE: u64 = 1389;
+    const BYTE_CYCLES: u64 = 1389;
 
-    fn received(writes: &[(usize, &[u8], u64)]) -> Vec<Option<u8>> {
+    fn receive_all(writes: &[(usize, &[u8], u64)]) -> Vec<Option<u8>> {
         let mut wire = Wire::new([115_200.0; 2]);
-        for (talker, bytes, at) in writes {
-            wire.write(*talker, bytes, *at);
+        for (talker, bytes, cycle) in writes {
+            wire.write(*talker, bytes, *cycle);
         }
         wire.receive(1_000_000, 115_200.0)
     }
 
-    fn without_errors(text: &[u8]) -> Vec<Option<u8>> {
+    fn bytes_without_errors(text: &[u8]) -> Vec<Option<u8>> {
         text.iter().copied().map(Some).collect()
     }
 
     #[test]
     fn a_single_sender_is_read_correctly() {
-        let all: Vec<u8> = (0..=255).collect();
+        let all_bytes: Vec<u8> = (0..=255).collect();
         for talker in [0, 1] {
-            assert_eq!(received(&[(talker, &all, 70)]), without_errors(&all));
+            assert_eq!(
+                receive_all(&[(talker, &all_bytes, 70)]),
+                bytes_without_errors(&all_bytes)
+            );
         }
     }
 
@@ -157,23 +162,27 @@ mod tests {
     fn consecutive_bytes_of_two_senders_are_all_read() {
         let writes: [(usize, &[u8], u64); 3] = [
             (0, b"walk\n", 0),
-            (1, b"stop\n", 5 * BYTE),
-            (0, b"?\n", 10 * BYTE + 40),
+            (1, b"stop\n", 5 * BYTE_CYCLES),
+            (0, b"?\n", 10 * BYTE_CYCLES + 40),
         ];
-        assert_eq!(received(&writes), without_errors(b"walk\nstop\n?\n"));
+        assert_eq!(
+            receive_all(&writes),
+            bytes_without_errors(b"walk\nstop\n?\n")
+        );
     }
 
     #[test]
     fn simultaneous_bits_of_two_senders_are_combined_by_and() {
         let writes: [(usize, &[u8], u64); 2] = [(0, b"walk\n", 9), (1, b"stop\n", 9)];
-        let both = std::array::from_fn::<u8, 5, _>(|at| b"walk\n"[at] & b"stop\n"[at]);
-        assert_eq!(received(&writes), without_errors(&both));
+        let combined_bytes =
+            std::array::from_fn::<u8, 5, _>(|index| b"walk\n"[index] & b"stop\n"[index]);
+        assert_eq!(receive_all(&writes), bytes_without_errors(&combined_bytes));
     }
 
     #[test]
     fn a_byte_that_begins_in_anothers_stop_bit_takes_that_away() {
-        let writes: [(usize, &[u8], u64); 2] = [(0, &[0xff], 0), (1, &[0x0f], BYTE - 138)];
-        assert_eq!(received(&writes)[0], None);
+        let writes: [(usize, &[u8], u64); 2] = [(0, &[0xff], 0), (1, &[0x0f], BYTE_CYCLES - 138)];
+        assert_eq!(receive_all(&writes)[0], None);
     }
 
     #[test]
@@ -184,11 +193,14 @@ mod tests {
             wire.write(talker, b"status\n", 500);
             assert_eq!(
                 wire.receive(500 + 70 * (16_000_000 / rate as u64), rate),
-                without_errors(b"status\n")
+                bytes_without_errors(b"status\n")
             );
             wire.write(talker, b"status\n", 1_000_000);
-            let read = wire.receive(2_000_000, rates[1 - talker]);
-            assert!(!read.is_empty() && !read.contains(&Some(b'\n')), "{read:?}");
+            let read_bytes = wire.receive(2_000_000, rates[1 - talker]);
+            assert!(
+                !read_bytes.is_empty() && !read_bytes.contains(&Some(b'\n')),
+                "{read_bytes:?}"
+            );
         }
     }
 

@@ -38,15 +38,15 @@ const ECHO: &str = r#"
         }
     }"#;
 
-/// The compiled program [`ECHO`]. [`echo`] compiles it before a test opens its port.
+/// The compiled program [`ECHO`]. [`echo_uno`] compiles it before a test opens its port.
 static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::c(ECHO));
 
-fn echo() -> Uno {
+fn echo_uno() -> Uno {
     Uno::with_image(IMAGE.clone(), Fidelity::DataSheet)
 }
 
 fn serve_board() -> Background {
-    let mut uno = echo();
+    let mut uno = echo_uno();
     uno.run_ms(1);
     let port = Port::new().expect("a pseudo terminal");
     port.in_background(uno, |_| {}).expect("a thread")
@@ -62,14 +62,14 @@ fn open(path: &Path) -> File {
     options.read(true).write(true).open(path).expect("it opens")
 }
 
-fn read(port: &File, count: usize) -> String {
-    String::from_utf8_lossy(&bytes(port, count)).into_owned()
+fn read_text(port: &File, count: usize) -> String {
+    String::from_utf8_lossy(&read_bytes(port, count)).into_owned()
 }
 
-fn bytes(port: &File, count: usize) -> Vec<u8> {
+fn read_bytes(port: &File, count: usize) -> Vec<u8> {
     let mut port = port.try_clone().expect("a cloned handle");
-    let what = format!("{count} bytes from the chip");
-    LIMIT.within(&what, move || {
+    let description = format!("{count} bytes from the chip");
+    LIMIT.within(&description, move || {
         let mut bytes = vec![0; count];
         port.read_exact(&mut bytes).expect("bytes arrive");
         bytes
@@ -78,11 +78,11 @@ fn bytes(port: &File, count: usize) -> Vec<u8> {
 
 /// Serves the port until the chip has run for `ms`.
 fn serve(port: &mut Port, uno: &mut Uno, ms: u64) {
-    let end = uno.cycle() + ms * CYCLES_PER_MS;
+    let end_cycle = uno.cycle() + ms * CYCLES_PER_MS;
     LIMIT.expect("the chip's time to pass", || {
         let step = Duration::from_millis(5);
         port.serve(uno, step).expect("it is served");
-        uno.cycle() >= end
+        uno.cycle() >= end_cycle
     });
 }
 
@@ -94,10 +94,10 @@ fn marks(uno: &Uno) -> Vec<u8> {
 fn bytes_pass_both_ways_as_they_are() {
     let board = serve_board();
     let mut port = open(board.path());
-    assert_eq!(read(&port, 2), "<r");
+    assert_eq!(read_text(&port, 2), "<r");
     // Bytes that a terminal would remove or change: CR, LF, interrupt, end of file, delete.
     port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
-    assert_eq!(read(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
+    assert_eq!(read_text(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
     stop_board(board);
 }
@@ -106,7 +106,7 @@ fn bytes_pass_both_ways_as_they_are() {
 fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
     let board = serve_board();
     let mut port = open(board.path());
-    assert_eq!(read(&port, 2), "<r");
+    assert_eq!(read_text(&port, 2), "<r");
     let mut settings = tcgetattr(&port).expect("its settings");
     settings.set_speed(57_600).expect("a speed");
     tcsetattr(&port, OptionalActions::Now, &settings).expect("settings accepted");
@@ -114,7 +114,7 @@ fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
     // The chip reads 0, as tests/data_sheet/serial.rs explains, and sends 1. The host samples that byte at half the
     // chip's baud rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle
     // line.
-    assert_eq!(bytes(&port, 1), [0b1111_1000]);
+    assert_eq!(read_bytes(&port, 1), [0b1111_1000]);
     drop(port);
     stop_board(board);
 }
@@ -124,7 +124,7 @@ fn every_opening_resets_the_chip_however_short_the_pause_before() {
     let board = serve_board();
     for _ in 0..5 {
         let port = open(board.path());
-        assert_eq!(read(&port, 2), "<r");
+        assert_eq!(read_text(&port, 2), "<r");
         drop(port);
     }
     let uno = stop_board(board);
@@ -135,66 +135,69 @@ fn every_opening_resets_the_chip_however_short_the_pause_before() {
 fn a_second_program_does_not_reset_the_chip() {
     let board = serve_board();
     let mut port = open(board.path());
-    assert_eq!(read(&port, 2), "<r");
-    let second = open(board.path());
+    assert_eq!(read_text(&port, 2), "<r");
+    let second_port = open(board.path());
     std::thread::sleep(Duration::from_millis(10));
-    drop(second);
+    drop(second_port);
     port.write_all(b"a").expect("it takes bytes");
-    assert_eq!(read(&port, 1), "b");
+    assert_eq!(read_text(&port, 1), "b");
     let uno = stop_board(board);
     assert_eq!(marks(&uno), [1, 2]);
 }
 
 #[test]
 fn output_while_the_port_is_closed_is_lost() {
-    let mut uno = echo();
+    let mut uno = echo_uno();
     let mut port = Port::new().expect("a pseudo terminal");
     serve(&mut port, &mut uno, 20);
-    let mut other = open(port.path());
+    let mut program_port = open(port.path());
     serve(&mut port, &mut uno, 20);
     assert!(port.is_open());
-    assert_eq!(read(&other, 2), "<r", "of the reset alone");
-    other.write_all(b"a").expect("it takes bytes");
+    assert_eq!(read_text(&program_port, 2), "<r", "of the reset alone");
+    program_port.write_all(b"a").expect("it takes bytes");
     serve(&mut port, &mut uno, 20);
-    assert_eq!(read(&other, 1), "b", "and nothing before it");
-    drop(other);
+    assert_eq!(read_text(&program_port, 1), "b", "and nothing before it");
+    drop(program_port);
     serve(&mut port, &mut uno, 20);
     assert!(!port.is_open());
 }
 
 #[test]
 fn unread_output_is_dropped_before_the_next_program_opens_the_port() {
-    let mut uno = echo();
+    let mut uno = echo_uno();
     let mut port = Port::new().expect("a pseudo terminal");
     serve(&mut port, &mut uno, 20);
-    let mut first = open(port.path());
+    let mut first_port = open(port.path());
     serve(&mut port, &mut uno, 20);
-    assert_eq!(read(&first, 2), "<r");
-    first.write_all(b"abc").expect("it takes bytes");
+    assert_eq!(read_text(&first_port, 2), "<r");
+    first_port.write_all(b"abc").expect("it takes bytes");
     serve(&mut port, &mut uno, 20);
-    drop(first);
+    drop(first_port);
     serve(&mut port, &mut uno, 20);
-    let second = open(port.path());
+    let second_port = open(port.path());
     serve(&mut port, &mut uno, 20);
-    assert_eq!(read(&second, 2), "<r", "not bcd, the echo of abc");
+    assert_eq!(read_text(&second_port, 2), "<r", "not bcd, the echo of abc");
 }
 
 #[test]
 fn the_chip_keeps_time_with_the_wall_clock() {
-    let mut uno = echo();
+    let mut uno = echo_uno();
     let mut port = Port::new().expect("a pseudo terminal");
     let start = Instant::now();
     serve(&mut port, &mut uno, 100);
-    let wall = start.elapsed().as_secs_f64();
-    let chip = uno.cycle() as f64 / FREQUENCY as f64;
+    let wall_seconds = start.elapsed().as_secs_f64();
+    let chip_seconds = uno.cycle() as f64 / FREQUENCY as f64;
     // The chip is never ahead of the wall clock by more than one time slice. On a loaded machine it may lag by any
     // amount, so the test checks only the lead.
-    assert!(chip <= wall + 0.01, "{chip} s in {wall} s");
+    assert!(
+        chip_seconds <= wall_seconds + 0.01,
+        "{chip_seconds} s in {wall_seconds} s"
+    );
 }
 
 #[test]
 fn a_reset_makes_the_pins_low_and_keeps_time_and_memory() {
-    let mut uno = echo();
+    let mut uno = echo_uno();
     uno.run_ms(1);
     assert!(uno.is_high(Pin::d(9)));
     uno.reset();

@@ -28,40 +28,44 @@ const READER: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 /// The smallest number of openings, and the smallest number of other programs started during them.
 const MIN_OPENINGS: usize = 150;
 
-static STARTED: AtomicUsize = AtomicUsize::new(0);
-static OVER: AtomicBool = AtomicBool::new(false);
+static STARTED_COUNT: AtomicUsize = AtomicUsize::new(0);
+static IS_OVER: AtomicBool = AtomicBool::new(false);
 
-fn start_others() {
-    while !OVER.load(Ordering::Relaxed) {
-        let ended = LIMIT.output(&mut Command::new("true"), b"");
-        assert!(ended.expect("it ends").status.success());
-        STARTED.fetch_add(1, Ordering::Relaxed);
+fn start_programs() {
+    while !IS_OVER.load(Ordering::Relaxed) {
+        let output = LIMIT.output(&mut Command::new("true"), b"");
+        assert!(output.expect("it ends").status.success());
+        STARTED_COUNT.fetch_add(1, Ordering::Relaxed);
     }
 }
 
 #[test]
 fn every_opening_by_another_program_resets_the_chip_once() {
     let uno = Uno::with_image(avr_gcc::c(HELLO), Fidelity::DataSheet);
-    let others = [(); 3].map(|()| thread::spawn(start_others));
+    let starters = [(); 3].map(|()| thread::spawn(start_programs));
     let port = Port::new().expect("a pseudo terminal");
     let board = port.in_background(uno, |_| {}).expect("a thread");
     let mut openings = 0;
-    while openings < MIN_OPENINGS || STARTED.load(Ordering::Relaxed) < MIN_OPENINGS {
-        let at_work = others.iter().all(|other| !other.is_finished());
-        assert!(at_work, "no more programs are started");
+    while openings < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
+        let are_all_running = starters.iter().all(|starter| !starter.is_finished());
+        assert!(are_all_running, "no more programs are started");
         openings += 1;
         let mut reader = Command::new("bash");
         reader.args(["-c", READER]).arg(board.path());
-        let printed = LIMIT.output(&mut reader, b"").expect("the chip answers");
-        let printed = String::from_utf8_lossy(&printed.stdout);
-        assert_eq!(printed, "<r", "opening {openings}");
+        let output = LIMIT.output(&mut reader, b"").expect("the chip answers");
+        let output_text = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output_text, "<r", "opening {openings}");
     }
-    OVER.store(true, Ordering::Relaxed);
-    for other in others {
-        let ended = LIMIT.within("the end of the other programs", || other.join());
-        ended.expect("they are well");
+    IS_OVER.store(true, Ordering::Relaxed);
+    for starter in starters {
+        let result = LIMIT.within("the end of the other programs", || starter.join());
+        result.expect("they are well");
     }
     let uno = LIMIT.within("the end of the port's thread", || board.stop());
-    let resets = uno.expect("the port was well").reset_events().len();
-    assert_eq!(resets, 1 + openings, "power-on and one for each opening");
+    let reset_count = uno.expect("the port was well").reset_events().len();
+    assert_eq!(
+        reset_count,
+        1 + openings,
+        "power-on and one for each opening"
+    );
 }

@@ -43,7 +43,7 @@ fn run(file: &Path, arguments: &[&str]) -> Output {
 }
 
 /// Compiles a source and returns the paths of its ELF and Intel HEX files.
-fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
+fn compile(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     let [c, elf, hex] = ["program.c", "program.elf", "program.hex"].map(|name| folder.join(name));
     fs::write(&c, source).expect("it is written");
     avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf).expect("it compiles");
@@ -52,52 +52,52 @@ fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
         .args(["-O", "ihex", "-R", ".eeprom"])
         .arg(&elf)
         .arg(&hex);
-    let done = LIMIT.output(&mut objcopy, b"").expect("avr-objcopy runs");
-    assert!(done.status.success(), "{done:?}");
+    let output = LIMIT.output(&mut objcopy, b"").expect("avr-objcopy runs");
+    assert!(output.status.success(), "{output:?}");
     [elf, hex]
 }
 
 /// Compiles a source and runs `simulated-uno` with its Intel HEX file.
 fn run_source(source: &str, arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let [_, hex] = program(folder.path(), source);
+    let [_, hex] = compile(folder.path(), source);
     run(&hex, arguments)
 }
 
-fn text(bytes: &[u8]) -> String {
+fn text_of(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("it is UTF-8")
 }
 
 #[test]
 fn a_hex_file_and_its_elf_give_the_same_pulses() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let [elf, hex] = program(folder.path(), PULSES);
+    let [elf, hex] = compile(folder.path(), PULSES);
     // Intel HEX does not contain the size of the static data, so the report omits the memory.
-    for (file, memory) in [(elf, true), (hex, false)] {
+    for (file, reports_memory) in [(elf, true), (hex, false)] {
         let output = run(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");
-        let printed = text(&output.stdout);
-        let row: Vec<&str> = printed
+        let output_text = text_of(&output.stdout);
+        let row: Vec<&str> = output_text
             .lines()
             .find(|line| line.starts_with("D9"))
-            .unwrap_or_else(|| panic!("no D9 in {printed}"))
+            .unwrap_or_else(|| panic!("no D9 in {output_text}"))
             .split_whitespace()
             .collect();
         assert_eq!(
             row[..4],
             ["D9", "25", "1000.0000", "1000.0000"],
-            "{printed}"
+            "{output_text}"
         );
         assert_eq!(
-            printed.contains("data 0 bytes, stack "),
-            memory,
-            "{printed}"
+            output_text.contains("data 0 bytes, stack "),
+            reports_memory,
+            "{output_text}"
         );
         let period: f64 = row[4].parse().expect("a number");
-        assert!((4000.0..4001.0).contains(&period), "{printed}");
+        assert!((4000.0..4001.0).contains(&period), "{output_text}");
         assert!(
-            printed.contains("awake 100.0 %") && printed.contains("It runs on."),
-            "{printed}"
+            output_text.contains("awake 100.0 %") && output_text.contains("It runs on."),
+            "{output_text}"
         );
     }
 }
@@ -105,22 +105,22 @@ fn a_hex_file_and_its_elf_give_the_same_pulses() {
 #[test]
 fn every_pulse_is_listed_if_asked_for() {
     let output = run_source(PULSES, &["--ms", "10", "--pulses"]);
-    let printed = text(&output.stdout);
-    let rows = printed.lines().filter(|line| line.starts_with("D9"));
+    let output_text = text_of(&output.stdout);
+    let rows = output_text.lines().filter(|line| line.starts_with("D9"));
     let widths: Vec<&str> = rows
         .filter_map(|row| row.split_whitespace().nth(2))
         .collect();
-    assert_eq!(widths, ["1000.0000"; 3], "{printed}");
+    assert_eq!(widths, ["1000.0000"; 3], "{output_text}");
 }
 
 #[test]
 fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
-    for more in [&["--stock"][..], &[]] {
+    for extra_arguments in [&["--stock"][..], &[]] {
         let mut arguments = vec!["--ms", "60", "--say", "40:stop", "--say", "20:walk"];
-        arguments.extend(more);
+        arguments.extend(extra_arguments);
         let output = run_source(ECHO, &arguments);
-        let printed = text(&output.stdout);
-        let lines: Vec<(f64, &str)> = printed
+        let output_text = text_of(&output.stdout);
+        let lines: Vec<(f64, &str)> = output_text
             .lines()
             .filter_map(|line| line.split_once(" ms  "))
             .map(|(ms, text)| (ms.trim().parse().expect("a time"), text))
@@ -129,14 +129,14 @@ fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
         assert_eq!(
             texts,
             ["ready", "> walk", "got w", "> stop", "got s"],
-            "{printed}"
+            "{output_text}"
         );
         for (line, ms) in lines.iter().zip([0.0, 20.0, 20.0, 40.0, 40.0]) {
-            assert!((ms..ms + 2.0).contains(&line.0), "{printed}");
+            assert!((ms..ms + 2.0).contains(&line.0), "{output_text}");
         }
         assert!(
-            printed.contains("No pin from D2 to A5 has moved."),
-            "{printed}"
+            output_text.contains("No pin from D2 to A5 has moved."),
+            "{output_text}"
         );
     }
 }
@@ -146,33 +146,36 @@ fn each_fault_is_reported_in_a_message() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("half.hex");
     fs::write(&file, ":02000000FFCF30\n").expect("it is written");
-    let cut = run(&file, &[]);
-    assert_eq!(cut.status.code(), Some(1));
-    let error = text(&cut.stderr);
+    let cut_output = run(&file, &[]);
+    assert_eq!(cut_output.status.code(), Some(1));
+    let error = text_of(&cut_output.stderr);
     assert!(
         error.ends_with("no end record: only a part of it is there\n"),
         "{error}"
     );
-    let missing = run(&folder.path().join("none.hex"), &[]);
-    assert_eq!(missing.status.code(), Some(1));
-    assert!(text(&missing.stderr).contains("none.hex"));
-    let wrong = run(&file, &["--say", "walk"]);
-    assert_eq!(wrong.status.code(), Some(2));
-    assert!(text(&wrong.stderr).contains("as in 500:walk"));
+    let missing_output = run(&folder.path().join("none.hex"), &[]);
+    assert_eq!(missing_output.status.code(), Some(1));
+    assert!(text_of(&missing_output.stderr).contains("none.hex"));
+    let wrong_output = run(&file, &["--say", "walk"]);
+    assert_eq!(wrong_output.status.code(), Some(2));
+    assert!(text_of(&wrong_output.stderr).contains("as in 500:walk"));
 }
 
 #[test]
 fn a_crash_is_reported_and_ends_with_1() {
     let output = run_source("int main(void) { *(volatile char *)0x0fff = 1; }", &[]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let printed = text(&output.stdout);
-    assert!(printed.contains("It has crashed at 0x"), "{printed}");
+    let output_text = text_of(&output.stdout);
+    assert!(
+        output_text.contains("It has crashed at 0x"),
+        "{output_text}"
+    );
 }
 
 #[test]
 fn the_text_of_a_program_cannot_command_the_terminal() {
     let source = ECHO.replace("ready\\r\\n", "\\033[2Jblank\\n");
-    let printed = text(&run_source(&source, &["--ms", "5"]).stdout);
-    assert!(printed.contains("\\u{1b}[2Jblank"), "{printed}");
-    assert!(!printed.contains('\u{1b}'), "{printed}");
+    let output_text = text_of(&run_source(&source, &["--ms", "5"]).stdout);
+    assert!(output_text.contains("\\u{1b}[2Jblank"), "{output_text}");
+    assert!(!output_text.contains('\u{1b}'), "{output_text}");
 }

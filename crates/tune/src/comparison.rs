@@ -47,24 +47,24 @@ pub struct Figures {
 
 impl Comparison {
     /// Simulates both gaits on the judge's robots, at paces at which their fastest servos turn at `rate` (deg/s).
-    pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found: &BuiltGait) -> Self {
+    pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found_gait: &BuiltGait) -> Self {
         // At another pace the gait covers the same distance, so only its period changes.
-        let paced = gait.audit().peak.speed / rate;
-        let (before, all_before) = Figures::of(judge, gait, paced);
-        let (tuned, all_tuned) = Figures::of(judge, found.gait(), 1.0);
-        let faster = all_tuned
+        let pace_factor = gait.audit().peak.speed / rate;
+        let (given, given_speeds) = Figures::of(judge, gait, pace_factor);
+        let (tuned, tuned_speeds) = Figures::of(judge, found_gait.gait(), 1.0);
+        let faster = tuned_speeds
             .iter()
-            .zip(&all_before)
+            .zip(&given_speeds)
             .filter(|(a, b)| a > b)
             .count();
         Self {
             unit: judge.goal().unit(),
             rate,
-            gait: before,
+            gait: given,
             tuned,
-            robots: all_tuned.len(),
+            robots: tuned_speeds.len(),
             faster,
-            fragment: found.table().to_owned(),
+            fragment: found_gait.table().to_owned(),
         }
     }
 
@@ -81,20 +81,20 @@ impl Comparison {
 }
 
 impl Figures {
-    /// Simulates a gait whose period is multiplied by `paced`; also returns its speed on each robot.
-    fn of(judge: &Judge, gait: &CheckedGait, paced: f64) -> (Self, Vec<f64>) {
-        let period = gait.period() * paced;
+    /// Simulates a gait whose period is multiplied by `pace_factor`; also returns its speed on each robot.
+    fn of(judge: &Judge, gait: &CheckedGait, pace_factor: f64) -> (Self, Vec<f64>) {
+        let period = gait.period() * pace_factor;
         let audit = gait.audit();
-        let min = [audit.type2, audit.type1, audit.leg];
-        let min = min
+        let margins = [audit.type2, audit.type1, audit.leg];
+        let least_margin = margins
             .into_iter()
             .fold(audit.leg, |a, b| if b.value < a.value { b } else { a });
         let speeds = judge.speeds(gait, period);
         let figures = Self {
             name: gait.name().to_owned(),
             period,
-            rate: audit.peak.speed / paced,
-            margin: (Check::name(min.what), min.value),
+            rate: audit.peak.speed / pace_factor,
+            margin: (Check::name(least_margin.what), least_margin.value),
             predicted: judge.goal().progress(&judge.cycle(gait)) / period,
             sg90: judge.speed_on_robot(gait, period),
             speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),

@@ -50,10 +50,10 @@ impl Goal {
     /// Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable differences
     /// between the pads.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
-        let name = || gait.name().to_owned();
+        let name_of_gait = || gait.name().to_owned();
         let movement = gait.predict(&ground.rigid());
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
-            return Err(GoalError::Undecided(name()));
+            return Err(GoalError::Undecided(name_of_gait()));
         };
         let is_enough = |value: f64, min: f64| value.abs() >= min;
         match (
@@ -62,8 +62,8 @@ impl Goal {
         ) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
-            (false, false) => Err(GoalError::Nowhere(name())),
-            (true, true) => Err(GoalError::Arc(name())),
+            (false, false) => Err(GoalError::Nowhere(name_of_gait())),
+            (true, true) => Err(GoalError::Arc(name_of_gait())),
         }
     }
 
@@ -126,20 +126,20 @@ mod tests {
     #[test]
     fn a_goal_is_what_the_gait_does() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
-        let goal = |name: &str| {
+        let goal_of = |name: &str| {
             let gait = robot.gait(name).expect(name);
-            Goal::of(gait, robot.ground()).map_err(|no| no.to_string())
+            Goal::of(gait, robot.ground()).map_err(|error| error.to_string())
         };
-        assert_eq!(goal("walk"), Ok(Goal::Ahead(1.0)));
-        assert_eq!(goal("back"), Ok(Goal::Ahead(-1.0)));
-        assert_eq!(goal("left"), Ok(Goal::Turn(1.0)));
-        assert_eq!(goal("right"), Ok(Goal::Turn(-1.0)));
+        assert_eq!(goal_of("walk"), Ok(Goal::Ahead(1.0)));
+        assert_eq!(goal_of("back"), Ok(Goal::Ahead(-1.0)));
+        assert_eq!(goal_of("left"), Ok(Goal::Turn(1.0)));
+        assert_eq!(goal_of("right"), Ok(Goal::Turn(-1.0)));
         for (name, reason) in [
             ("stand", "goes nowhere"),
             ("arc-left", "goes ahead and turns"),
             ("look", "is undecided"),
         ] {
-            assert!(goal(name).expect_err(name).contains(reason), "{name}");
+            assert!(goal_of(name).expect_err(name).contains(reason), "{name}");
         }
     }
 

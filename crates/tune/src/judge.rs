@@ -9,7 +9,7 @@ use crate::plan::{Kind, MAX_PERIOD_S, Space, planned};
 use crate::variation::{Variation, quantiles};
 
 /// Bounds between which a robot's largest amplitude is searched, deg.
-const WIDTHS: (f64, f64) = (5.0, 80.0);
+const AMPLITUDE_BOUNDS: (f64, f64) = (5.0, 80.0);
 /// The servos of the random robots. They have a dead band, which reduces small strides by a larger share than wide
 /// ones.
 const SERVOS: ServoModel = ServoModel::SG90;
@@ -41,7 +41,7 @@ impl BuiltGait {
             let robot = robot.with_gait(&table).ok()?;
             Some(Self { robot, table })
         };
-        let mut fits: Option<Self> = None;
+        let mut shortest: Option<Self> = None;
         let mut built = build(SLOW_PERIOD_S)?;
         for _ in 0..PERIOD_ITERATIONS {
             let period = round_period(built.gait().period() * built.peak() / rate);
@@ -49,29 +49,31 @@ impl BuiltGait {
                 return None;
             }
             built = build(period)?;
-            let shorter = |fits: &Self| period < fits.gait().period();
-            if built.peak() <= rate && fits.as_ref().is_none_or(shorter) {
-                fits = Some(built.clone());
+            let is_shorter = |shortest: &Self| period < shortest.gait().period();
+            if built.peak() <= rate && shortest.as_ref().is_none_or(is_shorter) {
+                shortest = Some(built.clone());
             }
         }
         // The peak speed depends on the phases at which frames are sent, so a slightly shorter period may also be
         // within the rate.
-        let shorter = build(fits.as_ref()?.gait().period() - 0.01);
-        shorter.filter(|shorter| shorter.peak() <= rate).or(fits)
+        let shorter_gait = build(shortest.as_ref()?.gait().period() - 0.01);
+        shorter_gait
+            .filter(|shorter_gait| shorter_gait.peak() <= rate)
+            .or(shortest)
     }
 
     /// Finds the largest amplitude at which a wave gait with the first parameters of the search is within the robot's
     /// limits, deg.
     pub(crate) fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
-        let walks = |widest: f64| {
+        let can_walk = |widest: f64| {
             let start = &Kind::Wave.begin()[0];
             let bars = planned(Kind::Wave, Space { goal, widest }, "x", start);
             Self::of(robot, &bars, rate).is_some()
         };
-        let (mut low, mut high) = WIDTHS;
+        let (mut low, mut high) = AMPLITUDE_BOUNDS;
         while high - low > 0.2 {
             let middle = f64::midpoint(low, high);
-            if walks(middle) {
+            if can_walk(middle) {
                 low = middle;
             } else {
                 high = middle;
@@ -115,20 +117,20 @@ pub struct Judge {
 impl Judge {
     /// Draws `robots` random variations of this robot on this ground, from consecutive seeds that begin with `seed`.
     pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robots: usize, seed: u64) -> Self {
-        let of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
+        let variation_of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
         Self {
             robot: robot.clone(),
             ground: *ground,
             goal,
-            robots: (0..robots as u64).map(of).collect(),
+            robots: (0..robots as u64).map(variation_of).collect(),
         }
     }
 
     /// Computes the speed of a gait on each random robot, mm/s or deg/s.
     pub fn speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
-        let movement = |varied: &Variation| varied.walked(&self.robot, gait, SERVOS);
-        let speed = |varied: &Variation| self.goal.progress(&movement(varied)) / period;
-        self.robots.iter().map(speed).collect()
+        let movement_of = |variation: &Variation| variation.walked(&self.robot, gait, SERVOS);
+        let speed_of = |variation: &Variation| self.goal.progress(&movement_of(variation)) / period;
+        self.robots.iter().map(speed_of).collect()
     }
 
     /// Computes the speed of a gait on the robot itself, mm/s or deg/s.
@@ -155,7 +157,7 @@ impl Judge {
     /// goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // A simulation by frames would miss the end of a cycle whose period is not a whole number of frames, and so
-        // show a movement aside. So the direction is checked in fine steps.
+        // show a movement to the side. So the direction is checked in fine steps.
         if !self.goal.is_true_to(&self.cycle(gait)) {
             return None;
         }
@@ -172,7 +174,7 @@ mod tests {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
     }
 
-    fn plan(widest: f64, share: f64) -> Bars {
+    fn bars_of(widest: f64, share: f64) -> Bars {
         let space = Space {
             goal: Goal::Ahead(1.0),
             widest,
@@ -193,9 +195,9 @@ mod tests {
     #[test]
     fn a_gait_is_as_fast_as_its_servos_may_be() {
         let robot = paper();
-        let plan = plan(45.0, 0.375);
+        let bars = bars_of(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
-            let built = BuiltGait::of(&robot, &plan, rate).expect("it walks");
+            let built = BuiltGait::of(&robot, &bars, rate).expect("it walks");
             assert!(
                 built.peak() <= rate && built.peak() > 0.97 * rate,
                 "{rate} {}",
@@ -207,25 +209,28 @@ mod tests {
     #[test]
     fn a_gait_beyond_a_limit_is_not_built() {
         // At 45 deg in both directions, the margins of the legs are smaller than their limit.
-        let wide = plan(45.0, 1.0);
-        assert!(BuiltGait::of(&paper(), &wide, 250.0).is_none());
+        let wide_bars = bars_of(45.0, 1.0);
+        assert!(BuiltGait::of(&paper(), &wide_bars, 250.0).is_none());
     }
 
     #[test]
     fn walk_and_left_score_as_they_are_predicted() {
         let robot = paper();
-        for (name, goal, min) in [
+        for (name, goal, min_score) in [
             ("walk", Goal::Ahead(1.0), 28.0),
             ("left", Goal::Turn(1.0), 13.0),
         ] {
             let gait = robot.gait(name).expect(name);
             let judge = Judge::new(&robot, robot.ground(), goal, 20, 0);
             let score = judge.score(gait).expect("it leads there");
-            let exact = judge.speed_on_robot(gait, gait.period());
-            assert!(min < score && score < exact, "{name} {score} {exact}");
+            let robot_speed = judge.speed_on_robot(gait, gait.period());
+            assert!(
+                min_score < score && score < robot_speed,
+                "{name} {score} {robot_speed}"
+            );
         }
         let walk = robot.gait("walk").expect("walk");
-        let turn = Judge::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);
-        assert_eq!(turn.score(walk), None);
+        let turn_judge = Judge::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);
+        assert_eq!(turn_judge.score(walk), None);
     }
 }

@@ -27,11 +27,11 @@ impl Kind {
     /// Returns the parameters with which the search starts. The feet swing one after the other, with the largest
     /// amplitude; a wave gait starts with both sequences that animals use, lateral and diagonal.
     pub fn begin(self) -> Vec<Vec<f64>> {
-        let share = |duty: f64| (duty - DUTIES.0) / (DUTIES.1 - DUTIES.0);
+        let share_of_range = |duty: f64| (duty - DUTIES.0) / (DUTIES.1 - DUTIES.0);
         match self {
             Self::Wave => vec![
-                vec![share(0.75), 0.25, 1.0, 0.5],
-                vec![share(0.75), 0.75, 1.0, 0.5],
+                vec![share_of_range(0.75), 0.25, 1.0, 0.5],
+                vec![share_of_range(0.75), 0.75, 1.0, 0.5],
             ],
             Self::Held => vec![vec![0.0, 1.0, 0.5]],
         }
@@ -60,17 +60,17 @@ pub struct Space {
 /// caller replaces. Parameters are limited to their range; a missing parameter counts as 0.
 pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars {
     let Space { goal, widest } = space;
-    let at = |i: usize| {
+    let parameter_at = |i: usize| {
         parameters
             .get(i)
             .copied()
             .unwrap_or_default()
             .clamp(0.0, 1.0)
     };
-    let between = |i: usize, (low, high): (f64, f64)| low + (high - low) * at(i);
-    let (duty, start, amplitude) = match kind {
+    let value_between = |i: usize, (low, high): (f64, f64)| low + (high - low) * parameter_at(i);
+    let (duty, start, amplitude_index) = match kind {
         Kind::Wave => {
-            let lag = rounded(at(1), 2) % 1.0;
+            let lag = round_to(parameter_at(1), 2) % 1.0;
             // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and the
             // front legs.
             let [lf, rf] = match goal {
@@ -82,42 +82,42 @@ pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars
                 Goal::Ahead(_) => [lf, rf, 0.5, 0.0],
                 Goal::Turn(_) => [lf, 0.5, rf, 0.0],
             };
-            let starts = starts.map(|start| rounded(start, 2));
-            (rounded(between(0, DUTIES), 2), starts, 2)
+            let starts = starts.map(|start| round_to(start, 2));
+            (round_to(value_between(0, DUTIES), 2), starts, 2)
         }
         Kind::Held => (
             DUTIES.0,
-            order_of_turns(at(0)).map(|turn| turn as f64 / 4.0),
+            order_of_turns(parameter_at(0)).map(|turn| turn as f64 / 4.0),
             1,
         ),
     };
-    let balance = BALANCE * (2.0 * at(amplitude + 1) - 1.0);
-    let pairs = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)].map(|gain| rounded(gain, 2));
-    let gain = |servo: usize| goal.sign(servo) * pairs[goal.pair(servo)];
+    let balance = BALANCE * (2.0 * parameter_at(amplitude_index + 1) - 1.0);
+    let pair_gains = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)].map(|gain| round_to(gain, 2));
+    let gain_of = |servo: usize| goal.sign(servo) * pair_gains[goal.pair(servo)];
     Bars {
         name: name.to_string(),
         held: kind == Kind::Held,
         period: MAX_PERIOD_S,
         duty,
-        amplitude: rounded(between(amplitude, (MIN_AMPLITUDE, widest)), 1),
+        amplitude: round_to(value_between(amplitude_index, (MIN_AMPLITUDE, widest)), 1),
         start,
-        gain: std::array::from_fn(gain),
+        gain: std::array::from_fn(gain_of),
     }
 }
 
-fn rounded(value: f64, digits: i32) -> f64 {
+fn round_to(value: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits);
     (value * scale).round() / scale
 }
 
-/// Selects one of the 24 orders of four legs by `at`, 0 to 1. Returns each leg's turn, 0 to 3, in servo order.
-fn order_of_turns(at: f64) -> [usize; 4] {
-    let mut left = vec![3, 0, 2, 1];
-    let mut number = ((at * 24.0) as usize).min(23);
+/// Selects one of the 24 orders of four legs by `position`, 0 to 1. Returns each leg's turn, 0 to 3, in servo order.
+fn order_of_turns(position: f64) -> [usize; 4] {
+    let mut remaining_legs = vec![3, 0, 2, 1];
+    let mut number = ((position * 24.0) as usize).min(23);
     let mut turns = [0; 4];
-    for (turn, of) in [6, 2, 1, 1].into_iter().enumerate() {
-        turns[left.remove(number / of)] = turn;
-        number %= of;
+    for (turn, divisor) in [6, 2, 1, 1].into_iter().enumerate() {
+        turns[remaining_legs.remove(number / divisor)] = turn;
+        number %= divisor;
     }
     turns
 }
@@ -126,7 +126,7 @@ fn order_of_turns(at: f64) -> [usize; 4] {
 mod tests {
     use super::*;
 
-    fn space(goal: Goal) -> Space {
+    fn space_of(goal: Goal) -> Space {
         Space { goal, widest: 45.0 }
     }
 
@@ -148,12 +148,12 @@ mod tests {
 
     #[test]
     fn a_plan_is_written_as_robot_toml_reads_it() {
-        let table = |kind, goal, name: &str, period, parameters: &[f64]| {
-            let planned = planned(kind, space(goal), name, parameters);
-            Bars { period, ..planned }.table()
+        let table_of = |kind, goal, name: &str, period, parameters: &[f64]| {
+            let bars = planned(kind, space_of(goal), name, parameters);
+            Bars { period, ..bars }.table()
         };
         assert_eq!(
-            table(
+            table_of(
                 Kind::Wave,
                 Goal::Ahead(1.0),
                 "x",
@@ -164,7 +164,7 @@ mod tests {
              start = { LF = 0.25, RF = 0.75, RH = 0.5, LH = 0.0 }\n"
         );
         assert_eq!(
-            table(Kind::Held, Goal::Turn(1.0), "y", 1.0, &[0.0, 0.5, 1.0]),
+            table_of(Kind::Held, Goal::Turn(1.0), "y", 1.0, &[0.0, 0.5, 1.0]),
             "[gait.y]\nperiod = 1.0\nwaveform = \"held\"\namplitude = 25.0\n\
              order = [\"LH\", \"LF\", \"RH\", \"RF\"]\ngain = { LF = -0.5, RF = 1.0, RH = 0.5, LH = -1.0 }\n"
         );
@@ -176,10 +176,14 @@ mod tests {
             (Goal::Ahead(1.0), [1, 0, 3, 2]),
             (Goal::Turn(-1.0), [2, 3, 0, 1]),
         ] {
-            let bars = planned(Kind::Wave, space(goal), "x", &[0.1, 0.83, 0.5, 0.7]);
+            let bars = planned(Kind::Wave, space_of(goal), "x", &[0.1, 0.83, 0.5, 0.7]);
             for (leg, partner) in partners.into_iter().enumerate() {
-                let apart = (bars.start[leg] - bars.start[partner]).abs();
-                assert!((apart - 0.5).abs() < 1e-9, "{goal:?} {:?}", bars.start);
+                let start_distance = (bars.start[leg] - bars.start[partner]).abs();
+                assert!(
+                    (start_distance - 0.5).abs() < 1e-9,
+                    "{goal:?} {:?}",
+                    bars.start
+                );
                 assert_eq!(bars.gain[leg].abs(), bars.gain[partner].abs());
             }
         }

@@ -14,7 +14,7 @@ const MEMBERS: usize = 20;
 /// not end at the first local maximum.
 const LEADERS: usize = 5;
 /// Probability with which a trial changes a parameter of its member.
-const CHANGED: f64 = 0.9;
+const CHANGE_PROBABILITY: f64 = 0.9;
 /// Bounds of the factor on the steps of a trial; each trial draws the factor uniformly.
 const STEPS: (f64, f64) = (0.4, 0.9);
 
@@ -45,9 +45,11 @@ impl Search {
     /// Starts a search with these parameter sets, and as many random ones as complete the population.
     pub fn new(start: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
-        let parameters = start.first().map_or(0, Vec::len);
+        let parameter_count = start.first().map_or(0, Vec::len);
         let mut trials = start.to_vec();
-        trials.resize_with(MEMBERS, || (0..parameters).map(|_| rng.f64()).collect());
+        trials.resize_with(MEMBERS, || {
+            (0..parameter_count).map(|_| rng.f64()).collect()
+        });
         Self {
             rng,
             members: Vec::new(),
@@ -65,28 +67,28 @@ impl Search {
     pub fn score(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
         let trials = std::mem::take(&mut self.trials).into_iter().zip(scores);
-        let judged = trials.map(|(parameters, score)| Member { parameters, score });
+        let scored_members = trials.map(|(parameters, score)| Member { parameters, score });
         if self.members.is_empty() {
-            self.members = judged.collect();
+            self.members = scored_members.collect();
         } else {
-            for (member, trial) in self.members.iter_mut().zip(judged) {
+            for (member, trial) in self.members.iter_mut().zip(scored_members) {
                 if score_of(&trial) >= score_of(member) {
                     *member = trial;
                 }
             }
         }
         let rng = &mut self.rng;
-        let trial = |of| trial(&self.members, of, rng);
-        self.trials = (0..self.members.len()).map(trial).collect();
+        let trial_of = |index| make_trial(&self.members, index, rng);
+        self.trials = (0..self.members.len()).map(trial_of).collect();
     }
 
     /// The scores and parameters found so far, the best first.
     pub fn found(&self) -> Vec<(f64, Vec<f64>)> {
-        let each = self.members.iter();
-        let found = each.filter_map(|member| Some((member.score?, member.parameters.clone())));
-        let mut found: Vec<_> = found.collect();
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        found
+        let members = self.members.iter();
+        let scored = members.filter_map(|member| Some((member.score?, member.parameters.clone())));
+        let mut scored: Vec<_> = scored.collect();
+        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+        scored
     }
 }
 
@@ -94,27 +96,29 @@ fn score_of(member: &Member) -> f64 {
     member.score.unwrap_or(f64::NEG_INFINITY)
 }
 
-/// Makes a trial from the member number `of`: a step towards one of the best members plus a step along the difference
-/// of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1 moves halfway
-/// to the bound instead.
-fn trial(members: &[Member], of: usize, rng: &mut Rng) -> Vec<f64> {
-    let own = &members[of].parameters;
+/// Makes a trial from the member with this index: a step towards one of the best members plus a step along the
+/// difference of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1
+/// moves halfway to the bound instead.
+fn make_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
+    let own_parameters = &members[index].parameters;
     let mut ranks: Vec<&Member> = members.iter().collect();
     ranks.sort_by(|a, b| score_of(b).total_cmp(&score_of(a)));
-    let best = ranks[rng.usize(..LEADERS)];
-    let mut others: Vec<usize> = (0..members.len()).filter(|i| *i != of).collect();
+    let leader = ranks[rng.usize(..LEADERS)];
+    let mut others: Vec<usize> = (0..members.len()).filter(|i| *i != index).collect();
     rng.shuffle(&mut others);
     let [plus, minus] = [0, 1].map(|i| &members[others[i]].parameters);
     let step = STEPS.0 + (STEPS.1 - STEPS.0) * rng.f64();
-    let always = rng.usize(..own.len());
-    (0..own.len())
+    let changed_index = rng.usize(..own_parameters.len());
+    (0..own_parameters.len())
         .map(|i| {
-            if i != always && rng.f64() >= CHANGED {
-                return own[i];
+            if i != changed_index && rng.f64() >= CHANGE_PROBABILITY {
+                return own_parameters[i];
             }
-            match own[i] + step * (best.parameters[i] - own[i] + plus[i] - minus[i]) {
-                low if low < 0.0 => own[i] / 2.0,
-                high if high > 1.0 => (1.0 + own[i]) / 2.0,
+            match own_parameters[i]
+                + step * (leader.parameters[i] - own_parameters[i] + plus[i] - minus[i])
+            {
+                low if low < 0.0 => own_parameters[i] / 2.0,
+                high if high > 1.0 => (1.0 + own_parameters[i]) / 2.0,
                 inside => inside,
             }
         })
@@ -127,13 +131,13 @@ mod tests {
 
     /// Computes a score with a narrow curved ridge and its maximum at (0.7, 0.49); refuses parameters with x + y up
     /// to 0.5.
-    fn ridge(at: &[f64]) -> Option<f64> {
-        let (x, y) = (at[0], at[1]);
+    fn ridge(parameters: &[f64]) -> Option<f64> {
+        let (x, y) = (parameters[0], parameters[1]);
         let error = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);
         (x + y > 0.5).then_some(-error)
     }
 
-    fn searched(
+    fn run_search(
         start: &[Vec<f64>],
         rounds: usize,
         seed: u64,
@@ -142,30 +146,30 @@ mod tests {
         let mut search = Search::new(start, seed);
         for _ in 0..=rounds {
             let trials = search.trials().to_vec();
-            search.score(trials.iter().map(|at| judge(at)));
+            search.score(trials.iter().map(|parameters| judge(parameters)));
         }
         search.found()
     }
 
     #[test]
     fn the_search_climbs_a_curved_ridge() {
-        let found = searched(&[vec![0.1, 0.9]], 60, 1, ridge);
-        let best = &found[0].1;
+        let results = run_search(&[vec![0.1, 0.9]], 60, 1, ridge);
+        let best = &results[0].1;
         let error = (best[0] - 0.7).hypot(best[1] - 0.49);
         assert!(error < 1e-3, "{best:?}");
-        assert!(found.windows(2).all(|pair| pair[0].0 >= pair[1].0));
+        assert!(results.windows(2).all(|pair| pair[0].0 >= pair[1].0));
     }
 
     #[test]
     fn a_seed_finds_the_same_every_time() {
-        let best = |seed| searched(&[vec![0.1, 0.9]], 5, seed, ridge)[0].1.clone();
-        assert_eq!(best(7), best(7));
-        assert_ne!(best(7), best(8));
+        let best_of_seed = |seed| run_search(&[vec![0.1, 0.9]], 5, seed, ridge)[0].1.clone();
+        assert_eq!(best_of_seed(7), best_of_seed(7));
+        assert_ne!(best_of_seed(7), best_of_seed(8));
     }
 
     #[test]
     fn if_all_trials_are_refused_nothing_is_found() {
-        assert_eq!(searched(&[vec![0.5; 3]], 2, 1, |_| None), []);
+        assert_eq!(run_search(&[vec![0.5; 3]], 2, 1, |_| None), []);
         let mut search = Search::new(&[vec![0.5; 3]], 1);
         search.score([Some(1.0)]);
         assert_eq!(
@@ -178,7 +182,7 @@ mod tests {
     #[test]
     fn a_search_has_the_predicted_number_of_trials() {
         let calls = std::cell::Cell::new(0);
-        searched(&[vec![0.5; 2]], 3, 1, |_| {
+        run_search(&[vec![0.5; 2]], 3, 1, |_| {
             calls.set(calls.get() + 1);
             Some(0.0)
         });

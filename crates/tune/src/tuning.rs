@@ -10,7 +10,7 @@ use crate::plan::{Kind, Space, planned};
 use crate::search::Search;
 
 /// Number of random robots on which the search scores a gait.
-const JUDGES: usize = 16;
+const SCORING_ROBOTS: usize = 16;
 /// Difference between the first seed of the comparison's robots and that of the search's robots, so that none is in
 /// both.
 const COMPARISON_SEED: u64 = 1 << 40;
@@ -86,7 +86,7 @@ impl Tuning {
             name: name.to_owned(),
             rate,
             space: Space { goal, widest },
-            judge: Judge::new(robot, ground, goal, JUDGES, seed),
+            judge: Judge::new(robot, ground, goal, SCORING_ROBOTS, seed),
             seed,
         })
     }
@@ -119,15 +119,15 @@ impl Tuning {
         scored.sort_by(|a, b| b.score.total_cmp(&a.score));
         scored
             .iter()
-            .filter_map(|one| self.build(one.kind, &one.parameters))
+            .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
             .find(|built| built.gait().predict(&self.ground).is_decided())
     }
 
     /// Compares the gait that was found with the given gait, on `robots` random robots that the search has not used.
-    pub fn compare(&self, found: &BuiltGait, robots: usize) -> Comparison {
+    pub fn compare(&self, found_gait: &BuiltGait, robots: usize) -> Comparison {
         let seed = self.seed.wrapping_add(COMPARISON_SEED);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robots, seed);
-        Comparison::of(&judge, self.rate, &self.gait, found)
+        Comparison::of(&judge, self.rate, &self.gait, found_gait)
     }
 
     fn build(&self, kind: Kind, parameters: &[f64]) -> Option<BuiltGait> {
@@ -138,13 +138,20 @@ impl Tuning {
 
 /// Returns the speed limit of the servos, deg/s: the requested limit or, without a request, the gait's own peak
 /// speed.
-fn servo_speed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, TuningError> {
-    let Some(rate) = asked else {
+fn servo_speed(
+    robot: &Robot,
+    gait: &CheckedGait,
+    requested: Option<f64>,
+) -> Result<f64, TuningError> {
+    let Some(rate) = requested else {
         return Ok(gait.audit().peak.speed);
     };
-    let max = robot.pace().gait_slew;
-    if (MIN_SERVO_SPEED..=max).contains(&rate) {
+    let max_rate = robot.pace().gait_slew;
+    if (MIN_SERVO_SPEED..=max_rate).contains(&rate) {
         return Ok(rate);
     }
-    Err(TuningError::Rate { rate, most: max })
+    Err(TuningError::Rate {
+        rate,
+        most: max_rate,
+    })
 }

@@ -45,29 +45,32 @@ impl Variation {
     /// Draws a random robot and floor around this ground from a seed.
     pub fn of(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
-        let mut within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
+        let mut draw_within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
         let feet = ground.feet;
         let ground = Ground {
             feet: Feet {
-                mount: feet.mount + within((-MOUNT, MOUNT)),
-                hip_forward: feet.hip_forward + within((-HIPS, HIPS)),
+                mount: feet.mount + draw_within((-MOUNT, MOUNT)),
+                hip_forward: feet.hip_forward + draw_within((-HIPS, HIPS)),
                 hip_side: {
-                    let by = within((-HIPS, HIPS));
-                    feet.hip_side.map(|side| side + by)
+                    let shift = draw_within((-HIPS, HIPS));
+                    feet.hip_side.map(|side| side + shift)
                 },
                 ..feet
             },
             body: Body {
-                centre: ground.body.centre.map(|at| at + within((-CENTRE, CENTRE))),
+                centre: ground
+                    .body
+                    .centre
+                    .map(|position| position + draw_within((-CENTRE, CENTRE))),
                 ..ground.body
             },
-            friction: ground.friction * within(FRICTION),
+            friction: ground.friction * draw_within(FRICTION),
             drive: Drive {
                 kind: match ground.drive.kind {
                     DriveKind::Rigid => DriveKind::Rigid,
                     DriveKind::Strut(strut) => DriveKind::Strut(Strut {
-                        force: strut.force * within(SPRING),
-                        rate: strut.rate * within(SPRING),
+                        force: strut.force * draw_within(SPRING),
+                        rate: strut.rate * draw_within(SPRING),
                         ..strut
                     }),
                 },
@@ -75,10 +78,13 @@ impl Variation {
             },
             ..*ground
         };
-        let (pads, ratio) = (std::array::from_fn(|_| within(PADS)), within(PADS));
+        let (pads, ratio) = (
+            std::array::from_fn(|_| draw_within(PADS)),
+            draw_within(PADS),
+        );
         let stance = Stance {
-            stiffness: ground.stance.stiffness * within(LEAF),
-            twist: ground.stance.twist + ground.stance.level * within((-1.0, 1.0)),
+            stiffness: ground.stance.stiffness * draw_within(LEAF),
+            twist: ground.stance.twist + ground.stance.level * draw_within((-1.0, 1.0)),
             ..ground.stance
         };
         Self {
@@ -110,21 +116,21 @@ impl Variation {
     /// later cycles repeat the second.
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
-        let targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
+        let targets_at = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
         if let ServoModel::Motors(motors) = model {
             let mut walker = Walker::with_unevenness(self.ground, sweeps, self.pads, self.ratio);
-            let mut cycle = || {
-                let start = walker.place();
+            let mut run_cycle = || {
+                let start_place = walker.place();
                 for (_, phase) in gait.frames().skip(1) {
-                    walker.drive(targets(phase).map(Some), FRAME, &motors);
+                    walker.drive(targets_at(phase).map(Some), FRAME, &motors);
                 }
-                walker.place().seen_from(start)
+                walker.place().seen_from(start_place)
             };
-            cycle();
-            return cycle();
+            run_cycle();
+            return run_cycle();
         }
-        let mut next = |phase: u16| {
-            let targets = targets(phase);
+        let mut advance = |phase: u16| {
+            let targets = targets_at(phase);
             sweeps = std::array::from_fn(|i| match model {
                 ServoModel::Unloaded(servo) => {
                     servo.sweep_after_frame(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
@@ -133,32 +139,33 @@ impl Variation {
             });
             sweeps
         };
-        let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
-        let [start, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
+        let first_cycle: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| advance(phase)).collect();
+        let [start, end] =
+            [first_cycle.first(), first_cycle.last()].map(|pose| pose.copied().unwrap_or_default());
         // Rigid legs keep nothing from the first cycle, so only the servos need to run through it.
-        let sprung = self.ground.drive.can_lag();
-        let from = if sprung { start } else { end };
-        let mut walker = Walker::with_unevenness(self.ground, from, self.pads, self.ratio);
-        if sprung {
-            first.into_iter().for_each(|sweeps| {
+        let can_lag = self.ground.drive.can_lag();
+        let start_sweeps = if can_lag { start } else { end };
+        let mut walker = Walker::with_unevenness(self.ground, start_sweeps, self.pads, self.ratio);
+        if can_lag {
+            first_cycle.into_iter().for_each(|sweeps| {
                 walker.step(sweeps);
             });
         }
-        let start = walker.place();
+        let start_place = walker.place();
         for (_, phase) in gait.frames() {
-            walker.step(next(phase));
+            walker.step(advance(phase));
         }
-        walker.place().seen_from(start)
+        walker.place().seen_from(start_place)
     }
 }
 
 /// Returns the values below which these shares of all values lie, by nearest rank; NaN if there are no values.
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
+    let last_index = values.len().saturating_sub(1);
     shares.map(|share| {
-        let point = (share * last as f64).round() as usize;
-        values.get(point).copied().unwrap_or(f64::NAN)
+        let index = (share * last_index as f64).round() as usize;
+        values.get(index).copied().unwrap_or(f64::NAN)
     })
 }
 
@@ -175,12 +182,12 @@ mod tests {
         let movements: Vec<Travel> = (0..40)
             .map(|seed| Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
             .collect();
-        let of = |part: fn(&Travel) -> f64| {
-            quantiles(movements.iter().map(part).collect(), [0.05, 0.5, 0.95])
+        let quantiles_of = |component: fn(&Travel) -> f64| {
+            quantiles(movements.iter().map(component).collect(), [0.05, 0.5, 0.95])
         };
-        let [low, middle, high] = of(|movement| movement.forward);
+        let [low, middle, high] = quantiles_of(|movement| movement.forward);
         assert!(25.0 < low && low < middle && middle < high && high < 40.0);
-        let turn = of(|movement| movement.turn);
+        let turn = quantiles_of(|movement| movement.turn);
         assert!(turn[0] < 0.0 && turn[2] > 0.0, "{turn:?}");
     }
 
@@ -196,9 +203,10 @@ mod tests {
             let [min] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
             min
         };
-        let level = low_forward("[feet]\nlevel = 0.0");
+        let level_forward = low_forward("[feet]\nlevel = 0.0");
         assert!(
-            low_forward("") > 0.97 * level && low_forward("[feet]\nstiffness = 3.3") < 0.65 * level
+            low_forward("") > 0.97 * level_forward
+                && low_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward
         );
     }
 
@@ -210,20 +218,20 @@ mod tests {
             let played = plain.with_play(seed);
             let play = played.ground.drive.play;
             assert!((0.0..=PLAY).contains(&play) && play > 0.0, "{play}");
-            let mut without = played;
-            without.ground.drive.play = 0.0;
-            assert_eq!(without.ground, plain.ground);
+            let mut without_play = played;
+            without_play.ground.drive.play = 0.0;
+            assert_eq!(without_play.ground, plain.ground);
         }
     }
 
     #[test]
     fn without_variation_it_walks_as_the_twin_does() {
         let text = include_str!("../../../robots/paper.toml");
-        let springs = text.replace(
+        let text_with_springs = text.replace(
             "[leg]",
             "[leg]\ndrive = { kind = \"strut\", force = 0.5, rate = 0.4 }",
         );
-        for text in [text, &springs] {
+        for text in [text, &text_with_springs] {
             let robot = Robot::parse(text).expect("right");
             for name in ["walk", "left"] {
                 let gait = robot.gait(name).expect(name);

@@ -44,13 +44,13 @@ impl ServoModel {
 }
 
 impl Unloaded {
-    /// Computes the sweep at the end of a frame that begins at the sweep `from` with a pulse for the sweep `target`,
+    /// Computes the sweep at the end of a frame that begins at the sweep `start` with a pulse for the sweep `target`,
     /// all in deg; `us_per_degree` is the servo's gain.
-    pub fn sweep_after_frame(&self, from: f64, target: f64, us_per_degree: f64) -> f64 {
-        let idle = self.dead_band / 2.0 / us_per_degree.abs();
-        let max = self.rate * FRAME;
-        let stops = from.clamp(target - idle, target + idle);
-        from + (stops - from).clamp(-max, max)
+    pub fn sweep_after_frame(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
+        let half_band = self.dead_band / 2.0 / us_per_degree.abs();
+        let max_step = self.rate * FRAME;
+        let end = start.clamp(target - half_band, target + half_band);
+        start + (end - start).clamp(-max_step, max_step)
     }
 }
 

@@ -23,19 +23,19 @@ impl Shape {
     /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from neutral (deg, foot
     /// forward positive), all in servo order; `None` if the loop of a five-bar or slider does not close.
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
-        let solved = robot.lizard().solve(&angles.into()).ok()?;
-        Some(Self::at_solution(robot, &solved, legs))
+        let solution = robot.lizard().solve(&angles.into()).ok()?;
+        Some(Self::at_solution(robot, &solution, legs))
     }
 
     /// Computes the joints of a solved pose, with legs at these sweeps from neutral (deg, foot forward positive).
-    pub fn at_solution(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
+    pub fn at_solution(robot: &Robot, solution: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
-        let tips = solved.crank_tips();
-        let angles: [f64; 4] = solved.pose.into();
+        let tips = solution.crank_tips();
+        let angles: [f64; 4] = solution.pose.into();
         let mut arms = shafts;
         for side in Side::ALL {
             let [front, rear] = side.servos();
-            let slider = solved.side(side);
+            let slider = solution.side(side);
             arms[front] = shafts[rear] + slider.front_tip;
             arms[rear] = shafts[rear] + slider.rear_tip;
         }
@@ -43,10 +43,10 @@ impl Shape {
             shafts,
             tips,
             arms,
-            ends: End::ALL.map(|end| solved.point(end)),
+            ends: End::ALL.map(|end| solution.point(end)),
             legs: std::array::from_fn(|i| {
-                let leg = robot.servos()[i].neutral + FORWARD[i] * legs[i];
-                robot.legs()[i].at(angles[i], leg)
+                let leg_angle = robot.servos()[i].neutral + FORWARD[i] * legs[i];
+                robot.legs()[i].at(angles[i], leg_angle)
             }),
         }
     }
@@ -68,33 +68,33 @@ mod tests {
     fn every_link_has_its_length() {
         let robot = paper();
         let shape = shape(&robot, [20.0, -10.0, 5.0, 0.0]);
-        let length = |a: Vector, b: Vector| (a - b).length();
+        let distance = |a: Vector, b: Vector| (a - b).length();
         for (i, leg) in shape.legs.iter().enumerate() {
-            assert!((length(shape.shafts[i], shape.tips[i]) - 30.0).abs() < 1e-9);
-            assert!((length(shape.shafts[i], shape.arms[i]) - 30.0).abs() < 1e-9);
-            assert!((length(shape.tips[i], shape.ends[i / 2]) - 50.0).abs() < 1e-9);
-            assert!((length(leg.pivots[0], leg.pivots[1]) - 50.0).abs() < 1e-9);
-            assert!((length(leg.joints[0], leg.joints[1]) - 50.0).abs() < 1e-9);
-            assert!((length(leg.pivots[0], leg.joints[0]) - 45.0).abs() < 1e-9);
-            assert!((length(leg.pivots[1], leg.joints[1]) - 45.0).abs() < 1e-9);
+            assert!((distance(shape.shafts[i], shape.tips[i]) - 30.0).abs() < 1e-9);
+            assert!((distance(shape.shafts[i], shape.arms[i]) - 30.0).abs() < 1e-9);
+            assert!((distance(shape.tips[i], shape.ends[i / 2]) - 50.0).abs() < 1e-9);
+            assert!((distance(leg.pivots[0], leg.pivots[1]) - 50.0).abs() < 1e-9);
+            assert!((distance(leg.joints[0], leg.joints[1]) - 50.0).abs() < 1e-9);
+            assert!((distance(leg.pivots[0], leg.joints[0]) - 45.0).abs() < 1e-9);
+            assert!((distance(leg.pivots[1], leg.joints[1]) - 45.0).abs() < 1e-9);
         }
     }
 
     #[test]
     fn a_leg_that_lags_leaves_its_servo_and_opens_its_strut() {
         let robot = paper();
-        let strut_length = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
-        let [rigid, lags] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
+        let strut_length_of = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
+        let [rigid_shape, lagging_shape] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
         for i in 0..4 {
-            let (before, after) = (rigid.legs[i], lags.legs[i]);
-            assert_eq!(before.pivots, after.pivots);
-            assert_eq!(before.strut[0], after.strut[0], "the servo stands");
-            assert!((strut_length(before) - robot.legs()[i].strut_length).abs() < 1e-9);
+            let (rigid_leg, lagging_leg) = (rigid_shape.legs[i], lagging_shape.legs[i]);
+            assert_eq!(rigid_leg.pivots, lagging_leg.pivots);
+            assert_eq!(rigid_leg.strut[0], lagging_leg.strut[0], "the servo stands");
+            assert!((strut_length_of(rigid_leg) - robot.legs()[i].strut_length).abs() < 1e-9);
             assert!(
-                (strut_length(after) - strut_length(before)).abs() > 1.5,
-                "{after:?}"
+                (strut_length_of(lagging_leg) - strut_length_of(rigid_leg)).abs() > 1.5,
+                "{lagging_leg:?}"
             );
-            assert!(after.foot.y > before.foot.y + 4.0);
+            assert!(lagging_leg.foot.y > rigid_leg.foot.y + 4.0);
         }
     }
 
@@ -108,8 +108,8 @@ mod tests {
         {
             assert!((foot - Vector::new(x, y)).length() < 1e-9, "{foot:?}");
         }
-        for (before, after) in feet.into_iter().zip(shape(&robot, [10.0; 4]).legs) {
-            assert!(after.foot.y > before.y + 7.0, "forward");
+        for (foot, leg) in feet.into_iter().zip(shape(&robot, [10.0; 4]).legs) {
+            assert!(leg.foot.y > foot.y + 7.0, "forward");
         }
     }
 }

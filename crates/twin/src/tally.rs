@@ -52,12 +52,12 @@ impl Tally {
         self.length += (to.forward - from.forward).hypot(to.left - from.left);
         self.end = to;
         self.frames += 1;
-        let largest = |values: [f64; 4], largest: f64| {
+        let largest_of = |values: [f64; 4], largest: f64| {
             values.into_iter().map(f64::abs).fold(largest, f64::max)
         };
-        self.lag = largest(state.lag, self.lag);
-        self.rate = largest(state.rates, self.rate);
-        self.error = largest(state.errors, self.error);
+        self.lag = largest_of(state.lag, self.lag);
+        self.rate = largest_of(state.rates, self.rate);
+        self.error = largest_of(state.errors, self.error);
         for (sum, slip) in self.slip.iter_mut().zip(state.slip) {
             *sum += slip;
         }

@@ -51,7 +51,7 @@ impl Twin {
     /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise
     /// positive; `None` for a servo without a pulse.
     fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
-        let before = self.sweeps;
+        let sweeps_before = self.sweeps;
         let servos = self.robot.servos();
         let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
             let (min, max) = servos[i].travel();
@@ -59,38 +59,42 @@ impl Twin {
         });
         let slip = match self.model {
             ServoModel::Motors(motors) => {
-                let forward = std::array::from_fn(|i| targets[i].map(|target| FORWARD[i] * target));
-                let slip = self.walker.drive(forward, FRAME, &motors);
-                let turned = self.walker.servos();
-                self.sweeps = std::array::from_fn(|i| FORWARD[i] * turned[i]);
+                let forward_targets =
+                    std::array::from_fn(|i| targets[i].map(|target| FORWARD[i] * target));
+                let slip = self.walker.drive(forward_targets, FRAME, &motors);
+                let servo_sweeps = self.walker.servos();
+                self.sweeps = std::array::from_fn(|i| FORWARD[i] * servo_sweeps[i]);
                 slip
             }
             ServoModel::Ideal | ServoModel::Unloaded(_) => {
                 for i in 0..4 {
                     let Some(target) = targets[i] else { continue };
                     self.sweeps[i] = match self.model {
-                        ServoModel::Unloaded(model) => {
-                            model.sweep_after_frame(before[i], target, servos[i].us_per_degree)
-                        }
+                        ServoModel::Unloaded(model) => model.sweep_after_frame(
+                            sweeps_before[i],
+                            target,
+                            servos[i].us_per_degree,
+                        ),
                         _ => target,
                     };
                 }
                 self.walker.step(self.leg_sweeps())
             }
         };
-        let errors = std::array::from_fn(|i| targets[i].map_or(0.0, |at| at - self.sweeps[i]));
+        let errors =
+            std::array::from_fn(|i| targets[i].map_or(0.0, |target| target - self.sweeps[i]));
         self.frame += 1;
         let angles = self.angles();
-        let solved = self.robot.lizard().solve(&angles.into()).ok();
+        let solution = self.robot.lizard().solve(&angles.into()).ok();
         let place = self.walker.place();
         let ground = self.walker.ground();
-        let load = ground.body.mean_load();
+        let mean_load = ground.body.mean_load();
         State {
             frame: self.frame,
             pulsed: targets.map(|target| target.is_some()),
             place,
             angles,
-            rates: std::array::from_fn(|i| (self.sweeps[i] - before[i]) / FRAME),
+            rates: std::array::from_fn(|i| (self.sweeps[i] - sweeps_before[i]) / FRAME),
             errors,
             lag: self.walker.lag(),
             feet: ground
@@ -98,9 +102,9 @@ impl Twin {
                 .positions(self.walker.legs())
                 .map(|foot| place.on_floor(foot)),
             slip: slip.slid_distances,
-            loads: slip.loads.map(|share| share * load),
-            margins: solved.map(|solved| solved.margins),
-            strokes: solved.map(|solved| [solved.left.s, solved.right.s]),
+            loads: slip.loads.map(|share| share * mean_load),
+            margins: solution.map(|solution| solution.margins),
+            strokes: solution.map(|solution| [solution.left.s, solution.right.s]),
         }
     }
 

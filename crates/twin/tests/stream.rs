@@ -14,7 +14,7 @@ fn widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
 }
 
 /// Simulates four cycles of a gait and returns the tally of the last cycle.
-fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
+fn simulate_cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
     let gait = robot.gait(name).expect(name);
     let mut twin = Twin::new(robot, model);
     twin.set_ground(*ground);
@@ -36,25 +36,25 @@ fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally
 #[test]
 fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     let robot = paper();
-    let springs = Ground {
+    let ground_with_springs = Ground {
         drive: Drive {
             kind: DriveKind::Strut(robot.strut_with(0.5, 0.4)),
             play: 0.0,
         },
         ..*robot.ground()
     };
-    for ground in [*robot.ground(), springs] {
+    for ground in [*robot.ground(), ground_with_springs] {
         for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
-            let tally = cycle(&robot, gait.name(), ServoModel::Ideal, &ground);
-            let (travel, wanted) = (tally.travel(), gait.simulate_cycle(&ground).travel);
+            let tally = simulate_cycle(&robot, gait.name(), ServoModel::Ideal, &ground);
+            let (travel, expected) = (tally.travel(), gait.simulate_cycle(&ground).travel);
             let name = gait.name();
             assert!(
-                (travel.forward - wanted.forward).abs() < 0.35,
-                "{name} {travel:?} {wanted:?}"
+                (travel.forward - expected.forward).abs() < 0.35,
+                "{name} {travel:?} {expected:?}"
             );
             assert!(
-                (travel.turn - wanted.turn).abs() < 0.2,
-                "{name} {travel:?} {wanted:?}"
+                (travel.turn - expected.turn).abs() < 0.2,
+                "{name} {travel:?} {expected:?}"
             );
             assert!((tally.seconds() - gait.period()).abs() < 0.011, "{name}");
         }
@@ -64,24 +64,30 @@ fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
 #[test]
 fn a_dead_band_costs_its_share_of_the_stroke() {
     let robot = paper();
-    let walk = |model| {
-        cycle(&robot, "walk", model, robot.ground())
+    let walk_forward_with = |model| {
+        simulate_cycle(&robot, "walk", model, robot.ground())
             .travel()
             .forward
     };
-    let (ideal, sg90) = (walk(ServoModel::Ideal), walk(ServoModel::SG90));
+    let (ideal_forward, sg90_forward) = (
+        walk_forward_with(ServoModel::Ideal),
+        walk_forward_with(ServoModel::SG90),
+    );
     // The dead band takes 1 of 40 degrees when a leg reverses.
-    assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.01, "{sg90} {ideal}");
+    assert!(
+        (sg90_forward / ideal_forward - 39.0 / 40.0).abs() < 0.01,
+        "{sg90_forward} {ideal_forward}"
+    );
 }
 
 #[test]
 fn servos_too_slow_for_a_gait_cut_its_stroke() {
     let robot = paper();
-    let slow = ServoModel::Unloaded(Unloaded {
+    let slow_model = ServoModel::Unloaded(Unloaded {
         rate: 120.0,
         dead_band: 0.0,
     });
-    let tally = cycle(&robot, "walk", slow, robot.ground());
+    let tally = simulate_cycle(&robot, "walk", slow_model, robot.ground());
     assert!(tally.rate <= 120.0 + 1e-9 && tally.error > 5.0, "{tally:?}");
     assert!(tally.travel().forward < 25.0, "{tally:?}");
 }
@@ -95,8 +101,8 @@ fn three_feet_hold_while_one_returns() {
         let state = twin.push(widths(&robot, crawl, phase));
         // In the middle of the second fifth only the left hind leg moves.
         if (0.24..0.36).contains(&seconds) {
-            let holds = state.slip.map(|mm| mm < 0.01);
-            assert_eq!(holds, [true, true, true, false], "at {seconds}");
+            let is_still = state.slip.map(|mm| mm < 0.01);
+            assert_eq!(is_still, [true, true, true, false], "at {seconds}");
         }
     }
 }
@@ -109,11 +115,11 @@ fn a_robot_without_pulses_stays_where_it_is() {
     for (_, phase) in walk.frames().take(20) {
         twin.push(widths(&robot, walk, phase));
     }
-    let before = (twin.angles(), twin.push([None; 4]).place);
-    let after = twin.push([None; 4]);
-    assert_eq!((after.angles, after.place), before);
+    let state_before = (twin.angles(), twin.push([None; 4]).place);
+    let state_after = twin.push([None; 4]);
+    assert_eq!((state_after.angles, state_after.place), state_before);
     assert_eq!(
-        (after.pulsed, after.slip, after.frame),
+        (state_after.pulsed, state_after.slip, state_after.frame),
         ([false; 4], [0.0; 4], 22)
     );
 }
@@ -124,13 +130,16 @@ fn angles_that_are_asked_for_do_what_their_pulses_do() {
     let walk = robot.gait("walk").expect("walk");
     let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
     for (_, phase) in walk.frames() {
-        let by_pulse = twins[0].push(widths(&robot, walk, phase));
-        let by_angle = twins[1].push_angles(walk.table_angles(phase));
+        let pulse_state = twins[0].push(widths(&robot, walk, phase));
+        let angle_state = twins[1].push_angles(walk.table_angles(phase));
         for i in 0..4 {
-            assert!((by_pulse.angles[i] - by_angle.angles[i]).abs() < 1e-9);
+            assert!((pulse_state.angles[i] - angle_state.angles[i]).abs() < 1e-9);
         }
-        let place = [by_pulse.place, by_angle.place].map(|place| place.forward);
-        assert!((place[0] - place[1]).abs() < 1e-6, "{place:?}");
+        let forward_positions = [pulse_state.place, angle_state.place].map(|place| place.forward);
+        assert!(
+            (forward_positions[0] - forward_positions[1]).abs() < 1e-6,
+            "{forward_positions:?}"
+        );
     }
 }
 
@@ -139,12 +148,15 @@ fn a_cycle_is_the_sum_of_its_frames() {
     let robot = paper();
     for name in ["walk", "trot", "left"] {
         let gait = robot.gait(name).expect(name);
-        let whole = cycle(&robot, name, ServoModel::SG90, robot.ground()).travel();
+        let framed_travel = simulate_cycle(&robot, name, ServoModel::SG90, robot.ground()).travel();
         let twin = Twin::new(&robot, ServoModel::SG90);
-        let alone = twin.cycle(gait).travel();
-        let error = (alone.forward - whole.forward).abs();
-        assert!(error < 0.3, "{name} {alone:?} {whole:?}");
-        assert!((alone.turn - whole.turn).abs() < 0.2, "{name}");
+        let cycle_travel = twin.cycle(gait).travel();
+        let error = (cycle_travel.forward - framed_travel.forward).abs();
+        assert!(error < 0.3, "{name} {cycle_travel:?} {framed_travel:?}");
+        assert!(
+            (cycle_travel.turn - framed_travel.turn).abs() < 0.2,
+            "{name}"
+        );
         assert_eq!(
             twin.angles(),
             <[f64; 4]>::from(robot.neutral()),

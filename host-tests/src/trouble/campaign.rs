@@ -51,8 +51,9 @@ impl fmt::Display for Summary {
             writeln!(f, "{activity:14} {played:6} scenarios, {failed} failed")?;
         }
         for rule in Rule::ALL {
-            let broken = |failure: &&Failure| failure.broken.iter().any(|one| one.rule == *rule);
-            let failures: Vec<&Failure> = self.failures.iter().filter(broken).collect();
+            let breaks_rule =
+                |failure: &&Failure| failure.broken.iter().any(|broken| broken.rule == *rule);
+            let failures: Vec<&Failure> = self.failures.iter().filter(breaks_rule).collect();
             if let Some(first) = failures.first() {
                 let (count, number) = (failures.len(), first.scenario.number);
                 writeln!(
@@ -88,20 +89,23 @@ pub fn campaign(
     threads: usize,
     progress: impl Fn(u64, Option<&Failure>) + Sync,
 ) -> Summary {
-    let next = AtomicU64::new(0);
-    let done = AtomicU64::new(0);
+    let next_number = AtomicU64::new(0);
+    let done_count = AtomicU64::new(0);
     let summary = Mutex::new(Summary::default());
     thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
                 loop {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let number = next_number.fetch_add(1, Ordering::Relaxed);
                     if number >= count {
                         return;
                     }
                     let scenario = Scenario::of(seed, number, robot);
                     let (cycles, failure) = judge(image, robot, &scenario);
-                    progress(done.fetch_add(1, Ordering::Relaxed) + 1, failure.as_ref());
+                    progress(
+                        done_count.fetch_add(1, Ordering::Relaxed) + 1,
+                        failure.as_ref(),
+                    );
                     let mut summary = summary.lock().expect("no thread has panicked");
                     let tally = summary.activities.entry(scenario.activity).or_default();
                     tally.0 += 1;

@@ -14,7 +14,7 @@ use super::record::{MS, Record, Span};
 use super::setup;
 
 /// Average number of bytes on the wire of which one loses its stop bit.
-const SPOILT: u16 = 300;
+const BYTES_PER_SPOILT_BYTE: u16 = 300;
 
 /// Index of the radio module among the senders on the wire to the board; `CABLE` is that of the cable.
 const RADIO: usize = 0;
@@ -73,9 +73,9 @@ impl<'a> Drive<'a> {
         self.wire.write(RADIO, &to_uno, now);
         // The wire samples the bytes at the chip's baud rate, so they are passed on at this rate.
         uno.set_baud(chip_baud);
-        for received in self.wire.receive(now, chip_baud) {
-            let is_spoilt = !self.has_left && self.random.u16(..SPOILT) == 0;
-            match received.filter(|_| !is_spoilt) {
+        for wire_byte in self.wire.receive(now, chip_baud) {
+            let is_spoilt = !self.has_left && self.random.u16(..BYTES_PER_SPOILT_BYTE) == 0;
+            match wire_byte.filter(|_| !is_spoilt) {
                 Some(byte) => uno.send(&[byte]),
                 None => uno.send_with_framing_error(&[0]),
             }
@@ -110,7 +110,7 @@ impl<'a> Drive<'a> {
                 record.stops.push(now);
             }
             2..8 => {
-                let line = self.line();
+                let line = self.random_line();
                 self.session.queue(&line);
             }
             _ => {}
@@ -124,7 +124,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Returns a random line for the person to send.
-    fn line(&mut self) -> String {
+    fn random_line(&mut self) -> String {
         let gaits = tour::moving_gaits(self.robot);
         let gait = self.random.choice(&gaits).unwrap_or(&"stand");
         let gait = gait.replace('-', " ");

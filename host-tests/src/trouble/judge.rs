@@ -17,25 +17,32 @@ use super::setup::WIDE_SCALE;
 const LED: Pin = Pin::d(13);
 
 /// Cycles of a byte that the board sends on the serial line.
-const BYTE: u64 = 1_360;
+const BYTE_CYCLES: u64 = 1_360;
 
 /// Returns the limits for a scenario's robot.
-fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
-    let cycles = |us: f64| (us * 16.0).round() as u32;
+fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
+    let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
     let pace = robot.pace();
-    let fastest = pace.slew.max(pace.gait_slew);
+    let max_speed = pace.slew.max(pace.gait_slew);
     let mentions = |text: &str| {
         let mut steps = scenario.steps.iter();
         steps.any(|step| step.to_string().contains(text))
     };
     // If the scenario changes a servo's scale, the limit is that of the larger scale.
-    let wide = if mentions("scale ") { WIDE_SCALE } else { "0" };
-    let wide: f64 = wide.parse().expect("a number");
+    let scale_text = if mentions("scale ") { WIDE_SCALE } else { "0" };
+    let wide_scale: f64 = scale_text.parse().expect("a number");
     let servos = robot.servos().each_ref();
     Limits {
         // Allows a cycle of rounding at the start and at the end of a pulse, and half an angle step.
-        leap: servos.map(|servo| cycles(fastest / 50.0 * servo.us_per_degree.abs().max(wide)) + 4),
-        widths: servos.map(|servo| (cycles(servo.min_us) - 1, cycles(servo.max_us) + 1)),
+        leap: servos.map(|servo| {
+            cycles_of_us(max_speed / 50.0 * servo.us_per_degree.abs().max(wide_scale)) + 4
+        }),
+        widths: servos.map(|servo| {
+            (
+                cycles_of_us(servo.min_us) - 1,
+                cycles_of_us(servo.max_us) + 1,
+            )
+        }),
         levels: robot.supplies().board.map(|volts| (1_000.0 * volts) as u32),
         frame_left: 25 * lizard_rules::MS,
         report_time: 300 * lizard_rules::MS,
@@ -52,13 +59,13 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
 /// Judges a record. Returns each broken rule once.
 #[must_use]
 pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<BrokenRule> {
-    let mut observer = Observer::new(limits(robot, scenario));
-    let mut all: Vec<BrokenRule> = Vec::new();
-    for (at, event) in events(record) {
-        observer.observe(at, event);
+    let mut observer = Observer::new(limits_of(robot, scenario));
+    let mut all_broken: Vec<BrokenRule> = Vec::new();
+    for (time, event) in events(record) {
+        observer.observe(time, event);
         for mut broken in observer.take_broken() {
-            broken.seen += &format!(", at {:.3} ms", at as f64 / MS as f64);
-            all.push(broken);
+            broken.seen += &format!(", at {:.3} ms", time as f64 / MS as f64);
+            all_broken.push(broken);
         }
     }
     let checks: [(Rule, Result<(), String>); 7] = [
@@ -70,15 +77,15 @@ pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<
         (Rule::Sent, check_orders_were_sent(record)),
         (Rule::Stopped, check_stop_is_answered(record)),
     ];
-    for (rule, held) in checks {
-        all.extend(held.err().map(|seen| BrokenRule::new(rule, seen)));
+    for (rule, result) in checks {
+        all_broken.extend(result.err().map(|seen| BrokenRule::new(rule, seen)));
     }
-    all.sort_by_key(|broken| broken.rule);
-    all.dedup_by_key(|broken| broken.rule);
-    all
+    all_broken.sort_by_key(|broken| broken.rule);
+    all_broken.dedup_by_key(|broken| broken.rule);
+    all_broken
 }
 
-const fn cause(cause: ResetCause) -> Cause {
+const fn cause_of(cause: ResetCause) -> Cause {
     match cause {
         ResetCause::PowerOn => Cause::Power,
         ResetCause::External => Cause::External,
@@ -90,26 +97,26 @@ const fn cause(cause: ResetCause) -> Cause {
 /// Returns every event of a record, in order of time.
 #[must_use]
 pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
-    let time = |at: u64| at as Time;
+    let time_of = |cycle: u64| cycle as Time;
     let mut events: Vec<(Time, Event<'_>)> = Vec::new();
-    let mut add = |at: u64, event| events.push((time(at), event));
-    for (at, mv) in &record.supply {
-        add(*at, Event::Supply(*mv as u32));
+    let mut add = |cycle: u64, event| events.push((time_of(cycle), event));
+    for (cycle, mv) in &record.supply {
+        add(*cycle, Event::Supply(*mv as u32));
     }
     for cut in &record.cuts {
         add(*cut, Event::Cut);
     }
     for stall in &record.stalls {
-        add(stall.start, Event::Stalled(time(stall.end)));
+        add(stall.start, Event::Stalled(time_of(stall.end)));
     }
     for hold in &record.holds {
-        add(hold.start, Event::HeldUp(time(hold.end)));
+        add(hold.start, Event::HeldUp(time_of(hold.end)));
     }
     for start in &record.starts {
-        add(start.cycle, Event::Start(cause(start.cause)));
+        add(start.cycle, Event::Start(cause_of(start.cause)));
     }
-    for at in &record.bytes {
-        add(*at, Event::Byte);
+    for cycle in &record.bytes {
+        add(*cycle, Event::Byte);
     }
     for received in record
         .received
@@ -118,9 +125,9 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     {
         let is_command = received.is_command;
         add(received.cycle, Event::Line { is_command });
-        let saved = received.text == "save" && record.is_saved(received.cycle);
-        if saved || received.text == "save" || received.effect == Effect::Calibrates {
-            add(received.cycle, Event::Calibrated { is_saved: saved });
+        let is_saved = received.text == "save" && record.is_saved(received.cycle);
+        if is_saved || received.text == "save" || received.effect == Effect::Calibrates {
+            add(received.cycle, Event::Calibrated { is_saved });
         }
     }
     for (received, done) in record.orders() {
@@ -128,16 +135,16 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         add(received.cycle, Event::Order { effect, done });
     }
     for line in &record.lines {
-        let length = BYTE * line.text.len() as u64;
-        let beginning = time(line.cycle.saturating_sub(length));
-        add(line.cycle, Event::Printed(beginning, &line.text));
+        let length_cycles = BYTE_CYCLES * line.text.len() as u64;
+        let start = time_of(line.cycle.saturating_sub(length_cycles));
+        add(line.cycle, Event::Printed(start, &line.text));
     }
     for exchange in &record.exchanges {
-        let (asked, line) = (time(exchange.asked), exchange.line.as_str());
+        let (asked, line) = (time_of(exchange.asked), exchange.line.as_str());
         let effect = exchange.effect;
         events.push(match &exchange.answer {
             Some(Line { cycle, text, .. }) => (
-                time(*cycle),
+                time_of(*cycle),
                 Event::Answer {
                     line,
                     effect,
@@ -145,20 +152,20 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
                     text,
                 },
             ),
-            None => (asked + time(400 * MS), Event::Unanswered(asked, line)),
+            None => (asked + time_of(400 * MS), Event::Unanswered(asked, line)),
         });
     }
-    for (at, pulse) in &record.pulses {
-        events.push((time(*at), Event::Pulse(*pulse)));
+    for (cycle, pulse) in &record.pulses {
+        events.push((time_of(*cycle), Event::Pulse(*pulse)));
     }
     for write in &record.written {
-        events.push((time(write.cycle), Event::Written));
+        events.push((time_of(write.cycle), Event::Written));
     }
     // The time limits of some rules end at a time at which nothing else is observed.
-    let often = (0..record.end).step_by(100 * MS as usize);
-    events.extend(often.map(|at| (time(at), Event::Pass)));
-    events.push((time(record.end), Event::Pass));
-    events.sort_by_key(|(at, _)| *at);
+    let pass_cycles = (0..record.end).step_by(100 * MS as usize);
+    events.extend(pass_cycles.map(|cycle| (time_of(cycle), Event::Pass)));
+    events.push((time_of(record.end), Event::Pass));
+    events.sort_by_key(|(time, _)| *time);
     events
 }
 
@@ -166,7 +173,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
 fn check_alive(record: &Record) -> Result<(), String> {
     match &record.state {
         Some(State::Alive) => Ok(()),
-        other => Err(format!("{other:?}")),
+        state => Err(format!("{state:?}")),
     }
 }
 
@@ -174,23 +181,23 @@ fn check_alive(record: &Record) -> Result<(), String> {
 /// constant pulses.
 fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
-    let status = exchanges.next().ok_or("nothing was asked")?;
-    let stand = exchanges
+    let last_status = exchanges.next().ok_or("nothing was asked")?;
+    let stand_exchange = exchanges
         .find(|exchange| exchange.line == "stand")
         .ok_or("no stand")?;
-    if !stand.is_done() {
-        return Err(format!("stand is answered by {:?}", stand.answer));
+    if !stand_exchange.is_done() {
+        return Err(format!("stand is answered by {:?}", stand_exchange.answer));
     }
-    if status.status("gait") != Some("stand") || status.status("fault") != Some("none") {
-        return Err(format!("after stand: {:?}", status.answer));
+    if last_status.status("gait") != Some("stand") || last_status.status("fault") != Some("none") {
+        return Err(format!("after stand: {:?}", last_status.answer));
     }
-    let last = record.end - 110 * MS;
+    let late_start = record.end - 110 * MS;
     for servo in 0..4 {
-        let is_late = |(at, pulse): &&(u64, Pulse)| pulse.servo == servo && *at > last;
-        let late = record.pulses.iter().filter(is_late);
-        let widths: Vec<u32> = late.map(|(_, pulse)| pulse.width).collect();
-        let steady = widths.windows(2).all(|pair| pair[0] == pair[1]);
-        if widths.len() < 4 || !steady {
+        let is_late = |(cycle, pulse): &&(u64, Pulse)| pulse.servo == servo && *cycle > late_start;
+        let late_pulses = record.pulses.iter().filter(is_late);
+        let widths: Vec<u32> = late_pulses.map(|(_, pulse)| pulse.width).collect();
+        let is_steady = widths.windows(2).all(|pair| pair[0] == pair[1]);
+        if widths.len() < 4 || !is_steady {
             return Err(format!("A{} gets {widths:?} at last", servo + 1));
         }
     }
@@ -200,32 +207,40 @@ fn check_stand(record: &Record) -> Result<(), String> {
 /// Checks that `status` is the same before and after a refused command, unless the robot stopped by `deadman` or at
 /// the end of a counted motion, performs a routine, or was reset or disturbed between the two.
 fn check_refusals(record: &Record) -> Result<(), String> {
-    for three in record.exchanges.windows(3) {
-        let [before, refused, after] = three else {
+    for exchanges in record.exchanges.windows(3) {
+        let [status_before, refused_command, status_after] = exchanges else {
             continue;
         };
-        let answer = refused.answer.as_ref();
+        let answer = refused_command.answer.as_ref();
         let is_refused = answer.is_some_and(|line| line.text.starts_with("err"));
-        let (Some(from), Some(to)) = (&before.answer, &after.answer) else {
+        let (Some(answer_before), Some(answer_after)) =
+            (&status_before.answer, &status_after.answer)
+        else {
             continue;
         };
-        let have_status = before.status("gait").is_some() && after.status("gait").is_some();
-        let span = from.cycle..to.cycle;
-        let ends_by_itself = record.lines.iter().any(|line| {
+        let have_status =
+            status_before.status("gait").is_some() && status_after.status("gait").is_some();
+        let span = answer_before.cycle..answer_after.cycle;
+        let has_ended_by_itself = record.lines.iter().any(|line| {
             let is_end = line.text == "# done" || line.text.contains("as long as deadman says");
             is_end && span.contains(&line.cycle)
         });
         // A routine continues by itself, for example from a motion to a rest.
-        let is_routine =
-            before.status("gait") == Some(PATROL) || after.status("gait") == Some(PATROL);
-        let is_troubled = ends_by_itself || is_routine || record.is_troubled(from.cycle, to.cycle);
+        let is_routine = status_before.status("gait") == Some(PATROL)
+            || status_after.status("gait") == Some(PATROL);
+        let is_troubled = has_ended_by_itself
+            || is_routine
+            || record.is_troubled(answer_before.cycle, answer_after.cycle);
         if !is_refused || !have_status || is_troubled {
             continue;
         }
         for key in ["gait", "speed", "guard", "fault", "reset", "resets"] {
-            if before.status(key) != after.status(key) {
-                let line = &refused.line;
-                return Err(format!("{line}: {} and then {}", from.text, to.text));
+            if status_before.status(key) != status_after.status(key) {
+                let line = &refused_command.line;
+                return Err(format!(
+                    "{line}: {} and then {}",
+                    answer_before.text, answer_after.text
+                ));
             }
         }
     }
@@ -240,8 +255,8 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
             .pulses
             .iter()
             .filter(|(_, pulse)| pulse.servo == servo);
-        let begins: Vec<u64> = pulses.map(|(at, _)| *at).collect();
-        for pair in begins.windows(2) {
+        let start_cycles: Vec<u64> = pulses.map(|(cycle, _)| *cycle).collect();
+        for pair in start_cycles.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             // A longer distance is a missing frame, which another rule judges.
             let is_next = to - from < FRAME + FRAME / 2;
@@ -251,8 +266,12 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
                 .iter()
                 .any(|start| (from..to).contains(&start.cycle));
             if is_next && to - from != FRAME && !is_held && !is_new {
-                let late = to as i64 - (from + FRAME) as i64;
-                let seen = format!("A{}, {late} cycles late at {} ms", servo + 1, to / MS);
+                let late_cycles = to as i64 - (from + FRAME) as i64;
+                let seen = format!(
+                    "A{}, {late_cycles} cycles late at {} ms",
+                    servo + 1,
+                    to / MS
+                );
                 return Err(seen);
             }
         }
@@ -264,31 +283,36 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
 fn check_orders_were_sent(record: &Record) -> Result<(), String> {
     for line in &record.lines {
         // After a reset, a banner may follow the cut-off part of an answer.
-        let Some(done) = line.text.strip_prefix("ok ").filter(|it| !it.contains('#')) else {
+        let Some(answered_line) = line
+            .text
+            .strip_prefix("ok ")
+            .filter(|text| !text.contains('#'))
+        else {
             continue;
         };
-        let asked = if done.starts_with("gait=") {
+        let sent_line = if answered_line.starts_with("gait=") {
             "status"
         } else {
-            done
+            answered_line
         };
         // If a reset comes while a line arrives, the program receives only the last part of the line. If the radio
         // link breaks within a line, noise may end the line early.
-        let recent = line.cycle.saturating_sub(200 * MS)..line.cycle;
+        let recent_cycles = line.cycle.saturating_sub(200 * MS)..line.cycle;
         let mut starts = record.starts.iter();
-        let is_new = starts.any(|start| recent.contains(&start.cycle));
-        let breaks = |at: u64| {
+        let is_new = starts.any(|start| recent_cycles.contains(&start.cycle));
+        let link_breaks_after = |cycle: u64| {
             record
                 .radio_spans
                 .iter()
-                .any(|link| (at..at + 200 * MS).contains(&link.end))
+                .any(|link| (cycle..cycle + 200 * MS).contains(&link.end))
         };
-        let mut sent = record.sent.iter();
-        let is_same_line = |(at, sent): &(u64, String)| {
-            let is_part = is_new && sent.ends_with(asked) || breaks(*at) && sent.starts_with(asked);
-            *at < line.cycle && (sent == asked || is_part)
+        let mut sent_lines = record.sent.iter();
+        let is_same_line = |(cycle, text): &(u64, String)| {
+            let is_part = is_new && text.ends_with(sent_line)
+                || link_breaks_after(*cycle) && text.starts_with(sent_line);
+            *cycle < line.cycle && (text == sent_line || is_part)
         };
-        if !sent.any(is_same_line) {
+        if !sent_lines.any(is_same_line) {
             return Err(format!("{}, at {} ms", line.text, line.cycle / MS));
         }
     }
@@ -304,24 +328,28 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     // An answer to an earlier `stop` may come up to this time before the `stop`.
     const EARLIER_ANSWER_TIME: u64 = 300 * MS;
     for stop in &record.stops {
-        let ends = |line: &&Line| {
+        let is_stop_answer = |line: &&Line| {
             let is_end = line.text.ends_with("ok stop") || line.text.starts_with("err 7");
             line.cycle + EARLIER_ANSWER_TIME > *stop && is_end
         };
-        let answered = record.lines.iter().find(ends).map(|line| line.cycle);
-        let within = |link: &Span| {
-            let from = link.start.max(*stop);
-            let due = from
-                + if record.has_found_rate(from) {
+        let answer_cycle = record
+            .lines
+            .iter()
+            .find(is_stop_answer)
+            .map(|line| line.cycle);
+        let due_cycle_in = |link: &Span| {
+            let start = link.start.max(*stop);
+            let due_cycle = start
+                + if record.has_found_rate(start) {
                     ANSWER_TIME
                 } else {
                     RATE_SEARCH_TIME
                 };
-            let is_calm = !record.is_troubled(from.saturating_sub(300 * MS), due);
-            (link.end >= due && is_calm).then_some(due)
+            let is_calm = !record.is_troubled(start.saturating_sub(300 * MS), due_cycle);
+            (link.end >= due_cycle && is_calm).then_some(due_cycle)
         };
-        let due = record.radio_spans.iter().find_map(within);
-        if due.is_some_and(|due| answered.is_none_or(|at| at > due)) {
+        let due_cycle = record.radio_spans.iter().find_map(due_cycle_in);
+        if due_cycle.is_some_and(|due_cycle| answer_cycle.is_none_or(|cycle| cycle > due_cycle)) {
             return Err(format!("stop, sent first at {} ms", stop / MS));
         }
     }
@@ -331,29 +359,34 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
 /// Checks that the LED blinks the code of the fault that each `status` reports, from the last change (the report of a
 /// fault, an order or a start) on.
 fn check_led(record: &Record) -> Result<(), String> {
-    let led = record.edges.iter().filter(|edge| edge.pin == LED);
-    let led: Vec<(Time, bool)> = led.map(|edge| (edge.cycle as Time, edge.high)).collect();
-    let shown_code = |exchange: &'_ Exchange| {
-        let at = exchange.answer.as_ref()?.cycle;
-        Some((at, led::code(exchange.status("fault")?)))
+    let led_edges = record.edges.iter().filter(|edge| edge.pin == LED);
+    let led_edges: Vec<(Time, bool)> = led_edges
+        .map(|edge| (edge.cycle as Time, edge.high))
+        .collect();
+    let shown_code_of = |exchange: &'_ Exchange| {
+        let cycle = exchange.answer.as_ref()?.cycle;
+        Some((cycle, led::code(exchange.status("fault")?)))
     };
     // An order waits while older answers are printed, so the change is at the time of its own answer.
-    let tells = |text: &str| {
+    let reports_change = |text: &str| {
         let is_done = text.starts_with("ok ") && !text.starts_with("ok gait=");
         is_done || text.starts_with("# fault") || text.starts_with("# held")
     };
-    let reports = record.lines.iter().filter(|line| tells(&line.text));
-    let changes = reports.map(|line| line.cycle);
+    let change_lines = record
+        .lines
+        .iter()
+        .filter(|line| reports_change(&line.text));
+    let changes = change_lines.map(|line| line.cycle);
     let changes = changes.chain(record.orders().map(|(received, _)| received.cycle));
     let changes: Vec<u64> = changes
         .chain(record.starts.iter().map(|start| start.cycle))
         .collect();
-    for (at, code) in record.exchanges.iter().filter_map(shown_code) {
+    for (cycle, code) in record.exchanges.iter().filter_map(shown_code_of) {
         // A flash of the LED that began before the last change does not belong to the present pattern.
-        let since = changes.iter().filter(|change| **change < at).max();
-        let from = since.unwrap_or(&0) + 60 * MS;
-        if !record.is_disturbed(from.saturating_sub(100 * MS), at) {
-            led::check_pattern(&led, from as Time, at as Time, code?)?;
+        let last_change = changes.iter().filter(|change| **change < cycle).max();
+        let start = last_change.unwrap_or(&0) + 60 * MS;
+        if !record.is_disturbed(start.saturating_sub(100 * MS), cycle) {
+            led::check_pattern(&led_edges, start as Time, cycle as Time, code?)?;
         }
     }
     Ok(())

@@ -53,8 +53,8 @@ impl Exchange {
     pub fn status(&self, key: &str) -> Option<&str> {
         let text = self.answer.as_ref()?.text.strip_prefix("ok ")?;
         let pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
-        let mut found = pairs.filter(|(name, _)| *name == key);
-        (self.line == "status").then(|| found.next().map(|(_, value)| value))?
+        let mut matching_pairs = pairs.filter(|(name, _)| *name == key);
+        (self.line == "status").then(|| matching_pairs.next().map(|(_, value)| value))?
     }
 }
 
@@ -74,8 +74,8 @@ pub struct Received {
 impl Received {
     /// True if the line tells the robot to move, to stop or to rest.
     fn is_order(&self) -> bool {
-        let ordered = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
-        ordered && self.text != super::scenario::REFUSED_POSE
+        let is_ordered = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
+        is_ordered && self.text != super::scenario::REFUSED_POSE
     }
 }
 
@@ -123,18 +123,19 @@ impl Record {
     /// Finds the servos' pulses among the edges and adds them to the record.
     pub(super) fn find_pulses(&mut self, pins: [Pin; 4]) {
         // The time after a reset within which the chip releases its pins.
-        const AT_ONCE: u64 = MS / 10;
+        const RELEASE_TIME: u64 = MS / 10;
         for (servo, pin) in pins.into_iter().enumerate() {
             for pulse in pulses(&self.edges, pin) {
                 let (start, end) = (pulse.start, pulse.start + pulse.width);
-                let cuts =
-                    |at: &u64| (*at..*at + AT_ONCE).contains(&end) || (start..end).contains(at);
-                let holds = |hold: &Span| hold.overlaps(start, end + MS);
+                let is_cut_at = |cycle: &u64| {
+                    (*cycle..*cycle + RELEASE_TIME).contains(&end) || (start..end).contains(cycle)
+                };
+                let is_held_by = |hold: &Span| hold.overlaps(start, end + MS);
                 let pulse = Pulse {
                     servo,
                     width: pulse.width as u32,
-                    is_cut: self.cuts.iter().any(cuts),
-                    is_held_up: self.holds.iter().any(holds),
+                    is_cut: self.cuts.iter().any(is_cut_at),
+                    is_held_up: self.holds.iter().any(is_held_by),
                 };
                 self.pulses.push((start, pulse));
             }
@@ -144,8 +145,8 @@ impl Record {
     /// True if the main loop was stalled or interrupts were blocked within `start..end`.
     #[must_use]
     pub fn is_disturbed(&self, start: u64, end: u64) -> bool {
-        let mut all = self.stalls.iter().chain(&self.holds);
-        all.any(|span| span.overlaps(start, end))
+        let mut disturbances = self.stalls.iter().chain(&self.holds);
+        disturbances.any(|span| span.overlaps(start, end))
     }
 
     /// Returns the lines that tell the robot to move, to stop or to rest, each with its outcome: `Some(true)` if the
@@ -155,19 +156,20 @@ impl Record {
             .iter()
             .filter(|received| received.is_order())
             .map(|received| {
-                let asked = |exchange: &&Exchange| {
+                let matches_line = |exchange: &&Exchange| {
                     exchange.line == received.text && exchange.asked <= received.cycle
                 };
-                let exchange = self.exchanges.iter().rev().find(asked);
+                let exchange = self.exchanges.iter().rev().find(matches_line);
                 // The exchange belongs to this line only if the line arrived within the time that sending it takes.
-                let exchange = exchange.filter(|one| received.cycle - one.asked < 10 * MS);
+                let exchange =
+                    exchange.filter(|exchange| received.cycle - exchange.asked < 10 * MS);
                 let answer = exchange.and_then(|exchange| exchange.answer.as_ref());
-                let done = answer.and_then(|answer| match answer.text.get(..3)? {
+                let outcome = answer.and_then(|answer| match answer.text.get(..3)? {
                     "ok " => Some(true),
                     "err" => Some(false),
                     _ => None,
                 });
-                (received, done.or_else(|| self.derive_outcome(received)))
+                (received, outcome.or_else(|| self.derive_outcome(received)))
             })
     }
 
@@ -181,17 +183,17 @@ impl Record {
             let echo = text.strip_prefix("ok ");
             echo.is_some_and(|echo| received.text.ends_with(echo))
         };
-        let soon = self
+        let next_lines = self
             .lines
             .iter()
             .filter(|line| (from..to).contains(&line.cycle));
-        if soon.clone().any(|line| is_ok(&line.text)) {
+        if next_lines.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
         // After these errors, the board refuses every order.
-        let refuses = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
+        let is_refusal = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
         let is_refused =
-            !self.is_troubled(from, to) && soon.clone().any(|line| refuses(&line.text));
+            !self.is_troubled(from, to) && next_lines.clone().any(|line| is_refusal(&line.text));
         is_refused.then_some(false)
     }
 
@@ -199,25 +201,25 @@ impl Record {
     #[must_use]
     pub fn is_saved(&self, cycle: u64) -> bool {
         let is_matching = |exchange: &Exchange| {
-            let sent = exchange.asked..exchange.asked + 10 * MS;
-            exchange.line == "save" && exchange.is_done() && sent.contains(&cycle)
+            let sent_span = exchange.asked..exchange.asked + 10 * MS;
+            exchange.line == "save" && exchange.is_done() && sent_span.contains(&cycle)
         };
         self.exchanges.iter().any(is_matching)
     }
 
-    /// True if, by the cycle `at`, the board has answered after the person began to drive by radio and after the last
+    /// True if, by this cycle, the board has answered after the person began to drive by radio and after the last
     /// reset at which the board forgot the line's baud rate.
     #[must_use]
-    pub fn has_found_rate(&self, at: u64) -> bool {
-        let radio = self.radio_spans.first().map_or(at, |link| link.start);
-        let forgets = |start: &&Reset| {
+    pub fn has_found_rate(&self, cycle: u64) -> bool {
+        let radio_start = self.radio_spans.first().map_or(cycle, |link| link.start);
+        let forgets_rate = |start: &&Reset| {
             let is_reset = matches!(start.cause, ResetCause::PowerOn | ResetCause::External);
-            is_reset && start.cycle < at
+            is_reset && start.cycle < cycle
         };
-        let start = self.starts.iter().rev().find(forgets);
-        let since = start.map_or(radio, |start| start.cycle.max(radio));
+        let start = self.starts.iter().rev().find(forgets_rate);
+        let search_start = start.map_or(radio_start, |start| start.cycle.max(radio_start));
         let mut lines = self.lines.iter();
-        lines.any(|line| line.is_answer() && (since..at).contains(&line.cycle))
+        lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))
     }
 
     /// True if a reset, a power cut or a disturbance came within `from..to`.

@@ -38,10 +38,10 @@ pub struct Scenario {
 
 impl fmt::Display for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let loader = if self.has_boot_loader { "a" } else { "no" };
+        let article = if self.has_boot_loader { "a" } else { "no" };
         writeln!(
             f,
-            "scenario {} of seed {} ({}, {loader} boot loader), from power-on:",
+            "scenario {} of seed {} ({}, {article} boot loader), from power-on:",
             self.number, self.seed, self.activity
         )?;
         for step in &self.steps {
@@ -128,8 +128,8 @@ impl<'a> Script<'a> {
 
     /// Starts an activity and waits until a random cycle during the activity.
     fn activity(&mut self, activity: Activity) {
-        let at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
-        if !at_power_on {
+        let is_at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
+        if !is_at_power_on {
             self.wait(600);
             self.steps.extend(setup::settings(self.rng, self.robot));
             if self.rng.bool() {
@@ -174,7 +174,7 @@ impl<'a> Script<'a> {
                 self.wait_up_to(2_000);
             }
             Activity::Saving => self.start_saving(),
-            Activity::Starting => self.start_program(at_power_on),
+            Activity::Starting => self.start_program(is_at_power_on),
             Activity::Talking => self.start_talking(),
             Activity::Patrolling => self.start_patrol(),
             Activity::Driving => self.start_drive(),
@@ -213,12 +213,12 @@ impl<'a> Script<'a> {
                 _ => {}
             }
             self.wait_up_to(700);
-            let start = if self.rng.u8(0..3) == 0 {
+            let start_step = if self.rng.u8(0..3) == 0 {
                 Step::PowerCycle
             } else {
                 Step::Reset
             };
-            self.steps.push(start);
+            self.steps.push(start_step);
         }
         let ms = *self.rng.choice(&[5, 100, 500]).unwrap_or(&5);
         self.wait_up_to(ms);
@@ -343,26 +343,26 @@ impl<'a> Script<'a> {
     /// and asks for the status after each of them.
     fn add_aftermath(&mut self) {
         // In one case of four, waits long enough for the LED's fault pattern and for the gait that `boot` sets.
-        let linger = if self.rng.u8(0..4) == 0 {
+        let wait_ms = if self.rng.u8(0..4) == 0 {
             5_500
         } else {
             self.rng.u64(350..800)
         };
-        self.wait(linger);
+        self.wait(wait_ms);
         // Ends a line that a reset or the end of a link has cut off, and makes it invalid.
         self.send("!");
         self.wait(150);
         self.steps.push(Step::Find);
         self.say("status");
-        let refused = [
+        let refused_lines = [
             REFUSED_POSE,
             "trim 1 90",
             "speed 5",
             "nonsense",
             "limit 2 1 2",
         ];
-        let refused = *self.rng.choice(&refused).unwrap_or(&"nonsense");
-        self.say(refused);
+        let refused_line = *self.rng.choice(&refused_lines).unwrap_or(&"nonsense");
+        self.say(refused_line);
         self.say("status");
         // A supply that has recovered counts as good only after a second.
         if self

@@ -14,9 +14,9 @@ const MS: u64 = CYCLES_PER_MS;
 pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
     let servos = robot.servos();
     let angles: Vec<String> = (0..4)
-        .map(|n| {
+        .map(|index| {
             let sweep = f64::from(rng.i32(-900..900)) / 100.0;
-            format!("{:.2}", (servos[n].neutral + sweep).rem_euclid(360.0))
+            format!("{:.2}", (servos[index].neutral + sweep).rem_euclid(360.0))
         })
         .collect();
     format!("pose {}", angles.join(" "))
@@ -34,7 +34,7 @@ fn say(line: impl Into<String>) -> Step {
 }
 
 /// Returns the command that limits a servo's travel to this many degrees on either side of neutral.
-fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
+fn limit_command(servo: usize, degrees: f64, robot: &Robot) -> String {
     let neutral = robot.servos()[servo].neutral;
     let [low, high] = [-degrees, degrees].map(|sweep| (neutral + sweep).rem_euclid(360.0));
     format!("limit {} {low:.2} {high:.2}", servo + 1)
@@ -68,8 +68,8 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         // Saved settings.
         3 => vec![say(trim(rng)), wait(150), say("save")],
         4 => {
-            let boot = if rng.bool() { "walk" } else { PATROL };
-            vec![say(format!("boot {boot}")), say("save")]
+            let boot_gait = if rng.bool() { "walk" } else { PATROL };
+            vec![say(format!("boot {boot_gait}")), say("save")]
         }
         5 => vec![say("boot rest"), say("save")],
         6 => vec![say(format!("deadman {}", rng.u16(100..2_000)))],
@@ -78,13 +78,13 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
             let servo = rng.usize(0..4);
             // The gaits need 23 degrees of travel; beyond 23.9 degrees a leg's margin is too small.
             let degrees = 23.2;
-            let narrow = travel(servo, degrees, robot);
+            let limit_line = limit_command(servo, degrees, robot);
             let neutral = robot.servos().map(|servo| servo.neutral);
             let mut pose = neutral;
             pose[servo] = (pose[servo] + if rng.bool() { 23.7 } else { -23.7 }).rem_euclid(360.0);
             let pose = pose.map(|angle| format!("{angle:.2}")).join(" ");
             vec![
-                say(narrow),
+                say(limit_line),
                 say("save"),
                 say("factory"),
                 wait(200),

@@ -31,10 +31,10 @@ const FALLEN_MV: f64 = 2_400.0;
 const BROWN_OUT_MV: f64 = 2_725.0;
 
 /// Cycles of a byte sent to the board at 115 200 baud.
-const BYTE: u64 = 1_389;
+const BYTE_CYCLES: u64 = 1_389;
 
 /// Cycles after the start of its last pulse for which a servo counts as having pulses.
-const RECENT: u64 = 25 * CYCLES_PER_MS;
+const RECENT_CYCLES: u64 = 25 * CYCLES_PER_MS;
 
 /// The state while a scenario is played: the board, the person who drives it by radio, if any, and the record so far.
 struct Stage<'a> {
@@ -125,9 +125,9 @@ impl Stage<'_> {
             Step::Contact(pin, is_closed) => self.uno.set_contact(Pin::arduino(*pin), *is_closed),
             Step::Find => self.ask_until_answered(),
             Step::Noise(cycles) => self.add_noise(*cycles),
-            Step::Weak(on) => {
-                self.is_weak = *on;
-                if !on {
+            Step::Weak(is_weak) => {
+                self.is_weak = *is_weak;
+                if !is_weak {
                     self.set_supply(GOOD_MV);
                 }
             }
@@ -147,11 +147,14 @@ impl Stage<'_> {
     /// Sends `status` until the robot answers, at most [`MAX_QUESTIONS`] times.
     fn ask_until_answered(&mut self) {
         for _ in 0..MAX_QUESTIONS {
-            let from = self.record.lines.len();
+            let first_line = self.record.lines.len();
             self.send("status");
             self.run_to(self.uno.cycle() + TIMEOUT_MS * CYCLES_PER_MS);
-            let new = &self.record.lines[from..];
-            if new.iter().any(|line| line.text.starts_with("ok gait=")) {
+            let new_lines = &self.record.lines[first_line..];
+            if new_lines
+                .iter()
+                .any(|line| line.text.starts_with("ok gait="))
+            {
                 return;
             }
         }
@@ -160,11 +163,11 @@ impl Stage<'_> {
     /// Sends random bytes to the board: in half of the cases as many as the line can carry in `cycles`, else at most
     /// a twentieth of them.
     fn add_noise(&mut self, cycles: u64) {
-        let largest = cycles / BYTE;
+        let max_count = cycles / BYTE_CYCLES;
         let count = if self.noise.bool() {
-            largest
+            max_count
         } else {
-            self.noise.u64(..=largest / 20)
+            self.noise.u64(..=max_count / 20)
         };
         for _ in 0..count {
             let byte = match self.noise.u8(..4) {
@@ -184,14 +187,14 @@ impl Stage<'_> {
     fn say(&mut self, line: &str) -> Option<String> {
         let asked = self.uno.cycle();
         self.record_events();
-        let from = self.record.lines.len();
+        let first_line = self.record.lines.len();
         self.send(line);
         let mut answer = None;
-        let end = asked + TIMEOUT_MS * CYCLES_PER_MS;
-        while answer.is_none() && self.uno.cycle() < end && self.is_alive() {
+        let end_cycle = asked + TIMEOUT_MS * CYCLES_PER_MS;
+        while answer.is_none() && self.uno.cycle() < end_cycle && self.is_alive() {
             self.run_to(self.uno.cycle() + CYCLES_PER_MS);
-            let new = &self.record.lines[from..];
-            answer = new.iter().find(|line| line.is_answer()).cloned();
+            let new_lines = &self.record.lines[first_line..];
+            answer = new_lines.iter().find(|line| line.is_answer()).cloned();
         }
         let text = answer.as_ref().map(|line| line.text.clone());
         self.record.exchanges.push(Exchange {
@@ -213,7 +216,7 @@ impl Stage<'_> {
             .record
             .supply
             .last()
-            .is_some_and(|(_, before)| *before == mv)
+            .is_some_and(|(_, previous_mv)| *previous_mv == mv)
         {
             return;
         }
@@ -226,20 +229,20 @@ impl Stage<'_> {
 
     /// Runs until a cycle. A stall ends with a reset, a weak supply reacts to the pulses, and a drive passes bytes
     /// on, so the run is divided into pieces of a millisecond during a stall, a weak supply or a drive.
-    fn run_to(&mut self, until: u64) {
-        while self.uno.cycle() < until && self.is_alive() {
+    fn run_to(&mut self, end_cycle: u64) {
+        while self.uno.cycle() < end_cycle && self.is_alive() {
             let now = self.uno.cycle();
-            let stalled = self
+            let is_stalled = self
                 .record
                 .stalls
                 .last()
                 .is_some_and(|stall| stall.end > now);
-            let piece = if stalled || self.is_weak || self.drive.is_some() {
+            let step_cycles = if is_stalled || self.is_weak || self.drive.is_some() {
                 CYCLES_PER_MS
             } else {
-                until - now
+                end_cycle - now
             };
-            self.uno.run_until_cycle(until.min(now + piece));
+            self.uno.run_until_cycle(end_cycle.min(now + step_cycles));
             self.record_events();
         }
     }
@@ -255,11 +258,11 @@ impl Stage<'_> {
         }
         let edges = self.uno.take_edges();
         for (latest, pin) in self.latest.iter_mut().zip(self.pins) {
-            let rises = |edge: &&Edge| edge.high && edge.pin == pin;
+            let is_rise = |edge: &&Edge| edge.high && edge.pin == pin;
             *latest = edges
                 .iter()
                 .rev()
-                .find(rises)
+                .find(is_rise)
                 .map(|edge| edge.cycle)
                 .or(*latest);
         }
@@ -274,14 +277,18 @@ impl Stage<'_> {
             }
         }
         if self.is_weak {
-            let since = self.uno.cycle().saturating_sub(RECENT);
-            let awake = self
+            let recent_start = self.uno.cycle().saturating_sub(RECENT_CYCLES);
+            let active_servos = self
                 .latest
                 .iter()
                 .flatten()
-                .filter(|at| **at >= since)
+                .filter(|cycle| **cycle >= recent_start)
                 .count();
-            self.set_supply(if awake >= 3 { FALLEN_MV } else { GOOD_MV });
+            self.set_supply(if active_servos >= 3 {
+                FALLEN_MV
+            } else {
+                GOOD_MV
+            });
         }
     }
 
@@ -299,11 +306,11 @@ impl Stage<'_> {
                 b'\r' | b'\n' => {
                     record
                         .received
-                        .push(received(&text, byte.cycle, self.robot));
+                        .push(record_of_line(&text, byte.cycle, self.robot));
                     text.clear();
                 }
                 0x08 | 0x7f => _ = text.pop_if(|last| last.is_ascii()),
-                other => text.push(other),
+                value => text.push(value),
             }
         }
         record.find_pulses(self.pins);
@@ -312,7 +319,7 @@ impl Stage<'_> {
 }
 
 /// Makes the record of a received line from its bytes and the cycle at which its line end arrived.
-fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
+fn record_of_line(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
     let is_whole = bytes.len() <= MAX_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
@@ -331,9 +338,9 @@ fn effect_of_tail(line: &str, robot: &Robot) -> Effect {
     if parse(line.as_bytes(), robot).is_ok() {
         return effect(line, robot);
     }
-    let ends = line
+    let suffix_effects = line
         .char_indices()
-        .map(|(at, _)| effect(&line[at..], robot));
-    let mut some = ends.filter(|effect| *effect != Effect::None);
-    some.next().unwrap_or(Effect::None)
+        .map(|(index, _)| effect(&line[index..], robot));
+    let mut effects = suffix_effects.filter(|effect| *effect != Effect::None);
+    effects.next().unwrap_or(Effect::None)
 }

@@ -10,23 +10,23 @@ const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
 const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
 
-fn elf(path: &str) -> Uno {
+fn load_elf(path: &str) -> Uno {
     Uno::load(root().join(path), Fidelity::DataSheet)
         .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
 }
 
 /// Loads the sketch of this name, an example of the library or a sketch of the tests.
-fn sketch(name: &str) -> Uno {
-    elf(&format!("target/arduino/{name}/{name}.ino.elf"))
+fn load_sketch(name: &str) -> Uno {
+    load_elf(&format!("target/arduino/{name}/{name}.ino.elf"))
 }
 
 /// Returns every edge of the servos' pins, each with the number of cycles since the first edge.
 fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
     let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
-    let first = edges.first().expect("there are edges").cycle;
-    let since = |edge: &Edge| (edge.cycle - first, edge.pin, edge.high);
-    edges.iter().map(since).collect()
+    let first_cycle = edges.first().expect("there are edges").cycle;
+    let relative_edge_of = |edge: &Edge| (edge.cycle - first_cycle, edge.pin, edge.high);
+    edges.iter().map(relative_edge_of).collect()
 }
 
 /// Returns the widths of each pin's pulses in 10 s, cycles, while the sketch echoes a gapless stream of bytes.
@@ -37,15 +37,15 @@ fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.flood(FLOOD);
     uno.run_ms(10_000);
     assert_eq!(*uno.state(), State::Alive);
-    let echoed = uno.transmitted().len();
-    assert!(echoed > 100_000, "{echoed} bytes echoed");
-    let widths = |pin: &u8| {
+    let echoed_count = uno.transmitted().len();
+    assert!(echoed_count > 100_000, "{echoed_count} bytes echoed");
+    let widths_of = |pin: &u8| {
         uno.pulses(Pin::arduino(*pin))
             .iter()
             .map(|pulse| pulse.width)
             .collect()
     };
-    pins.iter().map(widths).collect()
+    pins.iter().map(widths_of).collect()
 }
 
 /// Returns the difference between the longest and the shortest width, cycles.
@@ -61,28 +61,31 @@ fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
         Fidelity::DataSheet,
     )
     .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
-    let mut cpp = sketch("EightServos");
+    let mut cpp = load_sketch("EightServos");
     for uno in [&mut rust, &mut cpp] {
         uno.run_ms(20_000);
     }
     let [expected, edges] = [&rust, &cpp].map(edges_since_the_first);
     let frames = 20_000 * CYCLES_PER_MS / u64::from(frame_cycles(8));
-    let common = expected.len().min(edges.len());
-    assert!(common as u64 >= (frames - 3) * 16, "{common} edges");
-    let differs = (0..common).find(|at| edges[*at] != expected[*at]);
-    let pair = differs.map(|at| (at, edges[at], expected[at]));
+    let common_count = expected.len().min(edges.len());
+    assert!(
+        common_count as u64 >= (frames - 3) * 16,
+        "{common_count} edges"
+    );
+    let first_difference = (0..common_count).find(|index| edges[*index] != expected[*index]);
+    let pair = first_difference.map(|index| (index, edges[index], expected[index]));
     assert_eq!(pair, None, "the first edge that differs, C++ and Rust");
 }
 
 #[test]
 fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
-    let mut uno = sketch("BesideSerial");
+    let mut uno = load_sketch("BesideSerial");
     // 90 degrees in a range from 544 to 2400 us.
     let width = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
     for widths in widths_in_a_flood(&mut uno, &PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
-            widths.iter().all(|one| *one == width),
+            widths.iter().all(|actual| *actual == width),
             "not {width}: {widths:?}"
         );
     }
@@ -107,8 +110,8 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
 fn cycles_in_handlers(uno: &Uno) -> u64 {
     let handlers = uno.interrupts().into_iter();
     let cycles = handlers
-        .filter(|one| [11, 12].contains(&one.vector))
-        .map(|one| one.cycles);
+        .filter(|handler| [11, 12].contains(&handler.vector))
+        .map(|handler| handler.cycles);
     cycles.sum::<u64>() * FREQUENCY / uno.cycle()
 }
 
@@ -116,23 +119,27 @@ fn cycles_in_handlers(uno: &Uno) -> u64 {
 #[ignore = "needs Arduino's Servo library: make arduino-test SERVO=folder"]
 fn the_servo_library_trembles_in_the_same_flood() {
     for (name, jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
-        let mut uno = sketch(name);
+        let mut uno = load_sketch(name);
         let widths = widths_in_a_flood(&mut uno, &PINS);
-        let found: Vec<u64> = widths.iter().map(|widths| jitter(widths)).collect();
+        let measured_jitters: Vec<u64> = widths.iter().map(|widths| jitter(widths)).collect();
         let image = uno.image();
         println!(
-            "{name}: jitter {found:?} cycles, {} bytes of flash, {} of RAM, {} cycles a second",
+            "{name}: jitter {measured_jitters:?} cycles, {} bytes of flash, {} of RAM, {} cycles a second",
             image.flash_used(),
             image.static_ram(),
             cycles_in_handlers(&uno)
         );
-        assert!(found.iter().all(|jitter| jitters.contains(jitter)));
+        assert!(
+            measured_jitters
+                .iter()
+                .all(|jitter| jitters.contains(jitter))
+        );
     }
 }
 
 #[test]
 fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
-    let mut uno = sketch("Late");
+    let mut uno = load_sketch("Late");
     uno.run_ms(10_000);
     let pulses = uno.pulses(Pin::d(9));
     // Interrupts are enabled for half of the time.
@@ -153,24 +160,33 @@ fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
 
 #[test]
 fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
-    let mut uno = sketch("Restless");
+    let mut uno = load_sketch("Restless");
     let widths = widths_in_a_flood(&mut uno, &[9, 14]);
-    let [written, attached] = &widths[..] else {
+    let [written_widths, attached_widths] = &widths[..] else {
         unreachable!()
     };
     for width in [0x5dff, 0x5e00] {
-        let times = written.iter().filter(|one| **one == width).count();
+        let times = written_widths
+            .iter()
+            .filter(|actual| **actual == width)
+            .count();
         assert!(times > 20, "{width} {times} times");
     }
-    let torn = written.iter().find(|one| ![0x5dff, 0x5e00].contains(*one));
-    assert_eq!(torn, None);
-    assert!(attached.len() > 20, "{} pulses", attached.len());
-    assert_eq!(attached.iter().find(|one| **one != 24_000), None);
+    let torn_width = written_widths
+        .iter()
+        .find(|width| ![0x5dff, 0x5e00].contains(*width));
+    assert_eq!(torn_width, None);
+    assert!(
+        attached_widths.len() > 20,
+        "{} pulses",
+        attached_widths.len()
+    );
+    assert_eq!(attached_widths.iter().find(|width| **width != 24_000), None);
 }
 
 #[test]
 fn angles_and_widths_are_those_of_the_servo_library() {
-    let mut uno = sketch("Ask");
+    let mut uno = load_sketch("Ask");
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
     let numbers = uno.take_transmitted();
     let numbers: Vec<u8> = numbers.iter().map(|byte| byte.byte).collect();

@@ -49,40 +49,43 @@ impl Desk {
     }
 
     /// Runs the board until the condition holds. Returns false if the condition does not hold within the time limit.
-    pub fn run_until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
+    pub fn run_until(&mut self, mut condition: impl FnMut(&mut Uno) -> bool) -> bool {
         LIMIT.wait_for(|| {
             let step = Duration::from_millis(10);
             self.port
                 .serve(&mut self.uno, step)
                 .expect("the port works");
             self.edges.extend(self.uno.take_edges());
-            done(&mut self.uno)
+            condition(&mut self.uno)
         })
     }
 
     /// Runs the board until `text` is on the screen. Fails if the text does not appear within the time limit.
     pub fn wait_for_text(&mut self, shell: &Shell, text: &str) {
-        let seen = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
+        let was_seen = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = if shell.has_ended() {
             shell.last_screen()
         } else {
             shell.screen()
         };
         assert!(
-            seen && screen.contains(text),
+            was_seen && screen.contains(text),
             "waited up to {LIMIT} for {text:?} in\n{screen}"
         );
     }
 
     /// Runs the board until the program in the shell has ended. Returns the screen.
     pub fn run_until_exit(&mut self, shell: &Shell) -> String {
-        let ended = self.run_until(|_| shell.has_ended());
-        let screen = if ended {
+        let has_ended = self.run_until(|_| shell.has_ended());
+        let screen = if has_ended {
             shell.last_screen()
         } else {
             shell.screen()
         };
-        assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+        assert!(
+            has_ended,
+            "waited {LIMIT} for the end of the upload:\n{screen}"
+        );
         screen
     }
 
@@ -90,16 +93,20 @@ impl Desk {
     pub fn differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
         (0..BOOT_LOADER_START)
-            .filter(|&at| flash[at] != program[at])
+            .filter(|&address| flash[address] != program[address])
             .collect()
     }
 
     /// Checks that the flash contains this program and an unchanged boot loader.
     pub fn assert_written(&self, program: &[u8]) {
-        let wrong = self.differences(program);
-        assert!(wrong.is_empty(), "the flash differs at {wrong:x?}");
-        let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
-        let is_whole = self.uno.flash()[BOOT_LOADER_START..] == new.flash()[BOOT_LOADER_START..];
+        let wrong_addresses = self.differences(program);
+        assert!(
+            wrong_addresses.is_empty(),
+            "the flash differs at {wrong_addresses:x?}"
+        );
+        let new_uno = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
+        let is_whole =
+            self.uno.flash()[BOOT_LOADER_START..] == new_uno.flash()[BOOT_LOADER_START..];
         assert!(is_whole, "the boot loader has changed");
     }
 }

@@ -13,29 +13,29 @@ use crate::rate::ask_until_answered;
 use crate::{boot_standing, end_flood, lines};
 
 /// Bytes that the serial line carries in a second.
-const PER_SECOND: usize = 11_520;
+const BYTES_PER_SECOND: usize = 11_520;
 
 /// The duration of each flood, s.
-const SECONDS: u64 = 15;
+const FLOOD_SECONDS: u64 = 15;
 
 /// Sends bytes for the duration of a flood, and checks the pulses every second.
-fn send_and_check(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
+fn send_and_check(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
-    for second in 0..lizard_host_tests::scaled(SECONDS) {
-        let mut sent = Vec::new();
-        while sent.len() < PER_SECOND {
-            sent.extend(bytes(&mut rng));
+    for second in 0..lizard_host_tests::scaled(FLOOD_SECONDS) {
+        let mut sent_bytes = Vec::new();
+        while sent_bytes.len() < BYTES_PER_SECOND {
+            sent_bytes.extend(next_bytes(&mut rng));
         }
-        bench.uno.send(&sent);
+        bench.uno.send(&sent_bytes);
         bench.run_ms(1000);
         for (pulses, servo) in recorded_pulses(&bench).iter().zip(robot().servos()) {
-            let cycles = |us: f64| (us * 16.0).round() as u64;
-            let within = cycles(servo.min_us) - 2..=cycles(servo.max_us) + 2;
+            let cycles_of_us = |us: f64| (us * 16.0).round() as u64;
+            let allowed_cycles = cycles_of_us(servo.min_us) - 2..=cycles_of_us(servo.max_us) + 2;
             for pulse in pulses {
                 assert!(
-                    within.contains(&pulse.width),
+                    allowed_cycles.contains(&pulse.width),
                     "{pulse:?} in second {second}"
                 );
             }
@@ -70,15 +70,17 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));
     let operations = bench.uno.eeprom_operations();
     println!("{} operations of the EEPROM", operations.len());
-    let apart = operations.windows(2).map(|two| two[1].cycle - two[0].cycle);
-    assert!(apart.min().is_none_or(|apart| apart > 3 * 16_000));
+    let distances = operations
+        .windows(2)
+        .map(|pair| pair[1].cycle - pair[0].cycle);
+    assert!(distances.min().is_none_or(|distance| distance > 3 * 16_000));
 }
 
 #[test]
 fn random_bytes_at_full_rate_do_no_harm_to_the_running_image() {
     let bench = send_and_check(|rng| {
-        let byte = |rng: &mut Rng| if rng.u8(..24) == 0 { b'\n' } else { rng.u8(..) };
-        (0..256).map(|_| byte(rng)).collect()
+        let random_byte = |rng: &mut Rng| if rng.u8(..24) == 0 { b'\n' } else { rng.u8(..) };
+        (0..256).map(|_| random_byte(rng)).collect()
     });
     assert_unharmed(bench);
 }

@@ -69,11 +69,11 @@ fn frames_hold_one_pulse_of_each_servo() {
     let mut frames = bench.run_for_frames(10);
     frames.extend(bench.run_for_frames(5));
     assert_eq!(frames.len(), 15);
-    let first = frames[0].widths();
+    let first_widths = frames[0].widths();
     for (n, frame) in frames.iter().enumerate() {
         for (servo, width) in frame.widths().into_iter().enumerate() {
             // One microsecond per frame, 200 us per servo; the loops react within 40 cycles.
-            let expected = first[0] + 16 * n as u64 + 3200 * servo as u64;
+            let expected = first_widths[0] + 16 * n as u64 + 3200 * servo as u64;
             assert!(
                 width.abs_diff(expected) <= 40,
                 "frame {n} servo {servo}: {width}"

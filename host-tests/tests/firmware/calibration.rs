@@ -24,9 +24,12 @@ fn gain() -> f64 {
     robot().servos()[0].us_per_degree
 }
 
-fn assert_near(width: u64, expected: u64, what: &str) {
+fn assert_near(width: u64, expected: u64, message: &str) {
     // An angle has steps of 0.0055 deg and is typed with two decimals.
-    assert!(width.abs_diff(expected) <= 4, "{what}: {width}, {expected}");
+    assert!(
+        width.abs_diff(expected) <= 4,
+        "{message}: {width}, {expected}"
+    );
 }
 
 #[test]
@@ -51,8 +54,12 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
                 || trim < 10,
             "as fast as it may"
         );
-        let last = pulses[0].last().expect("a pulse").width;
-        assert_near(last, calibrated_width(trim.into(), gain(), 0.0), "trimmed");
+        let last_width = pulses[0].last().expect("a pulse").width;
+        assert_near(
+            last_width,
+            calibrated_width(trim.into(), gain(), 0.0),
+            "trimmed",
+        );
         for (pulses, neutral) in pulses.iter().zip(neutral_widths()).skip(1) {
             assert!(pulses.iter().all(|pulse| pulse.width == neutral));
         }
@@ -65,7 +72,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
 fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
-        let size = gain().abs();
+        let gain_size = gain().abs();
         bench.say(&pose_command([5.0, 0.0, 0.0, 0.0]));
         bench.run_ms(1000);
         assert_near(
@@ -73,26 +80,30 @@ fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
             calibrated_width(0.0, gain(), 5.0),
             "before",
         );
-        let scale = size + 1.25;
+        let scale = gain_size + 1.25;
         assert_eq!(
             bench.say(&format!("scale 1 {scale:.2}")),
             format!("ok scale 1 {scale:.2}")
         );
         bench.run_ms(500);
-        let turned = calibrated_width(0.0, scale.copysign(gain()), 5.0);
-        assert_near(measure_widths(&mut bench)[0], turned, "scaled");
-        let other = if gain() > 0.0 { '-' } else { '+' };
+        let expected_width = calibrated_width(0.0, scale.copysign(gain()), 5.0);
+        assert_near(measure_widths(&mut bench)[0], expected_width, "scaled");
+        let other_direction = if gain() > 0.0 { '-' } else { '+' };
         assert_eq!(
-            bench.say(&format!("dir 1 {other}")),
-            format!("ok dir 1 {other}")
+            bench.say(&format!("dir 1 {other_direction}")),
+            format!("ok dir 1 {other_direction}")
         );
         bench.uno.take_edges();
         bench.run_ms(500);
         let mut gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
         gains[0] = scale;
         assert_no_leap_at(&recorded_pulses(&bench), gains);
-        let turned = calibrated_width(0.0, -scale.copysign(gain()), 5.0);
-        assert_near(measure_widths(&mut bench)[0], turned, "the other way");
+        let expected_width = calibrated_width(0.0, -scale.copysign(gain()), 5.0);
+        assert_near(
+            measure_widths(&mut bench)[0],
+            expected_width,
+            "the other way",
+        );
     });
 }
 
@@ -100,17 +111,21 @@ fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
 fn a_limit_ends_the_travel_of_poses_and_may_not_cut_off_a_gait() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let neutral = robot().servos()[0].neutral;
-    let before = read_calibration(&mut bench);
-    let too_narrow = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
+    let calibration_before = read_calibration(&mut bench);
+    let too_narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
     if robot().gaits().iter().any(|gait| gait.moves()) {
-        let refused = bench.say(&too_narrow);
-        assert!(refused.starts_with("err 3 "), "{refused}");
-        assert_eq!(read_calibration(&mut bench), before, "nothing has changed");
+        let refusal = bench.say(&too_narrow_line);
+        assert!(refusal.starts_with("err 3 "), "{refusal}");
+        assert_eq!(
+            read_calibration(&mut bench),
+            calibration_before,
+            "nothing has changed"
+        );
     }
-    let narrow = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
-    assert_eq!(bench.say(&narrow), format!("ok {narrow}"));
-    let beyond = bench.say(&pose_command([41.0, 0.0, 0.0, 0.0]));
-    assert!(beyond.starts_with("err 3 "), "{beyond}");
+    let narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
+    assert_eq!(bench.say(&narrow_line), format!("ok {narrow_line}"));
+    let refusal = bench.say(&pose_command([41.0, 0.0, 0.0, 0.0]));
+    assert!(refusal.starts_with("err 3 "), "{refusal}");
 }
 
 #[test]
@@ -120,7 +135,7 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
         bench.say("trim 1 1.5");
         bench.say("trim 3 -2");
         bench.say("deadman 2500");
-        let set = read_calibration(&mut bench);
+        let calibration = read_calibration(&mut bench);
         assert_eq!(bench.say("save"), "ok save");
         bench.run_ms(500);
         let widths = measure_widths(&mut bench);
@@ -131,7 +146,7 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
         for (pulses, width) in recorded_pulses(&bench).iter().zip(widths) {
             assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
         }
-        assert_eq!(read_calibration(&mut bench), set);
+        assert_eq!(read_calibration(&mut bench), calibration);
         let notes = bench.lines();
         assert!(
             !notes[notes.len() - 12..]
@@ -145,16 +160,16 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
 #[test]
 fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
     let mut bench = boot_standing(Fidelity::DataSheet);
-    let factory = read_calibration(&mut bench);
-    let refused = bench.say("load");
-    assert!(refused.starts_with("err 9 "), "{refused}");
+    let factory_calibration = read_calibration(&mut bench);
+    let refusal = bench.say("load");
+    assert!(refusal.starts_with("err 9 "), "{refusal}");
     bench.say("trim 1 1");
-    let saved = read_calibration(&mut bench);
+    let saved_calibration = read_calibration(&mut bench);
     assert_eq!(bench.say("save"), "ok save");
     bench.say("trim 1 -1");
-    assert_ne!(read_calibration(&mut bench), saved);
+    assert_ne!(read_calibration(&mut bench), saved_calibration);
     assert_eq!(bench.say("load"), "ok load");
-    assert_eq!(read_calibration(&mut bench), saved);
+    assert_eq!(read_calibration(&mut bench), saved_calibration);
     bench.run_ms(500);
     assert_near(
         measure_widths(&mut bench)[0],
@@ -162,13 +177,13 @@ fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
         "loaded",
     );
     assert_eq!(bench.say("factory"), "ok factory");
-    assert_eq!(read_calibration(&mut bench), factory);
+    assert_eq!(read_calibration(&mut bench), factory_calibration);
     bench.run_ms(500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
     power_cycle(&mut bench);
     assert_eq!(
         read_calibration(&mut bench),
-        saved,
+        saved_calibration,
         "factory alone saves nothing"
     );
 }
@@ -213,7 +228,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         let mut walk = ReferenceRun::start_walking(fidelity);
         walk.bench.say("deadman 54321");
         let start = walk.next_frame();
-        let written = walk.bench.uno.eeprom_operations().len();
+        let operations_before = walk.bench.uno.eeprom_operations().len();
         walk.bench.send("save");
         // The serial line stays busy, since the main loop reads no byte until it has saved.
         for _ in 0..14 {
@@ -223,12 +238,12 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         walk.run_to(start + 40 * FRAME - SLOT_CYCLES / 2);
         let frames = walk.frames_since(start);
         assert!(frames.len() >= 40);
-        for (frame, asked) in frames {
-            assert_eq!(frame.all_widths(), Some(asked), "{frame:?}");
+        for (frame, expected) in frames {
+            assert_eq!(frame.all_widths(), Some(expected), "{frame:?}");
         }
         assert_eq!(walk.late_edge_count(), 0);
         if walk.is_by_the_data_sheet() {
-            assert!(walk.bench.uno.eeprom_operations().len() > written + 40);
+            assert!(walk.bench.uno.eeprom_operations().len() > operations_before + 40);
         }
     });
 }
@@ -244,14 +259,14 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
         );
         assert_eq!(bench.say("save"), "ok save");
         power_cycle(&mut bench);
-        let stood = run_for_pulses(&mut bench, 2900);
+        let standing_pulses = run_for_pulses(&mut bench, 2900);
         let neutral = neutral_widths();
-        for (pulses, width) in stood.iter().zip(neutral) {
+        for (pulses, width) in standing_pulses.iter().zip(neutral) {
             assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
         }
         bench.run_ms(300);
-        let printed = bench.lines().last().expect("a note").text.clone();
-        assert_eq!(printed, format!("# boot: {gait}"));
+        let last_line = bench.lines().last().expect("a note").text.clone();
+        assert_eq!(last_line, format!("# boot: {gait}"));
         assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
         power_cycle(&mut bench);
         bench.run_ms(2000);
@@ -275,17 +290,17 @@ fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
 fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
-        let rested = order_nearby_pose(&mut bench);
+        let rest_widths = order_nearby_pose(&mut bench);
         assert_eq!(bench.say("rest"), "ok rest");
         bench.run_ms(400);
         power_cycle(&mut bench);
         bench.run_ms(1500);
         let pulses = recorded_pulses(&bench);
         for servo in 0..4 {
-            assert_eq!(pulses[servo][0].width, rested[servo]);
+            assert_eq!(pulses[servo][0].width, rest_widths[servo]);
             if servo > 0 {
-                let apart = pulses[servo][0].start - pulses[servo - 1][0].start;
-                assert_eq!(apart, 5 * FRAME + SLOT_CYCLES, "a tenth of a second");
+                let distance = pulses[servo][0].start - pulses[servo - 1][0].start;
+                assert_eq!(distance, 5 * FRAME + SLOT_CYCLES, "a tenth of a second");
             }
         }
         assert_no_leap(&pulses);
@@ -297,29 +312,29 @@ fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
         // The robot has moved since, so its resting pose is no longer valid.
         power_cycle(&mut bench);
         bench.run_ms(300);
-        let first = bench.uno.pulses(bench.pins()[0])[0].width;
-        assert_eq!(first, neutral_widths()[0]);
+        let first_width = bench.uno.pulses(bench.pins()[0])[0].width;
+        assert_eq!(first_width, neutral_widths()[0]);
     });
 }
 
 #[test]
 fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
     let mut bench = boot_standing(Fidelity::DataSheet);
-    let blank = bench.uno.eeprom();
-    let rested = order_nearby_pose(&mut bench);
-    let before = bench.uno.eeprom_operations().len();
+    let blank_eeprom = bench.uno.eeprom();
+    let rest_widths = order_nearby_pose(&mut bench);
+    let operations_before = bench.uno.eeprom_operations().len();
     bench.say("rest");
     bench.run_ms(400);
-    let count = bench.uno.eeprom_operations().len() - before;
+    let count = bench.uno.eeprom_operations().len() - operations_before;
     assert!(count > 10, "{count}");
     let mut poses = [0, 0];
     for operation in 0..count as u64 {
-        for (ones, in_write) in [(0, true), (0x5a, true), (0x33, false)] {
-            bench.uno.set_eeprom(&blank);
+        for (ones, is_in_write) in [(0, true), (0x5a, true), (0x33, false)] {
+            bench.uno.set_eeprom(&blank_eeprom);
             power_cycle(&mut bench);
             bench.run_ms(500);
             order_nearby_pose(&mut bench);
-            let cut = if in_write {
+            let cut = if is_in_write {
                 PowerCut::InWrite(operation)
             } else {
                 PowerCut::InErase(operation)
@@ -330,12 +345,12 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
             assert_eq!(*bench.uno.state(), State::Off);
             power_cycle(&mut bench);
             bench.run_ms(600);
-            let first = recorded_pulses(&bench).map(|pulses| pulses[0].width);
+            let first_widths = recorded_pulses(&bench).map(|pulses| pulses[0].width);
             assert!(
-                first == rested || first == neutral_widths(),
-                "byte {operation}, {ones:02x}: {first:?}"
+                first_widths == rest_widths || first_widths == neutral_widths(),
+                "byte {operation}, {ones:02x}: {first_widths:?}"
             );
-            poses[usize::from(first == rested)] += 1;
+            poses[usize::from(first_widths == rest_widths)] += 1;
         }
     }
     assert!(poses[0] > poses[1] && poses[1] > 0, "{poses:?}");

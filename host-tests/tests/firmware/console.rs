@@ -36,11 +36,11 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
     run_in_both_simulations(|fidelity| {
         for end in ["\r", "\n", "\r\n"] {
             let mut bench = boot_standing(fidelity);
-            let before = bench.lines().len();
+            let line_count_before = bench.lines().len();
             let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
             bench.uno.send(text.as_bytes());
             bench.run_ms(300);
-            let lines: Vec<&str> = bench.lines()[before..]
+            let lines: Vec<&str> = bench.lines()[line_count_before..]
                 .iter()
                 .map(|line| line.text.as_str())
                 .collect();
@@ -59,10 +59,10 @@ fn case_and_blanks_do_not_matter() {
     let mut gaits = gait_commands();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("stand at least");
-    let typed = gait.to_uppercase().replacen(' ', "   \t", 1);
+    let typed_gait = gait.to_uppercase().replacen(' ', "   \t", 1);
     assert!(
-        bench.say(&format!(" {typed} ")).starts_with("ok "),
-        "{typed}"
+        bench.say(&format!(" {typed_gait} ")).starts_with("ok "),
+        "{typed_gait}"
     );
     assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
     assert!(bench.say(" speed\t50 ").starts_with("ok speed"));
@@ -72,9 +72,9 @@ fn case_and_blanks_do_not_matter() {
 #[test]
 fn a_line_may_have_63_characters_and_no_more() {
     let mut bench = boot_standing(Fidelity::DataSheet);
-    let fits = format!("stand{}", " ".repeat(58));
-    assert_eq!(bench.say(&fits), "ok stand");
-    assert!(bench.say(&format!("{fits} ")).starts_with("err 6 "));
+    let longest_line = format!("stand{}", " ".repeat(58));
+    assert_eq!(bench.say(&longest_line), "ok stand");
+    assert!(bench.say(&format!("{longest_line} ")).starts_with("err 6 "));
     assert!(bench.say(&"x".repeat(500)).starts_with("err 6 "));
     assert_eq!(bench.say("stop"), "ok stop", "the next line is a new one");
 }
@@ -83,21 +83,21 @@ fn a_line_may_have_63_characters_and_no_more() {
 /// the stroke is missing if, on this robot, each such pose also breaks a limit that the guard checks earlier.
 fn refused_poses() -> Vec<(String, u8)> {
     let mut rng = Rng::with_seed(1);
-    let mut found: [Option<String>; 3] = [None, None, None];
+    let mut poses: [Option<String>; 3] = [None, None, None];
     let servos = robot().servos();
     for n in 0..400_000 {
         // Half of the poses are closer to neutral, where fewer limits are broken at once.
-        let largest = [175.0, 90.0, 45.0, 25.0][n % 4];
-        let sweeps: [f64; 4] = std::array::from_fn(|_| largest * (2.0 * rng.f64() - 1.0));
-        let within = |by: f64| {
+        let max_sweep = [175.0, 90.0, 45.0, 25.0][n % 4];
+        let sweeps: [f64; 4] = std::array::from_fn(|_| max_sweep * (2.0 * rng.f64() - 1.0));
+        let is_within_travel = |margin_deg: f64| {
             servos.iter().zip(sweeps).all(|(servo, sweep)| {
                 let (min, max) = servo.travel();
-                min + by < sweep && sweep < max - by
+                min + margin_deg < sweep && sweep < max - margin_deg
             })
         };
-        let index = if !within(-0.1) {
+        let index = if !is_within_travel(-0.1) {
             0
-        } else if !within(0.1) {
+        } else if !is_within_travel(0.1) {
             continue;
         } else {
             let angles: [f64; 4] = std::array::from_fn(|i| servos[i].neutral + sweeps[i]);
@@ -110,12 +110,12 @@ fn refused_poses() -> Vec<(String, u8)> {
                 _ => continue,
             }
         };
-        found[index].get_or_insert_with(|| pose_command(sweeps));
-        if found.iter().all(Option::is_some) {
+        poses[index].get_or_insert_with(|| pose_command(sweeps));
+        if poses.iter().all(Option::is_some) {
             break;
         }
     }
-    let [travel, margin, stroke] = found;
+    let [travel, margin, stroke] = poses;
     let travel = travel.expect("some servo does not turn by 175 degrees either way");
     let margin = margin.expect("some pose breaks a margin");
     let stroke = stroke.map(|line| (line, 5));
@@ -130,38 +130,38 @@ fn refused_poses() -> Vec<(String, u8)> {
 /// rounding decides its code. The guard first checks the margins of both five-bars; for the guard, crossed crank tips
 /// are a type-2 margin below 0. It checks the strokes last.
 fn certain_refusal_code(solution: &Solution) -> Option<u8> {
-    let broken = |by: f64, stroke: bool| {
-        let mut all = stricter_limits(by).violations(solution);
-        all.any(|violation| Check::STROKE.contains(&violation.check) == stroke)
+    let is_broken = |strictness: f64, is_stroke: bool| {
+        let mut violations = stricter_limits(strictness).violations(solution);
+        violations.any(|violation| Check::STROKE.contains(&violation.check) == is_stroke)
     };
-    let size = robot().lizard().links.l10 / 135.0;
+    let scale = robot().lizard().links.l10 / 135.0;
     let ends = [&solution.head, &solution.tail];
-    let doubtful = ends.iter().any(|end| end.gap.x.abs() < size);
-    match (broken(-0.05, false), broken(0.05, false)) {
-        _ if doubtful => None,
+    let is_doubtful = ends.iter().any(|end| end.gap.x.abs() < scale);
+    match (is_broken(-0.05, false), is_broken(0.05, false)) {
+        _ if is_doubtful => None,
         (true, _) => Some(4),
-        (false, false) if broken(-0.05, true) => Some(5),
+        (false, false) if is_broken(-0.05, true) => Some(5),
         _ => None,
     }
 }
 
-/// Returns the robot's limits, made stricter by `by`: the sines by `by`, and the strokes by `10 * by` mm for a robot
-/// of the paper's size.
-fn stricter_limits(by: f64) -> Limits {
+/// Returns the robot's limits, made stricter: the sines by `strictness`, and the strokes by `10 * strictness` mm for
+/// a robot of the paper's size.
+fn stricter_limits(strictness: f64) -> Limits {
     let limits = robot().limits();
-    let size = robot().lizard().links.l10 / 135.0;
+    let scale = robot().lizard().links.l10 / 135.0;
     Limits {
-        type2: limits.type2 + by,
-        type1: limits.type1 + by,
-        leg: limits.leg + by,
-        stroke_min: limits.stroke_min + 10.0 * by * size,
-        stroke_max: limits.stroke_max - 10.0 * by * size,
+        type2: limits.type2 + strictness,
+        type1: limits.type1 + strictness,
+        leg: limits.leg + strictness,
+        stroke_min: limits.stroke_min + 10.0 * strictness * scale,
+        stroke_max: limits.stroke_max - 10.0 * strictness * scale,
     }
 }
 
 #[test]
 fn every_refusal_has_its_code_and_changes_nothing() {
-    let refused = [
+    let refused_lines = [
         ("gallop", 1),
         ("standing", 1),
         ("s\u{7}op", 1),
@@ -185,11 +185,11 @@ fn every_refusal_has_its_code_and_changes_nothing() {
     ];
     let poses = refused_poses();
     let poses = poses.iter().map(|(line, code)| (line.as_str(), *code));
-    let refused: Vec<(&str, u8)> = refused.into_iter().chain(poses).collect();
+    let refused_lines: Vec<(&str, u8)> = refused_lines.into_iter().chain(poses).collect();
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
-        let mut quiet = boot_and_command(&first_moving_gait(), fidelity);
-        for &(line, code) in &refused {
+        let mut quiet_bench = boot_and_command(&first_moving_gait(), fidelity);
+        for &(line, code) in &refused_lines {
             let answer = bench.say(line);
             let expected = format!("err {code} ");
             assert!(
@@ -198,16 +198,16 @@ fn every_refusal_has_its_code_and_changes_nothing() {
             );
         }
         // Both boards must have walked for the same time before they are compared.
-        for board in [&mut bench, &mut quiet] {
-            let left = 4 * FREQUENCY - board.uno.cycle();
-            board.uno.run_cycles(left);
+        for board in [&mut bench, &mut quiet_bench] {
+            let remaining_cycles = 4 * FREQUENCY - board.uno.cycle();
+            board.uno.run_cycles(remaining_cycles);
         }
         assert_eq!(
             bench.run_for_frames(2 * FRAMES_PER_SECOND),
-            quiet.run_for_frames(2 * FRAMES_PER_SECOND)
+            quiet_bench.run_for_frames(2 * FRAMES_PER_SECOND)
         );
-        let (printed, untold) = (Status::of(&mut bench), Status::of(&mut quiet));
-        assert_eq!(printed.0, untold.0);
+        let (bench_status, quiet_status) = (Status::of(&mut bench), Status::of(&mut quiet_bench));
+        assert_eq!(bench_status.0, quiet_status.0);
     });
 }
 
@@ -216,8 +216,8 @@ fn while_the_servos_rest_only_stand_moves_them() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         assert_eq!(bench.say("rest"), "ok rest");
-        let others = gait_commands().into_iter().skip(1);
-        for line in others.chain(["stop".into(), pose_command([0.0; 4])]) {
+        let other_gaits = gait_commands().into_iter().skip(1);
+        for line in other_gaits.chain(["stop".into(), pose_command([0.0; 4])]) {
             assert!(bench.say(&line).starts_with("err 7 "), "{line}");
         }
         for line in ["rest", "speed 80", "watch 0", "help", "status"] {
@@ -266,16 +266,19 @@ fn status_agrees_with_the_pulses() {
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::of(&mut bench);
-        let sent = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
+        let sent_angles = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
             .angles
             .expect("four pulses");
-        for (servo, (printed, sent)) in status.pose().into_iter().zip(sent).enumerate() {
+        for (servo, (printed, sent)) in status.pose().into_iter().zip(sent_angles).enumerate() {
             assert!(
                 (printed - sent).abs() <= MAX_PRINT_ERROR,
                 "{servo}: {printed} and {sent}"
             );
         }
-        let solution = robot().lizard().solve(&sent.into()).expect("a safe pose");
+        let solution = robot()
+            .lizard()
+            .solve(&sent_angles.into())
+            .expect("a safe pose");
         let margin = solution.margins.min().1;
         assert!((status.number("margin") - margin).abs() <= 0.0025);
         assert_eq!(status.text("gait"), "stop");
@@ -289,31 +292,31 @@ fn status_agrees_with_the_pulses() {
 fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(3000); // the move to the gait's first pose
-    let moving = first_moving_gait();
-    let gait = robot().gait(&moving).expect("a gait");
-    let mut last: Option<(u64, Status)> = None;
+    let gait_name = first_moving_gait();
+    let gait = robot().gait(&gait_name).expect("a gait");
+    let mut last_sample: Option<(u64, Status)> = None;
     for _ in 0..20 {
         bench.run_for_frames(0); // up to the start of the next frame
-        let now = (bench.uno.cycle(), Status::of(&mut bench));
-        if let Some((cycle, before)) = last {
-            let frames = (now.0 - cycle) as f64 * 50.0 / FREQUENCY as f64;
-            let counted = now.1.number("frames") - before.number("frames");
-            assert_eq!(counted, frames.round());
-            let turned = now.1.number("phase") - before.number("phase");
+        let sample = (bench.uno.cycle(), Status::of(&mut bench));
+        if let Some((cycle, status_before)) = last_sample {
+            let frames = (sample.0 - cycle) as f64 * 50.0 / FREQUENCY as f64;
+            let counted_frames = sample.1.number("frames") - status_before.number("frames");
+            assert_eq!(counted_frames, frames.round());
+            let phase_change = sample.1.number("phase") - status_before.number("phase");
             let expected = frames.round() / 50.0 / gait.period();
             let expected = if gait.is_reversed() {
                 -expected
             } else {
                 expected
             };
-            let error = (turned - expected).rem_euclid(1.0);
+            let error = (phase_change - expected).rem_euclid(1.0);
             // A phase is printed to a thousandth.
             assert!(
                 error.min(1.0 - error) <= 0.0021,
-                "{turned} in {frames} frames"
+                "{phase_change} in {frames} frames"
             );
         }
-        last = Some(now);
+        last_sample = Some(sample);
         bench.run_ms(470);
     }
 }
@@ -323,35 +326,38 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");
-        let received = bench.lines().len();
+        let line_count = bench.lines().len();
         let frames = bench.run_for_frames(75);
-        let sent = servo_frames_of(robot(), &frames);
+        let sent_frames = servo_frames_of(robot(), &frames);
         // A report after the beginning of the last frame may belong to the next one.
-        let end = frames[74].start;
-        let lines: Vec<String> = bench.lines()[received..]
+        let end_cycle = frames[74].start;
+        let lines: Vec<String> = bench.lines()[line_count..]
             .iter()
-            .filter(|line| line.cycle < end)
+            .filter(|line| line.cycle < end_cycle)
             .map(|line| line.text.clone())
             .collect();
         assert!((10..=11).contains(&lines.len()), "{lines:?}");
-        let mut last = None;
+        let mut last_frame = None;
         for line in &lines {
             let rest = line.strip_prefix("# t=").expect("a report");
-            let (time, pose) = rest.split_once(" pose=").expect("a pose");
-            let time: u64 = time.parse().expect("a frame");
-            assert!(last.is_none_or(|last| time == last + 7), "{lines:?}");
-            last = Some(time);
-            let printed = parse_angles(pose);
-            let is_sent = sent.iter().any(|at| {
-                let sent = at.angles.expect("four pulses");
-                (0..4).all(|i| (printed[i] - sent[i]).abs() <= MAX_PRINT_ERROR)
+            let (frame_number, pose) = rest.split_once(" pose=").expect("a pose");
+            let frame_number: u64 = frame_number.parse().expect("a frame");
+            assert!(
+                last_frame.is_none_or(|last_frame| frame_number == last_frame + 7),
+                "{lines:?}"
+            );
+            last_frame = Some(frame_number);
+            let printed_angles = parse_angles(pose);
+            let is_sent = sent_frames.iter().any(|frame| {
+                let angles = frame.angles.expect("four pulses");
+                (0..4).all(|i| (printed_angles[i] - angles[i]).abs() <= MAX_PRINT_ERROR)
             });
             assert!(is_sent, "{line} was never sent");
         }
         assert_eq!(bench.say("watch 0"), "ok watch 0");
-        let received = bench.lines().len();
+        let line_count = bench.lines().len();
         bench.run_ms(500);
-        assert_eq!(bench.lines().len(), received);
+        assert_eq!(bench.lines().len(), line_count);
     });
 }
 
@@ -360,35 +366,42 @@ fn half_speed_takes_twice_the_time() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.run_ms(3000); // the move to the gait's first pose
-        let moving = first_moving_gait();
-        let gait = robot().gait(&moving).expect("a gait");
+        let gait_name = first_moving_gait();
+        let gait = robot().gait(&gait_name).expect("a gait");
         // The pace is a multiple of 1/1024, so a pace of 10 % has an error of up to half a percent.
-        let frames = (gait.period() * FRAMES_PER_SECOND as f64).ceil() as u64;
-        let fastest = robot().pace().gait_slew / FRAMES_PER_SECOND as f64;
+        let frame_count = (gait.period() * FRAMES_PER_SECOND as f64).ceil() as u64;
+        let max_step_deg = robot().pace().gait_slew / FRAMES_PER_SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
-        for (percent, times) in [(100, 1), (50, 2), (10, 10)] {
+        for (percent, factor) in [(100, 1), (50, 2), (10, 10)] {
             let line = format!("speed {percent}");
             assert_eq!(bench.say(&line), format!("ok {line}"));
             bench.run_ms(500);
-            let cycle = times * frames;
-            let sent = widths(&bench.run_for_frames(2 * cycle));
-            let (once, again) = sent.split_at(cycle as usize);
+            let cycle_frames = factor * frame_count;
+            let sent_widths = widths(&bench.run_for_frames(2 * cycle_frames));
+            let (first_cycle, second_cycle) = sent_widths.split_at(cycle_frames as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
                 // Allows half a percent of a cycle, and the part of a frame by which a cycle is no whole number of
                 // frames.
-                let frame = 16.0 * servo.us_per_degree.abs() * fastest;
-                let max = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame + frame + 2.0;
-                for (here, later) in once.iter().zip(again) {
-                    let error = here[i].abs_diff(later[i]) as f64;
-                    assert!(error <= max, "{percent} %: {error} cycles after a cycle");
+                let frame_step = 16.0 * servo.us_per_degree.abs() * max_step_deg;
+                let max_error = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame_step
+                    + frame_step
+                    + 2.0;
+                for (first_widths, second_widths) in first_cycle.iter().zip(second_cycle) {
+                    let error = first_widths[i].abs_diff(second_widths[i]) as f64;
+                    assert!(
+                        error <= max_error,
+                        "{percent} %: {error} cycles after a cycle"
+                    );
                 }
             }
             // In a cycle, each leg makes its whole sweep at any speed.
-            let column = || once.iter().map(|widths| widths[0]);
-            spans.push(column().max().unwrap_or(0) - column().min().unwrap_or(0));
+            let first_servo_widths = || first_cycle.iter().map(|widths| widths[0]);
+            spans.push(
+                first_servo_widths().max().unwrap_or(0) - first_servo_widths().min().unwrap_or(0),
+            );
         }
-        let frame = 16.0 * robot().servos()[0].us_per_degree.abs() * fastest;
-        let alike = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame;
-        assert!(spans.iter().all(alike), "{spans:?}");
+        let frame_step = 16.0 * robot().servos()[0].us_per_degree.abs() * max_step_deg;
+        let is_alike = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame_step;
+        assert!(spans.iter().all(is_alike), "{spans:?}");
     });
 }

@@ -19,11 +19,11 @@ fn end_cycle() -> u64 {
 
 /// Returns a random line: any command, valid or not.
 fn random_line(rng: &mut Rng) -> String {
-    let near = |rng: &mut Rng, within: f64| {
+    let pose_near = |rng: &mut Rng, max_deg: f64| {
         let angles: Vec<String> = robot()
             .servos()
             .iter()
-            .map(|servo| format!("{:.2}", servo.neutral + within * (2.0 * rng.f64() - 1.0)))
+            .map(|servo| format!("{:.2}", servo.neutral + max_deg * (2.0 * rng.f64() - 1.0)))
             .collect();
         format!("pose {}", angles.join(" "))
     };
@@ -33,9 +33,9 @@ fn random_line(rng: &mut Rng) -> String {
             .expect("stand at least")
             .name()
             .replace('-', " "),
-        7..9 => near(rng, 15.0),
-        9..11 => near(rng, 45.0),
-        11 => near(rng, 100.0),
+        7..9 => pose_near(rng, 15.0),
+        9..11 => pose_near(rng, 45.0),
+        11 => pose_near(rng, 100.0),
         12..14 => format!("speed {}", rng.u64(..120)),
         14 => "stop".into(),
         15 => ["rest", "rest", "stand", "stand", "stand"][rng.u64(..5) as usize].into(),
@@ -55,25 +55,25 @@ fn random_line(rng: &mut Rng) -> String {
 
 /// Sends lines until a second before the end. Each line ends at a random time within a frame, at least a
 /// millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous one.
-fn send_random_lines(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
+fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) -> u32 {
     let mut count = 0;
-    let mut written = 0;
+    let mut writing_cycles = 0;
     // A frame's tick comes one slot before A1's pulse.
-    let tick = first - FRAME / 5;
+    let tick_cycle = first_rise - FRAME / 5;
     while bench.uno.cycle() < end_cycle() - FREQUENCY {
         let line = random_line(rng);
-        let sending = (line.len() as u64 + 1) * CYCLES_PER_BYTE;
-        let wait = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
-        let earliest = bench.uno.cycle() + written + wait + sending;
-        let frame = (earliest - tick).div_ceil(FRAME);
-        let within = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
+        let sending_cycles = (line.len() as u64 + 1) * CYCLES_PER_BYTE;
+        let wait_cycles = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
+        let earliest_cycle = bench.uno.cycle() + writing_cycles + wait_cycles + sending_cycles;
+        let frame = (earliest_cycle - tick_cycle).div_ceil(FRAME);
+        let cycles_in_frame = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
         bench
             .uno
-            .run_until_cycle(tick + frame * FRAME + within - sending);
+            .run_until_cycle(tick_cycle + frame * FRAME + cycles_in_frame - sending_cycles);
         bench.say(&line);
         count += 1;
         // The main loop reads no input while it stores or erases the pose of a rest.
-        written = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
+        writing_cycles = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
     count
@@ -89,15 +89,15 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
     for_each(&cases, |&(fidelity, seed)| {
         let mut bench = boot_standing(fidelity);
         let pins = servo_pins(robot());
-        let up = |edge: &&simulated_uno::Edge| edge.pin == pins[0] && edge.high;
-        let first = bench
+        let is_rise = |edge: &&simulated_uno::Edge| edge.pin == pins[0] && edge.high;
+        let first_rise = bench
             .uno
             .edges()
             .iter()
-            .find(up)
+            .find(is_rise)
             .expect("the robot stands")
             .cycle;
-        let sent_lines = send_random_lines(&mut bench, first, &mut Rng::with_seed(seed));
+        let sent_lines = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
         let status = Status::of(&mut bench);
         assert_eq!(
             (status.number("late"), status.number("rx_lost")),
@@ -105,18 +105,22 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         );
 
         bench.uno.run_until_cycle(end_cycle());
-        let count = (bench.uno.cycle() - first_cycle(first)) / FRAME;
-        let sent = group_frames(&bench.uno.edges(), pins, first, count);
+        let count = (bench.uno.cycle() - first_cycle(first_rise)) / FRAME;
+        let sent_frames = group_frames(&bench.uno.edges(), pins, first_rise, count);
         let commands = core_run::play(
             *robot().firmware(),
             &bench.uno.received_by_uno(),
-            first,
-            sent.len(),
+            first_rise,
+            sent_frames.len(),
         );
         let mut poses = std::collections::HashSet::new();
-        for (n, (frame, asked)) in sent.iter().zip(&commands.widths).enumerate() {
+        for (n, (frame, expected)) in sent_frames.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
-            assert_eq!(widths, asked.map(u64::from), "frame {n}, or the ELF is old");
+            assert_eq!(
+                widths,
+                expected.map(u64::from),
+                "frame {n}, or the ELF is old"
+            );
             poses.insert(widths);
         }
         println!(
@@ -124,20 +128,24 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
             poses.len()
         );
         let (count, sent_lines, poses) = (count, u64::from(sent_lines), poses.len() as u64);
-        let enough = [2_900, 100, 500].map(|each| each * minutes());
-        assert!(count > enough[0] && sent_lines > enough[1] && poses > enough[2]);
+        let min_counts = [2_900, 100, 500].map(|minimum| minimum * minutes());
+        assert!(count > min_counts[0] && sent_lines > min_counts[1] && poses > min_counts[2]);
 
         // The answers also agree, except for the fault counters, which are 0 on the host. Reports are not compared,
         // since the frame in which one is printed also depends on the free space in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
-        let printed = |line: &'_ str| comparable_line(line, fidelity);
-        let asked = commands.written.lines().filter(is_answer).map(printed);
-        let asked: Vec<String> = asked.collect();
+        let comparable_of = |line: &'_ str| comparable_line(line, fidelity);
+        let expected = commands
+            .written
+            .lines()
+            .filter(is_answer)
+            .map(comparable_of);
+        let expected: Vec<String> = expected.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
-        let answered: Vec<String> = lines.filter(is_answer).map(printed).collect();
+        let answers: Vec<String> = lines.filter(is_answer).map(comparable_of).collect();
         // The UNO runs beyond the last complete frame, and may have answered once more.
-        let more = answered.len().saturating_sub(asked.len());
-        assert!(more <= 1, "{more} more");
-        assert_eq!(answered[..answered.len() - more], asked);
+        let extra_count = answers.len().saturating_sub(expected.len());
+        assert!(extra_count <= 1, "{extra_count} more");
+        assert_eq!(answers[..answers.len() - extra_count], expected);
     });
 }

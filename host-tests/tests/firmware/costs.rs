@@ -10,31 +10,35 @@ use crate::{FRAMES_PER_SECOND, boot_and_command, first_moving_gait};
 fn every_budget_is_met() {
     let figures = Figures::measure(&FirmwareBench::elf(), robot(), Some(patrolling()), |_| {});
     let figures = figures.expect("it runs");
-    let mut missed = Vec::new();
+    let mut missed_rows = Vec::new();
     for row in rows(&figures).iter().filter(|row| !row.wall_clock) {
         println!(
             "{:<30} {:>8.1?} {:<6} {:?}",
             row.what, row.measured, row.unit, row.budget
         );
         if !row.is_met() {
-            missed.push(format!("{row:?}"));
+            missed_rows.push(format!("{row:?}"));
         }
     }
-    assert!(missed.is_empty(), "{missed:#?}");
+    assert!(missed_rows.is_empty(), "{missed_rows:#?}");
     // A measurement without any result would also meet most budgets.
     assert!(figures.serial_interrupt > 50 && figures.tick_latency > figures.tick_worst);
     assert!(figures.servo_interrupts > 1000.0);
     assert!(figures.routine_mean.is_some_and(|mean| mean > 1_000.0));
     // No run uses more stack than the static analysis allows, and the worst run comes close to that.
-    let unseen = i32::from(figures.stack_spare) - figures.stack_margin;
-    println!("{unseen} bytes of stack that no run has used");
-    assert!((0..150).contains(&unseen), "{unseen}");
-    if let (Some(tick), Some(guard), Some(main)) = (figures.tick_mean, figures.guard, figures.main)
+    let unused_bytes = i32::from(figures.stack_spare) - figures.stack_margin;
+    println!("{unused_bytes} bytes of stack that no run has used");
+    assert!((0..150).contains(&unused_bytes), "{unused_bytes}");
+    if let (Some(tick_cycles), Some(guard_cycles), Some(main_cycles)) =
+        (figures.tick_mean, figures.guard, figures.main)
     {
-        assert!(tick > 1000.0 && figures.tick_worst as f64 > tick);
+        assert!(tick_cycles > 1000.0 && figures.tick_worst as f64 > tick_cycles);
         // With certified cells, the guard makes two comparisons for each pair of servos.
-        assert!(guard > 100.0 && guard < tick && main > tick);
-        assert!(guard < 2_000.0 || !figures.has_maps, "{guard}");
+        assert!(guard_cycles > 100.0 && guard_cycles < tick_cycles && main_cycles > tick_cycles);
+        assert!(
+            guard_cycles < 2_000.0 || !figures.has_maps,
+            "{guard_cycles}"
+        );
     }
 }
 
@@ -43,12 +47,12 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
     for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
         for gait in robot().gaits() {
             let mut bench = boot_and_command(&gait.name().replace('-', " "), fidelity);
-            let awake = bench.uno.awake_cycles();
+            let awake_before = bench.uno.awake_cycles();
             bench.run_ms(4000);
-            let awake = (bench.uno.awake_cycles() - awake) / (4 * FRAMES_PER_SECOND);
+            let awake_cycles = (bench.uno.awake_cycles() - awake_before) / (4 * FRAMES_PER_SECOND);
             assert!(
-                awake < FRAME / 10,
-                "{}: {awake} cycles in a frame",
+                awake_cycles < FRAME / 10,
+                "{}: {awake_cycles} cycles in a frame",
                 gait.name()
             );
         }
@@ -64,7 +68,7 @@ fn every_tick_computes_one_frame() {
     for pair in calls.windows(2) {
         // The time from each tick to the next is constant, except for an instruction in progress and for
         // branches.
-        let apart = pair[1].enter - pair[0].enter;
-        assert!(apart.abs_diff(FRAME) < 100, "{apart}");
+        let distance = pair[1].enter - pair[0].enter;
+        assert!(distance.abs_diff(FRAME) < 100, "{distance}");
     }
 }

@@ -38,22 +38,22 @@ impl std::fmt::Debug for Damage {
 
 /// Returns the robot's section with a change.
 fn damage_section(
-    what: impl Into<String>,
+    description: impl Into<String>,
     printed: &'static str,
     change: impl FnOnce(&mut Vec<u8>),
 ) -> Damage {
     let mut section = robot().section();
     change(&mut section);
     Damage {
-        what: what.into(),
+        what: description.into(),
         section,
         printed,
     }
 }
 
 /// Returns the robot's section with a change and a checksum that is correct for the changed bytes.
-fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
-    damage_section(what, DAMAGED_ROBOT_NOTE, |section| {
+fn damage_with_checksum(description: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
+    damage_section(description, DAMAGED_ROBOT_NOTE, |section| {
         change(section);
         seal(section);
     })
@@ -61,13 +61,13 @@ fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage
 
 /// Writes a word into the numbers at a field's offset.
 fn put_word(section: &mut [u8], offset: usize, word: u16) {
-    let at = size_of::<Header>() + offset;
-    section[at..at + 2].copy_from_slice(&word.to_le_bytes());
+    let start = size_of::<Header>() + offset;
+    section[start..start + 2].copy_from_slice(&word.to_le_bytes());
 }
 
 /// Returns damages that leave no section, a part of one, or a section for another version.
 fn missing_sections() -> Vec<Damage> {
-    let mut all = vec![
+    let mut damages = vec![
         damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
         damage_section("zeros", MISSING_ROBOT_NOTE, |section| {
             *section = vec![0; SPACE.into()];
@@ -78,18 +78,18 @@ fn missing_sections() -> Vec<Damage> {
         }),
     ];
     let length = robot().section().len();
-    let header = size_of::<Header>();
-    for (end, printed) in [
+    let header_bytes = size_of::<Header>();
+    for (end, note) in [
         (3, MISSING_ROBOT_NOTE),
         (5, OTHER_VERSION_NOTE),
         (7, DAMAGED_ROBOT_NOTE),
-        (header, DAMAGED_ROBOT_NOTE),
-        (header + size_of::<Numbers>() + 1, DAMAGED_ROBOT_NOTE),
+        (header_bytes, DAMAGED_ROBOT_NOTE),
+        (header_bytes + size_of::<Numbers>() + 1, DAMAGED_ROBOT_NOTE),
         (length / 2, DAMAGED_ROBOT_NOTE),
         (length - 30, DAMAGED_ROBOT_NOTE),
     ] {
-        let what = format!("cut at byte {end}");
-        all.push(damage_section(what, printed, |section| {
+        let description = format!("cut at byte {end}");
+        damages.push(damage_section(description, note, |section| {
             section.truncate(end)
         }));
     }
@@ -99,7 +99,7 @@ fn missing_sections() -> Vec<Damage> {
         lizard_core::numbers::section::FORMAT + 1,
         0xffff,
     ] {
-        all.push(damage_section(
+        damages.push(damage_section(
             format!("version {format}"),
             OTHER_VERSION_NOTE,
             |section| {
@@ -107,16 +107,17 @@ fn missing_sections() -> Vec<Damage> {
             },
         ));
     }
-    all
+    damages
 }
 
 /// Returns damages of one flipped bit each: one for each field of the header, and one for each of forty parts of the
 /// rest of the section.
 fn flipped_bits() -> Vec<Damage> {
     let rng = &mut rng(161);
-    let header = size_of::<Header>();
-    let rest = robot().section().len() - header;
-    let stretches = (0..40).map(|n| header + n * rest / 40..header + (n + 1) * rest / 40);
+    let header_bytes = size_of::<Header>();
+    let rest_bytes = robot().section().len() - header_bytes;
+    let stretches = (0..40)
+        .map(|n| header_bytes + n * rest_bytes / 40..header_bytes + (n + 1) * rest_bytes / 40);
     let fields: [Range<usize>; 7] = [
         offset_of!(Header, magic)..offset_of!(Header, format),
         offset_of!(Header, format)..offset_of!(Header, length),
@@ -124,7 +125,7 @@ fn flipped_bits() -> Vec<Damage> {
         offset_of!(Header, crc)..offset_of!(Header, name),
         offset_of!(Header, name)..offset_of!(Header, hash),
         offset_of!(Header, hash)..offset_of!(Header, servo_hash),
-        offset_of!(Header, servo_hash)..header,
+        offset_of!(Header, servo_hash)..header_bytes,
     ];
     let mut flip = |bytes: Range<usize>, printed| {
         let (byte, bit) = (rng.usize(bytes), rng.u8(..8));
@@ -132,16 +133,16 @@ fn flipped_bits() -> Vec<Damage> {
             section[byte] ^= 1 << bit;
         })
     };
-    let printed = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
+    let notes = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
         .into_iter()
         .chain([DAMAGED_ROBOT_NOTE; 5]);
-    let mut all: Vec<Damage> = fields
+    let mut damages: Vec<Damage> = fields
         .into_iter()
-        .zip(printed)
-        .map(|(at, printed)| flip(at, printed))
+        .zip(notes)
+        .map(|(range, note)| flip(range, note))
         .collect();
-    all.extend(stretches.map(|at| flip(at, DAMAGED_ROBOT_NOTE)));
-    all
+    damages.extend(stretches.map(|range| flip(range, DAMAGED_ROBOT_NOTE)));
+    damages
 }
 
 /// Returns sections whose checksum is right but whose content is wrong.
@@ -151,8 +152,8 @@ fn wrong_sections() -> Vec<Damage> {
             section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
         }),
         damage_with_checksum("two servos on one pin", |section| {
-            let at = size_of::<Header>() + offset_of!(Numbers, pins);
-            section[at] = section[at + 1];
+            let index = size_of::<Header>() + offset_of!(Numbers, pins);
+            section[index] = section[index + 1];
         }),
         damage_with_checksum("a rail on a pin that measures nothing", |section| {
             put_word(section, offset_of!(Numbers, rail), 20);
@@ -164,8 +165,8 @@ fn wrong_sections() -> Vec<Damage> {
             put_word(section, offset_of!(Numbers, calibration) + 4, 5);
         }),
         damage_with_checksum("no cranks", |section| {
-            let at = size_of::<Header>() + offset_of!(Numbers, ends);
-            section[at..at + 20].fill(0);
+            let start = size_of::<Header>() + offset_of!(Numbers, ends);
+            section[start..start + 20].fill(0);
         }),
         damage_with_checksum("ones for numbers", |section| {
             section[size_of::<Header>()..].fill(0xff);
@@ -194,8 +195,8 @@ fn assert_finds_no_robot(damage: &Damage) {
     assert_eq!(lines[1..], [damage.printed]);
     // Only questions are answered, everything else is refused.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
-    let others = Word::ALL.iter().filter(|word| !questions.contains(word));
-    let examples = others.map(|word| word.example().to_owned());
+    let other_words = Word::ALL.iter().filter(|word| !questions.contains(word));
+    let examples = other_words.map(|word| word.example().to_owned());
     for line in [
         first_moving_gait(),
         "stand".to_owned(),
@@ -221,13 +222,13 @@ fn assert_finds_no_robot(damage: &Damage) {
         status,
         "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
     );
-    let unasked = bench
+    let fault_lines = bench
         .lines()
         .iter()
         .filter(|line| line.text.starts_with("# fault:"));
-    assert_eq!(unasked.count(), 1, "one line");
-    let moved = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
-    assert_eq!(moved, None, "a pin besides the LED's");
+    assert_eq!(fault_lines.count(), 1, "one line");
+    let moved_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
+    assert_eq!(moved_edge, None, "a pin besides the LED's");
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
@@ -265,9 +266,9 @@ fn the_largest_section_is_checked_within_a_frame() {
             let [call] = calls[..] else {
                 panic!("{name}: {calls:?}");
             };
-            let bytes = robot.section().len();
+            let section_bytes = robot.section().len();
             println!(
-                "{name}: {bytes} bytes in {:.1} ms",
+                "{name}: {section_bytes} bytes in {:.1} ms",
                 call.cycles() as f64 / 16_000.0
             );
             assert!(call.cycles() < FRAME, "{name}: {call:?}");
@@ -281,17 +282,17 @@ fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
         let bench = &mut boot_damaged_board(&missing_sections()[0], fidelity);
         bench.run_ms(8_000);
         let edges = bench.uno.edges();
-        let led: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
+        let led_edges: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
         // Durations of light and dark, in frames.
-        let frames = led.windows(2).map(|pair| {
+        let durations = led_edges.windows(2).map(|pair| {
             let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME as f64;
             (pair[0].high, frames.round() as u64)
         });
-        let frames: Vec<(bool, u64)> = frames.collect();
+        let durations: Vec<(bool, u64)> = durations.collect();
         let mut pattern = [(true, 8), (false, 8)].repeat(8);
         pattern[15] = (false, 56);
         // The first flash begins with the program, so it may be shorter.
-        assert_eq!(frames[1..16], pattern[1..], "{frames:?}");
-        assert_eq!(frames[16..32], pattern[..], "{frames:?}");
+        assert_eq!(durations[1..16], pattern[1..], "{durations:?}");
+        assert_eq!(durations[16..32], pattern[..], "{durations:?}");
     });
 }

@@ -22,24 +22,24 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
     // no byte until an answer is nearly sent.
     let line = format!("{}\n", "z".repeat(59));
     run_in_both_simulations(|fidelity| {
-        let (bytes, apart) = byte_count_and_interval(fidelity);
+        let (byte_count, interval) = byte_count_and_interval(fidelity);
         let mut walk = ReferenceRun::start_walking(fidelity);
-        let answers = walk.bench.lines().len();
+        let line_count_before = walk.bench.lines().len();
         let start = walk.next_frame();
-        let begin = walk.bench.uno.cycle();
-        for n in 0..bytes {
-            walk.run_to(begin + n * apart);
+        let begin_cycle = walk.bench.uno.cycle();
+        for n in 0..byte_count {
+            walk.run_to(begin_cycle + n * interval);
             let byte = line.as_bytes()[n as usize % line.len()];
             walk.bench.uno.send(&[byte]);
         }
         walk.bench.run_ms(40);
         let frames = walk.frames_since(start);
-        assert!(frames.len() as u64 >= bytes * apart / FRAME);
-        for (frame, asked) in frames {
-            assert_eq!(frame.all_widths(), Some(asked), "{frame:?}");
+        assert!(frames.len() as u64 >= byte_count * interval / FRAME);
+        for (frame, expected) in frames {
+            assert_eq!(frame.all_widths(), Some(expected), "{frame:?}");
         }
         assert_eq!((walk.late_edge_count(), walk.word("serial::LOST")), (0, 0));
-        let answers = (walk.bench.lines().len() - answers) as u64;
-        assert_eq!(answers, bytes / line.len() as u64);
+        let answers = (walk.bench.lines().len() - line_count_before) as u64;
+        assert_eq!(answers, byte_count / line.len() as u64);
     });
 }

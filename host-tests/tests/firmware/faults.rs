@@ -13,13 +13,13 @@ use crate::{Status, boot_and_command, first_moving_gait};
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: usize) {
     let status = Status::of(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
-    let held = measure_widths(bench);
-    for (pulses, width) in run_for_pulses(bench, 1000).iter().zip(held) {
+    let held_widths = measure_widths(bench);
+    for (pulses, width) in run_for_pulses(bench, 1000).iter().zip(held_widths) {
         assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
     }
     let line = format!("# fault: {message}");
-    let printed = bench.lines().iter().filter(|printed| printed.text == line);
-    assert_eq!(printed.count(), 1, "{line}");
+    let printed_lines = bench.lines().iter().filter(|printed| printed.text == line);
+    assert_eq!(printed_lines.count(), 1, "{line}");
     let flashes = count_flashes(bench, 12);
     assert!(flashes.len() >= 3, "{flashes:?}");
     assert!(flashes.iter().all(|count| *count == code), "{flashes:?}");
@@ -37,15 +37,15 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     // Bytes without a line end do not count as a line.
     bench.uno.send(b"  ");
     bench.run_ms(1500);
-    let stopped = bench
+    let stop_ms = bench
         .lines()
         .iter()
         .find(|line| line.text.contains("deadman says"))
         .map(|line| (line.cycle - start) / 16_000);
     // 800 ms after the last line, which came after 1400 ms and the time of an answer; a line takes 5 ms.
     assert!(
-        stopped.is_some_and(|ms| (2_190..2_260).contains(&ms)),
-        "{stopped:?}"
+        stop_ms.is_some_and(|ms| (2_190..2_260).contains(&ms)),
+        "{stop_ms:?}"
     );
     let message = "no line for as long as deadman says, stopped";
     assert_stopped(&mut bench, "link", message, 3);
@@ -78,13 +78,13 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
     walk.run_to(rise - 600);
     walk.bench.uno.block_interrupts(700);
     walk.run_to(rise + 2 * FRAME);
-    let edges = recorded_pulses(&walk.bench);
+    let pulses = recorded_pulses(&walk.bench);
     assert!(
-        edges[0]
+        pulses[0]
             .iter()
             .all(|pulse| pulse.start < rise || pulse.start > rise + FRAME / 2),
         "{:?}",
-        edges[0]
+        pulses[0]
     );
     let message = "a pulse came late, stopped";
     assert_stopped(&mut walk.bench, "late", message, 5);
@@ -95,17 +95,17 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
 fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
     for byte in 0..4 {
         let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
-        let guard = walk.address("lizard_stack_guard") + byte;
-        let before = walk.bench.uno.peek(guard);
-        walk.bench.uno.poke(guard, before ^ 0x10);
+        let guard_address = walk.address("lizard_stack_guard") + byte;
+        let byte_before = walk.bench.uno.peek(guard_address);
+        walk.bench.uno.poke(guard_address, byte_before ^ 0x10);
         walk.bench.run_ms(100);
         let message = "the stack has grown into the data, stopped";
         assert_stopped(&mut walk.bench, "stack", message, 6);
         // The data may be corrupt, so the robot does not move again.
         walk.bench.say(&first_moving_gait());
         walk.bench.run_ms(100);
-        let held = measure_widths(&mut walk.bench);
+        let held_widths = measure_widths(&mut walk.bench);
         walk.bench.run_ms(1000);
-        assert_eq!(measure_widths(&mut walk.bench), held);
+        assert_eq!(measure_widths(&mut walk.bench), held_widths);
     }
 }

@@ -30,28 +30,34 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let frames = bench.run_for_frames(
         (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64 + 3 * FRAMES_PER_SECOND,
     );
-    let angles = |at: lizard_host::sim::analysis::ServoFrame| at.angles.expect("four pulses");
+    let angles_of =
+        |frame: lizard_host::sim::analysis::ServoFrame| frame.angles.expect("four pulses");
     servo_frames_of(robot(), &frames)
         .into_iter()
-        .map(angles)
+        .map(angles_of)
         .collect()
 }
 
 /// Returns the phase of a gait this many frames after its start.
-fn phase(gait: &CheckedGait, frames: usize) -> f64 {
+fn phase_after(gait: &CheckedGait, frames: usize) -> f64 {
     let pace = |frame: usize| (frame as f64 * ACCELERATION.1).min(1.0);
-    let full: f64 = (1..=frames).map(pace).sum();
-    gait.phase(full / FRAMES_PER_SECOND as f64)
+    let full_frames: f64 = (1..=frames).map(pace).sum();
+    gait.phase(full_frames / FRAMES_PER_SECOND as f64)
 }
 
 /// Returns the angles of a gait frame by frame from its start, in floating point, deg.
 fn expected_angles(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
-    (0..frames).map(|n| gait.angles(phase(gait, n))).collect()
+    (0..frames)
+        .map(|n| gait.angles(phase_after(gait, n)))
+        .collect()
 }
 
 /// Returns the largest deviation of any servo angle from the gait if the gait starts at frame `start`, deg.
-fn max_deviation(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
-    let pairs = frames[start..].iter().flatten().zip(float.iter().flatten());
+fn max_deviation(float_angles: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
+    let pairs = frames[start..]
+        .iter()
+        .flatten()
+        .zip(float_angles.iter().flatten());
     pairs.fold(0.0, |largest, (actual, expected)| {
         (actual - expected).abs().max(largest)
     })
@@ -59,13 +65,13 @@ fn max_deviation(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
 
 /// Returns the frame at which the gait starts: the frame with the smallest deviation, since the start is the only
 /// unknown of the comparison.
-fn find_gait_start(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
-    let by_worst = |a: &usize, b: &usize| {
-        max_deviation(float, frames, *a).total_cmp(&max_deviation(float, frames, *b))
+fn find_gait_start(gait: &CheckedGait, float_angles: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
+    let by_deviation = |a: &usize, b: &usize| {
+        max_deviation(float_angles, frames, *a).total_cmp(&max_deviation(float_angles, frames, *b))
     };
     // The move to the first pose precedes the start, and a whole cycle must follow it.
-    let last = frames.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
-    let start = (0..last).min_by(by_worst);
+    let end = frames.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
+    let start = (0..end).min_by(by_deviation);
     start.expect("a second has frames")
 }
 
@@ -74,9 +80,9 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             let frames = decode_angles(gait, *fidelity);
-            let float = expected_angles(gait, frames.len());
-            let start = find_gait_start(gait, &float, &frames);
-            let error = max_deviation(&float, &frames, start);
+            let float_angles = expected_angles(gait, frames.len());
+            let start = find_gait_start(gait, &float_angles, &frames);
+            let error = max_deviation(&float_angles, &frames, start);
             println!(
                 "{:<10} {} frames, max {error:.4} deg",
                 gait.name(),
@@ -92,10 +98,10 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
             if gait.moves() {
                 assert!(error > 0.0, "{}: tables are rounded", gait.name());
                 // The first frame has no previous one.
-                let others = [Some(start + 1), start.checked_sub(1)];
-                for other in others.into_iter().flatten() {
+                let neighbours = [Some(start + 1), start.checked_sub(1)];
+                for neighbour in neighbours.into_iter().flatten() {
                     assert!(
-                        max_deviation(&float, &frames, other) > error,
+                        max_deviation(&float_angles, &frames, neighbour) > error,
                         "{}",
                         gait.name()
                     );
@@ -108,7 +114,7 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
 #[test]
 fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
     let gaits: Vec<&str> = robot().gaits().iter().map(|gait| gait.name()).collect();
-    let compared = AtomicUsize::new(0);
+    let compared_count = AtomicUsize::new(0);
     for_each(&gaits, |&name| {
         let gait = robot().gait(name).expect("it is in robot.toml");
         let expected = gait.predict(&robot().ground().rigid());
@@ -116,10 +122,10 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
             println!("{name:<10} depends on a tie");
             return;
         };
-        compared.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
+        compared_count.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
         let frames = decode_angles(gait, Fidelity::DataSheet);
-        let float = expected_angles(gait, frames.len());
-        let start = find_gait_start(gait, &float, &frames);
+        let float_angles = expected_angles(gait, frames.len());
+        let start = find_gait_start(gait, &float_angles, &frames);
         // Whole cycles, from the first frame at full pace that begins a cycle: two if a cycle is no whole number of
         // frames.
         let cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
@@ -128,30 +134,37 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
             2
         };
         // If two cycles are no whole number of frames either, the missing part of a frame is negligible.
-        let length = (f64::from(cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
-        let step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
-        let from = (start + ACCELERATION.0..frames.len())
+        let frame_count = (f64::from(cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
+        let phase_step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
+        let first_frame = (start + ACCELERATION.0..frames.len())
             .find(|frame| {
-                let phase = phase(gait, frame - start);
+                let phase = phase_after(gait, frame - start);
                 if gait.is_reversed() {
-                    1.0 - phase <= step
+                    1.0 - phase <= phase_step
                 } else {
-                    phase < step
+                    phase < phase_step
                 }
             })
             .expect("a cycle begins");
-        let moved = robot().travel(frames[from..=from + length].iter().copied());
-        let (ahead, turned) = (
-            moved.forward / f64::from(cycles),
-            moved.turn / f64::from(cycles),
+        let movement = robot().travel(
+            frames[first_frame..=first_frame + frame_count]
+                .iter()
+                .copied(),
         );
-        println!("{name:<10} {ahead:7.2} mm {turned:7.2} deg");
+        let (measured_forward, measured_turn) = (
+            movement.forward / f64::from(cycles),
+            movement.turn / f64::from(cycles),
+        );
+        println!("{name:<10} {measured_forward:7.2} mm {measured_turn:7.2} deg");
         // The holding feet may depend on a tenth of a degree.
-        let size = robot().lizard().links.l10 / 135.0;
-        let max = (0.3 * size).max(forward.abs() * 0.02);
-        assert!((ahead - forward).abs() <= max, "{name}: {moved:?}");
-        assert!((turned - turn).abs() <= 0.2, "{name}: {moved:?}");
+        let scale = robot().lizard().links.l10 / 135.0;
+        let max_error = (0.3 * scale).max(forward.abs() * 0.02);
+        assert!(
+            (measured_forward - forward).abs() <= max_error,
+            "{name}: {movement:?}"
+        );
+        assert!((measured_turn - turn).abs() <= 0.2, "{name}: {movement:?}");
     });
-    let compared = compared.into_inner();
-    assert!(compared > 0, "every gait that moves depends on a tie");
+    let compared_count = compared_count.into_inner();
+    assert!(compared_count > 0, "every gait that moves depends on a tie");
 }

@@ -25,30 +25,30 @@ fn margin_error(type2: f64) -> f64 {
         (End::Head, kinematics::End::Head),
         (End::Tail, kinematics::End::Tail),
     ];
-    let bands = ends.map(|(end, of)| {
+    let bands = ends.map(|(end, kinematic_end)| {
         let step = 1.0 / f64::from(1 << robot().firmware().end(end).bars().scale().bits);
-        margin_band(&robot().lizard().end(of), type2, step)
+        margin_band(&robot().lizard().end(kinematic_end), type2, step)
     });
     bands[0].max(bands[1])
 }
 
-/// Returns the limits, made stricter by the guard's tolerance (`by` = 1) or less strict (`by` = -1).
-fn limits_with_tolerance(by: f64) -> Limits {
+/// Returns the limits, made stricter by the guard's tolerance (`sign` = 1) or less strict (`sign` = -1).
+fn limits_with_tolerance(sign: f64) -> Limits {
     let limits = robot().limits();
     let (margin, stroke) = (margin_error(limits.type2), stroke_band());
     Limits {
-        type2: limits.type2 + by * margin,
-        type1: limits.type1 + by * margin,
-        leg: limits.leg + by * margin,
-        stroke_min: limits.stroke_min + by * stroke,
-        stroke_max: limits.stroke_max - by * stroke,
+        type2: limits.type2 + sign * margin,
+        type1: limits.type1 + sign * margin,
+        leg: limits.leg + sign * margin,
+        stroke_min: limits.stroke_min + sign * stroke,
+        stroke_max: limits.stroke_max - sign * stroke,
     }
 }
 
 /// True if a pose (deg, chassis frame) is within these limits.
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
-    let solved = robot().lizard().solve(&Pose::from(angles));
-    solved.is_ok_and(|solution| limits.is_safe(&solution))
+    let result = robot().lizard().solve(&Pose::from(angles));
+    result.is_ok_and(|solution| limits.is_safe(&solution))
 }
 
 /// True if every servo's angle is inside its travel by more than the rounding.
@@ -61,9 +61,9 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
 }
 
 /// Returns a random pose within this many degrees of neutral, rounded to the two decimals that the console takes.
-fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
+fn random_near_pose(rng: &mut Rng, max_deg: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
-        let angle = robot().servos()[i].neutral + within * (2.0 * rng.f64() - 1.0);
+        let angle = robot().servos()[i].neutral + max_deg * (2.0 * rng.f64() - 1.0);
         (angle.rem_euclid(360.0) * 100.0).round() / 100.0
     })
 }
@@ -71,7 +71,7 @@ fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
 /// Returns a random safe pose far from neutral. The path to it may be unsafe.
 fn random_far_pose(rng: &mut Rng) -> [f64; 4] {
     loop {
-        let angles = near_pose(rng, 80.0);
+        let angles = random_near_pose(rng, 80.0);
         if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
             return angles;
         }
@@ -85,30 +85,30 @@ fn pose_line(angles: [f64; 4]) -> String {
 
 #[test]
 fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
-    for_each(&[20.0, 40.0, 80.0], |&within| {
-        let mut rng = Rng::with_seed(within as u64);
+    for_each(&[20.0, 40.0, 80.0], |&max_deg| {
+        let mut rng = Rng::with_seed(max_deg as u64);
         let mut bench = boot_standing(Fidelity::DataSheet);
-        let (mut accepted, mut refused) = (0, [0; 2]);
+        let (mut accepted_count, mut refused_counts) = (0, [0; 2]);
         for _ in 0..400 {
-            let angles = near_pose(&mut rng, within);
+            let angles = random_near_pose(&mut rng, max_deg);
             let answer = bench.say(&pose_line(angles));
             if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
-                accepted += 1;
+                accepted_count += 1;
             } else if !is_safe(angles, &limits_with_tolerance(-1.0)) {
                 let code = answer
                     .strip_prefix("err ")
                     .and_then(|rest| rest.chars().next());
                 match code {
-                    Some('3') if !is_within_travel(angles) => refused[0] += 1,
-                    Some('4') => refused[0] += 1,
-                    Some('5') => refused[1] += 1,
+                    Some('3') if !is_within_travel(angles) => refused_counts[0] += 1,
+                    Some('4') => refused_counts[0] += 1,
+                    Some('5') => refused_counts[1] += 1,
                     _ => panic!("{angles:?}: {answer}"),
                 }
             }
         }
-        println!("within {within} deg: {accepted} accepted, {refused:?} refused");
-        assert!(accepted + refused[0] + refused[1] > 350);
+        println!("within {max_deg} deg: {accepted_count} accepted, {refused_counts:?} refused");
+        assert!(accepted_count + refused_counts[0] + refused_counts[1] > 350);
     });
 }
 
@@ -130,7 +130,7 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
 fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
     // The margin is negative if the crank tips have crossed.
-    let type2 = |end: usize| {
+    let type2_of = |end: usize| {
         let gap = [&solution.head, &solution.tail][end].gap;
         if gap.x < 0.0 {
             -margins.type2[end]
@@ -139,78 +139,112 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
         }
     };
     // Where the couplers are nearly in line, a rounding step of a length turns them by a large angle.
-    let of_end = |end: usize| margin_error(margins.type2[end].max(0.05)) + 0.0005;
-    let of_stroke = stroke_band() + 0.005;
-    let all = [
-        ("4 type-2 margin of the head", type2(0), of_end(0)),
-        ("4 type-2 margin of the tail", type2(1), of_end(1)),
-        ("4 type-1 margin of A1", margins.type1[0], of_end(0)),
-        ("4 type-1 margin of A2", margins.type1[1], of_end(0)),
-        ("4 type-1 margin of A3", margins.type1[2], of_end(1)),
-        ("4 type-1 margin of A4", margins.type1[3], of_end(1)),
+    let tolerance_of_end = |end: usize| margin_error(margins.type2[end].max(0.05)) + 0.0005;
+    let stroke_tolerance = stroke_band() + 0.005;
+    let conditions = [
+        (
+            "4 type-2 margin of the head",
+            type2_of(0),
+            tolerance_of_end(0),
+        ),
+        (
+            "4 type-2 margin of the tail",
+            type2_of(1),
+            tolerance_of_end(1),
+        ),
+        (
+            "4 type-1 margin of A1",
+            margins.type1[0],
+            tolerance_of_end(0),
+        ),
+        (
+            "4 type-1 margin of A2",
+            margins.type1[1],
+            tolerance_of_end(0),
+        ),
+        (
+            "4 type-1 margin of A3",
+            margins.type1[2],
+            tolerance_of_end(1),
+        ),
+        (
+            "4 type-1 margin of A4",
+            margins.type1[3],
+            tolerance_of_end(1),
+        ),
         ("4 leg margin of A1", margins.leg[0], 0.001),
         ("4 leg margin of A2", margins.leg[1], 0.001),
         ("4 leg margin of A3", margins.leg[2], 0.001),
         ("4 leg margin of A4", margins.leg[3], 0.001),
-        ("5 left slider", solution.left.s, of_stroke),
-        ("5 right slider", solution.right.s, of_stroke),
+        ("5 left slider", solution.left.s, stroke_tolerance),
+        ("5 right slider", solution.right.s, stroke_tolerance),
     ];
-    let found = all.iter().find(|(known, ..)| *known == name);
-    found.map(|(_, value, max)| (*value, *max))
+    let condition = conditions.iter().find(|(known, ..)| *known == name);
+    condition.map(|(_, value, max)| (*value, *max))
 }
 
 #[test]
 fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = Rng::with_seed(3);
-    let (mut named, mut unknown) = (0, 0);
+    let (mut named_count, mut unknown_count) = (0, 0);
     for _ in 0..400 {
-        let angles = near_pose(&mut rng, 70.0);
+        let angles = random_near_pose(&mut rng, 70.0);
         let answer = bench.say(&pose_line(angles));
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
         }
-        let (name, printed) = parse_refusal(&answer);
+        let (name, printed_value) = parse_refusal(&answer);
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
-            Err(open) => {
+            Err(loop_error) => {
                 // A five-bar that does not close has no margins. But the guard checks the head first, so it may
                 // print the head's value although the tail does not close.
                 let head = robot().lizard().end(kinematics::End::Head);
                 let head = head.forward(angles[0], angles[1]);
                 match head {
-                    Ok(pose) if name.ends_with("head") && printed.is_some() => {
-                        let max = margin_error(pose.type2.max(0.05)) + 0.0005;
-                        let error = printed.expect("a number").abs() - pose.type2;
-                        assert!(error.abs() <= max, "{angles:?}: {answer}, {open}");
+                    Ok(pose) if name.ends_with("head") && printed_value.is_some() => {
+                        let max_error = margin_error(pose.type2.max(0.05)) + 0.0005;
+                        let error = printed_value.expect("a number").abs() - pose.type2;
+                        assert!(
+                            error.abs() <= max_error,
+                            "{angles:?}: {answer}, {loop_error}"
+                        );
                     }
                     _ => {
                         assert!(name.starts_with("4 type-2"), "{angles:?}: {answer}");
-                        let is_small = printed.is_none_or(|printed| printed.abs() < 0.1);
-                        assert!(is_small, "{angles:?}: {answer}, {open}");
+                        let is_small =
+                            printed_value.is_none_or(|printed_value| printed_value.abs() < 0.1);
+                        assert!(is_small, "{angles:?}: {answer}, {loop_error}");
                     }
                 }
-                unknown += 1;
+                unknown_count += 1;
                 continue;
             }
         };
-        let (float, max) =
+        let (float_value, max_error) =
             float_value_and_tolerance(&solution, name).unwrap_or_else(|| panic!("{answer}"));
-        match printed {
-            Some(printed) => {
-                let error = (printed - float).abs();
-                assert!(error <= max, "{angles:?}: {answer}, not {float}");
-                named += 1;
+        match printed_value {
+            Some(printed_value) => {
+                let error = (printed_value - float_value).abs();
+                assert!(
+                    error <= max_error,
+                    "{angles:?}: {answer}, not {float_value}"
+                );
+                named_count += 1;
             }
             None => {
                 assert!(name.starts_with("4 type-2"), "{answer}");
-                assert!(float.abs() < 0.1, "{angles:?}: {answer}, but it is {float}");
-                unknown += 1;
+                assert!(
+                    float_value.abs() < 0.1,
+                    "{angles:?}: {answer}, but it is {float_value}"
+                );
+                unknown_count += 1;
             }
         }
     }
-    println!("{named} values printed, {unknown} unknown");
-    assert!(named > 20, "{named}");
+    println!("{named_count} values printed, {unknown_count} unknown");
+    assert!(named_count > 20, "{named_count}");
 }
 
 #[test]
@@ -238,23 +272,27 @@ fn no_frame_breaks_a_limit_for_any_commands() {
             assert!(bench.say(&line).starts_with("ok "), "{line}");
             frames.extend(bench.run_for_frames(rng.u64(..2 * FRAMES_PER_SECOND)));
         }
-        let lax = limits_with_tolerance(-1.0);
-        let sent = servo_frames_of(robot(), &frames);
-        for at in &sent {
-            let angles = at.angles.expect("four pulses");
-            assert!(is_safe(angles, &lax), "{at:?}");
+        let lax_limits = limits_with_tolerance(-1.0);
+        let sent_frames = servo_frames_of(robot(), &frames);
+        for frame in &sent_frames {
+            let angles = frame.angles.expect("four pulses");
+            assert!(is_safe(angles, &lax_limits), "{frame:?}");
         }
         // No servo moves farther in a frame than the slew limits allow.
         let pace = robot().pace();
-        let fastest = pace.gait_slew.max(pace.slew) / 50.0;
-        for (pair, times) in sent.windows(2).zip(frames.windows(2)) {
-            if times[1].start - times[0].start > lizard_host_tests::FRAME {
+        let max_step_deg = pace.gait_slew.max(pace.slew) / 50.0;
+        for (pair, frame_pair) in sent_frames.windows(2).zip(frames.windows(2)) {
+            if frame_pair[1].start - frame_pair[0].start > lizard_host_tests::FRAME {
                 continue;
             }
-            let (here, there) = (pair[0].angles.expect("four"), pair[1].angles.expect("four"));
+            let (angles_before, angles_after) =
+                (pair[0].angles.expect("four"), pair[1].angles.expect("four"));
             for servo in 0..4 {
-                let step = (there[servo] - here[servo]).abs();
-                assert!(step <= fastest + 0.02, "{step} deg in a frame: {pair:?}");
+                let step = (angles_after[servo] - angles_before[servo]).abs();
+                assert!(
+                    step <= max_step_deg + 0.02,
+                    "{step} deg in a frame: {pair:?}"
+                );
             }
         }
         assert!(frames.len() > 5000);
@@ -266,34 +304,36 @@ fn no_frame_breaks_a_limit_for_any_commands() {
 fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
     let mut rng = Rng::with_seed(4);
     let firmware = robot().firmware();
-    let steps = |angles: [f64; 4]| -> [f64; 4] {
+    let steps_of = |angles: [f64; 4]| -> [f64; 4] {
         let servos = robot().servos();
         std::array::from_fn(|i| wrap(angles[i] - servos[i].neutral) * 65536.0 / 360.0)
     };
-    let barred = |from: [f64; 4], to: [f64; 4]| {
-        let (from, to) = (steps(from), steps(to));
-        let unsafe_at = |n: &u32| {
-            let share = f64::from(*n) / 100.0;
-            let at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
-            let pose = Sweeps(std::array::from_fn(at));
+    let unsafe_count_between = |from: [f64; 4], to: [f64; 4]| {
+        let (from, to) = (steps_of(from), steps_of(to));
+        let is_unsafe_at = |percent: &u32| {
+            let share = f64::from(*percent) / 100.0;
+            let sweep_at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
+            let pose = Sweeps(std::array::from_fn(sweep_at));
             Clearance::of(firmware, &pose)
                 .first_hazard(firmware)
                 .is_some()
         };
-        (0..=100).filter(unsafe_at).count()
+        (0..=100).filter(is_unsafe_at).count()
     };
     let neutral = robot().servos().map(|servo| servo.neutral);
-    let mut edges: Vec<[f64; 4]> = Vec::new();
+    let mut kept_poses: Vec<[f64; 4]> = Vec::new();
     for _ in 0..2000 {
         let pose = random_far_pose(&mut rng);
-        if barred(neutral, pose) == 0 && barred(pose, neutral) == 0 {
-            let found = edges.iter().find(|edge| barred(**edge, pose) > 20);
-            if let Some(edge) = found {
-                return Some([*edge, pose]);
+        if unsafe_count_between(neutral, pose) == 0 && unsafe_count_between(pose, neutral) == 0 {
+            let partner = kept_poses
+                .iter()
+                .find(|kept_pose| unsafe_count_between(**kept_pose, pose) > 20);
+            if let Some(kept_pose) = partner {
+                return Some([*kept_pose, pose]);
             }
             // Keeps few poses, so that all pairs can be tried: a robot may have no unsafe path.
-            if edges.len() < 40 {
-                edges.push(pose);
+            if kept_poses.len() < 40 {
+                kept_poses.push(pose);
             }
         }
     }
@@ -336,10 +376,10 @@ fn a_path_that_breaks_a_limit_ends_before_that() {
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
-        let held = servo_frames_of(robot(), &frames)[0]
+        let held_angles = servo_frames_of(robot(), &frames)[0]
             .angles
             .expect("four pulses");
-        assert!(is_safe(held, &limits_with_tolerance(-1.0)) && held != from);
+        assert!(is_safe(held_angles, &limits_with_tolerance(-1.0)) && held_angles != from);
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);

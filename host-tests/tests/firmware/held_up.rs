@@ -11,7 +11,7 @@ use crate::{neutral_widths, run_in_both_simulations};
 /// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
 const MAX_BLOCKED: u64 = 160;
 
-/// An interval of `length` cycles with interrupts blocked, which begins `before` cycles before an edge.
+/// An interval of `length` cycles with interrupts blocked, which begins `cycles_before_edge` cycles before an edge.
 #[derive(Clone, Copy, Debug)]
 struct BlockedInterval {
     cycles_before_edge: u64,
@@ -31,26 +31,26 @@ enum DelayedEdges {
 fn run_blocked_frames(
     walk: &mut ReferenceRun,
     edges: DelayedEdges,
-    holds: &[BlockedInterval],
+    intervals: &[BlockedInterval],
 ) -> Vec<(Frame, [u64; 4])> {
     let start = walk.next_frame();
-    let commands = walk.expected_widths(start, holds.len() as u64);
-    for (n, (hold, command)) in holds.iter().zip(commands).enumerate() {
+    let commands = walk.expected_widths(start, intervals.len() as u64);
+    for (n, (interval, command)) in intervals.iter().zip(commands).enumerate() {
         for (servo, width) in command.into_iter().enumerate() {
             let rise = start + n as u64 * FRAME + servo as u64 * SLOT_CYCLES;
-            let both = [
+            let edge_cycles = [
                 (DelayedEdges::Rising, rise),
                 (DelayedEdges::Falling, rise + width),
             ];
-            for (edge, cycle) in both {
+            for (edge, cycle) in edge_cycles {
                 if edges == DelayedEdges::Both || edges == edge {
-                    walk.run_to(cycle - hold.cycles_before_edge);
-                    walk.bench.uno.block_interrupts(hold.length);
+                    walk.run_to(cycle - interval.cycles_before_edge);
+                    walk.bench.uno.block_interrupts(interval.length);
                 }
             }
         }
     }
-    walk.run_to(start + holds.len() as u64 * FRAME - SLOT_CYCLES / 2);
+    walk.run_to(start + intervals.len() as u64 * FRAME - SLOT_CYCLES / 2);
     walk.frames_since(start)
 }
 
@@ -61,8 +61,8 @@ fn intervals_above_limit() -> Vec<BlockedInterval> {
         .into_iter()
         .flat_map(|length| {
             let starts = (0..length + 300).step_by(7);
-            starts.map(move |before| BlockedInterval {
-                cycles_before_edge: before,
+            starts.map(move |cycles_before_edge| BlockedInterval {
+                cycles_before_edge,
                 length,
             })
         })
@@ -74,21 +74,21 @@ fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
     run_in_both_simulations(|fidelity| {
         let mut walk = ReferenceRun::start_walking(fidelity);
         let length = MAX_BLOCKED;
-        let holds: Vec<BlockedInterval> = (0..450)
-            .map(|before| BlockedInterval {
-                cycles_before_edge: before,
+        let intervals: Vec<BlockedInterval> = (0..450)
+            .map(|cycles_before_edge| BlockedInterval {
+                cycles_before_edge,
                 length,
             })
             .collect();
-        for (n, (frame, asked)) in run_blocked_frames(&mut walk, DelayedEdges::Both, &holds)
+        for (n, (frame, expected)) in run_blocked_frames(&mut walk, DelayedEdges::Both, &intervals)
             .iter()
             .enumerate()
         {
             assert_eq!(
                 frame.all_widths(),
-                Some(*asked),
+                Some(*expected),
                 "{:?}: {frame:?}",
-                holds[n]
+                intervals[n]
             );
         }
         assert_eq!(walk.late_edge_count(), 0);
@@ -101,27 +101,28 @@ fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
     run_in_both_simulations(|fidelity| {
         let mut walk = ReferenceRun::start_standing(fidelity);
-        let holds = intervals_above_limit();
-        let mut dropped = 0;
-        for (n, (frame, asked)) in run_blocked_frames(&mut walk, DelayedEdges::Rising, &holds)
-            .iter()
-            .enumerate()
+        let intervals = intervals_above_limit();
+        let mut dropped_count = 0;
+        for (n, (frame, expected)) in
+            run_blocked_frames(&mut walk, DelayedEdges::Rising, &intervals)
+                .iter()
+                .enumerate()
         {
-            for (sent, asked) in frame.widths.into_iter().zip(asked) {
-                dropped += u64::from(sent.is_none());
+            for (sent_width, expected) in frame.widths.into_iter().zip(expected) {
+                dropped_count += u64::from(sent_width.is_none());
                 assert!(
-                    sent.is_none_or(|sent| sent == *asked),
+                    sent_width.is_none_or(|sent_width| sent_width == *expected),
                     "{:?}: {frame:?}",
-                    holds[n]
+                    intervals[n]
                 );
             }
         }
-        let edges = 4 * holds.len() as u64;
+        let edge_count = 4 * intervals.len() as u64;
         assert!(
-            (edges / 4..edges * 3 / 4).contains(&dropped),
-            "{dropped} of {edges}"
+            (edge_count / 4..edge_count * 3 / 4).contains(&dropped_count),
+            "{dropped_count} of {edge_count}"
         );
-        assert_eq!(walk.late_edge_count(), dropped);
+        assert_eq!(walk.late_edge_count(), dropped_count);
     });
 }
 
@@ -129,33 +130,36 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
 fn a_late_falling_edge_is_made_at_once_and_counted() {
     run_in_both_simulations(|fidelity| {
         let mut walk = ReferenceRun::start_standing(fidelity);
-        let holds = intervals_above_limit();
-        let mut late = 0;
-        for (n, (frame, asked)) in run_blocked_frames(&mut walk, DelayedEdges::Falling, &holds)
-            .iter()
-            .enumerate()
+        let intervals = intervals_above_limit();
+        let mut late_count = 0;
+        for (n, (frame, expected)) in
+            run_blocked_frames(&mut walk, DelayedEdges::Falling, &intervals)
+                .iter()
+                .enumerate()
         {
             let BlockedInterval {
-                cycles_before_edge: before,
+                cycles_before_edge,
                 length,
-            } = holds[n];
-            for (sent, asked) in frame.widths().into_iter().zip(asked) {
-                late += u64::from(sent != *asked);
+            } = intervals[n];
+            for (sent_width, expected) in frame.widths().into_iter().zip(expected) {
+                late_count += u64::from(sent_width != *expected);
                 // After the blocked interval, the handler's prologue still takes its time.
-                let latest = (asked + length + 90).saturating_sub(before).max(*asked);
+                let max_width = (expected + length + 90)
+                    .saturating_sub(cycles_before_edge)
+                    .max(*expected);
                 assert!(
-                    (*asked..=latest).contains(&sent),
+                    (*expected..=max_width).contains(&sent_width),
                     "{:?}: {frame:?}",
-                    holds[n]
+                    intervals[n]
                 );
             }
         }
-        let edges = 4 * holds.len() as u64;
+        let edge_count = 4 * intervals.len() as u64;
         assert!(
-            (edges / 4..edges * 3 / 4).contains(&late),
-            "{late} of {edges}"
+            (edge_count / 4..edge_count * 3 / 4).contains(&late_count),
+            "{late_count} of {edge_count}"
         );
-        assert_eq!(walk.late_edge_count(), late);
+        assert_eq!(walk.late_edge_count(), late_count);
     });
 }
 
@@ -165,26 +169,26 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
         let mut walk = ReferenceRun::start_standing(fidelity);
         for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
             let start = walk.next_frame();
-            let late = walk.late_edge_count();
+            let late_before = walk.late_edge_count();
             walk.run_to(start + servo * SLOT_CYCLES - 600);
             walk.bench.uno.block_interrupts(length);
             walk.run_to(start + 3 * FRAME - SLOT_CYCLES / 2);
-            for (n, (frame, asked)) in walk.frames_since(start).into_iter().enumerate() {
-                let mut expected = asked.map(Some);
+            for (n, (frame, commanded)) in walk.frames_since(start).into_iter().enumerate() {
+                let mut expected = commanded.map(Some);
                 if n == 0 {
                     expected[servo as usize] = None;
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each pulse starts exactly on the grid of slots.
                 let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT_CYCLES);
-                let on_grid =
+                let is_on_grid =
                     |(actual, due): (Option<u64>, u64)| actual.is_none_or(|actual| actual == due);
                 assert!(
-                    frame.starts.into_iter().zip(starts).all(on_grid),
+                    frame.starts.into_iter().zip(starts).all(is_on_grid),
                     "{frame:?}"
                 );
             }
-            assert_eq!(walk.late_edge_count(), late + 1);
+            assert_eq!(walk.late_edge_count(), late_before + 1);
         }
     });
 }
@@ -196,43 +200,43 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
         let pins = walk.bench.pins();
         let neutral = neutral_widths();
         // The blocked interval ends between 220 cycles before the next slot's edge and 360 cycles after it.
-        for beyond in (0..600).step_by(20) {
+        for excess_cycles in (0..600).step_by(20) {
             for servo in 0..4 {
                 walk.bench.run_for_frames(1);
                 walk.bench.uno.take_edges();
-                let rise = pins[servo];
-                let high = |uno: &simulated_uno::Uno| uno.is_high(rise);
-                assert!(walk.bench.uno.run_until(2 * FRAME, 100, high));
+                let servo_pin = pins[servo];
+                let is_high = |uno: &simulated_uno::Uno| uno.is_high(servo_pin);
+                assert!(walk.bench.uno.run_until(2 * FRAME, 100, is_high));
                 walk.bench.uno.run_cycles(neutral[servo] - 500);
-                let began = walk.bench.uno.edges().last().expect("its rise").cycle;
-                let late = walk.late_edge_count();
-                let until = began + SLOT_CYCLES - 220 + beyond;
-                let length = until - walk.bench.uno.cycle();
+                let rise_cycle = walk.bench.uno.edges().last().expect("its rise").cycle;
+                let late_before = walk.late_edge_count();
+                let end_cycle = rise_cycle + SLOT_CYCLES - 220 + excess_cycles;
+                let length = end_cycle - walk.bench.uno.cycle();
                 walk.bench.uno.block_interrupts(length);
                 walk.bench.run_ms(40);
-                let what = format!("A{} and {beyond}", servo + 1);
-                assert_eq!(walk.late_edge_count(), late + 1, "{what}");
+                let message = format!("A{} and {excess_cycles}", servo + 1);
+                assert_eq!(walk.late_edge_count(), late_before + 1, "{message}");
                 let widths: Vec<u64> = walk
                     .bench
                     .uno
-                    .pulses(rise)
+                    .pulses(servo_pin)
                     .iter()
                     .map(|p| p.width)
                     .collect();
                 assert!(
-                    (SLOT_CYCLES - 300..SLOT_CYCLES + beyond + 100).contains(&widths[0]),
-                    "{what}: {widths:?}"
+                    (SLOT_CYCLES - 300..SLOT_CYCLES + excess_cycles + 100).contains(&widths[0]),
+                    "{message}: {widths:?}"
                 );
                 assert!(
                     widths[1..].iter().all(|width| *width == neutral[servo]),
-                    "{what}"
+                    "{message}"
                 );
                 // No other servo misses its pulse.
                 let edges = servo_edges(&walk.bench);
-                let mut rises = edges.iter().filter(|edge| edge.high).map(|edge| edge.pin);
-                assert!(rises.any(|pin| pin == rise));
-                let next = (1..8).map(|n| pins[(servo + n) % 4]);
-                assert!(rises.take(7).eq(next), "{what}");
+                let mut rise_pins = edges.iter().filter(|edge| edge.high).map(|edge| edge.pin);
+                assert!(rise_pins.any(|pin| pin == servo_pin));
+                let next_pins = (1..8).map(|n| pins[(servo + n) % 4]);
+                assert!(rise_pins.take(7).eq(next_pins), "{message}");
             }
         }
     });
@@ -255,9 +259,9 @@ fn milliseconds_without_interrupts_shorten_no_pulse_nor_exceed_its_slot() {
             for (pin, neutral) in pins.into_iter().zip(neutral_widths()) {
                 for pulse in walk.bench.uno.pulses(pin) {
                     // In the worst case, interrupts are enabled again in the middle of the next slot.
-                    let latest = neutral.max(SLOT_CYCLES + 300).max(neutral + length);
+                    let max_width = neutral.max(SLOT_CYCLES + 300).max(neutral + length);
                     assert!(
-                        (neutral..=latest).contains(&pulse.width),
+                        (neutral..=max_width).contains(&pulse.width),
                         "{pin}: {pulse:?} after {length} cycles"
                     );
                 }

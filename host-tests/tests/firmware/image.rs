@@ -29,20 +29,20 @@ fn functions_with(parts: &[&str]) -> Vec<String> {
 
 #[test]
 fn nothing_in_it_can_panic() {
-    let found = functions_with(&[
+    let functions = functions_with(&[
         "panic",
         "rust_begin_unwind",
         "unwrap_failed",
         "expect_failed",
         "bounds_check",
     ]);
-    assert!(found.is_empty(), "{found:?}");
+    assert!(functions.is_empty(), "{functions:?}");
 }
 
 #[test]
 fn nothing_in_it_uses_core_fmt() {
-    let found = functions_with(&["core::fmt", "Formatter", "Display", "Debug"]);
-    assert!(found.is_empty(), "{found:?}");
+    let functions = functions_with(&["core::fmt", "Formatter", "Display", "Debug"]);
+    assert!(functions.is_empty(), "{functions:?}");
 }
 
 #[test]
@@ -52,36 +52,36 @@ fn nothing_in_it_is_floating_point() {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let is_float = |name: &str| {
-        let bare = name.trim_start_matches('_');
-        let helper = name.starts_with("__");
-        let ends = ["sf2", "sf3", "df2", "df3", "sf", "df"];
-        helper
-            && (ends.iter().any(|end| bare.ends_with(end))
-                || bare.starts_with("fp_")
-                || bare.starts_with("float")
-                || bare.starts_with("fix"))
+        let bare_name = name.trim_start_matches('_');
+        let is_helper = name.starts_with("__");
+        let suffixes = ["sf2", "sf3", "df2", "df3", "sf", "df"];
+        is_helper
+            && (suffixes.iter().any(|suffix| bare_name.ends_with(suffix))
+                || bare_name.starts_with("fp_")
+                || bare_name.starts_with("float")
+                || bare_name.starts_with("fix"))
             || [
                 "sinf", "cosf", "sqrtf", "sin", "cos", "sqrt", "atan2", "acos",
             ]
-            .contains(&bare)
+            .contains(&bare_name)
             || name.contains("f32")
             || name.contains("f64")
             || name.contains("libm")
     };
-    let found: Vec<&str> = functions
+    let float_names: Vec<&str> = functions
         .map(|symbol| symbol.name.as_str())
         .filter(|name| is_float(name))
         .collect();
-    assert!(found.is_empty(), "{found:?}");
+    assert!(float_names.is_empty(), "{float_names:?}");
 }
 
 #[test]
 fn tables_and_messages_stay_in_flash() {
     let bench = boot_standing(Fidelity::DataSheet);
     let ram: Vec<u8> = (SRAM_START..SRAM_END)
-        .map(|at| bench.uno.peek(at))
+        .map(|address| bench.uno.peek(address))
         .collect();
-    let holds = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
+    let ram_contains = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
     let waves = robot().firmware().waves();
     for n in 0..waves.len() {
         let wave = waves.get(n).expect("a waveform").load();
@@ -94,7 +94,7 @@ fn tables_and_messages_stay_in_flash() {
                 .iter()
                 .flat_map(|sample| sample.to_le_bytes())
                 .collect();
-            assert!(!holds(&bytes), "wave {n} is in RAM");
+            assert!(!ram_contains(&bytes), "wave {n} is in RAM");
         }
     }
     // None of these has been printed yet.
@@ -106,10 +106,10 @@ fn tables_and_messages_stay_in_flash() {
         "percent",
         "status",
     ] {
-        assert!(!holds(message.as_bytes()), "{message:?} is in RAM");
+        assert!(!ram_contains(message.as_bytes()), "{message:?} is in RAM");
     }
     assert!(
-        holds(b"# lizard"),
+        ram_contains(b"# lizard"),
         "the banner is in RAM, from where it was sent"
     );
 }
@@ -121,14 +121,14 @@ fn no_interrupt_is_used_that_would_come_before_the_servos() {
         bench.say(line);
         bench.run_ms(300);
     }
-    let used: Vec<&str> = bench
+    let used_vectors: Vec<&str> = bench
         .uno
         .interrupts()
         .iter()
-        .map(|used| simulated_uno::vector_name(used.vector))
+        .map(|interrupt| simulated_uno::vector_name(interrupt.vector))
         .collect();
     assert_eq!(
-        used,
+        used_vectors,
         ["TIMER1_COMPA", "TIMER1_COMPB", "USART_RX", "USART_UDRE"]
     );
     assert_eq!(Status::of(&mut bench).number("late"), 0.0);
@@ -137,7 +137,7 @@ fn no_interrupt_is_used_that_would_come_before_the_servos() {
 #[test]
 fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
     let folder = tempfile::tempdir().expect("a folder");
-    let changed = folder.path().join("changed.elf");
+    let changed_elf = folder.path().join("changed.elf");
     let image = image();
     let code = image
         .symbol("__code_end")
@@ -146,24 +146,24 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
     // The script takes the bounds of the robot's section from two symbols, so moving a symbol makes the code or
     // the robot too large.
     let check_with = |symbol: &str, address: u64| {
-        let done = Command::new("avr-objcopy")
+        let status = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))
             .args(["--add-symbol", &format!("{symbol}={address:#x}")])
-            .args([&FirmwareBench::elf(), &changed])
+            .args([&FirmwareBench::elf(), &changed_elf])
             .status();
-        assert!(done.expect("avr-objcopy").success());
-        let run = Command::new(root().join("scripts/size"))
+        assert!(status.expect("avr-objcopy").success());
+        let output = Command::new(root().join("scripts/size"))
             .arg("--check")
-            .arg(&changed)
+            .arg(&changed_elf)
             .output()
             .expect("a shell");
-        assert!(run.stdout.is_empty());
-        let printed = String::from_utf8(run.stderr).expect("a text");
-        (run.status.success(), printed)
+        assert!(output.stdout.is_empty());
+        let error_text = String::from_utf8(output.stderr).expect("a text");
+        (output.status.success(), error_text)
     };
     assert_eq!(check_with("unused", 0), (true, String::new()));
-    let (fits, message) = check_with("__robot_start", code - 300);
-    assert!(!fits);
+    let (is_accepted, message) = check_with("__robot_start", code - 300);
+    assert!(!is_accepted);
     let lines: Vec<&str> = message.lines().collect();
     let excess = format!(
         "the firmware does not fit: its code has {code} bytes, 300 more than the {} in front",
@@ -178,15 +178,15 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         sizes.is_sorted_by(|larger, smaller| larger.is_some() && larger >= smaller),
         "{message}"
     );
-    let names_frame = lines[1..3]
+    let has_frame = lines[1..3]
         .iter()
         .any(|line| line.ends_with("::controller::frame"));
-    assert!(names_frame, "{message}");
+    assert!(has_frame, "{message}");
     let start = image
         .symbol("__robot_start")
         .expect("it is in the ELF")
         .address;
-    let (fits, message) = check_with("__robot_end", start + 300);
-    assert!(!fits);
+    let (is_accepted, message) = check_with("__robot_end", start + 300);
+    assert!(!is_accepted);
     assert!(message.starts_with("the robot does not fit: "), "{message}");
 }

@@ -59,7 +59,7 @@ fn start_waiting_patrol(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = boot_with_inputs(robot(), fidelity);
     assert_eq!(bench.say("patrol"), "ok patrol");
     bench.run_ms(500);
-    assert_eq!(notes(&mut bench, 0), ["# waiting for button"]);
+    assert_eq!(read_notes(&mut bench, 0), ["# waiting for button"]);
     bench
 }
 
@@ -77,24 +77,26 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, false);
 }
 
-/// Returns the notes from line `since` on, the lines that begin with `#`, without those printed at the start.
-fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
-    let lines = bench.lines()[since..].iter().map(|line| line.text.clone());
-    let starts = ["# lizard", "# calibration"];
+/// Returns the notes from line `first_line` on, the lines that begin with `#`, without those printed at the start.
+fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
+    let lines = bench.lines()[first_line..]
+        .iter()
+        .map(|line| line.text.clone());
+    let excluded_starts = ["# lizard", "# calibration"];
     let is_note = |line: &String| {
-        line.starts_with('#') && !starts.iter().any(|start| line.starts_with(start))
+        line.starts_with('#') && !excluded_starts.iter().any(|start| line.starts_with(start))
     };
     lines.filter(is_note).collect()
 }
 
 /// Computes the travel for these pulses by the contact model.
-fn travel(frames: &[Frame]) -> Travel {
+fn travel_of(frames: &[Frame]) -> Travel {
     let servos = robot().servos();
-    let angles = |frame: &Frame| {
+    let angles_of = |frame: &Frame| {
         let widths = frame.widths();
         std::array::from_fn(|i| servos[i].neutral + servos[i].sweep(widths[i] as f64 / 16.0))
     };
-    robot().travel(frames.iter().map(angles))
+    robot().travel(frames.iter().map(angles_of))
 }
 
 /// True if the servos stand still for a second.
@@ -111,10 +113,10 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         bench.send("save");
         bench.run_ms(500);
         power_cycle(&mut bench);
-        let since = bench.lines().len();
+        let line_count = bench.lines().len();
         bench.run_ms(10_000);
-        let printed = notes(&mut bench, since);
-        assert_eq!(printed, ["# boot: patrol", "# waiting for button"]);
+        let notes = read_notes(&mut bench, line_count);
+        assert_eq!(notes, ["# boot: patrol", "# waiting for button"]);
         assert!(is_still(&mut bench));
         // The button bounces.
         for ms in [1, 3, 1, 2, 7, 1, 2] {
@@ -124,23 +126,29 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         press(&mut bench, BUTTON, 150);
         // The move to the first pose ends within half a second.
         bench.run_ms(500);
-        let ahead = travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
-        assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
+        let travel = travel_of(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
+        assert!(
+            travel.forward > 90.0 && travel.turn.abs() < 5.0,
+            "{travel:?}"
+        );
         for _ in 0..2 {
-            let walked = bench.lines().len();
+            let line_count = bench.lines().len();
             bench.uno.set_contact(NOSE, true);
             let mut frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
             bench.uno.set_contact(NOSE, false);
             frames.extend(bench.run_for_frames(6 * FRAMES_PER_SECOND));
-            let displacement = travel(&frames);
+            let displacement = travel_of(&frames);
             assert!(displacement.turn > 75.0, "it has turned: {displacement:?}");
-            assert!(notes(&mut bench, walked).is_empty());
+            assert!(read_notes(&mut bench, line_count).is_empty());
             // No second press is needed: the patrol waits only for the wall.
             bench.run_ms(2_500);
-            let printed = notes(&mut bench, walked);
-            assert_eq!(printed, ["# waiting for nose"]);
-            let ahead = travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
-            assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
+            let notes = read_notes(&mut bench, line_count);
+            assert_eq!(notes, ["# waiting for nose"]);
+            let travel = travel_of(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
+            assert!(
+                travel.forward > 90.0 && travel.turn.abs() < 5.0,
+                "{travel:?}"
+            );
         }
         let status = Status::of(&mut bench);
         assert_eq!((status.text("gait"), status.text("late")), ("patrol", "0"));
@@ -169,7 +177,7 @@ fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
 
 #[test]
 fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
-    for begin in [start_waiting_patrol, start_walking_patrol] {
+    for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         type Event = fn(&mut FirmwareBench);
         let events: [(&str, Event); 5] = [
             ("stop", |bench| assert_eq!(bench.say("stop"), "ok stop")),
@@ -190,20 +198,23 @@ fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
             }),
         ];
         for (name, event) in events {
-            let mut bench = begin(Fidelity::DataSheet);
+            let mut bench = start_patrol(Fidelity::DataSheet);
             event(&mut bench);
-            let before = measure_widths(&mut bench);
-            let since = bench.lines().len();
+            let widths_before = measure_widths(&mut bench);
+            let line_count = bench.lines().len();
             for pin in [BUTTON, NOSE] {
                 bench.uno.set_contact(pin, true);
-                let moved = run_for_pulses(&mut bench, 1_000);
+                let servo_pulses = run_for_pulses(&mut bench, 1_000);
                 bench.uno.set_contact(pin, false);
-                for (pulses, before) in moved.iter().zip(before) {
-                    let is_still = pulses.iter().all(|pulse| pulse.width == before);
-                    assert!(is_still && pulses.is_empty() == (before == 0), "{name}");
+                for (pulses, width_before) in servo_pulses.iter().zip(widths_before) {
+                    let is_still = pulses.iter().all(|pulse| pulse.width == width_before);
+                    assert!(
+                        is_still && pulses.is_empty() == (width_before == 0),
+                        "{name}"
+                    );
                 }
             }
-            assert!(notes(&mut bench, since).is_empty(), "{name}");
+            assert!(read_notes(&mut bench, line_count).is_empty(), "{name}");
         }
     }
 }
@@ -225,23 +236,23 @@ fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
         press(&mut bench, Pin::d(4), 100);
         bench.run_ms(10_000);
         assert_eq!(Status::of(&mut bench).text("late"), "0");
-        let printed = notes(&mut bench, 0);
+        let notes = read_notes(&mut bench, 0);
         let expected = ["button", "nose", "nose"].map(|name| format!("# waiting for {name}"));
-        assert_eq!(printed, expected);
+        assert_eq!(notes, expected);
     });
 }
 
 #[test]
 fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
-    for begin in [start_waiting_patrol, start_walking_patrol] {
-        let mut bench = begin(Fidelity::DataSheet);
+    for start_patrol in [start_waiting_patrol, start_walking_patrol] {
+        let mut bench = start_patrol(Fidelity::DataSheet);
         let calls = bench.time_calls("Control::frame", 4_000);
         let cycles = calls.iter().map(|call| call.leave - call.enter);
-        let mean = cycles.sum::<u64>() / calls.len() as u64;
-        println!("{mean} cycles a frame");
+        let mean_cycles = cycles.sum::<u64>() / calls.len() as u64;
+        println!("{mean_cycles} cycles a frame");
         assert!(
-            calls.len() >= 190 && mean <= MAX_MEAN_FRAME_CYCLES,
-            "{mean}"
+            calls.len() >= 190 && mean_cycles <= MAX_MEAN_FRAME_CYCLES,
+            "{mean_cycles}"
         );
     }
 }

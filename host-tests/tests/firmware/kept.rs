@@ -51,12 +51,12 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
 pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
     let (lines, answer) = bench.ask("cal");
     assert_eq!(answer, "ok cal");
-    let is_set = |line: &String| {
+    let is_setting = |line: &String| {
         ["# A", "# boot ", "# deadman "]
             .iter()
             .any(|start| line.starts_with(start))
     };
-    lines.into_iter().filter(is_set).collect()
+    lines.into_iter().filter(is_setting).collect()
 }
 
 /// Returns a servo's slew limit: the most by which its pulse width may change from frame to frame, cycles.
@@ -75,10 +75,10 @@ fn slew_limit_at(gain: f64, slew: f64) -> u64 {
 pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     let pace = robot().pace();
     for (servo, pulses) in robot().servos().iter().zip(pulses) {
-        let max = slew_limit_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
+        let max_leap = slew_limit_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
-            assert!(leap <= max, "{leap} cycles of {max}: {pair:?}");
+            assert!(leap <= max_leap, "{leap} cycles of {max_leap}: {pair:?}");
         }
     }
 }
@@ -122,7 +122,7 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
                 patterns.extend(count);
                 count = Some(0);
             }
-            other => panic!("the LED: {other:?}"),
+            state => panic!("the LED: {state:?}"),
         }
     }
     patterns

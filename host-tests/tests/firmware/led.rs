@@ -14,18 +14,21 @@ fn the_led_is_lit_at_power_on_and_beats_every_64_hundredths_of_a_second() {
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(5000);
         let edges = bench.uno.edges();
-        let beats: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
+        let led_edges: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
         assert!(
-            beats[0].high && beats[0].cycle < 3 * FRAME,
+            led_edges[0].high && led_edges[0].cycle < 3 * FRAME,
             "{:?}",
-            beats[0]
+            led_edges[0]
         );
-        assert!(beats.len() >= 7, "{} changes in 5 s", beats.len());
-        for (n, pair) in beats.windows(2).enumerate().skip(1) {
+        assert!(led_edges.len() >= 7, "{} changes in 5 s", led_edges.len());
+        for (n, pair) in led_edges.windows(2).enumerate().skip(1) {
             assert_ne!(pair[0].high, pair[1].high);
             // The LED's time within a frame depends on how long the frame's computation takes.
-            let apart = pair[1].cycle - pair[0].cycle;
-            assert!(apart.abs_diff(32 * FRAME) < FRAME / 10, "beat {n}: {apart}");
+            let distance = pair[1].cycle - pair[0].cycle;
+            assert!(
+                distance.abs_diff(32 * FRAME) < FRAME / 10,
+                "beat {n}: {distance}"
+            );
         }
     });
 }

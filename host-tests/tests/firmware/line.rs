@@ -24,9 +24,9 @@ fn the_line_runs_at_the_nearest_rate_to_115_200_baud_that_the_clock_allows() {
     run_in_both_simulations(|fidelity| {
         let bench = FirmwareBench::boot_with(fidelity);
         let divisor = u16::from_le_bytes(UBRR0.map(|register| bench.uno.peek(register)));
-        let double = bench.uno.peek(UCSR0A) & 2 != 0;
-        let samples = if double { 8.0 } else { 16.0 };
-        let baud = 16e6 / samples / f64::from(divisor + 1);
+        let is_double_speed = bench.uno.peek(UCSR0A) & 2 != 0;
+        let samples_per_bit = if is_double_speed { 8.0 } else { 16.0 };
+        let baud = 16e6 / samples_per_bit / f64::from(divisor + 1);
         assert!((baud / 115_200.0 - 1.0).abs() < 0.022, "{baud} baud");
     });
 }
@@ -36,8 +36,15 @@ fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
     let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
     bench.say("help");
     let cycles: Vec<u64> = bench.bytes().iter().map(|byte| byte.cycle).collect();
-    let apart: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    assert_eq!(apart.iter().min(), Some(&1360));
-    let back_to_back = apart.iter().filter(|apart| **apart == 1360).count();
-    assert!(back_to_back > apart.len() * 9 / 10, "of {}", apart.len());
+    let distances: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert_eq!(distances.iter().min(), Some(&1360));
+    let back_to_back_count = distances
+        .iter()
+        .filter(|distance| **distance == 1360)
+        .count();
+    assert!(
+        back_to_back_count > distances.len() * 9 / 10,
+        "of {}",
+        distances.len()
+    );
 }

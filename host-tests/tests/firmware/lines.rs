@@ -7,8 +7,8 @@ use lizard_host_tests::robot;
 
 /// Returns a random number with at most two decimals, from `min` to `max` or a fifth of the range beyond.
 fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
-    let beyond = (max - min) * 0.2;
-    let number = min - beyond + rng.f64() * (max - min + 2.0 * beyond);
+    let margin = (max - min) * 0.2;
+    let number = min - margin + rng.f64() * (max - min + 2.0 * margin);
     match rng.u8(..4) {
         0 => format!("{number:.0}"),
         1 => format!("{number:.1}"),
@@ -19,20 +19,20 @@ fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
 /// Returns a random angle near the neutral angle of a servo, deg.
 fn random_angle(rng: &mut Rng, servo: usize) -> String {
     let neutral = robot().servos()[servo].neutral;
-    let within = [5.0, 30.0, 100.0][rng.usize(..3)];
-    random_number(rng, neutral - within, neutral + within)
+    let max_deg = [5.0, 30.0, 100.0][rng.usize(..3)];
+    random_number(rng, neutral - max_deg, neutral + max_deg)
 }
 
 /// Returns a random line that is valid, except that its numbers may be out of range.
 fn random_line(rng: &mut Rng) -> String {
-    let gait = |rng: &mut Rng| {
+    let random_gait = |rng: &mut Rng| {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
         gait.name().replace('-', " ")
     };
     let index = rng.usize(..4);
     let servo = index + 1;
     match rng.u8(..24) {
-        0..5 => gait(rng),
+        0..5 => random_gait(rng),
         5 => "stop".into(),
         6 => "rest".into(),
         7 => "stand".into(),
@@ -61,7 +61,11 @@ fn random_line(rng: &mut Rng) -> String {
         20 | 21 => ["load", "factory"][rng.usize(..2)].into(),
         22 => format!(
             "boot {}",
-            if rng.bool() { gait(rng) } else { "rest".into() }
+            if rng.bool() {
+                random_gait(rng)
+            } else {
+                "rest".into()
+            }
         ),
         _ => format!("deadman {}", random_number(rng, 0.0, 60_000.0)),
     }

@@ -57,13 +57,17 @@ const FRAMES_PER_SECOND: u64 = 50;
 /// parts, each in the frame in which the serial buffer has space for it, so the values of a moving robot
 /// depend on timing. Stock simavr measures against a reference of 1.1 V, whatever the robot's reference is.
 fn comparable_line(line: &str, fidelity: Fidelity) -> String {
-    let mut unknown = vec!["phase=", "pose=", "margin=", "frames="];
+    let mut unknown_keys = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
-        unknown.extend(["vcc=", "rail="]);
+        unknown_keys.extend(["vcc=", "rail="]);
     }
     let is_status = line.starts_with("ok gait=");
-    let known = |pair: &&str| !is_status || !unknown.iter().any(|key| pair.starts_with(key));
-    line.split(' ').filter(known).collect::<Vec<_>>().join(" ")
+    let is_known =
+        |pair: &&str| !is_status || !unknown_keys.iter().any(|key| pair.starts_with(key));
+    line.split(' ')
+        .filter(is_known)
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// Runs a test on stock simavr and on corrected simavr in parallel.
@@ -76,12 +80,12 @@ fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
 /// Runs a test for every case, each on a thread of its own.
 fn for_each<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
     thread::scope(|scope| {
-        let runs: Vec<_> = cases
+        let handles: Vec<_> = cases
             .iter()
             .map(|case| (case, scope.spawn(|| test(case))))
             .collect();
-        for (case, run) in runs {
-            assert!(run.join().is_ok(), "it fails for {case:?}");
+        for (case, handle) in handles {
+            assert!(handle.join().is_ok(), "it fails for {case:?}");
         }
     });
 }
@@ -104,11 +108,11 @@ fn boot_standing(fidelity: Fidelity) -> FirmwareBench {
 /// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait: without
 /// it, most of these tests would see a robot that only stands.
 fn first_moving_gait() -> String {
-    let moving = tour::moving_gaits(robot());
-    let first = moving
+    let moving_gaits = tour::moving_gaits(robot());
+    let first_gait = moving_gaits
         .first()
         .expect("a robot to be tested has a gait that moves");
-    first.replace('-', " ")
+    first_gait.replace('-', " ")
 }
 
 /// Returns the commands for all gaits.
@@ -155,11 +159,11 @@ impl Status {
         let answer = bench.say("status");
         let pairs = answer.strip_prefix("ok gait=").map(|_| &answer[3..]);
         let pairs = pairs.unwrap_or_else(|| panic!("no answer to status: {answer}"));
-        let pair = |pair: &str| {
+        let split_pair = |pair: &str| {
             let (key, value) = pair.split_once('=').expect("key=value");
             (key.to_owned(), value.to_owned())
         };
-        Self(pairs.split(' ').map(pair).collect())
+        Self(pairs.split(' ').map(split_pair).collect())
     }
 
     fn text(&self, key: &str) -> &str {

@@ -17,32 +17,37 @@ use crate::{FRAMES_PER_SECOND, for_each};
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
 /// Returns the number of random robots; `make other-robots` tries 100.
-fn count() -> u64 {
-    let given = std::env::var("LIZARD_ROBOTS").ok();
-    given.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
+fn robot_count() -> u64 {
+    let value = std::env::var("LIZARD_ROBOTS").ok();
+    value.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
 }
 
 /// Walks a gait for two seconds under a flood of serial input, and asserts that each frame has the widths
 /// that the core computes for it.
-fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
+fn assert_in_time(robot: &Robot, gait: &str, flood: &str, message: &str) {
     let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
     let mut bench = FirmwareBench::with_board(board.expect("the firmware"));
     bench.run_ms(1000);
-    let first = bench.first_pulse().expect("it stands");
+    let first_rise = bench.first_pulse().expect("it stands");
     bench.say("watch 1");
     bench.say(&gait.replace('-', " "));
-    let received = bench.uno.received_by_uno().len();
+    let received_count = bench.uno.received_by_uno().len();
     bench.uno.flood(flood.as_bytes());
-    let sent = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-    let before = ((sent[0].start - first) / FRAME) as usize;
-    let received = &bench.uno.received_by_uno()[..received];
-    let asked = core_run::play(*robot.firmware(), received, first, before + sent.len());
-    for (frame, asked) in sent.iter().zip(&asked.widths[before..]) {
-        let asked = asked.map(u64::from);
+    let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
+    let frames_before = ((sent_frames[0].start - first_rise) / FRAME) as usize;
+    let received = &bench.uno.received_by_uno()[..received_count];
+    let commands = core_run::play(
+        *robot.firmware(),
+        received,
+        first_rise,
+        frames_before + sent_frames.len(),
+    );
+    for (frame, expected) in sent_frames.iter().zip(&commands.widths[frames_before..]) {
+        let expected = expected.map(u64::from);
         assert_eq!(
             frame.all_widths(),
-            Some(asked),
-            "{what}, {flood:?}: {frame:?}"
+            Some(expected),
+            "{message}, {flood:?}: {frame:?}"
         );
     }
 }
@@ -50,20 +55,20 @@ fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
 #[test]
 fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
     for_each(&[0, 1], |half| {
-        for n in (*half..count()).step_by(2) {
-            let mut rng = rng(2_000 + n);
+        for number in (*half..robot_count()).step_by(2) {
+            let mut rng = rng(2_000 + number);
             let (text, mut robot) = random_robot(&mut rng);
             // A third of the robots gets many gaits with short names, another third many with long names.
-            match n % 3 {
+            match number % 3 {
                 1 => robot = with_many_gaits(&text, 10),
                 2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
                 _ => {}
             }
-            let what = format!("robot {n}");
+            let message = format!("robot {number}");
             let gaits = tour::moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
-                assert_in_time(&robot, gait, flood, &what);
+                assert_in_time(&robot, gait, flood, &message);
             }
         }
     });
@@ -81,19 +86,19 @@ fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
         .chain([&robot])
     {
         let cycles = longest_step(&FirmwareBench::elf(), robot).expect("it runs");
-        let largest = robot.longest_search();
+        let search_cycles = robot.longest_search();
         println!(
-            "{} gaits: {cycles} cycles of {largest}",
+            "{} gaits: {cycles} cycles of {search_cycles}",
             robot.gaits().len()
         );
         assert!(
-            cycles as usize <= largest.max(MAX_OTHER_COMMAND_CYCLES),
-            "{cycles} of {largest}"
+            cycles as usize <= search_cycles.max(MAX_OTHER_COMMAND_CYCLES),
+            "{cycles} of {search_cycles}"
         );
         // Where the search is the longest step, the bound is less than twice the measured time.
         assert!(
-            largest < MAX_OTHER_COMMAND_CYCLES || cycles as usize > largest / 2,
-            "{cycles} of {largest}"
+            search_cycles < MAX_OTHER_COMMAND_CYCLES || cycles as usize > search_cycles / 2,
+            "{cycles} of {search_cycles}"
         );
     }
 }

@@ -33,23 +33,23 @@ impl UnsavedBoard {
             bench.say(&format!("trim {trim}"));
             assert_eq!(bench.say("save"), "ok save");
         }
-        let saved = read_calibration(&mut bench);
+        let saved_calibration = read_calibration(&mut bench);
         for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
             assert_eq!(bench.say(line), format!("ok {line}"));
         }
-        let others = read_calibration(&mut bench);
+        let changed_calibration = read_calibration(&mut bench);
         Self {
             saved_eeprom: bench.uno.eeprom(),
-            calibrations: [saved, others],
+            calibrations: [saved_calibration, changed_calibration],
             bench,
         }
     }
 
     /// Saves the changed settings, and returns the EEPROM operations.
     fn save(&mut self) -> Vec<EepromOperation> {
-        let before = self.bench.uno.eeprom_operations().len();
+        let operations_before = self.bench.uno.eeprom_operations().len();
         assert_eq!(self.bench.say("save"), "ok save");
-        self.bench.uno.eeprom_operations()[before..].to_vec()
+        self.bench.uno.eeprom_operations()[operations_before..].to_vec()
     }
 
     /// Powers the board on with these contents, and returns the output of `cal`.
@@ -62,49 +62,49 @@ impl UnsavedBoard {
 
 #[test]
 fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new() {
-    let mut saved = UnsavedBoard::new();
-    let mut contents = saved.saved_eeprom;
-    let operations = saved.save();
-    let after = saved.bench.uno.eeprom();
-    let [old, new] = [contents, after].map(|contents| load(&contents).0);
+    let mut board = UnsavedBoard::new();
+    let mut contents = board.saved_eeprom;
+    let operations = board.save();
+    let contents_after = board.bench.uno.eeprom();
+    let [old, new] = [contents, contents_after].map(|contents| load(&contents).0);
     assert_ne!(old, new);
     assert!(operations.len() > 10);
-    let (mut found, mut images) = ([0, 0], 0u64);
+    let (mut outcome_counts, mut image_count) = ([0, 0], 0u64);
     for operation in &operations {
         assert_eq!(contents[usize::from(operation.address)], operation.old);
         for ones in 0..=255u8 {
-            for torn in [operation.old | ones, operation.new | ones] {
+            for torn_byte in [operation.old | ones, operation.new | ones] {
                 let mut contents = contents;
-                contents[usize::from(operation.address)] = torn;
+                contents[usize::from(operation.address)] = torn_byte;
                 let (settings, outcome) = load(&contents);
                 let is_new = settings == new;
                 assert!(
                     is_new || settings == old,
-                    "{operation:?} torn to {torn:02x}: {outcome:?}"
+                    "{operation:?} torn to {torn_byte:02x}: {outcome:?}"
                 );
-                found[usize::from(is_new)] += 1;
+                outcome_counts[usize::from(is_new)] += 1;
                 // One cut in 97 is also loaded by the running image.
-                images += 1;
-                if images % 97 == 0 {
-                    let calibration = saved.power_on_with(&contents);
-                    assert_eq!(calibration, saved.calibrations[usize::from(is_new)]);
+                image_count += 1;
+                if image_count % 97 == 0 {
+                    let calibration = board.power_on_with(&contents);
+                    assert_eq!(calibration, board.calibrations[usize::from(is_new)]);
                 }
             }
         }
         contents[usize::from(operation.address)] = operation.new;
     }
-    assert_eq!(contents, after);
-    println!("{images} images: {found:?} old and new");
-    assert!(found[0] > 0 && found[1] > 0);
+    assert_eq!(contents, contents_after);
+    println!("{image_count} images: {outcome_counts:?} old and new");
+    assert!(outcome_counts[0] > 0 && outcome_counts[1] > 0);
 }
 
 #[test]
 fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
-    let mut saved = UnsavedBoard::new();
-    let before = saved.saved_eeprom;
-    let count = saved.save().len() as u64;
-    let after = saved.bench.uno.eeprom();
-    let mut found = [0, 0];
+    let mut board = UnsavedBoard::new();
+    let contents_before = board.saved_eeprom;
+    let count = board.save().len() as u64;
+    let contents_after = board.bench.uno.eeprom();
+    let mut outcome_counts = [0, 0];
     for operation in 0..count {
         for (cut, ones) in [
             (PowerCut::InErase(operation), 0x00),
@@ -113,49 +113,53 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
             (PowerCut::InWrite(operation), 0x81),
             (PowerCut::InWrite(operation), 0xff),
         ] {
-            saved.power_on_with(&before);
+            board.power_on_with(&contents_before);
             for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
-                saved.bench.say(line);
+                board.bench.say(line);
             }
-            saved.bench.uno.cut_power(cut, ones);
-            saved.bench.send("save");
-            saved.bench.uno.run_ms(400);
-            assert_eq!(*saved.bench.uno.state(), simulated_uno::State::Off);
-            power_cycle(&mut saved.bench);
-            let calibration = read_calibration(&mut saved.bench);
-            let which = saved.calibrations.iter().position(|c| *c == calibration);
-            found[which.unwrap_or_else(|| panic!("{cut:?} {ones:02x}: {calibration:?}"))] += 1;
+            board.bench.uno.cut_power(cut, ones);
+            board.bench.send("save");
+            board.bench.uno.run_ms(400);
+            assert_eq!(*board.bench.uno.state(), simulated_uno::State::Off);
+            power_cycle(&mut board.bench);
+            let calibration = read_calibration(&mut board.bench);
+            let index = board.calibrations.iter().position(|c| *c == calibration);
+            outcome_counts
+                [index.unwrap_or_else(|| panic!("{cut:?} {ones:02x}: {calibration:?}"))] += 1;
         }
     }
-    assert!(found[0] > 0 && found[1] > 0, "{found:?}");
-    assert_ne!(load(&before).0, load(&after).0);
+    assert!(
+        outcome_counts[0] > 0 && outcome_counts[1] > 0,
+        "{outcome_counts:?}"
+    );
+    assert_ne!(load(&contents_before).0, load(&contents_after).0);
 }
 
 #[test]
 fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
-    let mut saved = UnsavedBoard::new();
-    saved.save();
-    let contents = saved.bench.uno.eeprom();
-    let [latest, older] = [contents, saved.saved_eeprom].map(|contents| load(&contents).0);
+    let mut board = UnsavedBoard::new();
+    board.save();
+    let contents = board.bench.uno.eeprom();
+    let [latest, older] = [contents, board.saved_eeprom].map(|contents| load(&contents).0);
     let mut defaults = Settings::of(robot().firmware());
     defaults.set_save_number(0);
-    let mut found = [0, 0, 0];
+    let mut outcome_counts = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
-        let mut flipped = contents;
-        flipped[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = load(&flipped);
-        let which = [&latest, &older, &defaults]
+        let mut flipped_contents = contents;
+        flipped_contents[bit / 8] ^= 1 << (bit % 8);
+        let (settings, outcome) = load(&flipped_contents);
+        let index = [&latest, &older, &defaults]
             .iter()
             .position(|known| **known == settings);
-        let which = which.unwrap_or_else(|| panic!("bit {bit}: {outcome:?} {settings:?}"));
-        found[which] += 1;
+        let index = index.unwrap_or_else(|| panic!("bit {bit}: {outcome:?} {settings:?}"));
+        outcome_counts[index] += 1;
         if bit % 64 == 11 {
-            let calibration = saved.power_on_with(&flipped);
-            let expected = &saved.calibrations[if which == 0 { 1 } else { 0 }];
+            let calibration = board.power_on_with(&flipped_contents);
+            let expected = &board.calibrations[if index == 0 { 1 } else { 0 }];
             assert_eq!(&calibration, expected, "bit {bit}");
         }
     }
-    println!("{found:?} the latest, the copy before, the defaults");
-    assert_eq!(found[2], 0, "one copy is always whole");
-    assert!(found[1] >= 8 * 44, "the latest copy's own bits");
+    println!("{outcome_counts:?} the latest, the copy before, the defaults");
+    assert_eq!(outcome_counts[2], 0, "one copy is always whole");
+    assert!(outcome_counts[1] >= 8 * 44, "the latest copy's own bits");
 }

@@ -17,9 +17,9 @@ const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
 /// Starts the board with these register values, orders the robot to stand, and returns the servos' edges
 /// of the first second.
-fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
+fn edges_after(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
-    for (register, value) in left {
+    for (register, value) in register_values {
         bench.uno.poke(*register, *value);
     }
     bench.run_ms(200);
@@ -31,15 +31,15 @@ fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
 #[test]
 fn a_timer_that_was_left_running_changes_no_edge() {
     run_in_both_simulations(|fidelity| {
-        let cold = edges_after(&[], fidelity);
-        assert!(cold.len() > 100);
+        let cold_edges = edges_after(&[], fidelity);
+        assert!(cold_edges.len() > 100);
         for clock in 1..=5 {
-            let running = edges_after(&[(TCCR1B, clock)], fidelity);
-            assert_eq!(running, cold, "TCCR1B = {clock}");
+            let running_edges = edges_after(&[(TCCR1B, clock)], fidelity);
+            assert_eq!(running_edges, cold_edges, "TCCR1B = {clock}");
         }
         // 8-bit fast PWM, in which the timer takes over a new OCR1A only at the end of its cycle.
-        let pwm = edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
-        assert_eq!(pwm, cold);
+        let pwm_edges = edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
+        assert_eq!(pwm_edges, cold_edges);
     });
 }
 
@@ -52,8 +52,9 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
         for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
             bench.uno.poke(register, value);
         }
-        let word = |uno: &Uno, at| u16::from_le_bytes([uno.peek(at), uno.peek(at + 1)]);
-        let is_set = |uno: &Uno| word(uno, OCR1A) == 63_999;
+        let word_at =
+            |uno: &Uno, address| u16::from_le_bytes([uno.peek(address), uno.peek(address + 1)]);
+        let is_set = |uno: &Uno| word_at(uno, OCR1A) == 63_999;
         assert!(bench.uno.run_until(100_000, 1, is_set));
         assert_eq!(
             bench.uno.peek(TCCR1B) & 7,
@@ -61,7 +62,7 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
             "it counts while it is set up"
         );
         assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
-        assert_eq!(word(&bench.uno, TCNT1), 0);
+        assert_eq!(word_at(&bench.uno, TCNT1), 0);
         // Clear on compare with OCR1A, no prescaler.
         assert_eq!((bench.uno.peek(TCCR1A), bench.uno.peek(TCCR1B)), (0, 0x09));
     });
@@ -78,29 +79,31 @@ fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
 #[test]
 fn pins_that_were_left_high_go_low_and_make_no_pulse() {
     run_in_both_simulations(|fidelity| {
-        let cold = edges_after(&[], fidelity);
+        let cold_edges = edges_after(&[], fidelity);
         let ports = PORTS.map(|port| (port, 0xff));
-        let left = edges_after(&ports, fidelity);
+        let high_pin_edges = edges_after(&ports, fidelity);
         // The pull-ups may raise pins before main begins, for far less than a servo's
         // pulse. Then nothing drives the pins until the robot is known; the simulation
         // keeps a pin's last level.
-        let first = cold[0].cycle;
-        let mut early = left.iter().take_while(|edge| edge.cycle < first);
-        let raised = early.find(|edge| edge.high && edge.cycle >= CYCLES_PER_MS);
-        assert_eq!(raised, None);
+        let first_cycle = cold_edges[0].cycle;
+        let mut early_edges = high_pin_edges
+            .iter()
+            .take_while(|edge| edge.cycle < first_cycle);
+        let raised_edge = early_edges.find(|edge| edge.high && edge.cycle >= CYCLES_PER_MS);
+        assert_eq!(raised_edge, None);
         let mut bench = FirmwareBench::power_on(fidelity);
         for (port, bits) in ports {
             bench.uno.poke(port, bits);
         }
         bench.run_ms(1);
-        let [b, c, d] = PORTS.map(|port| bench.uno.peek(port));
+        let [port_b, port_c, port_d] = PORTS.map(|port| bench.uno.peek(port));
         // D0 and D1 belong to the serial line.
-        assert_eq!([b, c, d & !0x03], [0; 3]);
-        let rest: Vec<Edge> = left
+        assert_eq!([port_b, port_c, port_d & !0x03], [0; 3]);
+        let later_edges: Vec<Edge> = high_pin_edges
             .iter()
             .copied()
-            .filter(|edge| edge.cycle >= first)
+            .filter(|edge| edge.cycle >= first_cycle)
             .collect();
-        assert_eq!(rest, cold);
+        assert_eq!(later_edges, cold_edges);
     });
 }

@@ -13,8 +13,8 @@ use crate::{
 /// Returns the recorded edges of the servos' pins.
 pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     let pins = bench.pins();
-    let of_servo = |edge: &Edge| pins.contains(&edge.pin);
-    bench.uno.edges().into_iter().filter(of_servo).collect()
+    let is_of_servo = |edge: &Edge| pins.contains(&edge.pin);
+    bench.uno.edges().into_iter().filter(is_of_servo).collect()
 }
 
 /// Asserts that each servo has one pulse in each frame, 20 ms apart to the cycle, and that one pin
@@ -39,22 +39,22 @@ pub fn first_pulse(bench: &FirmwareBench) -> u64 {
     edges.first().expect("the robot stands").cycle
 }
 
-/// Returns the widths that the core computes for these frames if it receives only the first `received` bytes.
-/// `first` is the cycle of A1's first pulse.
+/// Returns the widths that the core computes for these frames if it receives only the first `received_count` bytes.
+/// `first_rise` is the cycle of A1's first pulse.
 pub fn commanded_widths(
     bench: &FirmwareBench,
-    first: u64,
-    received: usize,
+    first_rise: u64,
+    received_count: usize,
     frames: &[Frame],
 ) -> Vec<[u64; 4]> {
-    let before = ((frames[0].start - first) / FRAME) as usize;
+    let frames_before = ((frames[0].start - first_rise) / FRAME) as usize;
     let commands = core_run::play(
         *robot().firmware(),
-        &bench.uno.received_by_uno()[..received],
-        first,
-        before + frames.len(),
+        &bench.uno.received_by_uno()[..received_count],
+        first_rise,
+        frames_before + frames.len(),
     );
-    commands.widths[before..]
+    commands.widths[frames_before..]
         .iter()
         .map(|widths| widths.map(u64::from))
         .collect()
@@ -66,30 +66,32 @@ fn every_width_is_the_one_that_was_asked_for() {
         for gait in robot().gaits() {
             // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that
             // main may read it before or after the tick, a new bench sends it a millisecond later.
-            let asked_after = |ms| {
+            let boot_and_order = |ms| {
                 let mut bench = boot_standing(*fidelity);
-                let first = first_pulse(&bench);
+                let first_rise = first_pulse(&bench);
                 bench.run_ms(ms);
                 bench.say(&gait.name().replace('-', " "));
-                (bench, first)
+                (bench, first_rise)
             };
-            let is_decided = |(bench, first): &(FirmwareBench, u64)| {
-                core_run::undecided_lines(&bench.uno.received_by_uno(), *first)
+            let is_decided = |(bench, first_rise): &(FirmwareBench, u64)| {
+                core_run::undecided_lines(&bench.uno.received_by_uno(), *first_rise)
                     .next()
                     .is_none()
             };
-            let (mut bench, first) = (200..220)
-                .map(asked_after)
+            let (mut bench, first_rise) = (200..220)
+                .map(boot_and_order)
                 .find(is_decided)
                 .expect("a time");
             let frames = bench.run_for_frames(6 * FRAMES_PER_SECOND);
             assert_in_step(&bench, &frames);
-            let received = bench.uno.received_by_uno().len();
-            for (frame, asked) in frames
-                .iter()
-                .zip(commanded_widths(&bench, first, received, &frames))
-            {
-                assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name());
+            let received_count = bench.uno.received_by_uno().len();
+            for (frame, expected) in frames.iter().zip(commanded_widths(
+                &bench,
+                first_rise,
+                received_count,
+                &frames,
+            )) {
+                assert_eq!(frame.widths(), expected, "{}: {frame:?}", gait.name());
             }
         }
     });
@@ -102,38 +104,41 @@ fn a_saturated_line_both_ways_moves_no_edge() {
     run_in_both_simulations(|fidelity| {
         for flood in FLOODS {
             let mut bench = boot_standing(fidelity);
-            let first = first_pulse(&bench);
+            let first_rise = first_pulse(&bench);
             bench.say("watch 1");
             bench.say(&first_moving_gait());
-            let received = bench.uno.received_by_uno().len();
+            let received_count = bench.uno.received_by_uno().len();
             bench.uno.flood(flood.as_bytes());
-            let sent = bench.bytes().len();
+            let sent_before = bench.bytes().len();
             let frames = bench.run_for_frames(10 * FRAMES_PER_SECOND);
-            let sent = bench.bytes().len() - sent;
+            let sent_count = bench.bytes().len() - sent_before;
             assert_in_step(&bench, &frames);
-            for (frame, asked) in frames
-                .iter()
-                .zip(commanded_widths(&bench, first, received, &frames))
-            {
-                assert_eq!(frame.widths(), asked, "{flood:?}: {frame:?}");
+            for (frame, expected) in frames.iter().zip(commanded_widths(
+                &bench,
+                first_rise,
+                received_count,
+                &frames,
+            )) {
+                assert_eq!(frame.widths(), expected, "{flood:?}: {frame:?}");
             }
-            let changed = frames
+            let changes = frames
                 .windows(2)
                 .filter(|pair| pair[0].widths != pair[1].widths);
-            let varies = robot().gaits().iter().any(|gait| gait.moves());
+            let can_vary = robot().gaits().iter().any(|gait| gait.moves());
             assert!(
-                !varies || changed.count() as u64 > 2 * FRAMES_PER_SECOND,
+                !can_vary || changes.count() as u64 > 2 * FRAMES_PER_SECOND,
                 "the widths do not vary"
             );
             // Both directions are saturated: 11 520 bytes a second come in, and the answers fill the
             // other direction, unless the flood is a single overlong line.
             let seconds = frames.len() as f64 / FRAMES_PER_SECOND as f64;
-            let received_rate = (bench.uno.received_by_uno().len() - received) as f64 / seconds;
+            let received_rate =
+                (bench.uno.received_by_uno().len() - received_count) as f64 / seconds;
             assert!(
                 received_rate > 11_000.0 || fidelity == Fidelity::Stock && received_rate > 10_000.0,
                 "{received_rate} bytes a second"
             );
-            let sent_rate = sent as f64 / seconds;
+            let sent_rate = sent_count as f64 / seconds;
             assert!(
                 sent_rate > 9_500.0 || flood == "x",
                 "{flood:?}: {sent_rate} bytes a second back"
@@ -151,16 +156,16 @@ fn frames_are_counted_right_through_a_flood() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         bench.run_for_frames(0);
-        let (cycle, before) = (bench.uno.cycle(), Status::of(&mut bench));
+        let (cycle, status_before) = (bench.uno.cycle(), Status::of(&mut bench));
         bench.uno.flood(b"status\nhelp\n");
         bench.run_ms(20_000);
         end_flood(&mut bench);
         bench.run_for_frames(0);
-        let passed = (bench.uno.cycle() - cycle) / FRAME;
-        let after = Status::of(&mut bench);
+        let passed_frames = (bench.uno.cycle() - cycle) / FRAME;
+        let status_after = Status::of(&mut bench);
         assert_eq!(
-            after.number("frames") - before.number("frames"),
-            passed as f64
+            status_after.number("frames") - status_before.number("frames"),
+            passed_frames as f64
         );
     });
 }

@@ -14,15 +14,15 @@ const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9
 
 /// Sends `status` until the robot answers, and returns the number of lines sent.
 pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
-    for asked in 1..=40 {
-        let printed = bench.lines().len();
+    for sent_count in 1..=40 {
+        let line_count = bench.lines().len();
         bench.uno.send(b"status\n");
         bench.run_ms(350);
-        if bench.lines()[printed..]
+        if bench.lines()[line_count..]
             .iter()
             .any(|line| line.text.starts_with("ok gait="))
         {
-            return asked;
+            return sent_count;
         }
     }
     panic!("no answer at any rate");
@@ -40,12 +40,16 @@ fn robot_at(baud: f64) -> FirmwareBench {
 #[test]
 fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
     // Only in the simulation by the data sheet: stock simavr delivers every byte, whatever its rate.
-    for (baud, lines) in RATES {
+    for (baud, expected_count) in RATES {
         // Slow and fast senders.
-        for error in [0.985, 1.0, 1.02] {
+        for factor in [0.985, 1.0, 1.02] {
             let mut bench = boot_standing(Fidelity::DataSheet);
-            bench.uno.set_baud(baud * error);
-            assert_eq!(ask_until_answered(&mut bench), lines, "{baud} baud");
+            bench.uno.set_baud(baud * factor);
+            assert_eq!(
+                ask_until_answered(&mut bench),
+                expected_count,
+                "{baud} baud"
+            );
             assert_eq!(ask_until_answered(&mut bench), 1);
         }
     }
@@ -55,20 +59,23 @@ fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
 fn a_guessed_rate_does_not_obey_what_a_pose_at_another_rate_looks_like() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     bench.uno.set_baud(9_600.0);
-    let garbled = "err 1 the line came garbled, send it again";
+    let garbled_answer = "err 1 the line came garbled, send it again";
     let mut answers = Vec::new();
     for _ in 0..12 {
-        let printed = bench.lines().len();
+        let line_count = bench.lines().len();
         bench.uno.send(b"cal\n");
         bench.run_ms(350);
         answers.extend(
-            bench.lines()[printed..]
+            bench.lines()[line_count..]
                 .iter()
                 .map(|line| line.text.clone()),
         );
     }
-    let at_its_rate = answers.iter().filter(|answer| *answer == garbled).count();
-    assert!(at_its_rate >= 2, "{answers:?}");
+    let garbled_count = answers
+        .iter()
+        .filter(|answer| *answer == garbled_answer)
+        .count();
+    assert!(garbled_count >= 2, "{answers:?}");
     assert!(answers.iter().all(|answer| !answer.starts_with("ok")));
     ask_until_answered(&mut bench);
     assert!(bench.say("cal").starts_with("ok"));
@@ -76,10 +83,10 @@ fn a_guessed_rate_does_not_obey_what_a_pose_at_another_rate_looks_like() {
 
 #[test]
 fn the_module_may_be_exchanged_for_one_of_any_other_rate() {
-    for (first, _) in RATES {
-        for (second, _) in RATES {
-            let mut bench = robot_at(first);
-            bench.uno.set_baud(second);
+    for (first_baud, _) in RATES {
+        for (second_baud, _) in RATES {
+            let mut bench = robot_at(first_baud);
+            bench.uno.set_baud(second_baud);
             ask_until_answered(&mut bench);
         }
     }
@@ -91,10 +98,10 @@ fn opening_the_port_on_usb_returns_to_its_rate_and_a_hang_does_not() {
         let mut bench = robot_at(baud);
         let resets = bench.uno.watchdog_resets();
         bench.uno.stall_main(1_000 * CYCLES_PER_MS);
-        let hangs = bench.uno.run_until(400 * CYCLES_PER_MS, 1_000, |uno| {
+        let was_reset = bench.uno.run_until(400 * CYCLES_PER_MS, 1_000, |uno| {
             uno.watchdog_resets() > resets
         });
-        assert!(hangs, "no reset");
+        assert!(was_reset, "no reset");
         bench.uno.stall_main(0);
         bench.run_ms(1_000);
         assert_eq!(
@@ -120,7 +127,7 @@ fn opening_the_port_on_usb_returns_to_its_rate_and_a_hang_does_not() {
 fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
     run_in_both_simulations(|fidelity| {
         let gait = first_moving_gait();
-        let [undisturbed, sought] = [false, true].map(|is_sought| {
+        let [undisturbed_edges, sought_edges] = [false, true].map(|is_sought| {
             let mut bench = boot_and_command(&gait, fidelity);
             bench.uno.take_edges();
             let mut rng = Rng::with_seed(3);
@@ -138,15 +145,15 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
             assert_eq!(rates.len(), if is_sought { 4 } else { 1 });
             servo_edges(&bench)
         });
-        assert!(undisturbed.len() > 4_000);
-        assert!(undisturbed == sought, "an edge is elsewhere");
+        assert!(undisturbed_edges.len() > 4_000);
+        assert!(undisturbed_edges == sought_edges, "an edge is elsewhere");
     });
 }
 
 #[test]
 fn noise_is_never_obeyed_and_the_robot_is_found_again() {
     let mut bench = boot_standing(Fidelity::DataSheet);
-    let printed = bench.lines().len();
+    let line_count = bench.lines().len();
     let mut rng = Rng::with_seed(5);
     for _ in 0..400 {
         bench.uno.set_baud(300.0 + 200_000.0 * rng.f64());
@@ -154,10 +161,10 @@ fn noise_is_never_obeyed_and_the_robot_is_found_again() {
         bench.uno.send_with_framing_error(&noise);
         bench.run_ms(rng.u64(1..60));
     }
-    let obeyed = bench.lines()[printed..]
+    let was_obeyed = bench.lines()[line_count..]
         .iter()
         .any(|line| line.text.starts_with("ok "));
-    assert!(!obeyed);
+    assert!(!was_obeyed);
     bench.uno.set_baud(115_200.0);
     assert!(ask_until_answered(&mut bench) <= 8);
     assert_eq!(Status::of(&mut bench).number("late"), 0.0);

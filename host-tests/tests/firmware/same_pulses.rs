@@ -30,21 +30,21 @@ impl Random {
     fn random_decimal(&mut self, min: i64, max: i64) -> String {
         let value = min + self.random_below((max - min) as u64 + 1) as i64;
         let sign = if value < 0 { "-" } else { "" };
-        let size = value.unsigned_abs();
-        format!("{sign}{}.{:02}", size / 100, size % 100)
+        let magnitude = value.unsigned_abs();
+        format!("{sign}{}.{:02}", magnitude / 100, magnitude % 100)
     }
 }
 
 /// Returns a random command, a gait in almost half of the cases.
 fn random_command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.random_below(4);
-    let neutral = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
-    let near = |random: &mut Random, reach: i64| {
-        let angle = |index: usize| {
-            let angle = neutral(index);
+    let neutral_of = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
+    let pose_near = |random: &mut Random, reach: i64| {
+        let random_angle = |index: usize| {
+            let angle = neutral_of(index);
             random.random_decimal(angle - reach, angle + reach)
         };
-        let angles: Vec<String> = (0..4).map(angle).collect();
+        let angles: Vec<String> = (0..4).map(random_angle).collect();
         format!("pose {}", angles.join(" "))
     };
     match random.random_below(32) {
@@ -53,8 +53,8 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
             let gait = &gaits[random.random_below(gaits.len() as u64) as usize];
             gait.name().replace('-', " ")
         }
-        14..17 => near(random, 2_000),
-        17 => near(random, 6_000),
+        14..17 => pose_near(random, 2_000),
+        17 => pose_near(random, 6_000),
         18 => "stop".into(),
         19 => "rest".into(),
         20 | 21 => "stand".into(),
@@ -62,7 +62,7 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
         23 | 24 => format!("speed {}", 10 + random.random_below(91)),
         25 => format!("trim {servo} {}", random.random_decimal(-2_000, 2_000)),
         26 => {
-            let neutral = neutral(servo as usize - 1);
+            let neutral = neutral_of(servo as usize - 1);
             let min = random.random_decimal(neutral - 9_000, neutral - 1_000);
             let max = random.random_decimal(neutral + 1_000, neutral + 9_000);
             format!("limit {servo} {min} {max}")
@@ -84,7 +84,7 @@ fn fits_beside_firmware(name: &str) -> bool {
 }
 
 /// Runs a robot for ten minutes and returns the digest of all servo edges and their number.
-fn digest(name: &str) -> (u64, u64) {
+fn digest_of(name: &str) -> (u64, u64) {
     let frames = 600 * FRAMES_PER_SECOND;
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     let robot = robot.unwrap_or_else(|error| panic!("{error}"));
@@ -94,10 +94,13 @@ fn digest(name: &str) -> (u64, u64) {
     supplies::connect(&mut uno, &robot);
     let pins = servo_pins(&robot);
     // Times count from the first pulse, because the time until then depends on the code.
-    let risen = |uno: &Uno| uno.is_high(pins[0]);
-    assert!(uno.run_until(500 * CYCLES_PER_MS, 1_000, risen), "no pulse");
+    let has_risen = |uno: &Uno| uno.is_high(pins[0]);
+    assert!(
+        uno.run_until(500 * CYCLES_PER_MS, 1_000, has_risen),
+        "no pulse"
+    );
     let is_first = |edge: &&Edge| edge.high && edge.pin == pins[0];
-    let first = uno
+    let first_rise = uno
         .edges()
         .iter()
         .find(is_first)
@@ -105,34 +108,35 @@ fn digest(name: &str) -> (u64, u64) {
         .cycle;
     println!(
         "{name}: the first pulse begins after {:.3} ms",
-        first as f64 / 16_000.0
+        first_rise as f64 / 16_000.0
     );
     let mut random = Random(0x1234_5678_9abc_def1);
     let mut digest = 0xcbf2_9ce4_8422_2325u64;
     let mut count = 0;
     let mut commands = 0;
     // The first command comes when all servos are awake.
-    let mut next = 50;
+    let mut next_frame = 50;
     for frame in 0..frames {
-        let start = first + frame * FRAME;
-        if frame == next {
+        let start = first_rise + frame * FRAME;
+        if frame == next_frame {
             // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next
             // line, so the robot obeys it in a certain frame.
             uno.run_until_cycle(start + random.random_below(8) * CYCLES_PER_MS);
             uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
             commands += 1;
-            next += 16 + random.random_below(48);
+            next_frame += 16 + random.random_below(48);
         }
         uno.run_until_cycle(start + FRAME - FRAME / 10);
         assert_eq!(*uno.state(), State::Alive);
         for edge in uno.take_edges() {
             if let Some(servo) = pins.iter().position(|pin| *pin == edge.pin)
-                && edge.cycle >= first
+                && edge.cycle >= first_rise
             {
                 count += 1;
                 // FNV-1a.
-                let value = (edge.cycle - first) << 3 | (servo as u64) << 1 | u64::from(edge.high);
+                let value =
+                    (edge.cycle - first_rise) << 3 | (servo as u64) << 1 | u64::from(edge.high);
                 for byte in value.to_le_bytes() {
                     digest = (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
                 }
@@ -165,13 +169,13 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         ("paper", (0x3a1b_1df5_bc67_f514, 184_384)),
         ("unequal", (0xef9f_3060_6801_8a27, 164_444)),
     ];
-    let of_file = |path: std::io::Result<std::fs::DirEntry>| {
+    let name_of_file = |path: std::io::Result<std::fs::DirEntry>| {
         let path = path.expect("a file").path();
         let name = path.file_stem().expect("a name");
         name.to_string_lossy().into_owned()
     };
     let folder = std::fs::read_dir(root().join("robots")).expect("robots/");
-    let mut files: Vec<String> = folder.map(of_file).collect();
+    let mut files: Vec<String> = folder.map(name_of_file).collect();
     files.sort();
     assert_eq!(
         files,
@@ -182,11 +186,11 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         if !fits_beside_firmware(name) {
             return;
         }
-        let (found, edges) = digest(name);
+        let (actual, edge_count) = digest_of(name);
         assert_eq!(
-            (found, edges),
+            (actual, edge_count),
             *expected,
-            "{name}: {found:#018x}, {edges} edges"
+            "{name}: {actual:#018x}, {edge_count} edges"
         );
     });
 }

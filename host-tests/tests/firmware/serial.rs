@@ -21,9 +21,17 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
         let mut bench = boot_standing(fidelity);
         let mut rng = Rng::with_seed(7);
         say_expecting_ok(&mut bench, "watch 1");
-        let padded = format!("status{}", " ".repeat(57));
+        let padded_line = format!("status{}", " ".repeat(57));
         let (gait, pose) = (first_moving_gait(), pose_command([0.0; 4]));
-        let lines = ["status", "help", &gait, "stop", "speed 70", &pose, &padded];
+        let lines = [
+            "status",
+            "help",
+            &gait,
+            "stop",
+            "speed 70",
+            &pose,
+            &padded_line,
+        ];
         for _ in 0..600 {
             say_expecting_ok(&mut bench, rng.choice(&lines).expect("there are some"));
         }
@@ -42,15 +50,15 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
     // Sends the longest line right after the question with the longest answer, without waiting.
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
-        let before = bench.lines().len();
+        let line_count = bench.lines().len();
         bench.uno.send(b"help\n");
         bench
             .uno
             .send(format!("stand{}\n", " ".repeat(57)).as_bytes());
         bench.run_ms(300);
-        let last = bench.lines().last().expect("answers").text.clone();
-        assert_eq!(last, "ok stand");
-        assert!(bench.lines().len() > before + 2);
+        let last_line = bench.lines().last().expect("answers").text.clone();
+        assert_eq!(last_line, "ok stand");
+        assert!(bench.lines().len() > line_count + 2);
         assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
     });
 }
@@ -60,14 +68,17 @@ fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         say_expecting_ok(&mut bench, "stand");
-        let before = bench.bytes().len();
+        let byte_count = bench.bytes().len();
         say_expecting_ok(&mut bench, "help");
-        let bytes = &bench.bytes()[before..];
+        let bytes = &bench.bytes()[byte_count..];
         let duration = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
         // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line,
         // add to that.
-        let rate = duration / bytes.len() as u64;
-        assert!(bytes.len() > 200 && rate < 2_000, "{rate} cycles a byte");
+        let cycles_per_byte = duration / bytes.len() as u64;
+        assert!(
+            bytes.len() > 200 && cycles_per_byte < 2_000,
+            "{cycles_per_byte} cycles a byte"
+        );
     });
 }
 
@@ -75,25 +86,27 @@ fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
 fn bytes_lost_in_a_flood_are_counted() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
-        let (before, lines) = (bench.uno.received_by_uno().len(), bench.lines().len());
+        let (bytes_before, lines_before) = (bench.uno.received_by_uno().len(), bench.lines().len());
         bench.uno.flood(b"a\n");
         bench.run_ms(5000);
         end_flood(&mut bench);
-        let received = (bench.uno.received_by_uno().len() - before) as f64;
-        let answers = (bench.lines().len() - lines) as f64;
-        let lost = Status::of(&mut bench).number("rx_lost");
-        println!("{fidelity:?}: {received} received, {lost} lost, {answers} answers");
-        assert!(answers > 1000.0 && lost > received / 2.0);
+        let received_count = (bench.uno.received_by_uno().len() - bytes_before) as f64;
+        let answer_count = (bench.lines().len() - lines_before) as f64;
+        let lost_count = Status::of(&mut bench).number("rx_lost");
+        println!(
+            "{fidelity:?}: {received_count} received, {lost_count} lost, {answer_count} answers"
+        );
+        assert!(answer_count > 1000.0 && lost_count > received_count / 2.0);
         // Each answer belongs to a line of at least two bytes, and lost bytes make lines only a
         // little longer.
-        let read = received - lost;
+        let read_count = received_count - lost_count;
         assert!(
-            (2.0 * answers..4.0 * answers).contains(&read),
-            "{read} for {answers} answers"
+            (2.0 * answer_count..4.0 * answer_count).contains(&read_count),
+            "{read_count} for {answer_count} answers"
         );
         // After a flood, none of its bytes remain in the buffer.
         say_expecting_ok(&mut bench, &first_moving_gait());
-        assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
+        assert_eq!(Status::of(&mut bench).number("rx_lost"), lost_count);
     });
 }
 
@@ -117,34 +130,36 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
     // The receiver has room for two bytes and the byte being received. The answer shows
     // which of the five digits were not lost.
-    let byte = 1_400;
+    let byte_cycles = 1_400;
     let mut bench = boot_standing(Fidelity::DataSheet);
-    let (mut lost_before, mut overrun) = (0.0, 0);
+    let (mut lost_before, mut overrun_count) = (0.0, 0);
     for n in 0..40u64 {
-        let overruns = bench.uno.overruns();
+        let overruns_before = bench.uno.overruns();
         bench.uno.send(b"watch ");
         bench.run_ms(2);
         bench.uno.send(b"01234");
-        bench.uno.run_cycles(byte / 2 + n * 37);
-        bench.uno.block_interrupts(5 * byte);
+        bench.uno.run_cycles(byte_cycles / 2 + n * 37);
+        bench.uno.block_interrupts(5 * byte_cycles);
         bench.run_ms(3);
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);
         // Whether the first byte is still received depends on where main disables interrupts.
-        let lost = bench.uno.overruns() > overruns;
-        assert_eq!(digits.len() < 5, lost, "{n}: {answer}");
-        overrun += usize::from(lost);
-        let mut sent = b"01234".iter();
-        let in_order = digits.bytes().all(|digit| sent.any(|sent| *sent == digit));
-        assert!(in_order, "{n}: {answer}");
-        let counted = Status::of(&mut bench).number("rx_lost");
-        assert_eq!(counted > lost_before, lost, "{n}: it is counted");
-        lost_before = counted;
+        let was_lost = bench.uno.overruns() > overruns_before;
+        assert_eq!(digits.len() < 5, was_lost, "{n}: {answer}");
+        overrun_count += usize::from(was_lost);
+        let mut sent_digits = b"01234".iter();
+        let is_in_order = digits
+            .bytes()
+            .all(|digit| sent_digits.any(|sent_digit| *sent_digit == digit));
+        assert!(is_in_order, "{n}: {answer}");
+        let lost_count = Status::of(&mut bench).number("rx_lost");
+        assert_eq!(lost_count > lost_before, was_lost, "{n}: it is counted");
+        lost_before = lost_count;
         bench.say("watch 0");
     }
     assert!(
-        overrun > 30,
-        "only {overrun} of 40 times something was lost"
+        overrun_count > 30,
+        "only {overrun_count} of 40 times something was lost"
     );
 }
 
@@ -163,8 +178,8 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
         bench.uno.send(b"\n");
         bench.run_ms(20);
         let answers = bench.lines().iter().filter(|line| line.is_answer()).count() - answers_before;
-        let blank = bytes.iter().all(|byte| *byte == b' ');
-        assert_eq!(answers, usize::from(!blank), "{bytes:?}");
+        let is_blank = bytes.iter().all(|byte| *byte == b' ');
+        assert_eq!(answers, usize::from(!is_blank), "{bytes:?}");
     }
     assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
 }
@@ -180,9 +195,9 @@ fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
             bench.uno.send(&line[index + 1..]);
             bench.uno.send(b"\n");
             bench.run_ms(20);
-            let printed = bench.lines().last().map(|line| line.text.clone());
-            let refused = "err 1 the line came garbled, send it again";
-            assert_eq!(printed.as_deref(), Some(refused), "byte {index}");
+            let last_line = bench.lines().last().map(|line| line.text.clone());
+            let refusal = "err 1 the line came garbled, send it again";
+            assert_eq!(last_line.as_deref(), Some(refusal), "byte {index}");
         }
         let status = Status::of(&mut bench);
         assert_eq!(

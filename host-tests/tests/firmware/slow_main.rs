@@ -19,14 +19,15 @@ const MAX_HAND_OVER_CYCLES: u64 = 608;
 
 /// Runs until `Control::frame` returns to main with the next frame.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
-    let frame = bench.uno.image().function("Control::frame");
-    let entry = frame.expect("it computes a frame").address as u32;
+    let frame_function = bench.uno.image().function("Control::frame");
+    let entry = frame_function.expect("it computes a frame").address as u32;
     let uno = &mut bench.uno;
     assert!(uno.run_until(FRAME, 1, |uno| uno.pc() == entry));
-    let byte = |address| u16::from(uno.peek(address));
-    let stack = byte(0x5d) | byte(0x5e) << 8;
-    let back = u32::from(byte(stack + 1) << 8 | byte(stack + 2)) * 2;
-    assert!(uno.run_until(FRAME, 1, |uno| uno.pc() == back));
+    let byte_at = |address| u16::from(uno.peek(address));
+    let stack_pointer = byte_at(0x5d) | byte_at(0x5e) << 8;
+    let return_address =
+        u32::from(byte_at(stack_pointer + 1) << 8 | byte_at(stack_pointer + 2)) * 2;
+    assert!(uno.run_until(FRAME, 1, |uno| uno.pc() == return_address));
 }
 
 #[test]
@@ -40,32 +41,35 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
         let start = walk.next_frame();
         let count = 2 * 3 * MAX_HAND_OVER_CYCLES;
         for n in (1..count).step_by(3) {
-            let frame = start + n * FRAME;
-            walk.run_to(frame - SLOT_CYCLES - 400);
+            let frame_start = start + n * FRAME;
+            walk.run_to(frame_start - SLOT_CYCLES - 400);
             run_to_hand_over(&mut walk.bench);
             walk.bench.uno.run_cycles(n / 3 % MAX_HAND_OVER_CYCLES);
-            let stall = frame + 2_000 - walk.bench.uno.cycle();
-            walk.bench.uno.stall_main(stall);
-            walk.run_to(frame + 2_000);
+            let stall_cycles = frame_start + 2_000 - walk.bench.uno.cycle();
+            walk.bench.uno.stall_main(stall_cycles);
+            walk.run_to(frame_start + 2_000);
         }
         walk.run_to(start + count * FRAME - SLOT_CYCLES / 2);
         let frames = walk.frames_since(start);
         assert_eq!(frames.len() as u64, count);
         // No frame is left out: each repeats the previous one, or is the next one computed.
-        let asked: Vec<_> = frames.iter().map(|(_, asked)| Some(*asked)).collect();
-        let mut next = 0;
+        let commanded: Vec<_> = frames
+            .iter()
+            .map(|(_, commanded)| Some(*commanded))
+            .collect();
+        let mut next_index = 0;
         for (n, (sent, _)) in frames.iter().enumerate() {
-            let is_next = sent.all_widths() == asked[next];
-            let is_old = next > 0 && sent.all_widths() == asked[next - 1];
+            let is_next = sent.all_widths() == commanded[next_index];
+            let is_old = next_index > 0 && sent.all_widths() == commanded[next_index - 1];
             assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
-            next += usize::from(is_next);
+            next_index += usize::from(is_next);
         }
         // Some frames are repeated, but not all: at the end of the sweep, main has handed
         // the frame over before it stops.
-        let repeated = frames.len() - next;
+        let repeated_count = frames.len() - next_index;
         assert!(
-            (40..frames.len() / 3 - 40).contains(&repeated),
-            "{repeated}"
+            (40..frames.len() / 3 - 40).contains(&repeated_count),
+            "{repeated_count}"
         );
         assert_eq!(walk.late_edge_count(), 0);
     });
@@ -75,24 +79,24 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
 fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
     let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
     for n in 0..160 {
-        let frame = walk.next_frame();
-        walk.run_to(frame - SLOT_CYCLES - 400);
+        let frame_start = walk.next_frame();
+        walk.run_to(frame_start - SLOT_CYCLES - 400);
         walk.bench.uno.stall_main(SLOT_CYCLES + 2_400);
-        walk.run_to(frame + 3_000);
+        walk.run_to(frame_start + 3_000);
         walk.bench.uno.send(b"rest\n");
-        walk.run_to(frame + FRAME - SLOT_CYCLES - 400);
+        walk.run_to(frame_start + FRAME - SLOT_CYCLES - 400);
         run_to_hand_over(&mut walk.bench);
         walk.bench.uno.run_cycles(n);
-        let stall = frame + FRAME + 2_000 - walk.bench.uno.cycle();
-        walk.bench.uno.stall_main(stall);
-        walk.run_to(frame + 4 * FRAME - SLOT_CYCLES / 2);
+        let stall_cycles = frame_start + FRAME + 2_000 - walk.bench.uno.cycle();
+        walk.bench.uno.stall_main(stall_cycles);
+        walk.run_to(frame_start + 4 * FRAME - SLOT_CYCLES / 2);
         let edges = walk.bench.uno.edges();
-        let sent = group_frames(&edges, servo_pins(robot()), frame, 4);
-        for frame in &sent {
+        let sent_frames = group_frames(&edges, servo_pins(robot()), frame_start, 4);
+        for frame in &sent_frames {
             let pulses = frame.widths.iter().flatten().count();
             assert!(pulses % 4 == 0, "{n} cycles in: {frame:?}");
         }
-        assert_eq!(sent[2].widths, [None; 4], "{n} cycles in");
+        assert_eq!(sent_frames[2].widths, [None; 4], "{n} cycles in");
         walk.bench.say("stand");
         walk.bench.run_ms(700);
     }
@@ -101,7 +105,7 @@ fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
 #[test]
 fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
     // More than the time of two bytes, in which the USART sends everything that it holds.
-    const STOP: u64 = 3_000;
+    const STOP_CYCLES: u64 = 3_000;
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         // From here on, the robot prints nothing but answers.
@@ -111,7 +115,7 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
             bench.uno.run_cycles(6_700);
             assert!(bench.uno.run_until(1_000, 1, |uno| uno.unsent() == 0));
             bench.uno.run_cycles(cycles);
-            bench.uno.stall_main(STOP);
+            bench.uno.stall_main(STOP_CYCLES);
             assert_eq!(
                 bench.next_line(20).as_deref(),
                 Some("ok stop"),
@@ -134,12 +138,15 @@ fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
             walk.bench.uno.send(b"stop");
             let bytes_before = walk.bench.bytes().len();
             // The receiver delivers a byte 9.5 bit times after its start.
-            let comes = rise - 200 + n;
-            walk.run_to(comes - 1_320);
+            let arrival_cycle = rise - 200 + n;
+            walk.run_to(arrival_cycle - 1_320);
             walk.bench.uno.send(b"\n");
-            walk.run_to(comes + 20_000);
-            let answer = walk.bench.bytes()[bytes_before].cycle - comes;
-            assert!(answer < 12_000, "answered {answer} cycles after {n}");
+            walk.run_to(arrival_cycle + 20_000);
+            let answer_delay = walk.bench.bytes()[bytes_before].cycle - arrival_cycle;
+            assert!(
+                answer_delay < 12_000,
+                "answered {answer_delay} cycles after {n}"
+            );
         }
     });
 }
@@ -149,7 +156,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
     run_in_both_simulations(|fidelity| {
         let mut walk = ReferenceRun::start_walking(fidelity);
         walk.next_frame();
-        let before = Status::of(&mut walk.bench).number("frames");
+        let frames_before = Status::of(&mut walk.bench).number("frames");
         let cycle = walk.bench.uno.cycle();
         walk.bench.uno.take_edges();
         // Each stall is shorter than the watchdog's timeout.
@@ -160,10 +167,13 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
         let pulses = recorded_pulses(&walk.bench);
         assert!(pulses.iter().all(|pulses| pulses.len() > 250));
         assert_no_leap_in_a_gait(&pulses);
-        let frames = Status::of(&mut walk.bench).number("frames") - before;
-        let passed = (walk.bench.uno.cycle() - cycle) as f64 / FRAME as f64;
-        let missed = passed - frames;
-        assert!((70.0..=101.0).contains(&missed), "{missed} of {passed}");
+        let frames = Status::of(&mut walk.bench).number("frames") - frames_before;
+        let passed_frames = (walk.bench.uno.cycle() - cycle) as f64 / FRAME as f64;
+        let missed_frames = passed_frames - frames;
+        assert!(
+            (70.0..=101.0).contains(&missed_frames),
+            "{missed_frames} of {passed_frames}"
+        );
     });
 }
 
@@ -174,38 +184,42 @@ fn old_widths_repeat_while_main_stands_still() {
     walk.bench.uno.stall_main(5 * FRAME);
     walk.run_to(start + 4 * FRAME + FRAME / 2);
     let frames = walk.frames_since(start);
-    let (last, _) = frames[1];
+    let (last_frame, _) = frames[1];
     assert!(
         frames[1..]
             .iter()
-            .all(|(frame, _)| frame.all_widths() == last.all_widths())
+            .all(|(frame, _)| frame.all_widths() == last_frame.all_widths())
     );
-    assert!(last.all_widths().is_some());
+    assert!(last_frame.all_widths().is_some());
 }
 
 #[test]
 fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
     // Stalls in ms, by the watchdog's two stages less the frame in which it was fed last: shorter stalls than
     // the first cause no reset, stalls from the second on always do.
-    const HARMLESS: u64 = 105;
-    const SURELY_RESET: u64 = 250;
+    const HARMLESS_MS: u64 = 105;
+    const SURELY_RESET_MS: u64 = 250;
     for_each(&gait_commands(), |gait| {
         let mut bench = boot_and_command(gait, Fidelity::DataSheet);
         // Short stalls are tried at more moments, because only short stalls end near the
         // next tick.
-        let lengths = (0..6).flat_map(|_| 1..=25).chain(1..=300);
-        for (n, length) in lengths.enumerate() {
+        let lengths_ms = (0..6).flat_map(|_| 1..=25).chain(1..=300);
+        for (n, length_ms) in lengths_ms.enumerate() {
             // Spreads the stalls evenly over the frame, since 7 919 is a prime.
             bench.uno.run_cycles(FRAME + n as u64 * 7_919 % FRAME);
-            let resets = bench.uno.watchdog_resets();
-            bench.uno.stall_main(length * CYCLES_PER_MS);
+            let resets_before = bench.uno.watchdog_resets();
+            bench.uno.stall_main(length_ms * CYCLES_PER_MS);
             // Once the watchdog's first stage has ended the pulses, the reset is certain.
-            let wait = if length < HARMLESS { length } else { 350 };
-            bench.uno.run_ms(wait + 60);
-            let was_reset = bench.uno.watchdog_resets() > resets;
-            assert!(length < SURELY_RESET || was_reset, "{length} ms");
-            assert!(length >= HARMLESS || !was_reset, "{length} ms");
-            println!("{gait}, stalled for {length} ms");
+            let wait_ms = if length_ms < HARMLESS_MS {
+                length_ms
+            } else {
+                350
+            };
+            bench.uno.run_ms(wait_ms + 60);
+            let was_reset = bench.uno.watchdog_resets() > resets_before;
+            assert!(length_ms < SURELY_RESET_MS || was_reset, "{length_ms} ms");
+            assert!(length_ms >= HARMLESS_MS || !was_reset, "{length_ms} ms");
+            println!("{gait}, stalled for {length_ms} ms");
             assert_no_leap_in_a_gait(&recorded_pulses(&bench));
             if was_reset {
                 bench.say(gait);

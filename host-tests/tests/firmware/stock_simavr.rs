@@ -16,7 +16,7 @@ use lizard_host_tests::{FirmwareBench, robot};
 const TIMEOUT: Duration = Duration::from_secs(200);
 
 /// Returns the gait that the robot walks: the first after `stand`.
-fn gait() -> String {
+fn first_gait() -> String {
     robot().gaits()[1].name().replace('-', " ")
 }
 
@@ -24,14 +24,14 @@ fn gait() -> String {
 fn write_eeprom(folder: &Path) {
     let mut running = RunningRobot::power_on(*robot().firmware());
     running.run_frames(50);
-    let boot = format!("boot {}", gait());
-    assert_eq!(running.send_line(&boot), format!("ok {boot}"));
+    let boot_line = format!("boot {}", first_gait());
+    assert_eq!(running.send_line(&boot_line), format!("ok {boot_line}"));
     running.board.send(b"save\r");
     running.run_frames(200);
-    let printed = running.read_lines().join("\n");
+    let output_text = running.read_lines().join("\n");
     assert!(
-        printed.is_empty() || printed.contains("ok save"),
-        "{printed}"
+        output_text.is_empty() || output_text.contains("ok save"),
+        "{output_text}"
     );
     let bytes = *running.board.memory.bytes();
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
@@ -52,18 +52,18 @@ fn write_eeprom(folder: &Path) {
 }
 
 fn objcopy(arguments: &[&str], folder: &Path) {
-    let done = Command::new("avr-objcopy")
+    let status = Command::new("avr-objcopy")
         .args(arguments)
         .current_dir(folder)
         .status();
-    assert!(done.expect("avr-objcopy").success(), "{arguments:?}");
+    assert!(status.expect("avr-objcopy").success(), "{arguments:?}");
 }
 
 /// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, so that
 /// it closes its files.
 fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
-    let output = folder.join("output.txt");
-    let file = File::create(&output).expect("a folder");
+    let output_path = folder.join("output.txt");
+    let file = File::create(&output_path).expect("a folder");
     let mut child = Command::new("simavr")
         .args(arguments)
         .current_dir(folder)
@@ -72,23 +72,24 @@ fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> b
         .stderr(file)
         .spawn()
         .expect("simavr, which scripts/setup installs");
-    let printed = || String::from_utf8_lossy(&fs::read(&output).expect("it was made")).into_owned();
-    let end = Instant::now() + TIMEOUT;
-    while !is_complete(&printed()) && Instant::now() < end {
+    let read_output =
+        || String::from_utf8_lossy(&fs::read(&output_path).expect("it was made")).into_owned();
+    let deadline = Instant::now() + TIMEOUT;
+    while !is_complete(&read_output()) && Instant::now() < deadline {
         sleep(Duration::from_millis(100));
     }
     let pid = rustix::process::Pid::from_child(&child);
     rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
     child.wait().expect("it ends");
-    printed()
+    read_output()
 }
 
 /// Returns the tags of simavr's `avr_mcu_section.h` for a trace file and for each pin to be traced.
 fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
-    let mut name = vec![12, 64];
-    name.extend(b"pins.vcd");
-    name.resize(2 + 64, 0);
-    let mut tags = name;
+    let mut name_tag = vec![12, 64];
+    name_tag.extend(b"pins.vcd");
+    name_tag.resize(2 + 64, 0);
+    let mut tags = name_tag;
     for (servo, pin) in pins.into_iter().enumerate() {
         let (port, bit) = match pin {
             0..8 => (b'D', pin),
@@ -105,21 +106,21 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
 
 /// Returns the widths of each servo's pulses, us, from a trace file with steps of 10 ns.
 fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
-    let (mut names, mut rises, mut now) = (HashMap::new(), HashMap::new(), 0.0);
+    let (mut names, mut rises, mut now_us) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
     for line in vcd.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         if let ["$var", _, _, sign, name, ..] = words[..] {
             names.insert(sign.to_owned(), name.to_owned());
         } else if let Some(time) = line.strip_prefix('#') {
-            now = time.trim().parse::<f64>().expect("a time") / 100.0;
+            now_us = time.trim().parse::<f64>().expect("a time") / 100.0;
         } else if let Some(sign) = line.strip_prefix('1') {
-            rises.insert(sign.trim().to_owned(), now);
+            rises.insert(sign.trim().to_owned(), now_us);
         } else if let Some(sign) = line.strip_prefix('0')
             && let Some(rise) = rises.remove(sign.trim())
         {
             let name = names.get(sign.trim()).expect("a signal").clone();
-            widths.entry(name).or_default().push(now - rise);
+            widths.entry(name).or_default().push(now_us - rise);
         }
     }
     widths
@@ -158,7 +159,7 @@ fn the_elf_file_walks_in_debians_simavr() {
         ],
         folder,
     );
-    let printed = run_simavr(
+    let output_text = run_simavr(
         &[
             "-m",
             "atmega328p",
@@ -173,32 +174,32 @@ fn the_elf_file_walks_in_debians_simavr() {
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
     );
     assert!(
-        printed.contains(&format!("# boot: {}", gait())),
-        "{printed}"
+        output_text.contains(&format!("# boot: {}", first_gait())),
+        "{output_text}"
     );
     assert!(
-        !printed.contains("fault") && !printed.contains("supply"),
-        "{printed}"
+        !output_text.contains("fault") && !output_text.contains("supply"),
+        "{output_text}"
     );
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
     let widths = parse_widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
-        let all = &widths[&format!("A{}", servo + 1)];
-        let [smallest, largest] =
-            [f64::min, f64::max].map(|pick| all.iter().copied().reduce(pick).expect("pulses"));
-        assert!(all.len() > 150, "{} pulses", all.len());
+        let servo_widths = &widths[&format!("A{}", servo + 1)];
+        let [min_width, max_width] = [f64::min, f64::max]
+            .map(|pick| servo_widths.iter().copied().reduce(pick).expect("pulses"));
+        assert!(servo_widths.len() > 150, "{} pulses", servo_widths.len());
         assert!(
-            largest - smallest > 50.0,
-            "A{} turns: {smallest} to {largest} us",
+            max_width - min_width > 50.0,
+            "A{} turns: {min_width} to {max_width} us",
             servo + 1
         );
-        let ends = [calibration.min, calibration.max]
-            .map(|end| f64::from(calibration.pulse(end)) / f64::from(CYCLES_PER_US));
-        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let limits = [calibration.min, calibration.max]
+            .map(|limit| f64::from(calibration.pulse(limit)) / f64::from(CYCLES_PER_US));
+        let (low, high) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
         assert!(
-            low - 0.1 <= smallest && largest <= high + 0.1,
-            "A{}: {smallest} to {largest} us",
+            low - 0.1 <= min_width && max_width <= high + 0.1,
+            "A{}: {min_width} to {max_width} us",
             servo + 1
         );
     }
@@ -216,16 +217,16 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let image = lizard_upload::Image::new(image.flash()).expect("an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("a folder");
     for file in ["made.hex", "image.hex"] {
-        let printed = run_simavr(
+        let output_text = run_simavr(
             &["-m", "atmega328p", "-f", "16000000", file],
             folder,
-            |printed| printed.contains("3.30 V"),
+            |output_text| output_text.contains("3.30 V"),
         );
         let name = lizard_host::firmware::label(robot().firmware());
         assert!(
-            printed.contains(&format!("robot {name},")),
-            "{file}: {printed}"
+            output_text.contains(&format!("robot {name},")),
+            "{file}: {output_text}"
         );
-        assert!(printed.contains("3.30 V"), "{file}: {printed}");
+        assert!(output_text.contains("3.30 V"), "{file}: {output_text}");
     }
 }

@@ -23,8 +23,8 @@ fn interrupt(gait: &str, line: &str, cycle: u64, fidelity: Fidelity) -> (Firmwar
     while bench.uno.unsent() > 0 {
         bench.uno.run_cycles(100);
     }
-    let arrived = bench.uno.cycle();
-    (bench, arrived)
+    let arrival_cycle = bench.uno.cycle();
+    (bench, arrival_cycle)
 }
 
 #[test]
@@ -32,13 +32,18 @@ fn stop_freezes_within_one_frame_from_any_phase_of_a_gait() {
     run_in_both_simulations(|fidelity| {
         for gait in gait_commands().iter().skip(1).take(4) {
             for n in 0..12 {
-                let (mut bench, arrived) =
+                let (mut bench, arrival_cycle) =
                     interrupt(gait, "stop", n * INTERRUPTION_INTERVAL_CYCLES, fidelity);
                 let frames = bench.run_for_frames(20);
-                let late = frames.iter().filter(|frame| frame.start > arrived + FRAME);
-                let sent: Vec<_> = late.map(Frame::widths).collect();
-                assert!(sent.len() >= 18);
-                assert!(sent.iter().all(|widths| *widths == sent[0]), "{gait} {n}");
+                let late_frames = frames
+                    .iter()
+                    .filter(|frame| frame.start > arrival_cycle + FRAME);
+                let sent_widths: Vec<_> = late_frames.map(Frame::widths).collect();
+                assert!(sent_widths.len() >= 18);
+                assert!(
+                    sent_widths.iter().all(|widths| *widths == sent_widths[0]),
+                    "{gait} {n}"
+                );
             }
         }
     });
@@ -50,34 +55,37 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         .into_iter()
         .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * INTERRUPTION_INTERVAL_CYCLES)))
         .collect();
-    for_each(&cases, |&(fidelity, at)| {
+    for_each(&cases, |&(fidelity, cycle)| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
-        bench.uno.run_cycles(at);
-        let first = bench.run_for_frames(1)[0];
+        bench.uno.run_cycles(cycle);
+        let first_frame = bench.run_for_frames(1)[0];
         // The recorded edges still contain this frame; later edges are appended.
-        bench.uno.run_cycles(at % FRAME);
+        bench.uno.run_cycles(cycle % FRAME);
         bench.send("rest");
         bench.run_ms(100);
         let edges = bench.uno.edges();
         let mut last_fall = 0;
         for (servo, pin) in robot().servos().iter().map(|servo| servo.pin).enumerate() {
             let pulses = bench.uno.pulses(simulated_uno::Pin::arduino(pin));
-            let ups = edges
+            let rise_count = edges
                 .iter()
                 .filter(|edge| edge.pin.number() == pin && edge.high)
                 .count();
-            assert_eq!(pulses.len(), ups, "A{} is left high", servo + 1);
+            assert_eq!(pulses.len(), rise_count, "A{} is left high", servo + 1);
             for pulse in &pulses {
                 // Complete pulses, within the servo's travel.
                 let us = pulse.width as f64 / CYCLES_PER_US as f64;
                 let Servo { min_us, max_us, .. } = robot().servos()[servo];
-                assert!(min_us - 1.0 <= us && us <= max_us + 1.0, "{us} us at {at}");
+                assert!(
+                    min_us - 1.0 <= us && us <= max_us + 1.0,
+                    "{us} us at {cycle}"
+                );
                 last_fall = last_fall.max(pulse.start + pulse.width);
             }
         }
         let received = bench.uno.received_by_uno();
-        let arrived = received.last().expect("a line").cycle;
-        assert!(last_fall < arrived + 2 * FRAME && last_fall > first.start);
+        let arrival_cycle = received.last().expect("a line").cycle;
+        assert!(last_fall < arrival_cycle + 2 * FRAME && last_fall > first_frame.start);
         assert!(
             bench
                 .run_for_frames(50)
@@ -89,19 +97,21 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
 
 #[test]
 fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
-    let woken = |frames: &[Frame]| -> [usize; 4] {
+    let wake_frames_of = |frames: &[Frame]| -> [usize; 4] {
         std::array::from_fn(|servo| {
-            let first = frames
+            let first_index = frames
                 .iter()
                 .position(|frame| frame.widths[servo].is_some());
-            let first = first.expect("it wakes");
-            let rest = &frames[first..];
+            let first_index = first_index.expect("it wakes");
+            let later_frames = &frames[first_index..];
             assert!(
-                rest.iter().all(|frame| frame.widths[servo].is_some()),
+                later_frames
+                    .iter()
+                    .all(|frame| frame.widths[servo].is_some()),
                 "A{}",
                 servo + 1
             );
-            first
+            first_index
         })
     };
     run_in_both_simulations(|fidelity| {
@@ -109,10 +119,10 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(1000);
         let pins = servo_pins(robot());
-        let first = bench.uno.pulses(pins[0])[0].start;
-        assert!(first < 300 * CYCLES_PER_MS);
-        let frames = frames_of(&bench.uno.edges(), pins, first, 40);
-        assert_eq!(woken(&frames), [0, 5, 10, 15]);
+        let first_rise = bench.uno.pulses(pins[0])[0].start;
+        assert!(first_rise < 300 * CYCLES_PER_MS);
+        let frames = frames_of(&bench.uno.edges(), pins, first_rise, 40);
+        assert_eq!(wake_frames_of(&frames), [0, 5, 10, 15]);
 
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.say("stop");
@@ -122,18 +132,18 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         bench.run_ms(100);
         bench.send("stand");
         let frames = bench.run_for_frames(100);
-        let [a1, a2, a3, a4] = woken(&frames);
+        let [a1, a2, a3, a4] = wake_frames_of(&frames);
         assert_eq!([a2 - a1, a3 - a2, a4 - a3], [5, 5, 5]);
         // The servos wake in the pose in which they rested, and move to `stand` from this pose.
-        for (servo, at) in [a1, a2, a3, a4].into_iter().enumerate() {
-            assert_eq!(frames[at].widths[servo], Some(pose[servo]));
+        for (servo, frame) in [a1, a2, a3, a4].into_iter().enumerate() {
+            assert_eq!(frames[frame].widths[servo], Some(pose[servo]));
         }
         assert_eq!(frames[99].widths(), neutral_widths());
     });
 }
 
 /// Returns a sweep from neutral for each servo, all of different sizes, the largest `size` deg.
-fn sweeps(size: f64) -> [f64; 4] {
+fn sweeps_of_size(size: f64) -> [f64; 4] {
     [-1.0, 0.25, 0.8, -0.6].map(|share| size * share)
 }
 
@@ -149,7 +159,7 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         let mut bench = boot_standing(fidelity);
         // The pose is as far from neutral as the robot allows.
         let (size, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
-            .map(|size| (size, bench.say(&pose_command(sweeps(size)))))
+            .map(|size| (size, bench.say(&pose_command(sweeps_of_size(size)))))
             .into_iter()
             .find(|(_, answer)| answer.starts_with("ok pose"))
             .expect("a pose next to neutral is safe");
@@ -157,13 +167,13 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         bench.run_ms(3000);
         assert!(
             bench
-                .say(&pose_command(sweeps(size)))
+                .say(&pose_command(sweeps_of_size(size)))
                 .starts_with("ok pose")
         );
-        let sent = widths(&bench.run_for_frames(150));
-        let goal: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps(size)[i]));
-        let end = sent[149];
-        for (end, goal) in end.into_iter().zip(goal) {
+        let sent_widths = widths(&bench.run_for_frames(150));
+        let goal_widths: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps_of_size(size)[i]));
+        let end_widths = sent_widths[149];
+        for (end, goal) in end_widths.into_iter().zip(goal_widths) {
             // Rounding to hundredths of a degree and rounding to steps of 1/65536 turn cost a cycle or two each.
             assert!(end.abs_diff(goal) <= 4, "{end}, not {goal}");
         }
@@ -171,19 +181,19 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         let sweep_of = |widths: [u64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| widths[i] as f64 - neutral_widths()[i] as f64)
         };
-        let whole = sweep_of(end);
-        for widths in &sent {
-            let covered = sweep_of(*widths);
-            for (covered_here, whole_here) in covered.into_iter().zip(whole) {
-                let error = covered_here - covered[0] / whole[0] * whole_here;
+        let whole_sweep = sweep_of(end_widths);
+        for widths in &sent_widths {
+            let covered_sweep = sweep_of(*widths);
+            for (covered_here, whole_here) in covered_sweep.into_iter().zip(whole_sweep) {
+                let error = covered_here - covered_sweep[0] / whole_sweep[0] * whole_here;
                 assert!(error.abs() <= 8.0, "{widths:?}");
             }
         }
-        for pair in sent.windows(2) {
+        for pair in sent_widths.windows(2) {
             for (i, servo) in robot().servos().iter().enumerate() {
-                let max = robot().pace().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
+                let max_step = robot().pace().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
                 let step = pair[0][i].abs_diff(pair[1][i]) as f64;
-                assert!(step <= max + 2.0, "A{} by {step} cycles", i + 1);
+                assert!(step <= max_step + 2.0, "A{} by {step} cycles", i + 1);
             }
         }
     });

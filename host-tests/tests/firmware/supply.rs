@@ -13,17 +13,17 @@ const BOARD_ERROR_V: f64 = 0.04;
 /// The first pin that can measure a rail, by its Arduino number.
 const FIRST_ANALOG_PIN: u8 = 14;
 
-/// Returns the reaction and the voltage, V, in each note about the supply since line `from`.
-fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
-    let lines = &bench.lines()[from..];
-    let printed = lines
+/// Returns the reaction and the voltage, V, in each note about the supply since line `first_line`.
+fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)> {
+    let lines = &bench.lines()[first_line..];
+    let notes = lines
         .iter()
         .filter_map(|line| line.text.strip_prefix("# supply: "));
-    let printed = printed.map(|text| {
+    let notes = notes.map(|text| {
         let (volts, reaction) = text.split_once(" V, ").expect("volts and the reaction");
         (reaction.to_owned(), volts.parse().expect("a number"))
     });
-    printed.collect()
+    notes.collect()
 }
 
 #[test]
@@ -33,8 +33,8 @@ fn status_reports_the_supply_within_thirty_millivolts() {
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(120);
-        let printed = Status::of(&mut bench).number("vcc");
-        max_error = max_error.max((printed - f64::from(mv) / 1000.0).abs());
+        let printed_volts = Status::of(&mut bench).number("vcc");
+        max_error = max_error.max((printed_volts - f64::from(mv) / 1000.0).abs());
     }
     assert!(max_error <= 0.030, "{max_error} V");
 }
@@ -45,40 +45,45 @@ fn assert_reacts_at(
     bench: &mut FirmwareBench,
     thresholds: [f64; 3],
     tolerance: f64,
-    set: impl Fn(&mut FirmwareBench, f64),
+    set_volts: impl Fn(&mut FirmwareBench, f64),
 ) {
-    let from = bench.lines().len();
-    let [slow, _, rest] = thresholds.map(|volts| (100.0 * volts) as i32);
-    let mut true_at = Vec::new();
-    for hundredths in (rest - 30..slow + 80).rev() {
+    let line_count = bench.lines().len();
+    let [slow_hundredths, _, rest_hundredths] = thresholds.map(|volts| (100.0 * volts) as i32);
+    let mut true_volts = Vec::new();
+    for hundredths in (rest_hundredths - 30..slow_hundredths + 80).rev() {
         let volts = f64::from(hundredths) / 100.0;
-        set(bench, volts);
+        set_volts(bench, volts);
         bench.run_ms(160);
-        while true_at.len() < notes(bench, from).len() {
-            true_at.push(volts);
+        while true_volts.len() < read_notes(bench, line_count).len() {
+            true_volts.push(volts);
         }
     }
-    let printed = notes(bench, from);
-    let words: Vec<&str> = printed
+    let printed_notes = read_notes(bench, line_count);
+    let reactions: Vec<&str> = printed_notes
         .iter()
         .map(|(reaction, _)| reaction.as_str())
         .collect();
     let pace = robot().supplies().slow_pace;
-    let low = format!("low: no saving, speed up to {pace}");
+    let low_reaction = format!("low: no saving, speed up to {pace}");
     assert_eq!(
-        words,
+        reactions,
         [
-            low.as_str(),
+            low_reaction.as_str(),
             "too low to move: stopped",
             "too low to hold: pulses ended"
         ]
     );
-    for ((truth, (_, printed)), threshold) in true_at.iter().zip(&printed).zip(thresholds) {
+    for ((actual, (_, printed_volts)), threshold) in
+        true_volts.iter().zip(&printed_notes).zip(thresholds)
+    {
         assert!(
-            (truth - threshold).abs() <= tolerance,
-            "{truth}, {threshold}"
+            (actual - threshold).abs() <= tolerance,
+            "{actual}, {threshold}"
         );
-        assert!((printed - truth).abs() <= tolerance, "{printed}, {truth}");
+        assert!(
+            (printed_volts - actual).abs() <= tolerance,
+            "{printed_volts}, {actual}"
+        );
     }
 }
 
@@ -109,33 +114,33 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 #[test]
 fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    let pace = |bench: &mut FirmwareBench| {
-        let before = Status::of(bench).number("phase");
+    let measure_pace = |bench: &mut FirmwareBench| {
+        let phase_before = Status::of(bench).number("phase");
         bench.run_ms(200);
-        (Status::of(bench).number("phase") - before).rem_euclid(1.0)
+        (Status::of(bench).number("phase") - phase_before).rem_euclid(1.0)
     };
-    let full = pace(&mut bench);
-    let [slow, stop, _] = robot().supplies().board;
-    bench.uno.set_supply_mv((slow + stop) * 500.0);
+    let full_pace = measure_pace(&mut bench);
+    let [slow_volts, stop_volts, _] = robot().supplies().board;
+    bench.uno.set_supply_mv((slow_volts + stop_volts) * 500.0);
     bench.run_ms(500);
-    let written = bench.uno.eeprom_operations().len();
-    let refused = bench.say("save");
+    let operations_before = bench.uno.eeprom_operations().len();
+    let refusal = bench.say("save");
     assert!(
-        refused.starts_with("err 8 the supply is too low"),
-        "{refused}"
+        refusal.starts_with("err 8 the supply is too low"),
+        "{refusal}"
     );
-    let slow = pace(&mut bench);
+    let slow_pace = measure_pace(&mut bench);
     let expected = f64::from(robot().supplies().slow_pace) / 100.0;
-    assert!(full > 0.0, "it walks");
+    assert!(full_pace > 0.0, "it walks");
     assert!(
-        (slow / full - expected).abs() < 0.1,
-        "{slow} of {full}, not {expected}"
+        (slow_pace / full_pace - expected).abs() < 0.1,
+        "{slow_pace} of {full_pace}, not {expected}"
     );
     bench.say("rest");
     bench.run_ms(400);
     assert_eq!(
         bench.uno.eeprom_operations().len(),
-        written,
+        operations_before,
         "not even the pose"
     );
 }
@@ -143,32 +148,32 @@ fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
 #[test]
 fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    let [slow, stop, _] = robot().supplies().board;
-    bench.uno.set_supply_mv(stop * 1000.0 - 60.0);
+    let [slow_volts, stop_volts, _] = robot().supplies().board;
+    bench.uno.set_supply_mv(stop_volts * 1000.0 - 60.0);
     bench.run_ms(500);
     assert_eq!(Status::of(&mut bench).text("gait"), "stop");
-    let refused = bench.say(&first_moving_gait());
-    assert!(refused.starts_with("err 8 "), "{refused}");
-    let held = measure_widths(&mut bench);
-    let from = bench.lines().len();
-    let mut good_at = None;
-    for mv in ((stop * 1000.0) as i32..=5_000).step_by(10) {
+    let refusal = bench.say(&first_moving_gait());
+    assert!(refusal.starts_with("err 8 "), "{refusal}");
+    let held_widths = measure_widths(&mut bench);
+    let line_count = bench.lines().len();
+    let mut good_volts = None;
+    for mv in ((stop_volts * 1000.0) as i32..=5_000).step_by(10) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(1_150);
-        if good_at.is_none()
-            && notes(&mut bench, from)
+        if good_volts.is_none()
+            && read_notes(&mut bench, line_count)
                 .iter()
                 .any(|(reaction, _)| reaction == "good")
         {
-            good_at = Some(f64::from(mv) / 1000.0);
+            good_volts = Some(f64::from(mv) / 1000.0);
         }
     }
-    let good_at = good_at.expect("it is good at last");
+    let good_volts = good_volts.expect("it is good at last");
     assert!(
-        (good_at - slow - 0.150).abs() <= BOARD_ERROR_V,
-        "{good_at}: 150 mV above"
+        (good_volts - slow_volts - 0.150).abs() <= BOARD_ERROR_V,
+        "{good_volts}: 150 mV above"
     );
-    assert_eq!(measure_widths(&mut bench), held, "nothing has moved");
+    assert_eq!(measure_widths(&mut bench), held_widths, "nothing has moved");
     assert_eq!(
         Status::of(&mut bench).text("fault"),
         "supply",
@@ -186,7 +191,7 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
 #[test]
 fn a_short_dip_and_a_supply_that_wavers_change_little() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    let from = bench.lines().len();
+    let line_count = bench.lines().len();
     // A starting servo pulls the supply down for some milliseconds.
     for n in 0..200u64 {
         bench.uno.set_supply_mv(3_300.0);
@@ -194,17 +199,17 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
         bench.uno.set_supply_mv(5_000.0);
         bench.run_ms(100);
     }
-    assert!(notes(&mut bench, from).is_empty());
+    assert!(read_notes(&mut bench, line_count).is_empty());
     // The supply alternates around the threshold for half a minute.
-    let slow = robot().supplies().board[0] * 1000.0;
+    let slow_mv = robot().supplies().board[0] * 1000.0;
     for n in 0..100 {
         bench
             .uno
-            .set_supply_mv(slow + if n % 2 == 0 { -40.0 } else { 90.0 });
+            .set_supply_mv(slow_mv + if n % 2 == 0 { -40.0 } else { 90.0 });
         bench.run_ms(300);
     }
-    let printed = notes(&mut bench, from);
-    assert_eq!(printed.len(), 1, "{printed:?}");
+    let printed_notes = read_notes(&mut bench, line_count);
+    assert_eq!(printed_notes.len(), 1, "{printed_notes:?}");
 }
 
 /// Sets the rail's pin to the voltage that the divider gives if the servos' rail has `volts`.
@@ -218,19 +223,19 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
 fn assert_no_rail() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
-    let free: Vec<u8> = (FIRST_ANALOG_PIN..FIRST_ANALOG_PIN + 6)
+    let free_pins: Vec<u8> = (FIRST_ANALOG_PIN..FIRST_ANALOG_PIN + 6)
         .filter(|pin| !servos.contains(pin))
         .collect();
-    assert!(free.len() >= 2, "six pins and four servos");
+    assert!(free_pins.len() >= 2, "six pins and four servos");
     for mv in [0, 2_500, 5_000] {
-        for pin in &free {
+        for pin in &free_pins {
             bench.uno.set_analog_mv(Pin::arduino(*pin), mv);
         }
         bench.run_ms(1_000);
         let answer = bench.say("status");
         assert!(!answer.contains("rail="), "{answer}");
         assert!(answer.contains(" fault=none "), "{answer}");
-        assert!(notes(&mut bench, 0).is_empty());
+        assert!(read_notes(&mut bench, 0).is_empty());
     }
     let gait = first_moving_gait().replace(' ', "-");
     assert_eq!(Status::of(&mut bench).text("gait"), gait);
@@ -242,14 +247,17 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
         return assert_no_rail();
     };
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    let highest = 5.0 * rail.ratio;
+    let max_volts = 5.0 * rail.ratio;
     for step in 1..=40 {
-        let volts = highest * f64::from(step) / 41.0;
+        let volts = max_volts * f64::from(step) / 41.0;
         set_rail(&mut bench, &rail, volts);
         bench.run_ms(120);
-        let printed = Status::of(&mut bench).number("rail");
+        let printed_volts = Status::of(&mut bench).number("rail");
         let tolerance = rail_tolerance(&rail, volts);
-        assert!((printed - volts).abs() <= tolerance, "{printed}, {volts}");
+        assert!(
+            (printed_volts - volts).abs() <= tolerance,
+            "{printed_volts}, {volts}"
+        );
     }
 }
 

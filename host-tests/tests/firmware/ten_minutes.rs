@@ -9,8 +9,8 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
 
-/// Returns a script of ten minutes with every kind of line, accepted or refused, one every `apart` ms.
-fn script_of_all_lines(apart: u64) -> Script {
+/// Returns a script of ten minutes with every kind of line, accepted or refused, one every `interval_ms`.
+fn script_of_all_lines(interval_ms: u64) -> Script {
     let gaits = robot()
         .gaits()
         .iter()
@@ -37,10 +37,10 @@ fn script_of_all_lines(apart: u64) -> Script {
     );
     // The stride of 11 has no common factor with the number of lines, so every line is sent. The
     // interval has no common factor with a frame's 20 ms, so the lines fall on every phase of a frame.
-    let steps = (0..600_000 / apart - 1)
-        .map(|n| Step {
-            ms: 1000 + n * apart,
-            command: lines[(n * 11 % lines.len() as u64) as usize].clone(),
+    let steps = (0..600_000 / interval_ms - 1)
+        .map(|index| Step {
+            ms: 1000 + index * interval_ms,
+            command: lines[(index * 11 % lines.len() as u64) as usize].clone(),
         })
         .collect();
     Script {
@@ -68,19 +68,20 @@ fn record_script(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>
 
 #[test]
 fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() {
-    for (fidelity, apart) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
-        let mut script = script_of_all_lines(apart);
+    for (fidelity, interval_ms) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
+        let mut script = script_of_all_lines(interval_ms);
         let (mut recording, mut lines) = record_script(&script, fidelity);
-        let first = recording.frames.first;
+        let first_rise = recording.frames.first;
         let undecided: Vec<usize> =
-            core_run::undecided_lines(&recording.received_by_uno, first).collect();
+            core_run::undecided_lines(&recording.received_by_uno, first_rise).collect();
         if !undecided.is_empty() {
             for &line in &undecided {
                 script.steps[line].ms += 1;
             }
             (recording, lines) = record_script(&script, fidelity);
-            let left = core_run::undecided_lines(&recording.received_by_uno, first).count();
-            assert_eq!(left, 0, "lines that end at a tick");
+            let undecided_count =
+                core_run::undecided_lines(&recording.received_by_uno, first_rise).count();
+            assert_eq!(undecided_count, 0, "lines that end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
@@ -97,27 +98,34 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         // Reports are not compared, since the frame that a report describes also depends on the cycle
         // in which the serial buffer has room for it.
         let is_report = |line: &str| line.starts_with("# t=");
-        let here = commands.written.lines().filter(|line| !is_report(line));
-        let here: Vec<&str> = here.collect();
+        let host_lines = commands.written.lines().filter(|line| !is_report(line));
+        let host_lines: Vec<&str> = host_lines.collect();
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
         // Stock simavr measures against a reference voltage of its own, whatever robot.toml says.
-        let printed = |line: &str| comparable_line(line, fidelity);
-        for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
-            assert_eq!(printed(here), printed(there), "{fidelity:?}, line {n}");
+        let comparable_of = |line: &str| comparable_line(line, fidelity);
+        for (n, (host_line, avr_line)) in host_lines.iter().zip(&lines).enumerate() {
+            assert_eq!(
+                comparable_of(host_line),
+                comparable_of(avr_line),
+                "{fidelity:?}, line {n}"
+            );
         }
         // At the end of the run, the UNO has not sent everything yet (255 bytes in the ring buffer,
         // two in the transmitter, a part of a line), and the core on this machine has not run since
         // the last complete frame.
-        let common = here.len().min(lines.len());
-        let bytes = |line: &str| line.len() + 2;
-        let there = lines[common..].iter().map(|line| bytes(line));
-        let apart: usize = here[common..]
+        let common_count = host_lines.len().min(lines.len());
+        let byte_count_of = |line: &str| line.len() + 2;
+        let avr_counts = lines[common_count..].iter().map(|line| byte_count_of(line));
+        let unmatched_bytes: usize = host_lines[common_count..]
             .iter()
-            .map(|line| bytes(line))
-            .chain(there)
+            .map(|line| byte_count_of(line))
+            .chain(avr_counts)
             .sum();
-        assert!(common > 400 && apart <= 257 + 192, "{apart} bytes apart");
+        assert!(
+            common_count > 400 && unmatched_bytes <= 257 + 192,
+            "{unmatched_bytes} bytes apart"
+        );
         let answers = recording.answers.iter().flatten();
         assert_eq!(
             answers.count(),

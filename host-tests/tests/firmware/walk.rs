@@ -31,15 +31,15 @@ impl ReferenceRun {
 
     fn robot_after(line: &str, fidelity: Fidelity) -> Self {
         let mut bench = boot_standing(fidelity);
-        let first = first_pulse(&bench);
+        let pulse_cycle = first_pulse(&bench);
         bench.say(line);
-        let received = bench.uno.received_by_uno().len();
+        let received_count = bench.uno.received_by_uno().len();
         bench.run_ms(1000);
         Self {
             bench,
             fidelity,
-            first_pulse_cycle: first,
-            received_byte_count: received,
+            first_pulse_cycle: pulse_cycle,
+            received_byte_count: received_count,
         }
     }
 
@@ -47,27 +47,27 @@ impl ReferenceRun {
     /// Discards the edges so far.
     pub fn next_frame(&mut self) -> u64 {
         self.bench.run_for_frames(0);
-        let since = self.bench.uno.cycle() - self.first_pulse_cycle;
-        self.first_pulse_cycle + since.div_ceil(FRAME) * FRAME
+        let cycles_since_pulse = self.bench.uno.cycle() - self.first_pulse_cycle;
+        self.first_pulse_cycle + cycles_since_pulse.div_ceil(FRAME) * FRAME
     }
 
     /// Returns the frames from cycle `start` to now, and the widths that they should have.
     pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
         let count = (self.bench.uno.cycle() + SLOT_CYCLES / 2 - start) / FRAME;
         let edges = self.bench.uno.edges();
-        let sent = group_frames(&edges, servo_pins(robot()), start, count);
-        let asked = self.expected_widths(start, count);
-        sent.into_iter().zip(asked).collect()
+        let sent_frames = group_frames(&edges, servo_pins(robot()), start, count);
+        let expected = self.expected_widths(start, count);
+        sent_frames.into_iter().zip(expected).collect()
     }
 
     /// Returns the widths that `count` frames from cycle `start` on should have.
     pub fn expected_widths(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
-        let nothing = Frame {
+        let silent_frame = Frame {
             start,
             starts: [None; 4],
             widths: [None; 4],
         };
-        let frames = vec![nothing; count as usize];
+        let frames = vec![silent_frame; count as usize];
         commanded_widths(
             &self.bench,
             self.first_pulse_cycle,

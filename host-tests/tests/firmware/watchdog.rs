@@ -48,9 +48,9 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 #[test]
 fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
-    for n in 0..40u64 {
+    for round in 0..40u64 {
         // In each round, main stops at another time in the frame.
-        bench.uno.run_cycles(n * 7_919);
+        bench.uno.run_cycles(round * 7_919);
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         let cycles = run_until_reset(&mut bench);
@@ -58,7 +58,12 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
         bench.uno.run_ms(300);
         for (servo, pulses) in recorded_pulses(&bench).iter().enumerate() {
             for pulse in pulses {
-                assert_eq!(pulse.width, widths[servo], "A{} in round {n}", servo + 1);
+                assert_eq!(
+                    pulse.width,
+                    widths[servo],
+                    "A{} in round {round}",
+                    servo + 1
+                );
             }
             let gap = pulses
                 .windows(2)
@@ -74,13 +79,13 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
             (status.text("reset"), status.text("fault")),
             ("watchdog", "watchdog")
         );
-        assert_eq!(status.number("resets"), (n + 1) as f64);
+        assert_eq!(status.number("resets"), (round + 1) as f64);
     }
-    let printed = bench
+    let is_printed = bench
         .lines()
         .iter()
         .any(|line| line.text == "# fault: the program hung and began anew");
-    assert!(printed);
+    assert!(is_printed);
 }
 
 #[test]
@@ -88,17 +93,17 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
     for hang_ms in [3, 137, 411, 893] {
         let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
         bench.run_ms(hang_ms);
-        let before = measure_widths(&mut bench);
+        let widths_before = measure_widths(&mut bench);
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         run_until_reset(&mut bench);
         bench.uno.run_ms(60);
-        let after = run_for_pulses(&mut bench, 5000);
+        let pulses = run_for_pulses(&mut bench, 5000);
         for servo in 0..4 {
-            let first = after[servo][0].width;
-            assert!(after[servo].iter().all(|pulse| pulse.width == first));
+            let first_width = pulses[servo][0].width;
+            assert!(pulses[servo].iter().all(|pulse| pulse.width == first_width));
             // The last frame may have been computed without being played.
             assert!(
-                first.abs_diff(before[servo]) <= 2 * slew_limit(servo),
+                first_width.abs_diff(widths_before[servo]) <= 2 * slew_limit(servo),
                 "A{}",
                 servo + 1
             );
@@ -187,12 +192,12 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.set_supply_mv(5_000.0);
         // The boot loader clears the chip's record of the cause, and the RAM has kept its
         // contents, so the firmware takes the dip for an external reset.
-        let dip = if has_boot_loader {
+        let dip_cause = if has_boot_loader {
             "external"
         } else {
             "brownout"
         };
-        expect(&mut bench, dip, 3.0);
+        expect(&mut bench, dip_cause, 3.0);
         bench.uno.reset();
         expect(&mut bench, "external", 4.0);
         power_cycle(&mut bench);
@@ -258,8 +263,9 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         let was_reset = bench.uno.watchdog_resets() > resets;
         let frames = run_for_pulses(&mut bench, 200);
         for (servo, pulses) in frames.iter().enumerate() {
-            let all = pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
-            assert!(all, "A{} after {ms} ms: {pulses:?}", servo + 1);
+            let is_steady =
+                pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
+            assert!(is_steady, "A{} after {ms} ms: {pulses:?}", servo + 1);
         }
         assert!(was_reset || ms < 130, "{ms} ms");
         let fault = if was_reset { "watchdog" } else { "none" };
@@ -273,12 +279,12 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
 #[test]
 fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
     // The EEPROM holds the pose in which the robot rested, or it is blank.
-    for blank in [false, true] {
+    for is_blank in [false, true] {
         for ms in [140, 200, 400] {
             let (mut bench, _) = hold_pose();
             assert_eq!(bench.say("rest"), "ok rest");
             bench.run_ms(500);
-            if blank {
+            if is_blank {
                 let erased = bench.uno.eeprom().map(|_| 0xff);
                 bench.uno.set_eeprom(&erased);
             }
@@ -286,13 +292,13 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
             bench.uno.stall_main(ms * CYCLES_PER_MS);
             bench.uno.run_ms(ms + 150);
             assert!(bench.uno.watchdog_resets() > resets);
-            let after = run_for_pulses(&mut bench, 6000);
-            assert!(after.iter().all(Vec::is_empty), "{ms} ms: {after:?}");
+            let pulses = run_for_pulses(&mut bench, 6000);
+            assert!(pulses.iter().all(Vec::is_empty), "{ms} ms: {pulses:?}");
             let status = Status::of(&mut bench);
             let reported = [status.text("gait"), status.text("fault")];
             assert_eq!(reported, ["rest", "watchdog"]);
-            let walk = bench.say(&first_moving_gait());
-            assert_eq!(walk, "err 7 servos are resting, send stand first");
+            let answer = bench.say(&first_moving_gait());
+            assert_eq!(answer, "err 7 servos are resting, send stand first");
             assert_eq!(bench.say("stand"), "ok stand");
             bench.run_ms(2000);
             assert_eq!(measure_widths(&mut bench), neutral_widths());
@@ -307,23 +313,23 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     bench.run_ms(300);
     bench.uno.reset();
     // `boot` starts `stand` unless a byte arrives; here none does.
-    let before = run_for_pulses(&mut bench, 2_900);
-    assert!(before.iter().all(Vec::is_empty), "{before:?}");
+    let pulses = run_for_pulses(&mut bench, 2_900);
+    assert!(pulses.iter().all(Vec::is_empty), "{pulses:?}");
     bench.uno.run_ms(2_500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
-    let printed = bench
+    let is_printed = bench
         .lines()
         .iter()
         .any(|line| line.text == "# boot: stand");
-    assert!(printed);
+    assert!(is_printed);
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
-    let after = run_for_pulses(&mut bench, 5_000);
+    let pulses = run_for_pulses(&mut bench, 5_000);
     assert!(
-        after.iter().all(Vec::is_empty),
+        pulses.iter().all(Vec::is_empty),
         "a byte has called boot off"
     );
 }

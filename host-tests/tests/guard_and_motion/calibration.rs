@@ -7,7 +7,7 @@ use lizard_host_tests::{Named, robots};
 use crate::truth::degrees;
 
 /// Steps of the core's angles in a degree.
-const STEPS: f64 = 65536.0 / 360.0;
+const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 
 #[test]
 fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
@@ -22,29 +22,30 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
             let core = firmware.calibration()[n];
             let neutral = degrees(firmware.neutral()[n]);
             assert!(
-                (neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS,
+                (neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS_PER_DEGREE,
                 "{name}: A{}",
                 n + 1
             );
-            let mut checked = 0;
+            let mut pulse_count = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
-                let exact =
-                    16.0 * (servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS);
-                if !(0.0..65536.0).contains(&exact) {
+                let exact_cycles = 16.0
+                    * (servo.neutral_us
+                        + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE);
+                if !(0.0..65536.0).contains(&exact_cycles) {
                     continue;
                 }
-                let error = f64::from(core.width(Sweep(sweep)).0) - exact;
+                let error = f64::from(core.width(Sweep(sweep)).0) - exact_cycles;
                 assert!(
                     error.abs() <= 2.0,
                     "{name}: A{} is {error} cycles off",
                     n + 1
                 );
-                checked += 1;
+                pulse_count += 1;
             }
             // At least half of the turn has pulses.
             assert!(
-                checked > 65_536 / 17 / 2,
-                "{name}: A{}: {checked} pulses",
+                pulse_count > 65_536 / 17 / 2,
+                "{name}: A{}: {pulse_count} pulses",
                 n + 1
             );
         }
@@ -56,25 +57,26 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
     for Named { name, robot } in robots() {
         for (n, servo) in robot.servos().iter().enumerate() {
             let core = robot.firmware().calibration()[n];
-            let pulses =
-                |sweep: i32| servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS;
-            let within = |sweep: i32| {
-                let us = pulses(sweep);
+            let pulse_us = |sweep: i32| {
+                servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE
+            };
+            let is_in_range = |sweep: i32| {
+                let us = pulse_us(sweep);
                 servo.min_us - 1e-6 <= us && us <= servo.max_us + 1e-6
             };
             for (end, outward) in [(core.min, -1), (core.max, 1)] {
                 let end = i32::from(end.0);
-                assert!(within(end), "{name}: A{} at {end}", n + 1);
-                let next = end + outward;
+                assert!(is_in_range(end), "{name}: A{} at {end}", n + 1);
+                let next_sweep = end + outward;
                 assert!(
-                    !within(next) || next.abs() > 32_767,
-                    "{name}: A{} at {next}",
+                    !is_in_range(next_sweep) || next_sweep.abs() > 32_767,
+                    "{name}: A{} at {next_sweep}",
                     n + 1
                 );
             }
             assert!(core.reaches(core.min) && core.reaches(core.max), "{name}");
-            let beyond = [core.min.0.checked_sub(1), core.max.0.checked_add(1)];
-            for sweep in beyond.into_iter().flatten() {
+            let sweeps_beyond = [core.min.0.checked_sub(1), core.max.0.checked_add(1)];
+            for sweep in sweeps_beyond.into_iter().flatten() {
                 assert!(!core.reaches(Sweep(sweep)), "{name}: A{} at {sweep}", n + 1);
             }
         }
@@ -84,10 +86,10 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
 #[test]
 fn a_move_is_as_fast_as_the_file_allows_and_no_faster() {
     for Named { name, robot } in robots() {
-        let per_frame = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS;
+        let per_frame = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
         let limit = robot.pace().slew;
         assert!(
-            per_frame <= limit + 1e-6 && per_frame > limit - 50.0 / STEPS,
+            per_frame <= limit + 1e-6 && per_frame > limit - 50.0 / STEPS_PER_DEGREE,
             "{name}"
         );
     }

@@ -44,13 +44,13 @@ pub fn max_speed_change(robot: &Robot) -> f64 {
 }
 
 fn compute_max_speed_change(robot: &Robot) -> f64 {
-    let moves = robot.pace().slew / 2.0;
+    let move_change = robot.pace().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
         let (speed, change) = max_speed_and_change(robot, id);
         change.max(speed / ACCELERATION_FRAMES + robot.pace().slew / 4.0)
             + speed / ACCELERATION_FRAMES
     });
-    gaits.fold(moves, f64::max) + ROUNDING * STEP_PER_FRAME
+    gaits.fold(move_change, f64::max) + ROUNDING * STEP_PER_FRAME
 }
 
 /// Returns the largest servo speed in a gait at full pace, and the largest change of that speed from one
@@ -58,7 +58,7 @@ fn compute_max_speed_change(robot: &Robot) -> f64 {
 fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
-    let sweeps = |phase: u32| {
+    let sweeps_at = |phase: u32| {
         gait.pose(firmware.waves(), phase % CYCLE)
             .0
             .map(|sweep| f64::from(sweep.0))
@@ -66,7 +66,7 @@ fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     let frame = gait.increment.unsigned_abs();
     let (mut speed, mut change) = (0.0f64, 0.0f64);
     for phase in (0..CYCLE).step_by(CYCLE as usize / 4096) {
-        let [a, b, c] = [phase, phase + frame, phase + 2 * frame].map(sweeps);
+        let [a, b, c] = [phase, phase + frame, phase + 2 * frame].map(sweeps_at);
         for servo in 0..4 {
             speed = speed.max((b[servo] - a[servo]).abs());
             change = change.max((c[servo] - 2.0 * b[servo] + a[servo]).abs());
@@ -173,45 +173,55 @@ impl<'a> CheckedRobot<'a> {
     /// Runs a frame and checks its safety, its pulses and the servos' speeds.
     pub fn run_frame(&mut self) -> Pulses {
         let (name, robot) = (self.name, self.robot);
-        let before = self.pose();
-        let held_before = self.motion().hazard().is_some();
+        let previous_pose = self.pose();
+        let was_held = self.motion().hazard().is_some();
         self.running.frame();
         let pulses = self.running.board.submitted();
         let (pose, motion) = (self.pose(), self.running.motion());
 
-        let guard_stopped = !held_before && motion.hazard().is_some();
+        let guard_stopped = !was_held && motion.hazard().is_some();
         if guard_stopped {
-            assert_eq!(pose, before, "{name}: the guard holds the last safe pose");
+            assert_eq!(
+                pose, previous_pose,
+                "{name}: the guard holds the last safe pose"
+            );
         }
-        let at = angles(robot.firmware(), &pose);
-        assert!(is_safe(robot.firmware(), &pose), "{name}: {at:?}");
-        assert_ne!(Verdict::of(robot, at), Verdict::Unsafe, "{name}: {at:?}");
+        let chassis_angles = angles(robot.firmware(), &pose);
+        assert!(
+            is_safe(robot.firmware(), &pose),
+            "{name}: {chassis_angles:?}"
+        );
+        assert_ne!(
+            Verdict::of(robot, chassis_angles),
+            Verdict::Unsafe,
+            "{name}: {chassis_angles:?}"
+        );
         self.check_pulses(&pose, pulses);
 
         // During a move, the phase is 0. In a gait, the phase is 0 only once per cycle.
-        let in_gait = motion.phase() != 0;
-        let limit = if in_gait {
+        let is_in_gait = motion.phase() != 0;
+        let speed_limit = if is_in_gait {
             robot.pace().gait_slew
         } else {
             robot.pace().slew
         };
         // The poses of a gait are rounded, which may add a step.
-        let fastest = f64::from(before.largest_turn_to(&pose)) * STEP_PER_FRAME;
-        let max = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
+        let fastest_speed = f64::from(previous_pose.largest_turn_to(&pose)) * STEP_PER_FRAME;
+        let max_speed = speed_limit + if is_in_gait { STEP_PER_FRAME } else { 0.0 };
         assert!(
-            fastest <= max + 1e-6,
-            "{name}: {fastest} deg/s, limit {limit}"
+            fastest_speed <= max_speed + 1e-6,
+            "{name}: {fastest_speed} deg/s, limit {speed_limit}"
         );
 
         let speeds: [f64; 4] = std::array::from_fn(|n| {
-            (f64::from(pose.0[n].0) - f64::from(before.0[n].0)) * STEP_PER_FRAME
+            (f64::from(pose.0[n].0) - f64::from(previous_pose.0[n].0)) * STEP_PER_FRAME
         });
-        for (speed, last) in speeds.iter().zip(&self.speeds) {
-            let change = (speed - last).abs();
+        for (speed, last_speed) in speeds.iter().zip(&self.speeds) {
+            let change = (speed - last_speed).abs();
             if !(self.may_stop || guard_stopped) {
                 assert!(
                     change <= self.allowed_speed_change,
-                    "{name}: {last} and then {speed} deg/s"
+                    "{name}: {last_speed} and then {speed} deg/s"
                 );
                 self.largest_speed_change = self.largest_speed_change.max(change);
             }
@@ -263,15 +273,15 @@ pub fn gait_command(gait: &CheckedGait) -> String {
 
 /// Returns a random command that moves a robot, stops it or sets its speed.
 pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
-    let pose = |rng: &mut Rng, share: f64| {
+    let pose_line = |rng: &mut Rng, share: f64| {
         let firmware = robot.firmware();
         let pose = pose_within(rng, &firmware.calibration(), share);
         pose_command(angles(firmware, &pose))
     };
     match rng.u8(..20) {
         0..9 => gait_command(&robot.gaits()[rng.usize(..robot.gaits().len())]),
-        9..13 => pose(rng, 0.25),
-        13..15 => pose(rng, 0.8),
+        9..13 => pose_line(rng, 0.25),
+        13..15 => pose_line(rng, 0.8),
         15 => "stop".into(),
         16 => ["rest", "stand"][rng.usize(..2)].into(),
         17 => "stand".into(),
@@ -281,11 +291,11 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
 
 /// Returns the robot's activity once a command is complete; `None` for a command that selects no activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
-    let gait = robot
+    let gait_index = robot
         .gaits()
         .iter()
         .position(|gait| gait_command(gait) == command);
-    let id = |index: usize| {
+    let activity_of = |index: usize| {
         GaitId::all(robot.gaits().len())
             .nth(index)
             .map(Activity::Gait)
@@ -294,6 +304,6 @@ pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
         "stop" => Some(Activity::Stop),
         "rest" => Some(Activity::Rest),
         _ if command.starts_with("pose") => Some(Activity::Pose),
-        _ => gait.and_then(id),
+        _ => gait_index.and_then(activity_of),
     }
 }

@@ -29,12 +29,12 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     }
     let frames = gait.period() * 50.0 * 100.0 / percent;
     // The distance of the phase from 0, since the phase of a reversed gait falls.
-    let from_zero = |walker: &CheckedRobot| {
+    let phase_distance = |walker: &CheckedRobot| {
         let phase = i64::from(walker.motion().phase());
         phase.min((1 << 24) - phase)
     };
-    let near = (f64::from(1 << 24) / frames) as i64;
-    while from_zero(&walker) > near / 2 + 1 {
+    let phase_per_frame = (f64::from(1 << 24) / frames) as i64;
+    while phase_distance(&walker) > phase_per_frame / 2 + 1 {
         walker.run_frames(1);
     }
     let mut path = vec![angles(
@@ -45,19 +45,19 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
         path.push(angles(robot, walker.run_frame()));
     }
     // A cycle may end between two frames.
-    let over = path.len() - 1;
+    let last_index = path.len() - 1;
     let share = frames - frames.ceil() + 1.0;
-    let (before, last) = (path[over - 1], path[over]);
-    path[over] = std::array::from_fn(|n| before[n] + share * (last[n] - before[n]));
+    let (previous, last) = (path[last_index - 1], path[last_index]);
+    path[last_index] = std::array::from_fn(|n| previous[n] + share * (last[n] - previous[n]));
     Some(robot.travel(path))
 }
 
-/// Asserts that a travel is the expected one: forward to within `largest` mm or 1 %, the turn to within
+/// Asserts that a travel is the expected one: forward to within `tolerance_mm` mm or 1 %, the turn to within
 /// 0.2 deg. An expected value of `None` is not compared.
 fn assert_travel(
     name: &str,
     travel: Travel,
-    largest: f64,
+    tolerance_mm: f64,
     forward: Option<f64>,
     turn: Option<f64>,
 ) {
@@ -66,9 +66,9 @@ fn assert_travel(
         travel.forward, travel.turn
     );
     if let Some(forward) = forward {
-        let largest = largest.max(0.01 * forward.abs());
+        let tolerance_mm = tolerance_mm.max(0.01 * forward.abs());
         assert!(
-            (travel.forward - forward).abs() <= largest,
+            (travel.forward - forward).abs() <= tolerance_mm,
             "{name}: {travel:?}, not {forward}"
         );
     }
@@ -82,7 +82,7 @@ fn assert_travel(
 
 #[test]
 fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
-    let mut seen = 0;
+    let mut travel_count = 0;
     // Only some of the random robots, since the contact model is slow.
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
@@ -94,16 +94,16 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
                 let Some(travel) = travel(named, gait, percent) else {
                     continue;
                 };
-                seen += 1;
+                travel_count += 1;
                 let expected = gait.predict(&named.robot.ground().rigid());
                 let name = format!("{}: {} at {percent} %", named.name, gait.name());
                 // On a robot without symmetry, a tenth of a degree may decide which foot sticks.
-                let max = 0.01 * named.robot.lizard().links.l10;
-                assert_travel(&name, travel, max, expected.forward, expected.turn);
+                let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
+                assert_travel(&name, travel, tolerance_mm, expected.forward, expected.turn);
             }
         }
     }
-    assert!(seen > 100);
+    assert!(travel_count > 100);
 }
 
 // The predictions in floating point are compared with independent figures in the tests
@@ -114,14 +114,14 @@ fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
         name: "paper.toml".into(),
         robot: paper().clone(),
     };
-    let mut decided = 0;
+    let mut decided_count = 0;
     for gait in paper().gaits() {
         let expected = gait.predict(&paper().ground().rigid());
-        decided += usize::from(expected.forward.is_some() && expected.turn.is_some());
+        decided_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for percent in [100.0, 80.0, 50.0, 20.0] {
             let travel = travel(&named, gait, percent).expect("the way is clear");
             assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
         }
     }
-    assert!(decided >= 9, "{decided}");
+    assert!(decided_count >= 9, "{decided_count}");
 }

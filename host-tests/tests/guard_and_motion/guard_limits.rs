@@ -25,7 +25,7 @@ fn ceil_q15(limit: f64) -> i16 {
 }
 
 /// A clearance exactly at the limit of every margin, with both sliders at their maximum length.
-fn at_the_limit(robot: &Robot) -> Clearance {
+fn clearance_at_limit(robot: &Robot) -> Clearance {
     Clearance {
         margins: limits(robot).map(|limit| Sine(ceil_q15(limit))),
         sliders_sq: Side::ALL.map(|side| {
@@ -39,9 +39,13 @@ fn at_the_limit(robot: &Robot) -> Clearance {
 fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
-        assert_eq!(at_the_limit(robot).first_hazard(firmware), None, "{name}");
+        assert_eq!(
+            clearance_at_limit(robot).first_hazard(firmware),
+            None,
+            "{name}"
+        );
         for (index, margin) in MARGINS.into_iter().enumerate() {
-            let mut core = at_the_limit(robot);
+            let mut core = clearance_at_limit(robot);
             let value = Sine(core.margins[index].0 - 1);
             core.margins[index] = value;
             let hazard = Some(Hazard::Margin { margin, value });
@@ -57,20 +61,24 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
         for (index, side) in Side::ALL.into_iter().enumerate() {
             let slider = firmware.side(side);
             let [min_sq, max_sq] = [slider.min, slider.max].map(|steps| u32::from(steps).pow(2));
-            for (length_sq, safe) in [
+            for (length_sq, is_safe) in [
                 (min_sq, true),
                 (min_sq.wrapping_sub(1), false),
                 (max_sq, true),
                 (max_sq + 1, false),
             ] {
-                let mut core = at_the_limit(robot);
+                let mut core = clearance_at_limit(robot);
                 core.sliders_sq[index] = length_sq;
-                let named = match core.first_hazard(firmware) {
+                let named_side = match core.first_hazard(firmware) {
                     None => None,
                     Some(Hazard::Stroke { side, .. }) => Some(side),
-                    Some(margin) => panic!("{name}: {margin:?}"),
+                    Some(hazard) => panic!("{name}: {hazard:?}"),
                 };
-                assert_eq!(named, (!safe).then_some(side), "{name}: {length_sq}");
+                assert_eq!(
+                    named_side,
+                    (!is_safe).then_some(side),
+                    "{name}: {length_sq}"
+                );
             }
         }
     }
@@ -93,16 +101,16 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
             lizard_kinematics::Side::Left,
             lizard_kinematics::Side::Right,
         ];
-        for (side, of_file) in Side::ALL.into_iter().zip(sides) {
+        for (side, kinematics_side) in Side::ALL.into_iter().zip(sides) {
             let slider = robot.firmware().side(side);
-            let nominal = robot.lizard().side(of_file).nominal;
-            let length = |steps: u16| f64::from(steps) / per_mm(slider.scale);
-            let [smallest, largest] =
+            let nominal = robot.lizard().side(kinematics_side).nominal;
+            let length_mm = |steps: u16| f64::from(steps) / per_mm(slider.scale);
+            let [min_mm, max_mm] =
                 [file.stroke_min, file.stroke_max].map(|travel| nominal + travel);
-            assert!(length(slider.min) >= smallest - 1e-9, "{name}: {side:?}");
-            assert!(length(slider.min - 1) < smallest, "{name}: {side:?}");
-            assert!(length(slider.max) <= largest + 1e-9, "{name}: {side:?}");
-            assert!(length(slider.max + 1) > largest, "{name}: {side:?}");
+            assert!(length_mm(slider.min) >= min_mm - 1e-9, "{name}: {side:?}");
+            assert!(length_mm(slider.min - 1) < min_mm, "{name}: {side:?}");
+            assert!(length_mm(slider.max) <= max_mm + 1e-9, "{name}: {side:?}");
+            assert!(length_mm(slider.max + 1) > max_mm, "{name}: {side:?}");
         }
     }
 }

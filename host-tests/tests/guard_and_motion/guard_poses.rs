@@ -33,9 +33,9 @@ struct Findings {
     max_margin_errors: [f64; 10],
     safe: usize,
     refused: usize,
-    /// Poses where the guard and floating point decide differently. `farthest` is the largest distance of such
-    /// a pose from a limit, in bands.
+    /// The number of poses where the guard and floating point decide differently.
     disagreements: usize,
+    /// The largest distance of such a pose from a limit, in bands.
     max_disagreement_bands: f64,
     /// The number of times that each of the twelve conditions was named.
     hazard_counts: [usize; 12],
@@ -46,8 +46,8 @@ impl Findings {
         let firmware = robot.firmware();
         let core = Clearance::of(firmware, pose);
         let hazard = core.first_hazard(firmware);
-        let named = hazard.map(index_of);
-        match named {
+        let hazard_index = hazard.map(index_of);
+        match hazard_index {
             None => self.safe += 1,
             Some(index) => {
                 self.refused += 1;
@@ -58,60 +58,71 @@ impl Findings {
             Ok(truth) => truth,
             Err(fault) => {
                 // The guard checks the head first, so it may name an earlier condition.
-                let end =
+                let end_index =
                     open_end(&fault).expect("the sliders of these robots always have a length");
                 assert!(
-                    named.is_some_and(|index| index <= end),
+                    hazard_index.is_some_and(|index| index <= end_index),
                     "{pose:?}: {fault}, {hazard:?}"
                 );
                 return;
             }
         };
         self.compare(robot, &core, &truth);
-        let clear_by = truth.distances_from_limits();
-        for (by, broken) in clear_by.into_iter().zip(truth.broken) {
-            assert!(by.abs() <= 1.0 || broken == (by < 0.0), "{truth:?}");
+        let distances = truth.distances_from_limits();
+        for (distance, is_broken) in distances.into_iter().zip(truth.broken) {
+            assert!(
+                distance.abs() <= 1.0 || is_broken == (distance < 0.0),
+                "{truth:?}"
+            );
         }
-        let smallest = clear_by.into_iter().fold(f64::INFINITY, f64::min);
-        if hazard.is_none() != (smallest >= 0.0) {
+        let smallest_distance = distances.into_iter().fold(f64::INFINITY, f64::min);
+        if hazard.is_none() != (smallest_distance >= 0.0) {
             self.disagreements += 1;
-            self.max_disagreement_bands = self.max_disagreement_bands.max(smallest.abs());
+            self.max_disagreement_bands = self.max_disagreement_bands.max(smallest_distance.abs());
         }
         assert!(
-            smallest.abs() <= 1.0 || hazard.is_none() == (smallest > 0.0),
-            "{pose:?} is {smallest} bands clear, and the guard says {hazard:?}"
+            smallest_distance.abs() <= 1.0 || hazard.is_none() == (smallest_distance > 0.0),
+            "{pose:?} is {smallest_distance} bands clear, and the guard says {hazard:?}"
         );
-        let Some(named) = named else {
+        let Some(hazard_index) = hazard_index else {
             return;
         };
         // The named condition is broken, and no condition that the guard checks earlier.
-        assert!(clear_by[named] <= 1.0, "{pose:?}: {hazard:?}, {truth:?}");
-        let earlier = clear_by[..named].iter().all(|by| *by >= -1.0);
-        assert!(earlier, "{pose:?}: {hazard:?} comes too early, {truth:?}");
+        assert!(
+            distances[hazard_index] <= 1.0,
+            "{pose:?}: {hazard:?}, {truth:?}"
+        );
+        let are_earlier_kept = distances[..hazard_index]
+            .iter()
+            .all(|distance| *distance >= -1.0);
+        assert!(
+            are_earlier_kept,
+            "{pose:?}: {hazard:?} comes too early, {truth:?}"
+        );
     }
 
     /// Compares the guard's margins and strokes with those in floating point.
     fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &ExactConditions) {
         for (index, (value, expected)) in core.margins.iter().zip(truth.margins).enumerate() {
-            let end = FIVE_BAR_OF_MARGIN.get(index).copied();
-            if let Some(end) = end
-                && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
+            let five_bar = FIVE_BAR_OF_MARGIN.get(index).copied();
+            if let Some(five_bar) = five_bar
+                && (truth.margins[five_bar] < MIN_TYPE2 || truth.is_at_crossing(five_bar))
             {
                 // So near a type-2 singularity, the guard only has to detect that the margin is small.
-                let max = MIN_TYPE2 + truth.bands[end];
+                let max_margin = MIN_TYPE2 + truth.bands[five_bar];
                 assert!(
-                    truth.is_at_crossing(end) || sine(core.margins[end]) < max,
+                    truth.is_at_crossing(five_bar) || sine(core.margins[five_bar]) < max_margin,
                     "{truth:?}"
                 );
                 continue;
             }
-            let spread = match index {
+            let statistics = match index {
                 0..2 => &mut self.type2,
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
             let error = sine(*value) - expected;
-            spread.add(error);
+            statistics.add(error);
             self.max_margin_errors[index] =
                 self.max_margin_errors[index].max(error.abs() / truth.bands[index]);
         }
@@ -176,18 +187,21 @@ fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
 
 #[test]
 fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
-    let mut named = [0; 12];
+    let mut hazard_counts = [0; 12];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();
         for pose in random_poses(&mut rng(100 + n as u64), robot) {
             findings.add(robot, &pose);
         }
         findings.report(name);
-        for (sum, here) in named.iter_mut().zip(findings.hazard_counts) {
-            *sum += here;
+        for (sum, count) in hazard_counts.iter_mut().zip(findings.hazard_counts) {
+            *sum += count;
         }
     }
-    assert!(named.iter().all(|count| *count > 0), "{named:?}");
+    assert!(
+        hazard_counts.iter().all(|count| *count > 0),
+        "{hazard_counts:?}"
+    );
 }
 
 #[test]
@@ -197,11 +211,11 @@ fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
         let firmware = robot.firmware();
         let mut findings = Findings::default();
         while findings.refused < PAIRS {
-            let far = any_pose(&mut rng, &firmware.calibration());
-            if is_safe(firmware, &far) {
+            let unsafe_pose = any_pose(&mut rng, &firmware.calibration());
+            if is_safe(firmware, &unsafe_pose) {
                 continue;
             }
-            for pose in straddling_poses(robot, far) {
+            for pose in straddling_poses(robot, unsafe_pose) {
                 findings.add(robot, &pose);
             }
         }
@@ -211,28 +225,29 @@ fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
 
 /// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe one, then an unsafe
 /// one.
-fn straddling_poses(robot: &Robot, far: Pose) -> [Pose; 2] {
-    let at = |share: u32| {
+fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
+    let pose_at = |share: u32| {
         Pose(
-            far.0
+            unsafe_pose
+                .0
                 .map(|sweep| Sweep(((i64::from(sweep.0) * i64::from(share)) >> 16) as i16)),
         )
     };
-    let (mut safe, mut not) = (0, 1 << 16);
-    while not - safe > 1 {
-        let middle = (safe + not) / 2;
-        *(if is_safe(robot.firmware(), &at(middle)) {
-            &mut safe
+    let (mut safe_share, mut unsafe_share) = (0, 1 << 16);
+    while unsafe_share - safe_share > 1 {
+        let middle = (safe_share + unsafe_share) / 2;
+        *(if is_safe(robot.firmware(), &pose_at(middle)) {
+            &mut safe_share
         } else {
-            &mut not
+            &mut unsafe_share
         }) = middle;
     }
-    [at(safe), at(not)]
+    [pose_at(safe_share), pose_at(unsafe_share)]
 }
 
 #[test]
 fn a_reason_carries_the_value_that_broke_the_limit() {
-    let mut reasons = [0; 2];
+    let mut reason_counts = [0; 2];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         for pose in random_poses(&mut rng(300 + n as u64), robot).take(2000) {
             let core = Clearance::of(robot.firmware(), &pose);
@@ -241,36 +256,43 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
                 Some(Hazard::Margin { margin, value }) => {
                     let index = MARGINS.iter().position(|known| *known == margin);
                     assert_eq!(value, core.margins[index.expect("one of ten")], "{name}");
-                    reasons[0] += 1;
+                    reason_counts[0] += 1;
                 }
                 Some(Hazard::Travel(_)) => unreachable!("a clearance knows no travel"),
                 Some(Hazard::Stroke { side, length }) => {
                     assert_eq!(length, root(core.sliders_sq[side as usize]), "{name}");
-                    reasons[1] += 1;
+                    reason_counts[1] += 1;
                 }
             }
         }
     }
-    assert!(reasons.iter().all(|count| *count > 100), "{reasons:?}");
+    assert!(
+        reason_counts.iter().all(|count| *count > 100),
+        "{reason_counts:?}"
+    );
 }
 
 #[test]
 fn the_smallest_margin_is_the_one_of_kinematics() {
     for (n, Named { name, robot }) in robots().iter().enumerate() {
-        let mut safe = 0;
+        let mut safe_count = 0;
         for pose in random_poses(&mut rng(400 + n as u64), robot).take(10_000) {
             if !is_safe(robot.firmware(), &pose) {
                 continue;
             }
-            safe += 1;
-            let at = angles(robot.firmware(), &pose);
-            let truth = ExactConditions::of(robot, at).expect("a safe pose");
-            let smallest = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
-            let error = sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest;
-            let largest = truth.bands[..10].iter().copied().fold(0.0, f64::max);
-            assert!(error.abs() <= largest, "{name}: {pose:?} is {error} off");
+            safe_count += 1;
+            let chassis_angles = angles(robot.firmware(), &pose);
+            let truth = ExactConditions::of(robot, chassis_angles).expect("a safe pose");
+            let smallest_margin = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
+            let error =
+                sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest_margin;
+            let largest_band = truth.bands[..10].iter().copied().fold(0.0, f64::max);
+            assert!(
+                error.abs() <= largest_band,
+                "{name}: {pose:?} is {error} off"
+            );
         }
-        assert!(safe > 10, "{name}: {safe} safe poses");
+        assert!(safe_count > 10, "{name}: {safe_count} safe poses");
     }
 }
 

@@ -17,26 +17,26 @@ const DIALOGUES: u64 = 30;
 fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(1000 + n as u64);
-        let (mut done, mut refused, mut largest) = (0, 0, 0.0f64);
+        let (mut done_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUES {
             let mut walker = CheckedRobot::new(named);
             for _ in 0..12 {
                 let answer = walker.say(&random_command(&mut rng, &named.robot));
                 *(if answer.starts_with("ok") {
-                    &mut done
+                    &mut done_count
                 } else {
-                    &mut refused
+                    &mut refused_count
                 }) += 1;
                 walker.run_frames(rng.u32(..120));
             }
-            largest = largest.max(walker.largest_speed_change);
+            largest_change = largest_change.max(walker.largest_speed_change);
         }
         println!(
-            "{}: {done} commands done, {refused} refused; speed changes by at most {largest:.0} of {:.0} deg/s",
+            "{}: {done_count} commands done, {refused_count} refused; speed changes by at most {largest_change:.0} of {:.0} deg/s",
             named.name,
             max_speed_change(&named.robot)
         );
-        assert!(done > 100 && refused > 0, "{}", named.name);
+        assert!(done_count > 100 && refused_count > 0, "{}", named.name);
     }
 }
 
@@ -45,7 +45,7 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
     for (n, named) in robots().iter().enumerate() {
         let Named { name, robot } = named;
         let mut rng = rng(2000 + n as u64);
-        let mut arrived = 0;
+        let mut arrived_count = 0;
         for _ in 0..3 * DIALOGUES {
             let mut walker = CheckedRobot::new(named);
             for _ in 0..3 {
@@ -53,31 +53,41 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
                 walker.run_frames(rng.u32(..60));
             }
             walker.say("stand");
-            let last = random_command(&mut rng, robot);
-            let answer = walker.say(&last);
+            let last_command = random_command(&mut rng, robot);
+            let answer = walker.say(&last_command);
             walker.run_frames(2 * settling_frames(robot));
             if walker.motion().hazard().is_some() {
-                assert_eq!(walker.motion().activity(), Activity::Stop, "{name}: {last}");
+                assert_eq!(
+                    walker.motion().activity(),
+                    Activity::Stop,
+                    "{name}: {last_command}"
+                );
                 continue;
             }
             let activity = walker.motion().activity();
-            match final_activity(robot, &last) {
+            match final_activity(robot, &last_command) {
                 Some(expected) if answer.starts_with("ok") => {
-                    assert_eq!(activity, expected, "{name}: {last}")
+                    assert_eq!(activity, expected, "{name}: {last_command}")
                 }
                 // After a `speed` or a refused pose, the robot still stands or walks.
-                _ => assert!(matches!(activity, Activity::Gait(_)), "{name}: {last}"),
+                _ => assert!(
+                    matches!(activity, Activity::Gait(_)),
+                    "{name}: {last_command}"
+                ),
             }
             if let Activity::Gait(id) = activity {
                 let firmware = robot.firmware();
                 let pose = firmware
                     .gait(id)
                     .pose(firmware.waves(), walker.motion().phase());
-                assert_eq!(walker.pose(), pose, "{name}: {last}");
+                assert_eq!(walker.pose(), pose, "{name}: {last_command}");
             }
-            arrived += 1;
+            arrived_count += 1;
         }
-        assert!(arrived > DIALOGUES, "{name}: only {arrived} arrived");
+        assert!(
+            arrived_count > DIALOGUES,
+            "{name}: only {arrived_count} arrived"
+        );
     }
 }
 
@@ -85,30 +95,30 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
 fn a_command_that_is_refused_changes_nothing() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(3000 + n as u64);
-        let mut refused = 0;
+        let mut refused_count = 0;
         for _ in 0..DIALOGUES {
-            let (mut asked, mut spared) = (CheckedRobot::new(named), CheckedRobot::new(named));
+            let (mut tested, mut reference) = (CheckedRobot::new(named), CheckedRobot::new(named));
             for _ in 0..8 {
                 let command = random_command(&mut rng, &named.robot);
                 let frames = rng.u32(..60);
-                let is_refused = asked.say(&command).starts_with("err");
+                let is_refused = tested.say(&command).starts_with("err");
                 if is_refused {
-                    refused += 1;
+                    refused_count += 1;
                 } else {
-                    spared.say(&command);
+                    reference.say(&command);
                 }
                 for _ in 0..frames {
                     assert_eq!(
-                        asked.run_frame(),
-                        spared.run_frame(),
+                        tested.run_frame(),
+                        reference.run_frame(),
                         "{}: {command}",
                         named.name
                     );
-                    assert_eq!(asked.motion().activity(), spared.motion().activity());
+                    assert_eq!(tested.motion().activity(), reference.motion().activity());
                 }
             }
         }
-        assert!(refused > 0, "{}", named.name);
+        assert!(refused_count > 0, "{}", named.name);
     }
 }
 
@@ -116,7 +126,7 @@ fn a_command_that_is_refused_changes_nothing() {
 fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(4000 + n as u64);
-        let mut arrived = 0;
+        let mut arrived_count = 0;
         for _ in 0..DIALOGUES {
             let goal = safe_pose(&mut rng, named.robot.firmware());
             let mut walker = CheckedRobot::standing(named);
@@ -134,19 +144,23 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
             if walker.motion().hazard().is_some() {
                 continue;
             }
-            let end = poses[poses.len() - 1];
-            assert!(end.largest_turn_to(&goal) <= 1, "{}", named.name);
-            arrived += 1;
-            let longest = f64::from(Pose::NEUTRAL.largest_turn_to(&end));
+            let end_pose = poses[poses.len() - 1];
+            assert!(end_pose.largest_turn_to(&goal) <= 1, "{}", named.name);
+            arrived_count += 1;
+            let longest_turn = f64::from(Pose::NEUTRAL.largest_turn_to(&end_pose));
             for pose in &poses {
-                let share = 1.0 - f64::from(pose.largest_turn_to(&end)) / longest;
-                for (here, there) in pose.0.iter().zip(&end.0) {
-                    let error = f64::from(here.0) - share * f64::from(there.0);
-                    assert!(error.abs() <= 4.0, "{}: {pose:?} to {end:?}", named.name);
+                let share = 1.0 - f64::from(pose.largest_turn_to(&end_pose)) / longest_turn;
+                for (sweep, end_sweep) in pose.0.iter().zip(&end_pose.0) {
+                    let error = f64::from(sweep.0) - share * f64::from(end_sweep.0);
+                    assert!(
+                        error.abs() <= 4.0,
+                        "{}: {pose:?} to {end_pose:?}",
+                        named.name
+                    );
                 }
             }
         }
-        assert!(arrived > 0, "{}: no move arrived", named.name);
+        assert!(arrived_count > 0, "{}: no move arrived", named.name);
     }
 }
 
@@ -155,25 +169,25 @@ fn servos_wake_one_after_another_where_they_were_left() {
     for (n, named) in robots().iter().enumerate() {
         let calibration = named.robot.firmware().calibration();
         let mut walker = CheckedRobot::new(named);
-        for held in [
+        for held_pose in [
             Pose::NEUTRAL,
             safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
         ] {
-            if held != Pose::NEUTRAL {
-                walker.say(&walker.pose_command(&held));
+            if held_pose != Pose::NEUTRAL {
+                walker.say(&walker.pose_command(&held_pose));
                 walker.run_frames(settling_frames(&named.robot));
                 walker.expect_ok("rest");
                 walker.run_frames(10);
                 walker.expect_ok("stand");
             }
-            let held = walker.pose();
+            let held_pose = walker.pose();
             let mut awake_since = [0; 4];
             for frame in 1..=WAKING_FRAMES {
                 for (servo, width) in walker.run_frame().0.into_iter().enumerate() {
                     if width.0 > 0 && awake_since[servo] == 0 {
                         awake_since[servo] = frame;
                     }
-                    let expected = calibration[servo].width(held.0[servo]);
+                    let expected = calibration[servo].width(held_pose.0[servo]);
                     assert!(width.0 == 0 || width == expected, "{}", named.name);
                     assert_eq!(width.0 > 0, awake_since[servo] > 0, "awake for good");
                 }
@@ -192,30 +206,35 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_restarts() {
         let robot = &named.robot;
         for _ in 0..DIALOGUES {
             let mut walker = CheckedRobot::standing(named);
-            let gait = rng.usize(..robot.gaits().len());
-            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait]));
+            let gait_index = rng.usize(..robot.gaits().len());
+            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait_index]));
             walker.run_frames(rng.u32(..200));
             let pose = walker.pose();
-            let end = ["stop", "rest"][rng.usize(..2)];
-            walker.expect_ok(end);
+            let command = ["stop", "rest"][rng.usize(..2)];
+            walker.expect_ok(command);
             for _ in 0..5 {
-                let silent = walker.run_frame().0.iter().all(|width| width.0 == 0);
-                assert_eq!(silent, end == "rest", "{}", named.name);
+                let is_silent = walker.run_frame().0.iter().all(|width| width.0 == 0);
+                assert_eq!(is_silent, command == "rest", "{}", named.name);
                 assert_eq!(walker.pose(), pose, "{}", named.name);
                 assert_eq!(walker.motion().phase(), 0, "{}", named.name);
             }
             walker.expect_ok("stand");
-            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait]));
+            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait_index]));
             let firmware = robot.firmware();
             let id = lizard_core::numbers::gaits::GaitId::all(firmware.gait_count())
-                .nth(gait)
+                .nth(gait_index)
                 .expect("a gait");
-            let first = firmware.gait(id).pose(firmware.waves(), 0);
-            let begins = (0..2 * settling_frames(robot)).any(|_| {
+            let first_pose = firmware.gait(id).pose(firmware.waves(), 0);
+            let has_begun = (0..2 * settling_frames(robot)).any(|_| {
                 walker.run_frames(1);
-                walker.motion().phase() == 0 && walker.pose() == first
+                walker.motion().phase() == 0 && walker.pose() == first_pose
             });
-            assert!(begins, "{}: {}", named.name, robot.gaits()[gait].name());
+            assert!(
+                has_begun,
+                "{}: {}",
+                named.name,
+                robot.gaits()[gait_index].name()
+            );
         }
     }
 }

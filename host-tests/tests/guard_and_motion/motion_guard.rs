@@ -19,37 +19,38 @@ const PATHS: usize = 12;
 /// Returns up to [`PATHS`] pairs of safe poses whose straight path is unsafe by floating point.
 fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
-    let edge = |rng: &mut Rng| {
+    let pose_near_limit = |rng: &mut Rng| {
         // Two cranks of one five-bar or of one side near a limit, the others at neutral.
         let [a, b] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
-        let any = pose_within(rng, &calibration, 1.0);
+        let random_pose = pose_within(rng, &calibration, 1.0);
         let mut pose = Pose::NEUTRAL;
-        (pose.0[a], pose.0[b]) = (any.0[a], any.0[b]);
+        (pose.0[a], pose.0[b]) = (random_pose.0[a], random_pose.0[b]);
         let mut share = 256;
         while !is_safe(robot.firmware(), &shrink(&pose, share)) {
             share -= 4;
         }
         shrink(&pose, share)
     };
-    let mut found = Vec::new();
+    let mut pairs = Vec::new();
     for _ in 0..TRIES {
-        let (from, to) = (edge(rng), edge(rng));
-        let [here, there] = [from, to].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
-        let unsafe_at = |n: u32| {
+        let (from, to) = (pose_near_limit(rng), pose_near_limit(rng));
+        let [from_sweeps, to_sweeps] =
+            [from, to].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
+        let is_unsafe_at = |n: u32| {
             let share = f64::from(n) / 50.0;
-            let at = Pose(std::array::from_fn(|n| {
-                Sweep((here[n] + share * (there[n] - here[n])) as i16)
+            let pose = Pose(std::array::from_fn(|n| {
+                Sweep((from_sweeps[n] + share * (to_sweeps[n] - from_sweeps[n])) as i16)
             }));
-            Verdict::of(robot, angles(robot.firmware(), &at)) == Verdict::Unsafe
+            Verdict::of(robot, angles(robot.firmware(), &pose)) == Verdict::Unsafe
         };
-        if (1..50).step_by(4).any(unsafe_at) {
-            found.push([from, to]);
+        if (1..50).step_by(4).any(is_unsafe_at) {
+            pairs.push([from, to]);
         }
-        if found.len() == PATHS {
+        if pairs.len() == PATHS {
             break;
         }
     }
-    found
+    pairs
 }
 
 fn shrink(pose: &Pose, share: i32) -> Pose {
@@ -61,7 +62,7 @@ fn shrink(pose: &Pose, share: i32) -> Pose {
 
 #[test]
 fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
-    let mut held = 0;
+    let mut held_count = 0;
     for (n, named) in robots().iter().enumerate() {
         let Named { name, robot } = named;
         for [from, to] in pairs_with_unsafe_path(&mut rng(7000 + n as u64), robot) {
@@ -83,13 +84,13 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
                 assert!(walker.pose().largest_turn_to(&to) <= 1, "{name}");
                 continue;
             };
-            held += 1;
+            held_count += 1;
             assert_eq!(walker.motion().activity(), Activity::Stop, "{name}");
-            let printed = walker.take_output_lines();
-            assert_eq!(printed.len(), 1, "{name}: {printed:?}");
+            let printed_lines = walker.take_output_lines();
+            assert_eq!(printed_lines.len(), 1, "{name}: {printed_lines:?}");
             assert!(
-                printed[0].starts_with("# held in the last safe pose: "),
-                "{printed:?}"
+                printed_lines[0].starts_with("# held in the last safe pose: "),
+                "{printed_lines:?}"
             );
             // The cause lies on the rest of the path.
             assert!(
@@ -111,8 +112,8 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             }
         }
     }
-    println!("{held} moves were stopped on their way");
-    assert!(held >= 10);
+    println!("{held_count} moves were stopped on their way");
+    assert!(held_count >= 10);
 }
 
 /// True if the rest of the path breaks the condition that a hazard names.
@@ -120,11 +121,11 @@ fn breaks_condition_ahead(
     firmware: &CoreRobot,
     from: Pose,
     to: Pose,
-    held: Pose,
+    held_pose: Pose,
     hazard: lizard_core::guard::hazard::Hazard,
 ) -> bool {
     use lizard_core::guard::hazard::Hazard;
-    let same = |other: Hazard| match (hazard, other) {
+    let is_same_condition = |other_hazard: Hazard| match (hazard, other_hazard) {
         (Hazard::Margin { margin: a, .. }, Hazard::Margin { margin: b, .. }) => a == b,
         (Hazard::Stroke { side: a, .. }, Hazard::Stroke { side: b, .. }) => a == b,
         _ => false,
@@ -135,17 +136,17 @@ fn breaks_condition_ahead(
             let (from, to) = (f64::from(from.0[n].0), f64::from(to.0[n].0));
             Sweep((from + share * (to - from)).round() as i16)
         }));
-        let beyond = held.largest_turn_to(&from) <= pose.largest_turn_to(&from) + 1;
-        beyond
+        let is_ahead = held_pose.largest_turn_to(&from) <= pose.largest_turn_to(&from) + 1;
+        is_ahead
             && Clearance::of(firmware, &pose)
                 .first_hazard(firmware)
-                .is_some_and(same)
+                .is_some_and(is_same_condition)
     })
 }
 
 #[test]
 fn a_gait_that_is_under_way_never_meets_the_guard() {
-    let (mut walked, mut barred) = (0, 0);
+    let (mut walked_count, mut barred_count) = (0, 0);
     for named in robots() {
         for gait in named.robot.gaits() {
             let mut walker = CheckedRobot::standing(named);
@@ -154,10 +155,10 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 println!("{}: the way to {} is barred", named.name, gait.name());
-                barred += 1;
+                barred_count += 1;
                 continue;
             }
-            walked += 1;
+            walked_count += 1;
             walker.run_frames((2.0 * gait.period() * 50.0) as u32);
             let hazard = walker.motion().hazard();
             assert!(
@@ -169,7 +170,7 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
         }
     }
     assert!(
-        walked > 10 * barred,
-        "{walked} gaits walked, {barred} barred"
+        walked_count > 10 * barred_count,
+        "{walked_count} gaits walked, {barred_count} barred"
     );
 }

@@ -31,11 +31,11 @@ impl PrintedConditions {
             .lizard()
             .solve(&angles(paper().firmware(), pose).into())
             .expect("the loops close");
-        let size = |degrees: f64| degrees.to_radians().sin().abs();
+        let abs_sine = |degrees: f64| degrees.to_radians().sin().abs();
         Self {
-            head: size(solution.theta2() + solution.theta3()),
-            tail: size(solution.theta6() + solution.theta7()),
-            left: size(2.0 * (solution.left.phi() + 180.0)),
+            head: abs_sine(solution.theta2() + solution.theta3()),
+            tail: abs_sine(solution.theta6() + solution.theta7()),
+            left: abs_sine(2.0 * (solution.left.phi() + 180.0)),
         }
     }
 
@@ -65,16 +65,19 @@ fn the_conditions_printed_in_the_paper_would_stop_the_robot_at_home() {
 
 #[test]
 fn the_condition_printed_in_the_paper_calls_every_symmetric_head_singular() {
-    let mut stopped = 0;
+    let mut stopped_count = 0;
     for sweep in -4000..4000 {
         let pose = Pose([sweep, -sweep, 0, 0].map(Sweep));
         if is_safe(paper().firmware(), &pose) {
             // Neutral angles are rounded to the core's step of 0.0055 deg.
             assert!(PrintedConditions::of(&pose).head < 1e-3, "{sweep}");
-            stopped += 1;
+            stopped_count += 1;
         }
     }
-    assert!(stopped > 5000, "{stopped} symmetric poses are safe");
+    assert!(
+        stopped_count > 5000,
+        "{stopped_count} symmetric poses are safe"
+    );
 }
 
 #[test]
@@ -82,28 +85,28 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     let firmware = paper().firmware();
     for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
-        let stopped = (0..256u32)
+        let stopped_count = (0..256u32)
             .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).stops_robot())
             .count();
-        assert!(stopped > 64, "{id:?}: {stopped} of 256");
+        assert!(stopped_count > 64, "{id:?}: {stopped_count} of 256");
     }
 }
 
 #[test]
 fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
-    let mut best = 0.0f64;
-    for around in 0..360 {
-        let (dy, dx) = f64::from(around).to_radians().sin_cos();
+    let mut largest_sine = 0.0f64;
+    for direction_deg in 0..360 {
+        let (dy, dx) = f64::from(direction_deg).to_radians().sin_cos();
         let pose = pose_with_head_at(CRANK_TIPS_COINCIDE[0] + dx, CRANK_TIPS_COINCIDE[1] + dy);
-        best = best.max(PrintedConditions::of(&pose).head);
+        largest_sine = largest_sine.max(PrintedConditions::of(&pose).head);
         assert_eq!(
             refused_margin(&pose),
             Some(Margin::Type2(End::Head)),
             "a degree beside it"
         );
     }
-    println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {best:.3}");
-    assert!(best > 0.95);
+    println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {largest_sine:.3}");
+    assert!(largest_sine > 0.95);
     // The guard also refuses the pose exactly at the singularity, and its mirror image in the tail.
     let head = pose_with_head_at(CRANK_TIPS_COINCIDE[0], CRANK_TIPS_COINCIDE[1]);
     assert_eq!(refused_margin(&head), Some(Margin::Type2(End::Head)));

@@ -95,22 +95,28 @@ impl ExactConditions {
     /// Fails if a five-bar or a side does not close.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
         let solution = robot.lizard().solve(&angles.into())?;
-        let across = [solution.head.gap.x, solution.tail.gap.x];
+        let k2_values = [solution.head.gap.x, solution.tail.gap.x];
         let mut margins = [0.0; 10];
         for (margin, (_, value)) in margins.iter_mut().zip(solution.margins.iter()) {
             *margin = value;
         }
-        for (type2, across) in margins.iter_mut().zip(across) {
-            *type2 = type2.copysign(across);
+        for (type2, k2) in margins.iter_mut().zip(k2_values) {
+            *type2 = type2.copysign(k2);
         }
         let firmware = robot.firmware();
-        let side = |side| STEPS_BAND / per_mm(firmware.side(side).scale);
-        let end = |end| STEPS_BAND / per_mm(firmware.end(end).bars().scale());
+        let side_band = |side| STEPS_BAND / per_mm(firmware.side(side).scale);
+        let end_band = |end| STEPS_BAND / per_mm(firmware.end(end).bars().scale());
         let [head, tail] =
-            [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(of, pose)| {
-                five_bar_bands(robot, of, pose.gap.length(), pose.type2.abs(), end(of))
+            [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
+                five_bar_bands(
+                    robot,
+                    end,
+                    five_bar.gap.length(),
+                    five_bar.type2.abs(),
+                    end_band(end),
+                )
             });
-        let leg = MARGIN_BAND;
+        let leg_band = MARGIN_BAND;
         let mut broken = [false; 12];
         for violation in robot.limits().violations(&solution) {
             broken[index_of(violation.check)] = true;
@@ -119,7 +125,7 @@ impl ExactConditions {
             broken,
             margins,
             travels: [solution.left.s, solution.right.s],
-            k2: across,
+            k2: k2_values,
             limits: *robot.limits(),
             bands: [
                 head[0],
@@ -128,14 +134,14 @@ impl ExactConditions {
                 head[2],
                 tail[2],
                 tail[1],
-                leg,
-                leg,
-                leg,
-                leg,
-                side(Side::Left),
-                side(Side::Right),
-                end(End::Head),
-                end(End::Tail),
+                leg_band,
+                leg_band,
+                leg_band,
+                leg_band,
+                side_band(Side::Left),
+                side_band(Side::Right),
+                end_band(End::Head),
+                end_band(End::Tail),
             ],
         })
     }
@@ -165,14 +171,14 @@ impl ExactConditions {
     }
 
     /// True if K2 of the five-bar with this index is so near to 0 that the guard may get its sign wrong.
-    pub fn is_at_crossing(&self, end: usize) -> bool {
-        self.k2[end].abs() <= self.bands[12 + end]
+    pub fn is_at_crossing(&self, index: usize) -> bool {
+        self.k2[index].abs() <= self.bands[12 + index]
     }
 }
 
 /// Returns the index of a condition among the twelve: ten margins, two strokes.
 fn index_of(check: Check) -> usize {
-    let among = |checks: &[Check]| checks.iter().position(|known| *known == check);
+    let index_among = |checks: &[Check]| checks.iter().position(|known| *known == check);
     let kinds: [(usize, &[Check]); 5] = [
         (0, &Check::TYPE2),
         (2, &Check::TYPE1),
@@ -182,22 +188,29 @@ fn index_of(check: Check) -> usize {
     ];
     let mut indices = kinds
         .into_iter()
-        .filter_map(|(first, kind)| Some(first + among(kind)?));
+        .filter_map(|(first_index, checks)| Some(first_index + index_among(checks)?));
     indices.next().expect("every condition is of one kind")
 }
 
 /// Returns the largest errors of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum
-/// of the error of the guard's arithmetic and of the rounding by `step` mm of the distance `tips` between
+/// of the error of the guard's arithmetic and of the rounding by `step_mm` mm of the distance `tip_distance` between
 /// the crank tips, mm. Near a singularity, where `type2` is small, such a step turns the couplers by a large
 /// angle.
-fn five_bar_bands(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 3] {
+fn five_bar_bands(
+    robot: &Robot,
+    end: End,
+    tip_distance: f64,
+    type2: f64,
+    step_mm: f64,
+) -> [f64; 3] {
     let bars = robot.lizard().end(match end {
         End::Head => lizard_kinematics::End::Head,
         End::Tail => lizard_kinematics::End::Tail,
     });
     let (a, b) = (bars.coupler_left, bars.coupler_right);
     let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
-    [cosine * tips / (a * b), 1.0 / a, 1.0 / b].map(|turns| MARGIN_BAND + step * turns / type2)
+    [cosine * tip_distance / (a * b), 1.0 / a, 1.0 / b]
+        .map(|turns| MARGIN_BAND + step_mm * turns / type2)
 }
 
 impl Verdict {
@@ -206,13 +219,13 @@ impl Verdict {
         let Ok(truth) = ExactConditions::of(robot, angles) else {
             return Self::Unsafe;
         };
-        let smallest = truth
+        let smallest_distance = truth
             .distances_from_limits()
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        if smallest > 1.0 {
+        if smallest_distance > 1.0 {
             Self::Safe
-        } else if smallest < -1.0 {
+        } else if smallest_distance < -1.0 {
             Self::Unsafe
         } else {
             Self::Undecided

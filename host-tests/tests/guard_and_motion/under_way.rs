@@ -9,13 +9,13 @@ use crate::gaits::{FULL_PACE, gaits};
 
 #[test]
 fn a_hundred_cycles_take_a_hundred_periods() {
-    for (Named { name, .. }, float, gait) in gaits() {
-        let frames = (5000.0 * float.period()).round();
+    for (Named { name, .. }, float_gait, gait) in gaits() {
+        let frames = (5000.0 * float_gait.period()).round();
         let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
         // The advance is rounded to 1/2^24 cycle, so each frame adds an error of up to half of 1/2^24.
-        let expected = (frames / 50.0 / float.period()).fract();
+        let expected = (frames / 50.0 / float_gait.period()).fract();
         let error = (f64::from(phase) / f64::from(CYCLE)
-            - if float.is_reversed() {
+            - if float_gait.is_reversed() {
                 -expected
             } else {
                 expected
@@ -25,7 +25,7 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         assert!(
             error <= 0.5 * frames + 1.0,
             "{name}: {} is {error} of 2^24 off",
-            float.name()
+            float_gait.name()
         );
     }
 }
@@ -34,47 +34,47 @@ fn a_hundred_cycles_take_a_hundred_periods() {
 fn every_speed_gives_its_share_of_every_gaits_pace() {
     const FRAMES: u32 = 1000;
     let mut rng = rng(8000);
-    let mut worst = 0.0f64;
-    let (mut walked, mut barred) = (0, 0);
+    let mut worst_error = 0.0f64;
+    let (mut walked_count, mut barred_count) = (0, 0);
     for named in robots() {
-        for float in named.robot.gaits().iter().skip(1) {
+        for float_gait in named.robot.gaits().iter().skip(1) {
             let mut walker = CheckedRobot::standing(named);
-            walker.expect_ok(&gait_command(float));
+            walker.expect_ok(&gait_command(float_gait));
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
-                barred += 1; // the path to its first pose is unsafe
+                barred_count += 1; // the path to its first pose is unsafe
                 continue;
             }
-            walked += 1;
+            walked_count += 1;
             for percent in [10, 100, rng.u8(11..100)] {
                 walker.expect_ok(&format!("speed {percent}"));
                 walker.run_frames(10);
                 let mut advance = 0i64;
                 for _ in 0..FRAMES {
-                    let before = walker.motion().phase();
+                    let previous_phase = walker.motion().phase();
                     walker.run_frames(1);
                     // A frame advances by less than half a cycle, so the difference wraps around without ambiguity.
-                    let step = walker.motion().phase().wrapping_sub(before) << 8;
+                    let step = walker.motion().phase().wrapping_sub(previous_phase) << 8;
                     advance += i64::from(step as i32 >> 8);
                 }
                 let cycles = advance as f64 / f64::from(CYCLE);
-                let sign = if float.is_reversed() { -1.0 } else { 1.0 };
+                let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
                 let share = sign * f64::from(percent) / 100.0;
-                let error = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
-                worst = worst.max(error.abs());
+                let error = cycles / (share * f64::from(FRAMES) / 50.0 / float_gait.period()) - 1.0;
+                worst_error = worst_error.max(error.abs());
                 assert!(
                     error.abs() <= 0.005,
                     "{} {} at {percent} %: {error}",
                     named.name,
-                    float.name()
+                    float_gait.name()
                 );
             }
         }
     }
-    println!("pace is off by at most {:.2} %", 100.0 * worst);
+    println!("pace is off by at most {:.2} %", 100.0 * worst_error);
     assert!(
-        walked > 10 * barred,
-        "{walked} gaits walked, {barred} barred"
+        walked_count > 10 * barred_count,
+        "{walked_count} gaits walked, {barred_count} barred"
     );
 }
 
@@ -82,18 +82,18 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
 fn a_gait_that_is_ordered_again_continues() {
     for named in robots() {
         for gait in named.robot.gaits() {
-            let (mut asked, mut spared) =
+            let (mut tested, mut reference) =
                 (CheckedRobot::standing(named), CheckedRobot::standing(named));
             for frame in 0..150 {
                 if frame % 7 == 0 {
-                    asked.expect_ok(&gait_command(gait));
+                    tested.expect_ok(&gait_command(gait));
                 }
                 if frame == 0 {
-                    spared.expect_ok(&gait_command(gait));
+                    reference.expect_ok(&gait_command(gait));
                 }
                 assert_eq!(
-                    asked.run_frame(),
-                    spared.run_frame(),
+                    tested.run_frame(),
+                    reference.run_frame(),
                     "{}: {}",
                     named.name,
                     gait.name()
@@ -105,7 +105,7 @@ fn a_gait_that_is_ordered_again_continues() {
 
 #[test]
 fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
-    let (mut walked, mut barred) = (0, 0);
+    let (mut walked_count, mut barred_count) = (0, 0);
     for named in robots() {
         for (gait, id) in named
             .robot
@@ -116,19 +116,19 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             let mut walker = CheckedRobot::standing(named);
             walker.expect_ok(&gait_command(gait));
             let firmware = named.robot.firmware();
-            let table = firmware.gait(id);
+            let core_gait = firmware.gait(id);
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
-                barred += 1; // the path to its first pose is unsafe
+                barred_count += 1; // the path to its first pose is unsafe
                 continue;
             }
-            walked += 1;
+            walked_count += 1;
             for _ in 0..100 {
                 walker.run_frames(1);
                 let phase = walker.motion().phase();
                 assert_eq!(
                     walker.pose(),
-                    table.pose(firmware.waves(), phase),
+                    core_gait.pose(firmware.waves(), phase),
                     "{}",
                     named.name
                 );
@@ -136,7 +136,7 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
         }
     }
     assert!(
-        walked > 10 * barred,
-        "{walked} gaits walked, {barred} barred"
+        walked_count > 10 * barred_count,
+        "{walked_count} gaits walked, {barred_count} barred"
     );
 }

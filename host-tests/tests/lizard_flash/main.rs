@@ -75,14 +75,16 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
 
 /// Checks that an upload has left the EEPROM alone, except for the rest pose. The firmware itself may write
 /// the rest pose, for example when `lizard` on a slow machine resets the board several times.
-fn assert_kept(desk: &Desk, kept: &[u8; SIZE]) {
-    let rest = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + RECORD_BYTES);
-    let now = desk.uno.eeprom();
-    let changed = |at: &usize| now[*at] != kept[*at] && !rest.contains(at);
-    let changes: Vec<usize> = (0..SIZE).filter(changed).collect();
+fn assert_kept(desk: &Desk, expected: &[u8; SIZE]) {
+    let rest_addresses = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + RECORD_BYTES);
+    let eeprom = desk.uno.eeprom();
+    let has_changed = |address: &usize| {
+        eeprom[*address] != expected[*address] && !rest_addresses.contains(address)
+    };
+    let changed_addresses: Vec<usize> = (0..SIZE).filter(has_changed).collect();
     assert!(
-        changes.is_empty(),
-        "the EEPROM has changed at {changes:?}:\n{now:?}"
+        changed_addresses.is_empty(),
+        "the EEPROM has changed at {changed_addresses:?}:\n{eeprom:?}"
     );
 }
 
@@ -109,9 +111,9 @@ fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
 /// Begins an upload to a board, and waits until some pages of the new code are written.
 fn begin_upload(desk: &mut Desk) -> Shell {
     let shell = lizard_flash(desk, &[]);
-    let half = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let is_half_written = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
-    let has_begun = half && !shell.has_ended();
+    let has_begun = is_half_written && !shell.has_ended();
     assert!(has_begun, "the upload has begun:\n{screen}");
     shell
 }
@@ -138,14 +140,14 @@ fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
     let mut desk = Desk::with_a_new_board();
     let talker = TALKER.flash();
     desk.uno.set_flash(0, &talker);
-    let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
-    desk.uno.set_eeprom(&kept);
+    let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
+    desk.uno.set_eeprom(&eeprom);
     let shell = lizard_flash(&desk, &[]);
     desk.wait_for_text(&shell, "written and verified");
-    assert_kept(&desk, &kept);
+    assert_kept(&desk, &eeprom);
     let screen = expect_success(&mut desk, &shell);
-    let found = format!("the board has another program, of {} bytes\n", talker.len());
-    assert!(screen.contains(&found), "{screen}");
+    let board_text = format!("the board has another program, of {} bytes\n", talker.len());
+    assert!(screen.contains(&board_text), "{screen}");
 }
 
 #[test]
@@ -153,23 +155,23 @@ fn a_board_that_has_the_image_is_left_as_it_is() {
     let mut desk = board_with_firmware();
     let shell = lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
-    let already = format!("robot {} already", label(robot().firmware()));
-    assert!(screen.contains(&already), "{screen}");
+    let robot_text = format!("robot {} already", label(robot().firmware()));
+    assert!(screen.contains(&robot_text), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
 }
 
 #[test]
 fn one_page_that_differs_is_written_alone() {
     let mut desk = board_with_firmware();
-    let old = desk.uno.flash()[0x2005];
-    desk.uno.set_flash(0x2005, &[old ^ 0x10]);
+    let old_byte = desk.uno.flash()[0x2005];
+    desk.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
     let shell = lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
-    let another = "the board has another build of lizard";
-    assert!(screen.contains(another), "{screen}");
+    let build_text = "the board has another build of lizard";
+    assert!(screen.contains(build_text), "{screen}");
     // The page that differs, and the page at address 0, where the chip starts.
-    let two = "\n256 bytes written and verified";
-    assert!(screen.contains(two), "{screen}");
+    let bytes_text = "\n256 bytes written and verified";
+    assert!(screen.contains(bytes_text), "{screen}");
 }
 
 #[test]
@@ -214,18 +216,21 @@ fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
 fn a_byte_that_changes_after_it_was_written_is_written_again() {
     let mut desk = Desk::with_a_new_board();
     let shell = lizard_flash(&desk, &[]);
-    let mut changed = false;
-    let ended = desk.run_until(|uno| {
+    let mut has_changed = false;
+    let has_ended = desk.run_until(|uno| {
         // The byte changes long before it is read back.
-        if !changed && uno.flash()[0x280] != 0xff {
+        if !has_changed && uno.flash()[0x280] != 0xff {
             uno.set_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
-            changed = true;
+            has_changed = true;
         }
         shell.has_ended()
     });
     let screen = shell.last_screen();
-    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
-    assert!(changed, "nothing was written:\n{screen}");
+    assert!(
+        has_ended,
+        "waited {LIMIT} for the end of the upload:\n{screen}"
+    );
+    assert!(has_changed, "nothing was written:\n{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     desk.assert_written(&firmware());
 }

@@ -3,7 +3,7 @@
 use super::*;
 
 /// First byte of an old Nano's boot loader.
-const NANO_BOOT: usize = 0x7800;
+const NANO_BOOT_START: usize = 0x7800;
 
 /// Returns a Nano as it was sold until 2018, with a boot loader at 57 600 baud.
 fn old_nano() -> Desk {
@@ -13,7 +13,7 @@ fn old_nano() -> Desk {
 #[test]
 fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
     let mut desk = old_nano();
-    let before = desk.uno.flash().to_vec();
+    let flash_before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--robot", "large"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
@@ -24,8 +24,8 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
     assert!(screen.contains("\n# lizard "), "{screen}");
     assert!(screen.contains(" robot large "), "{screen}");
     let large = Robot::load(root().join("robots/large.toml")).expect("it is right");
-    assert!(desk.uno.flash()[..NANO_BOOT] == firmware_of(&large)[..NANO_BOOT]);
-    assert!(desk.uno.flash()[NANO_BOOT..] == before[NANO_BOOT..]);
+    assert!(desk.uno.flash()[..NANO_BOOT_START] == firmware_of(&large)[..NANO_BOOT_START]);
+    assert!(desk.uno.flash()[NANO_BOOT_START..] == flash_before[NANO_BOOT_START..]);
 
     // Then replaces only the robot. This boot loader never resets the chip by itself.
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
@@ -33,36 +33,36 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
     assert!(screen.contains("robot large "), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     let paper = Robot::load(root().join("robots/paper.toml")).expect("it is right");
-    assert!(desk.uno.flash()[..NANO_BOOT] == firmware_of(&paper)[..NANO_BOOT]);
+    assert!(desk.uno.flash()[..NANO_BOOT_START] == firmware_of(&paper)[..NANO_BOOT_START]);
 }
 
 #[test]
 fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let mut desk = old_nano();
-    let before = desk.uno.flash().to_vec();
+    let flash_before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--robot", "own-gaits"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("a Nano has 30720 before its boot section"),
         "{screen}"
     );
-    assert!(desk.uno.flash() == before);
+    assert!(desk.uno.flash() == flash_before);
 }
 
 #[test]
 fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     let mut desk = old_nano();
-    desk.uno.set_flash(0, &firmware()[..NANO_BOOT]);
+    desk.uno.set_flash(0, &firmware()[..NANO_BOOT_START]);
     desk.uno.run_ms(2500);
-    let text = |uno: &mut Uno| -> String {
+    let take_text = |uno: &mut Uno| -> String {
         let bytes = uno.take_transmitted();
         bytes.iter().map(|byte| char::from(byte.byte)).collect()
     };
-    let printed = text(&mut desk.uno);
-    assert!(printed.contains("# lizard "), "{printed}");
+    let output_text = take_text(&mut desk.uno);
+    assert!(output_text.contains("# lizard "), "{output_text}");
     desk.uno.send(b"stand\n");
     desk.uno.run_ms(500);
-    text(&mut desk.uno);
+    take_text(&mut desk.uno);
     desk.uno.stall_main(1000 * simulated_uno::CYCLES_PER_MS);
     desk.uno.run_ms(400);
     desk.uno.take_edges();
@@ -71,17 +71,17 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     desk.uno.reset();
     let resets = desk.uno.watchdog_resets();
     desk.uno.run_ms(3000);
-    let again = desk.uno.watchdog_resets() - resets;
+    let reset_count = desk.uno.watchdog_resets() - resets;
     assert!(
-        (150..200).contains(&again),
-        "{again}: one every 16 ms or so"
+        (150..200).contains(&reset_count),
+        "{reset_count}: one every 16 ms or so"
     );
-    assert_eq!(text(&mut desk.uno), "");
+    assert_eq!(take_text(&mut desk.uno), "");
     let pins = servo_pins(robot());
     let edges = desk.uno.take_edges();
     assert!(!edges.iter().any(|edge| pins.contains(&edge.pin)));
     desk.uno.power_cycle();
     desk.uno.run_ms(2500);
-    let printed = text(&mut desk.uno);
-    assert!(printed.contains("# lizard "), "{printed}");
+    let output_text = take_text(&mut desk.uno);
+    assert!(output_text.contains("# lizard "), "{output_text}");
 }

@@ -15,59 +15,63 @@ fn run_line(desk: &mut Desk, line: &str, ms: u64) -> String {
 
 #[test]
 fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
-    let (name, other) = another_robot();
+    let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     desk.uno.power_cycle();
     assert!(run_line(&mut desk, "", 2500).contains("# lizard "));
     assert!(run_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
     assert!(run_line(&mut desk, "save\n", 500).contains("ok"));
     unplug(&mut desk);
-    let kept = desk.uno.eeprom();
+    let eeprom_before = desk.uno.eeprom();
 
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", name]);
     desk.wait_for_text(&shell, "written and verified");
-    assert_kept(&desk, &kept);
+    assert_kept(&desk, &eeprom_before);
     let screen = run_to_exit(&mut desk, &shell);
-    let [its, now] = [robot(), &other].map(|robot| label(robot.firmware()));
-    assert!(screen.contains(&format!(" robot {its}\n")), "{screen}");
-    let banner = screen.lines().find(|line| line.starts_with("# lizard "));
+    let [first_label, other_label] = [robot(), &other_robot].map(|robot| label(robot.firmware()));
     assert!(
-        banner.is_some_and(|line| line.contains(&format!(" robot {now}"))),
+        screen.contains(&format!(" robot {first_label}\n")),
         "{screen}"
     );
-    let end = usize::from(START) + other.section().len();
-    assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
+    let banner = screen.lines().find(|line| line.starts_with("# lizard "));
+    assert!(
+        banner.is_some_and(|line| line.contains(&format!(" robot {other_label}"))),
+        "{screen}"
+    );
+    let end = usize::from(START) + other_robot.section().len();
+    assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
 
     // Then the first robot is written again, with `--json`; its trims are unchanged.
     let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
     let screen = self::run_to_exit(&mut desk, &shell);
-    let (name, hash) = its.split_once(' ').expect("name and hash");
+    let (name, hash) = first_label.split_once(' ').expect("name and hash");
     let version = env!("CARGO_PKG_VERSION");
-    let object =
+    let expected_end =
         format!(r#","firmware":"{version}","robot":{{"name":"{name}","hash":"{hash}"}}}}"#);
     let line = screen.lines().find(|line| line.starts_with(r#"{"port":""#));
-    let is_right = |line: &str| line.contains(r#""bytes_written":"#) && line.ends_with(&object);
-    assert!(line.is_some_and(is_right), "{screen}");
+    let is_expected =
+        |line: &str| line.contains(r#""bytes_written":"#) && line.ends_with(&expected_end);
+    assert!(line.is_some_and(is_expected), "{screen}");
     assert!(!screen.contains("\n# lizard"), "{screen}");
-    assert_kept(&desk, &kept);
+    assert_kept(&desk, &eeprom_before);
     let answer = run_line(&mut desk, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");
 }
 
 #[test]
 fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
-    let (name, other) = another_robot();
+    let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
-    let words = ["--only-robot", "--robot", name];
-    let shell = lizard_flash(&desk, &words);
-    let section = other.section();
+    let arguments = ["--only-robot", "--robot", name];
+    let shell = lizard_flash(&desk, &arguments);
+    let section = other_robot.section();
     // Waits until the third page of the robot is written.
-    let third = usize::from(START) + 0x100;
-    let half = desk.run_until(|uno| {
-        let there = uno.flash()[third..third + 0x80] == section[0x100..0x180];
-        there || shell.has_ended()
+    let third_page = usize::from(START) + 0x100;
+    let is_half_written = desk.run_until(|uno| {
+        let is_written = uno.flash()[third_page..third_page + 0x80] == section[0x100..0x180];
+        is_written || shell.has_ended()
     });
-    assert!(half && !shell.has_ended(), "{}", shell.screen());
+    assert!(is_half_written && !shell.has_ended(), "{}", shell.screen());
     unplug(&mut desk);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
@@ -76,28 +80,31 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     // After the board is plugged in again, the firmware reports the missing robot, and no servo moves.
     desk.uno.power_cycle();
     desk.uno.take_edges();
-    let printed = run_line(&mut desk, "", 2500);
-    assert!(printed.contains("no robot in the flash"), "{printed}");
-    let printed = run_line(&mut desk, "walk\n", 300);
-    assert!(printed.contains("err "), "{printed}");
+    let output_text = run_line(&mut desk, "", 2500);
+    assert!(
+        output_text.contains("no robot in the flash"),
+        "{output_text}"
+    );
+    let output_text = run_line(&mut desk, "walk\n", 300);
+    assert!(output_text.contains("err "), "{output_text}");
     assert!(run_line(&mut desk, "status\n", 300).contains("fault=robot"));
     let edges = desk.uno.take_edges();
-    let pins = servo_pins(&other);
+    let pins = servo_pins(&other_robot);
     assert!(
         !edges.iter().any(|edge| pins.contains(&edge.pin)),
         "{edges:?}"
     );
     unplug(&mut desk);
 
-    let shell = lizard_flash(&desk, &words);
+    let shell = lizard_flash(&desk, &arguments);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
-        screen.contains(&format!(" robot {}", label(other.firmware()))),
+        screen.contains(&format!(" robot {}", label(other_robot.firmware()))),
         "{screen}"
     );
     let end = usize::from(START) + section.len();
-    assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
+    assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
 }
 
 #[test]
@@ -105,22 +112,22 @@ fn a_robot_alone_is_not_written_behind_another_program() {
     let mut desk = board_with_firmware();
     // The flash is as avrdude leaves it after a sketch: only the sketch's pages differ.
     desk.uno.set_flash(0, &TALKER.flash());
-    let before = desk.uno.flash().to_vec();
+    let flash_before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--only-robot"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the board has another program"), "{screen}");
     assert!(screen.contains("Nothing was written"), "{screen}");
-    assert!(desk.uno.flash() == before);
+    assert!(desk.uno.flash() == flash_before);
 }
 
 #[test]
 fn avrdude_writes_the_robot_that_lizard_image_has_made() {
-    let (name, other) = another_robot();
+    let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     let folder = tempfile::tempdir().expect("a folder");
     let hex = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
-    let words = [
+    let arguments = [
         "flash",
         "image",
         "--only-robot",
@@ -129,15 +136,15 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
         "--output",
         &hex,
     ];
-    let shell = Shell::start(&lizard, &words, &[]);
+    let shell = Shell::start(&lizard, &arguments, &[]);
     run_to_exit(&mut desk, &shell);
-    let write = format!("flash:w:{hex}:i");
+    let write_option = format!("flash:w:{hex}:i");
     let port = desk.name();
     let options = ["-D", "-c", "arduino", "-p", "atmega328p", "-b", "115200"];
-    let words = [&options[..], &["-P", &port, "-U", &write]].concat();
-    let shell = Shell::start("avrdude", &words, &[]);
+    let arguments = [&options[..], &["-P", &port, "-U", &write_option]].concat();
+    let shell = Shell::start("avrdude", &arguments, &[]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
-    let end = usize::from(START) + other.section().len();
-    assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
+    let end = usize::from(START) + other_robot.section().len();
+    assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
 }

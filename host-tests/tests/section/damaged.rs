@@ -28,7 +28,7 @@ fn find_damage(section: &[u8]) -> Option<Damage> {
 }
 
 /// Returns the flash of a chip into which only these first bytes of a section were written.
-fn erased_after(section: &[u8]) -> Vec<u8> {
+fn partly_written_flash(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE.into(), 0xff);
     flash
@@ -54,13 +54,13 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
     let mut count = 0;
     for (named, section) in files {
         count += 1;
-        let mut section = erased_after(section);
+        let mut section = partly_written_flash(section);
         let length = u16::from_le_bytes([section[LENGTH.start], section[LENGTH.start + 1]]);
         for bit in 0..8 * usize::from(length) {
             section[bit / 8] ^= 1 << (bit % 8);
             let expected = match bit / 8 {
                 0..4 => Damage::Missing,
-                at if FORMAT.contains(&at) => Damage::Format,
+                index if FORMAT.contains(&index) => Damage::Format,
                 _ => Damage::Damaged,
             };
             assert_eq!(
@@ -79,13 +79,17 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
 fn a_section_that_ends_at_any_byte_is_refused() {
     for (named, section) in sections() {
         for length in 0..section.len() {
-            let cut = &section[..length];
-            assert!(find_damage(cut).is_some(), "{} cut at {length}", named.name);
+            let cut_section = &section[..length];
+            assert!(
+                find_damage(cut_section).is_some(),
+                "{} cut at {length}",
+                named.name
+            );
             // The last bytes may equal those of erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
-                let cut = erased_after(cut);
+                let cut_section = partly_written_flash(cut_section);
                 assert!(
-                    find_damage(&cut).is_some(),
+                    find_damage(&cut_section).is_some(),
                     "{} erased at {length}",
                     named.name
                 );
@@ -98,8 +102,8 @@ fn a_section_that_ends_at_any_byte_is_refused() {
 fn a_section_of_any_other_version_is_reported_as_such() {
     let (_, section) = &sections()[0];
     let mut section = section.clone();
-    let own = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
-    for format in (0..=u16::MAX).filter(|format| *format != own) {
+    let own_format = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
+    for format in (0..=u16::MAX).filter(|format| *format != own_format) {
         section[FORMAT].copy_from_slice(&format.to_le_bytes());
         assert_eq!(find_damage(&section), Some(Damage::Format), "{format}");
     }
@@ -141,8 +145,8 @@ fn a_hundred_thousand_random_sections_are_refused() {
 }
 
 fn put_bytes(section: &mut [u8], offset: usize, bytes: &[u8]) {
-    if let Some(place) = section.get_mut(offset..offset + bytes.len()) {
-        place.copy_from_slice(bytes);
+    if let Some(field) = section.get_mut(offset..offset + bytes.len()) {
+        field.copy_from_slice(bytes);
     }
 }
 
@@ -153,8 +157,8 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
         let min = size_of::<Header>() + size_of::<Numbers>();
         let mut section = vec![0; rng.usize(min..=usize::from(SPACE))];
         rng.fill(&mut section);
-        let (_, valid) = rng.choice(sections()).expect("sections");
-        put_bytes(&mut section, 0, &valid[..LENGTH.start]);
+        let (_, valid_section) = rng.choice(sections()).expect("sections");
+        put_bytes(&mut section, 0, &valid_section[..LENGTH.start]);
         let length = section.len() as u16;
         put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
         seal(&mut section);
@@ -167,7 +171,7 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
 #[test]
 fn robots_with_changed_numbers_are_refused_or_harmless() {
     let rng = &mut rng(152);
-    let (mut refused, mut lived) = (0, 0);
+    let (mut refused_count, mut accepted_count) = (0, 0);
     for n in 0..100_000 {
         let (_, section) = rng.choice(sections()).expect("sections");
         let mut section = section.clone();
@@ -176,18 +180,21 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
         }
         seal(&mut section);
         match find_damage(&section) {
-            Some(Damage::Impossible) => refused += 1,
-            Some(other) => panic!("section {n} is {other:?}"),
+            Some(Damage::Impossible) => refused_count += 1,
+            Some(other_damage) => panic!("section {n} is {other_damage:?}"),
             None => {
-                lived += 1;
-                if lived % 20 == 0 {
+                accepted_count += 1;
+                if accepted_count % 20 == 0 {
                     check_motion(rng, &section);
                 }
             }
         }
     }
-    println!("{refused} refused, {lived} accepted");
-    assert!(refused > 10_000 && lived > 5_000, "{refused} {lived}");
+    println!("{refused_count} refused, {accepted_count} accepted");
+    assert!(
+        refused_count > 10_000 && accepted_count > 5_000,
+        "{refused_count} {accepted_count}"
+    );
 }
 
 /// The gaits exceed the range that their section claims for gaits, and the limits are such that the guard
@@ -195,7 +202,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
-    let mut held = 0;
+    let mut held_count = 0;
     for (named, _) in sections() {
         let mut content = named.robot.content().clone();
         content.limits = Limits {
@@ -226,11 +233,11 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
                 let hazard = running.motion().hazard();
                 assert!(matches!(hazard, Some(Hazard::Travel(_))), "{hazard:?}");
                 assert_eq!(running.status("guard"), "held");
-                held += 1;
+                held_count += 1;
             }
         }
     }
-    assert!(held > 50, "{held} gaits were held");
+    assert!(held_count > 50, "{held_count} gaits were held");
 }
 
 /// The neutral angles lie outside the travel, so the robot could not stand.
@@ -244,10 +251,10 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
                 (calibration.min, calibration.max) = (Sweep(min), Sweep(max));
                 let reach = &mut content.reach[servo];
                 (reach.min, reach.max) = (Sweep(min), Sweep(max));
-                let found = find_damage(&content.section());
+                let damage = find_damage(&content.section());
                 let name = &named.name;
                 assert_eq!(
-                    found,
+                    damage,
                     Some(Damage::Impossible),
                     "{name} {servo} {min} {max}"
                 );
@@ -267,18 +274,18 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
         _ => rng.usize(numbers + size_of::<Numbers>()..section.len() - 1),
     };
     let offset = offset & !1;
-    let was = u16::from_le_bytes([section[offset], section[offset + 1]]);
-    let word = match rng.u8(..6) {
+    let old_word = u16::from_le_bytes([section[offset], section[offset + 1]]);
+    let new_word = match rng.u8(..6) {
         0 => rng.u16(..),
-        1 => was ^ 1 << rng.u8(..16),
-        2 => was.wrapping_add(rng.u16(..10)).wrapping_sub(5),
+        1 => old_word ^ 1 << rng.u8(..16),
+        2 => old_word.wrapping_add(rng.u16(..10)).wrapping_sub(5),
         3 => *rng
             .choice(&[0, 1, 0x7fff, 0x8000, 0x8001, 0xffff])
             .expect("one"),
-        4 => was.wrapping_neg(),
-        _ => was.wrapping_mul(rng.u16(2..5)),
+        4 => old_word.wrapping_neg(),
+        _ => old_word.wrapping_mul(rng.u16(2..5)),
     };
-    section[offset..offset + 2].copy_from_slice(&word.to_le_bytes());
+    section[offset..offset + 2].copy_from_slice(&new_word.to_le_bytes());
 }
 
 /// Runs a robot with an accepted section and random commands, and checks that it completes every frame and
@@ -327,11 +334,11 @@ fn run_frames(running: &mut RunningRobot, count: u32) {
 
 /// Checks that there is no pulse, or a pulse within the travel and the range of a hobby servo.
 fn check_pulse(pulse: Width, servo: &Calibration) {
-    let ends = [servo.pulse(servo.min), servo.pulse(servo.max)];
-    let travel = ends[0].min(ends[1])..=ends[0].max(ends[1]);
-    let bearable = 500 * 16 - 1..=2500 * 16 + 1;
+    let end_pulses = [servo.pulse(servo.min), servo.pulse(servo.max)];
+    let travel = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
+    let allowed_range = 500 * 16 - 1..=2500 * 16 + 1;
     assert!(
-        pulse.0 == 0 || travel.contains(&pulse.0) && bearable.contains(&pulse.0),
+        pulse.0 == 0 || travel.contains(&pulse.0) && allowed_range.contains(&pulse.0),
         "{pulse:?} of {servo:?}"
     );
 }

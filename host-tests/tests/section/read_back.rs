@@ -27,7 +27,7 @@ fn for_each_robot(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
     }
 }
 
-fn numbers(flash: Region<'_>) -> Numbers {
+fn read_numbers(flash: Region<'_>) -> Numbers {
     flash.read(size_of::<Header>() as u16)
 }
 
@@ -53,25 +53,29 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
             "{name}"
         );
         assert_eq!(robot.slow_pace(), supplies.slow_pace, "{name}");
-        let read = robot.supplies();
+        let stored = robot.supplies();
         let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
-        let are_close = |of: lizard_core::numbers::supplies::Thresholds, volts: [f64; 3]| {
-            is_close(of.slow, volts[0])
-                && is_close(of.stop, volts[1])
-                && is_close(of.rest, volts[2])
+        let are_close = |thresholds: lizard_core::numbers::supplies::Thresholds,
+                         volts: [f64; 3]| {
+            is_close(thresholds.slow, volts[0])
+                && is_close(thresholds.stop, volts[1])
+                && is_close(thresholds.rest, volts[2])
         };
         assert!(
-            is_close(read.reference, supplies.reference),
-            "{name} {read:?}"
+            is_close(stored.reference, supplies.reference),
+            "{name} {stored:?}"
         );
-        assert!(are_close(read.board, supplies.board), "{name} {read:?}");
+        assert!(are_close(stored.board, supplies.board), "{name} {stored:?}");
         match supplies.rail {
             Some(rail) => {
                 let divided = supplies.reference * rail.ratio;
-                assert!(is_close(read.rail_reference, divided), "{name} {read:?}");
-                assert!(are_close(read.rail, rail.thresholds), "{name} {read:?}");
+                assert!(
+                    is_close(stored.rail_reference, divided),
+                    "{name} {stored:?}"
+                );
+                assert!(are_close(stored.rail, rail.thresholds), "{name} {stored:?}");
             }
-            None => assert_eq!(read.rail_reference, 0, "{name}"),
+            None => assert_eq!(stored.rail_reference, 0, "{name}"),
         }
     });
 }
@@ -80,28 +84,29 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
 fn the_servos_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         for (index, servo) in toml.servos().iter().enumerate() {
-            let one = Servo::ALL[index];
-            let neutral = f64::from(robot.neutral_of(one).0) / STEPS_PER_DEGREE;
+            let servo_id = Servo::ALL[index];
+            let neutral = f64::from(robot.neutral_of(servo_id).0) / STEPS_PER_DEGREE;
             assert!(
                 (neutral - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
                 "{name}"
             );
-            assert_eq!(robot.neutral()[index], robot.neutral_of(one));
-            let read = robot.calibration_of(one);
-            assert_eq!(robot.calibration()[index], read);
-            let us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
-            for sweep in read.min.0..=read.max.0 {
-                let error = f64::from(read.width(Sweep(sweep)).0) - 16.0 * us(sweep.into());
+            assert_eq!(robot.neutral()[index], robot.neutral_of(servo_id));
+            let calibration = robot.calibration_of(servo_id);
+            assert_eq!(robot.calibration()[index], calibration);
+            let pulse_us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
+            for sweep in calibration.min.0..=calibration.max.0 {
+                let error =
+                    f64::from(calibration.width(Sweep(sweep)).0) - 16.0 * pulse_us(sweep.into());
                 // Half a cycle each for the neutral width and for the product, and the rounding of the
                 // gain over the travel.
                 assert!(
                     error.abs() <= 1.5,
-                    "{name} {one:?}: {error} cycles at {sweep}"
+                    "{name} {servo_id:?}: {error} cycles at {sweep}"
                 );
             }
             let is_in_range =
-                |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&us(sweep));
-            let (min, max) = (i32::from(read.min.0), i32::from(read.max.0));
+                |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_us(sweep));
+            let (min, max) = (i32::from(calibration.min.0), i32::from(calibration.max.0));
             assert!(
                 is_in_range(min)
                     && !is_in_range(min - 1)
@@ -116,36 +121,42 @@ fn the_servos_are_read_back() {
 #[test]
 fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
-        let (read, limits) = (robot.limits(), toml.limits());
-        for (read, exact) in [
-            (read.type2, limits.type2),
-            (read.type1, limits.type1),
-            (read.leg, limits.leg),
+        let (stored, limits) = (robot.limits(), toml.limits());
+        for (stored, exact) in [
+            (stored.type2, limits.type2),
+            (stored.type1, limits.type1),
+            (stored.leg, limits.leg),
         ] {
-            let up = f64::from(read.0) - 32768.0 * exact;
-            assert!((-1e-5..1.0).contains(&up), "{name}: {read:?} for {exact}");
+            let rounding_up = f64::from(stored.0) - 32768.0 * exact;
+            assert!(
+                (-1e-5..1.0).contains(&rounding_up),
+                "{name}: {stored:?} for {exact}"
+            );
         }
         let per_frame = toml.pace().slew * STEPS_PER_DEGREE / 50.0;
-        let down = per_frame - f64::from(robot.slew().per_frame);
-        assert!((-1e-5..1.0).contains(&down), "{name}: {down}");
+        let rounding_down = per_frame - f64::from(robot.slew().per_frame);
+        assert!(
+            (-1e-5..1.0).contains(&rounding_down),
+            "{name}: {rounding_down}"
+        );
         // The farthest sweeps of any gait in floating point.
-        let mut widest = [[0.0f64; 2]; 4];
+        let mut widest_sweeps = [[0.0f64; 2]; 4];
         for gait in toml.gaits() {
             for phase in 0..4096 {
                 let angles = gait.angles(f64::from(phase) / 4096.0);
-                for (index, widest) in widest.iter_mut().enumerate() {
+                for (index, sweep_range) in widest_sweeps.iter_mut().enumerate() {
                     let sweep = angles[index] - toml.servos()[index].neutral;
                     let sweep = (sweep + 180.0).rem_euclid(360.0) - 180.0;
-                    *widest = [widest[0].min(sweep), widest[1].max(sweep)];
+                    *sweep_range = [sweep_range[0].min(sweep), sweep_range[1].max(sweep)];
                 }
             }
         }
         for servo in Servo::ALL {
-            let read = robot.reach(servo);
-            let [min, max] = widest[servo.index()];
+            let reach = robot.reach(servo);
+            let [min, max] = widest_sweeps[servo.index()];
             let error = [
-                degrees(read.min.0.into()) - min,
-                degrees(read.max.0.into()) - max,
+                degrees(reach.min.0.into()) - min,
+                degrees(reach.max.0.into()) - max,
             ];
             // The tables may be off by a tenth of a degree, and rounding by a step.
             assert!(
@@ -171,35 +182,43 @@ fn the_bars_and_the_sliders_are_read_back() {
             let expected = Bars::new(bars, [a, b].map(length), scale);
             assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
             // The lengths must fit at this scale.
-            let longest = (base + left + right).max(a).max(b);
-            let fits = |bits: u32| longest * f64::from(1u32 << bits) < 127.0 * 256.0;
+            let longest_bar = (base + left + right).max(a).max(b);
+            let fits = |bits: u32| longest_bar * f64::from(1u32 << bits) < 127.0 * 256.0;
             let bits = u32::from(scale.bits);
             assert!(fits(bits), "{name} {end:?}: {bits}");
         }
-        let aside = (l.l5 - l.l0) / 2.0;
+        let side_offset = (l.l5 - l.l0) / 2.0;
         let limits = toml.limits();
         for (side, [offset, base, front, rear, nominal]) in [
-            (Side::Left, [aside, l.l10, l.l14, l.l11, l.l12 + l.l13]),
-            (Side::Right, [-aside, l.l15, l.l19, l.l16, l.l17 + l.l18]),
+            (
+                Side::Left,
+                [side_offset, l.l10, l.l14, l.l11, l.l12 + l.l13],
+            ),
+            (
+                Side::Right,
+                [-side_offset, l.l15, l.l19, l.l16, l.l17 + l.l18],
+            ),
         ] {
-            let read = robot.side(side);
-            let length = |mm: f64| steps(mm, read.scale);
+            let core_side = robot.side(side);
+            let length = |mm: f64| steps(mm, core_side.scale);
             let lengths = [
-                f64::from(read.offset),
-                f64::from(read.base),
-                f64::from(read.front),
-                f64::from(read.rear),
-                f64::from(read.nominal),
+                f64::from(core_side.offset),
+                f64::from(core_side.base),
+                f64::from(core_side.front),
+                f64::from(core_side.rear),
+                f64::from(core_side.nominal),
             ];
             let expected = [offset, base, front, rear, nominal].map(length);
             assert_eq!(lengths, expected, "{name} {side:?}");
-            let per_mm = f64::from(1u32 << read.scale.bits);
-            let in_by = [
-                f64::from(read.min) - (nominal + limits.stroke_min) * per_mm,
-                (nominal + limits.stroke_max) * per_mm - f64::from(read.max),
+            let per_mm = f64::from(1u32 << core_side.scale.bits);
+            let inward_rounding = [
+                f64::from(core_side.min) - (nominal + limits.stroke_min) * per_mm,
+                (nominal + limits.stroke_max) * per_mm - f64::from(core_side.max),
             ];
-            let inwards = in_by.iter().all(|by| (-1e-5..1.0).contains(by));
-            assert!(inwards, "{name} {side:?}: {in_by:?}");
+            let is_inwards = inward_rounding
+                .iter()
+                .all(|steps_inward| (-1e-5..1.0).contains(steps_inward));
+            assert!(is_inwards, "{name} {side:?}: {inward_rounding:?}");
         }
     });
 }
@@ -218,43 +237,55 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
     for_each_robot(|name, robot, toml, flash| {
         let l = toml.lizard().links;
         for (end, [a, b], curves) in [
-            (End::Head, [l.l2, l.l3], numbers(flash).curves[0]),
-            (End::Tail, [l.l7, l.l8], numbers(flash).curves[1]),
+            (End::Head, [l.l2, l.l3], read_numbers(flash).curves[0]),
+            (End::Tail, [l.l7, l.l8], read_numbers(flash).curves[1]),
         ] {
             let scale = robot.end(end).bars().scale();
             let [a, b] = [a, b].map(|mm| steps(mm, scale));
             // Squared distances divided by four, in squared steps.
-            let [reach, smallest] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
+            let [largest_reach, smallest_reach] =
+                [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
             let shapes = [Shape::Rise, Shape::Stretched, Shape::Folded, Shape::Skew];
             assert!(
                 curves[0] != 0 && (curves[3] != 0) == (a != b),
                 "{name} {end:?}"
             );
-            for (shape, at) in shapes.into_iter().zip(curves).filter(|(_, at)| *at != 0) {
-                let table = flash.values::<Table>(at, 1).get(0).expect("a curve").load();
+            for (shape, address) in shapes
+                .into_iter()
+                .zip(curves)
+                .filter(|(_, address)| *address != 0)
+            {
+                let table = flash
+                    .values::<Table>(address, 1)
+                    .get(0)
+                    .expect("a curve")
+                    .load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRIES) {
-                    let largest = match shape {
-                        Shape::Rise | Shape::Skew => reach,
+                    let largest_argument = match shape {
+                        Shape::Rise | Shape::Skew => largest_reach,
                         // Rounded down to integers, as in the core.
-                        Shape::Stretched => (reach.floor() / 4.0).floor(),
-                        Shape::Folded => smallest.floor(),
+                        Shape::Stretched => (largest_reach.floor() / 4.0).floor(),
+                        Shape::Folded => smallest_reach.floor(),
                     };
-                    let value = argument(largest as u32, index) as f64;
+                    let value = argument(largest_argument as u32, index) as f64;
                     let s = match shape {
-                        Shape::Rise => value.max(2.0 * reach * smallest / (reach + smallest)),
+                        Shape::Rise => value.max(
+                            2.0 * largest_reach * smallest_reach / (largest_reach + smallest_reach),
+                        ),
                         Shape::Skew => value,
-                        Shape::Stretched => reach - value,
-                        Shape::Folded => smallest + value,
+                        Shape::Stretched => largest_reach - value,
+                        Shape::Folded => smallest_reach + value,
                     };
                     let exact = match shape {
                         Shape::Skew => (a * a - b * b).abs() / 4.0 / s,
-                        _ if s <= smallest || s >= reach => 0.0,
-                        _ => ((reach - s) * (s - smallest)).sqrt() / s,
+                        _ if s <= smallest_reach || s >= largest_reach => 0.0,
+                        _ => ((largest_reach - s) * (s - smallest_reach)).sqrt() / s,
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
                     // Rounding of the entry by one unit, and rounding of `s`, which matters where the curve is
                     // steep.
-                    let tolerance = 1.01 + exact * 2.0 / (s - smallest).min(reach - s).max(1.0);
+                    let tolerance =
+                        1.01 + exact * 2.0 / (s - smallest_reach).min(largest_reach - s).max(1.0);
                     let error = f64::from(entry) - exact;
                     assert!(
                         error.abs() <= tolerance,
@@ -271,9 +302,9 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         assert_eq!(robot.gait_count(), toml.gaits().len(), "{name}");
         for (id, gait) in GaitId::all(robot.gait_count()).zip(toml.gaits()) {
-            let what = format!("{name} {}", gait.name());
-            let read: String = robot.name(id).map(char::from).collect();
-            assert_eq!(read, gait.name().replace('-', " "), "{name}");
+            let gait_name = format!("{name} {}", gait.name());
+            let read_name: String = robot.name(id).map(char::from).collect();
+            assert_eq!(read_name, gait.name().replace('-', " "), "{name}");
             let numbers = robot.gait(id);
             let mut increment = f64::from(1 << 24) / (gait.period() * 50.0);
             if gait.is_reversed() {
@@ -281,7 +312,7 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
             }
             assert!(
                 (f64::from(numbers.increment) - increment).abs() <= 0.51,
-                "{what}"
+                "{gait_name}"
             );
             for step in 0..8192 {
                 let pose = numbers.pose(robot.waves(), step << 11);
@@ -292,7 +323,7 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
                     // The error of a table, and half a step of the neutral angle.
                     assert!(
                         error.abs() <= 0.504,
-                        "{what} A{} at {step}: {error}",
+                        "{gait_name} A{} at {step}: {error}",
                         index + 1
                     );
                 }
@@ -307,16 +338,20 @@ const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 /// Reads the rows of the four maps: the row servo's sweeps in each row, and the column servo's sweeps that are
 /// certified in this row.
 fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
-    let numbers = numbers(flash);
-    let place = numbers.parts[Part::Rows as usize];
-    let rows = flash.values::<[i8; 2]>(place.at, place.count);
-    let mut next = 0;
+    let numbers = read_numbers(flash);
+    let rows_part = numbers.parts[Part::Rows as usize];
+    let rows = flash.values::<[i8; 2]>(rows_part.at, rows_part.count);
+    let mut next_row = 0;
     numbers.maps.map(|MapHeader { first, rows: count }| {
         let map = (0..i32::from(count)).map(|row| {
-            let [smallest, most] = rows.get(next).expect("a row").load().map(i32::from);
-            next += 1;
+            let [first_column, last_column] =
+                rows.get(next_row).expect("a row").load().map(i32::from);
+            next_row += 1;
             let row = 256 * (i32::from(first) + row);
-            [row..=row + 255, 128 * smallest..=128 * most + 127]
+            [
+                row..=row + 255,
+                128 * first_column..=128 * last_column + 127,
+            ]
         });
         map.collect()
     })
@@ -326,15 +361,15 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
 fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();
-    let margins = |type2: usize, first: usize| {
-        let keeps = |index: usize, limit: Sine| clearance.margins[index] >= limit;
-        keeps(type2, limits.type2)
+    let accepts_margins = |type2: usize, first: usize| {
+        let is_kept = |index: usize, limit: Sine| clearance.margins[index] >= limit;
+        is_kept(type2, limits.type2)
             && (first..first + 2)
-                .all(|index| keeps(2 + index, limits.type1) && keeps(6 + index, limits.leg))
+                .all(|index| is_kept(2 + index, limits.type1) && is_kept(6 + index, limits.leg))
     };
     match pair {
-        0 => margins(0, 0),
-        1 => margins(1, 2),
+        0 => accepts_margins(0, 0),
+        1 => accepts_margins(1, 2),
         2 => robot.side(Side::Left).allows(clearance.sliders_sq[0]),
         _ => robot.side(Side::Right).allows(clearance.sliders_sq[1]),
     }
@@ -342,39 +377,44 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
 
 #[test]
 fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
-    let mut checked = 0;
-    let mut with_maps = 0;
+    let mut checked_count = 0;
+    let mut map_robot_count = 0;
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).expect("a robot");
         let travel = robot.calibration();
-        with_maps += usize::from(numbers(flash).parts[Part::Rows as usize].count > 0);
+        map_robot_count += usize::from(read_numbers(flash).parts[Part::Rows as usize].count > 0);
         for (pair, map) in read_maps(flash).into_iter().enumerate() {
             let servos = PAIRS[pair];
             for [row, columns] in map {
                 let cells = (*columns.start()..*columns.end()).step_by(128);
                 for cell in cells {
-                    for (along, across) in [(0, 0), (255, 0), (0, 127), (255, 127), (128, 64)] {
-                        let sweeps = [row.start() + along, cell + across];
+                    for (row_offset, column_offset) in
+                        [(0, 0), (255, 0), (0, 127), (255, 127), (128, 64)]
+                    {
+                        let sweeps = [row.start() + row_offset, cell + column_offset];
                         let mut pose = Pose::NEUTRAL;
-                        let mut inside = true;
+                        let mut is_inside = true;
                         for (servo, sweep) in servos.into_iter().zip(sweeps) {
                             let sweep = Sweep(sweep as i16);
-                            inside &= travel[servo].reaches(sweep);
+                            is_inside &= travel[servo].reaches(sweep);
                             pose.0[servo] = sweep;
                         }
-                        if inside {
+                        if is_inside {
                             let name = &named.name;
                             assert!(accepts(&robot, pair, &pose), "{name}: {pair} {pose:?}");
-                            checked += 1;
+                            checked_count += 1;
                         }
                     }
                 }
             }
         }
     }
-    println!("{checked} poses of cells, {with_maps} robots with maps");
-    assert!(with_maps >= 5 && checked > 100_000, "{with_maps} {checked}");
+    println!("{checked_count} poses of cells, {map_robot_count} robots with maps");
+    assert!(
+        map_robot_count >= 5 && checked_count > 100_000,
+        "{map_robot_count} {checked_count}"
+    );
 }
 
 #[test]
@@ -384,7 +424,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).expect("a robot");
         let maps = read_maps(flash);
-        let mut certified = 0;
+        let mut certified_count = 0;
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
             for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
@@ -395,20 +435,30 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
                     _ => rng.i16(-3000..3000),
                 });
             }
-            let held = PAIRS.iter().zip(&maps).all(|(servos, map)| {
+            let is_in_maps = PAIRS.iter().zip(&maps).all(|(servos, map)| {
                 let [row, column] = servos.map(|servo| i32::from(pose.0[servo].0));
                 map.iter()
                     .any(|[rows, columns]| rows.contains(&row) && columns.contains(&column))
             });
-            assert_eq!(robot.is_certified(&pose), held, "{} {pose:?}", named.name);
-            if held {
-                certified += 1;
+            assert_eq!(
+                robot.is_certified(&pose),
+                is_in_maps,
+                "{} {pose:?}",
+                named.name
+            );
+            if is_in_maps {
+                certified_count += 1;
                 let hazard = Clearance::of(&robot, &pose).first_hazard(&robot);
                 assert_eq!(hazard, None, "{} {pose:?}", named.name);
             }
         }
-        let has_maps = numbers(flash).parts[Part::Rows as usize].count > 0;
-        assert_eq!(certified > 100, has_maps, "{}: {certified}", named.name);
+        let has_maps = read_numbers(flash).parts[Part::Rows as usize].count > 0;
+        assert_eq!(
+            certified_count > 100,
+            has_maps,
+            "{}: {certified_count}",
+            named.name
+        );
     }
 }
 
@@ -420,14 +470,14 @@ fn another_robot_has_another_hash_and_the_maps_change_nothing_in_it() {
     });
     for (named, section) in sections() {
         let hash = Robot::open(Region::new(section)).expect("a robot").hash();
-        let other = hashes.insert(hash, (named, named.robot.content()));
+        let previous = hashes.insert(hash, (named, named.robot.content()));
         // robot.toml may be one of the files of robots/.
-        if let Some((other, content)) = other {
+        if let Some((previous, content)) = previous {
             assert_eq!(
                 content,
                 named.robot.content(),
                 "{} {}",
-                other.name,
+                previous.name,
                 named.name
             );
         }

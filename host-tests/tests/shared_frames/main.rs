@@ -85,12 +85,18 @@ fn address(image: &Image, name: &str) -> u16 {
 }
 
 /// Runs the program and returns its results and the depth of its stack.
-fn results(image: &Image) -> (Vec<u8>, u16) {
-    let [done, results] = ["done", "results"].map(|name| address(image, name));
+fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
+    let [done_address, results_address] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(200);
-    assert_eq!(uno.peek(done), 1, "it came to its end, interrupted often");
-    let bytes = (0..160).map(|byte| uno.peek(results + byte)).collect();
+    assert_eq!(
+        uno.peek(done_address),
+        1,
+        "it came to its end, interrupted often"
+    );
+    let bytes = (0..160)
+        .map(|byte| uno.peek(results_address + byte))
+        .collect();
     (bytes, uno.stack_used())
 }
 
@@ -103,14 +109,20 @@ fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
     assert!(savings.frames > 100, "{savings:?}");
     // The linker shortens two of the three branches over jumps in `jumps`.
     assert_eq!(savings.branches, 2, "{savings:?}");
-    let plain = link("", &object).expect("it links");
-    let short = link(ROUTINES, &shrunk).expect("it links");
-    assert!(short.symbol("__frame_save_2").is_some());
-    let ((plain, deep), (short, deeper)) = (results(&plain), results(&short));
-    assert_eq!(plain, short);
-    assert!(plain.iter().any(|byte| *byte != 0));
+    let plain_image = link("", &object).expect("it links");
+    let shrunk_image = link(ROUTINES, &shrunk).expect("it links");
+    assert!(shrunk_image.symbol("__frame_save_2").is_some());
+    let ((plain_results, plain_depth), (shrunk_results, shrunk_depth)) = (
+        run_for_results(&plain_image),
+        run_for_results(&shrunk_image),
+    );
+    assert_eq!(plain_results, shrunk_results);
+    assert!(plain_results.iter().any(|byte| *byte != 0));
     // Ten frames of `deep` are on the stack at once; each may save one more register.
-    assert!(deeper.abs_diff(deep) < 40, "{deep} {deeper}");
+    assert!(
+        shrunk_depth.abs_diff(plain_depth) < 40,
+        "{plain_depth} {shrunk_depth}"
+    );
 }
 
 /// A program with a function whose last argument lies on the stack, above the registers that the function
@@ -136,13 +148,16 @@ int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
 #[test]
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
     let object = object_of_c(STACK_ARGUMENT).expect("it compiles");
-    let short = shrink(&object).expect("it is an object");
-    let image = link(ROUTINES, &short.expect("of an AVR").0).expect("it links");
-    let [done, result] = ["done", "result"].map(|name| address(&image, name));
+    let shrunk = shrink(&object).expect("it is an object");
+    let image = link(ROUTINES, &shrunk.expect("of an AVR").0).expect("it links");
+    let [done_address, result_address] = ["done", "result"].map(|name| address(&image, name));
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.run_ms(10);
-    assert_eq!(uno.peek(done), 1);
-    assert_eq!([uno.peek(result), uno.peek(result + 1)], [0x34, 0x12]);
+    assert_eq!(uno.peek(done_address), 1);
+    assert_eq!(
+        [uno.peek(result_address), uno.peek(result_address + 1)],
+        [0x34, 0x12]
+    );
 }
 
 #[test]
@@ -154,24 +169,25 @@ fn callers_do_not_rely_on_what_a_shared_beginning_changes() {
 }
 
 /// The call-saved registers, which a function must restore before it returns.
-const KEPT: [u8; 18] = [
+const CALL_SAVED: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
 /// Returns a program that calls a function forty times, while a timer interrupts every 61 cycles. The function
-/// saves the registers from `first` on, reserves `room` bytes, overwrites both, restores the registers and
-/// returns. At the end, the program stores the registers and the stack pointer in RAM.
-fn program(first: u8, room: u8) -> String {
-    let load = |registers: &[u8], plus: u8| -> String {
-        let each = registers.iter();
-        each.map(|register| format!("ldi r24, {} $ mov r{register}, r24\n", register + plus))
+/// saves the registers from `first_register` on, reserves `room_bytes` bytes, overwrites both, restores the
+/// registers and returns. At the end, the program stores the registers and the stack pointer in RAM.
+fn frame_program(first_register: u8, room_bytes: u8) -> String {
+    let load = |registers: &[u8], increment: u8| -> String {
+        let register_iter = registers.iter();
+        register_iter
+            .map(|register| format!("ldi r24, {} $ mov r{register}, r24\n", register + increment))
             .collect()
     };
-    let saved: Vec<u8> = KEPT
+    let saved_registers: Vec<u8> = CALL_SAVED
         .into_iter()
-        .filter(|register| *register >= first)
+        .filter(|register| *register >= first_register)
         .collect();
-    let stored: String = KEPT
+    let store_code: String = CALL_SAVED
         .iter()
         .map(|register| format!("sts {}, r{register}\n", 0x100 + u16::from(*register)))
         .collect();
@@ -185,54 +201,62 @@ fn program(first: u8, room: u8) -> String {
         ldi r24, 60 $ out OCR0A, r24 $ ldi r24, 2 $ out TCCR0A, r24 $ sts TIMSK0, r24
         ldi r24, 1 $ out TCCR0B, r24 $ sei
         ldi r19, 40
-        {all}
-    again: ldi r26, {room} $ call framed
+        {load_all}
+    again: ldi r26, {room_bytes} $ call framed
         dec r19 $ brne again
         cli
-        {stored}
+        {store_code}
         in r24, SPL $ sts 0x140, r24 $ in r24, SPH $ sts 0x141, r24
         sts 0x142, r1 $ sts 0x143, r20 $ sts 0x144, r21
         ldi r24, 1 $ sts 0x145, r24
     end: rjmp end
-    framed: ldi r26, {room} $ call __frame_save_{first}
+    framed: ldi r26, {room_bytes} $ call __frame_save_{first_register}
         ; All of the room is below r29:r28, and nothing of it is anybody else's.
-        movw r30, r28 $ ldi r24, {room} $ ldi r25, 0x55
+        movw r30, r28 $ ldi r24, {room_bytes} $ ldi r25, 0x55
     fill: subi r24, 1 $ brcs filled $ adiw r30, 1 $ st Z, r25 $ rjmp fill
     filled: in r24, SPL $ cp r24, r28 $ breq same $ inc r20
     same: push r25 $ pop r25
-        {other}
-        ldi r26, {room} $ jmp __frame_restore_{first}
+        {load_saved}
+        ldi r26, {room_bytes} $ jmp __frame_restore_{first_register}
     tick: push r0 $ in r0, SREG $ push r0 $ push r1 $ clr r1
         ldi r21, 1
         pop r1 $ pop r0 $ out SREG, r0 $ pop r0 $ reti
     {ROUTINES}",
-        all = load(&KEPT, 100),
-        other = load(&saved, 7),
+        load_all = load(&CALL_SAVED, 100),
+        load_saved = load(&saved_registers, 7),
     )
 }
 
 #[test]
 fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
-    for first in FIRST_REGISTERS {
-        for room in [0, 1, 5, 63, 64, 200, 255] {
-            let image = assembler(&program(first, room));
+    for first_register in FIRST_REGISTERS {
+        for room_bytes in [0, 1, 5, 63, 64, 200, 255] {
+            let image = assembler(&frame_program(first_register, room_bytes));
             let mut uno = Uno::with_image(image, Fidelity::DataSheet);
             uno.run_ms(10);
-            assert_eq!(uno.peek(0x145), 1, "it came to its end: {first} {room}");
-            for register in KEPT {
+            assert_eq!(
+                uno.peek(0x145),
+                1,
+                "it came to its end: {first_register} {room_bytes}"
+            );
+            for register in CALL_SAVED {
                 let value = uno.peek(0x100 + u16::from(register));
-                assert_eq!(value, register + 100, "r{register}: {first} {room}");
+                assert_eq!(
+                    value,
+                    register + 100,
+                    "r{register}: {first_register} {room_bytes}"
+                );
             }
             assert_eq!(
                 [uno.peek(0x140), uno.peek(0x141)],
                 [0xff, 0x08],
-                "{first} {room}"
+                "{first_register} {room_bytes}"
             );
             assert_eq!(uno.peek(0x142), 0, "r1");
             assert_eq!(
                 uno.peek(0x143),
                 0,
-                "r28 is the stack pointer: {first} {room}"
+                "r28 is the stack pointer: {first_register} {room_bytes}"
             );
             assert_eq!(uno.peek(0x144), 1, "it was interrupted");
         }

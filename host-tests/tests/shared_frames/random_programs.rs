@@ -34,24 +34,24 @@ const TYPES: [(&str, usize); 5] = [
 ];
 
 /// Returns a random expression of these variables.
-fn expression(random: &mut Rng, names: &[String], depth: u8) -> String {
+fn random_expression(random: &mut Rng, names: &[String], depth: u8) -> String {
     if depth > 1 || random.u8(..4) == 0 {
         return match random.usize(..=names.len()) {
             index if index < names.len() => names[index].clone(),
             _ => format!("{}u", random.u32(..70_000)),
         };
     }
-    let [a, b] = [0; 2].map(|_| expression(random, names, depth + 1));
+    let [a, b] = [0; 2].map(|_| random_expression(random, names, depth + 1));
     match random.usize(..9) {
-        kind @ 0..5 => format!("({a} {} {b})", ["+", "-", "^", "&", "|"][kind]),
-        kind @ 5..7 => format!("({a} {} ({b} & 7))", ["<<", ">>"][kind - 5]),
+        operator @ 0..5 => format!("({a} {} {b})", ["+", "-", "^", "&", "|"][operator]),
+        operator @ 5..7 => format!("({a} {} ({b} & 7))", ["<<", ">>"][operator - 5]),
         7 => format!("((uint16_t){a} * (uint16_t){b})"),
         _ => format!("({a} {} {b})", random.choice(["<", "==", "!="]).unwrap()),
     }
 }
 
 /// Writes the next function, which may call an earlier one, and adds its argument types to `signatures`.
-fn function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
+fn random_function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
     let number = signatures.len();
     let (mut types, mut bytes) = (Vec::new(), 0);
     for _ in 0..random.usize(5..11) {
@@ -61,56 +61,56 @@ fn function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String
             types.push(name);
         }
     }
-    let list = types.iter().enumerate();
-    let list: Vec<String> = list
+    let parameters = types.iter().enumerate();
+    let parameters: Vec<String> = parameters
         .map(|(index, name)| format!("{name} p{index}"))
         .collect();
     let mut names: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
     let arguments = names.clone();
-    let [room, limit] = [random.usize(3..30), random.usize(..60_000)];
-    let last = room - 1;
+    let [room_size, limit] = [random.usize(3..30), random.usize(..60_000)];
+    let last_index = room_size - 1;
     names.push("i".into());
-    let filled = expression(random, &names, 0);
+    let fill_value = random_expression(random, &names, 0);
     names.push("sum".into());
-    let [asked, taken] = [0; 2].map(|_| expression(random, &names, 0));
+    let [condition, subtrahend] = [0; 2].map(|_| random_expression(random, &names, 0));
     names.retain(|name| name != "i");
-    let first = number / GROUP * GROUP;
-    let call = if number > first && random.u8(..5) > 0 {
-        let other = random.usize(first..number);
-        let values = signatures[other].iter();
-        let values = values.map(|name| format!("({name}){}", expression(random, &names, 1)));
+    let group_start = number / GROUP * GROUP;
+    let call = if number > group_start && random.u8(..5) > 0 {
+        let callee = random.usize(group_start..number);
+        let values = signatures[callee].iter();
+        let values = values.map(|name| format!("({name}){}", random_expression(random, &names, 1)));
         let values: Vec<String> = values.collect();
-        format!("sum ^= f{other}({});", values.join(", "))
+        format!("sum ^= f{callee}({});", values.join(", "))
     } else {
         String::new()
     };
-    let [odd, more] = [0; 2].map(|_| expression(random, &arguments, 0));
+    let [odd_test, addend] = [0; 2].map(|_| random_expression(random, &arguments, 0));
     signatures.push(types);
     format!(
-        "__attribute__((noinline, noclone)) uint16_t f{number}({list}) {{
-            volatile uint8_t room[{room}]; uint8_t copy[{room}];
+        "__attribute__((noinline, noclone)) uint16_t f{number}({parameters}) {{
+            volatile uint8_t room[{room_size}]; uint8_t copy[{room_size}];
             uint16_t sum = 0; uint8_t flag = 0;
-            for (uint8_t i = 0; i < {room}; i++) {{
-                room[i] = {filled}; copy[i] = room[i] ^ table[i];
+            for (uint8_t i = 0; i < {room_size}; i++) {{
+                room[i] = {fill_value}; copy[i] = room[i] ^ table[i];
             }}
             asm volatile(\"\" :: \"m\"(copy));
-            for (uint8_t i = 0; i < {room}; i++) {{
-                sum = sum * 31 + copy[i] + room[{last} - i];
-                if ({asked}) flag = !flag;
-                if (flag && sum > {limit}u) sum -= {taken};
+            for (uint8_t i = 0; i < {room_size}; i++) {{
+                sum = sum * 31 + copy[i] + room[{last_index} - i];
+                if ({condition}) flag = !flag;
+                if (flag && sum > {limit}u) sum -= {subtrahend};
             }}
             {call}
-            if (!({odd} & 1)) sum += {more};
+            if (!({odd_test} & 1)) sum += {addend};
             return sum ^ flag; }}\n",
-        list = list.join(", "),
+        parameters = parameters.join(", "),
     )
 }
 
 /// Returns a program that calls each of its functions twice and stores the return values.
-fn program(random: &mut Rng) -> String {
+fn random_program(random: &mut Rng) -> String {
     let mut signatures = Vec::new();
     let functions: String = (0..FUNCTIONS)
-        .map(|_| function(random, &mut signatures))
+        .map(|_| random_function(random, &mut signatures))
         .collect();
     let mut calls = String::new();
     for call in 0..2 * FUNCTIONS {
@@ -140,55 +140,69 @@ fn program(random: &mut Rng) -> String {
 }
 
 /// Runs a program and returns the two return values of each function.
-fn results(image: &Image) -> Vec<[u8; 4]> {
-    let [done, results] = ["done", "results"].map(|name| address(image, name));
+fn run_for_results(image: &Image) -> Vec<[u8; 4]> {
+    let [done_address, results_address] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     for _ in 0..200 {
         uno.run_ms(5);
-        if uno.peek(done) == 1 {
+        if uno.peek(done_address) == 1 {
             break;
         }
     }
-    assert_eq!(uno.peek(done), 1, "it came to its end, interrupted often");
-    let of = |function| [0, 1, 2, 3].map(|byte| uno.peek(results + 4 * function + byte));
-    (0..FUNCTIONS as u16).map(of).collect()
+    assert_eq!(
+        uno.peek(done_address),
+        1,
+        "it came to its end, interrupted often"
+    );
+    let values_of =
+        |function| [0, 1, 2, 3].map(|byte| uno.peek(results_address + 4 * function + byte));
+    (0..FUNCTIONS as u16).map(values_of).collect()
 }
 
 /// Returns the functions of a program that return another value after the linker has rewritten it, and true if
 /// the linker has rewritten any function. `None` if avr-gcc fails because it runs out of registers or a branch
 /// is too far.
 fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
-    let object = object_of_c(&program(&mut Rng::with_seed(seed))).ok()?;
-    let plain = link("", &object).ok()?;
+    let object = object_of_c(&random_program(&mut Rng::with_seed(seed))).ok()?;
+    let plain_image = link("", &object).ok()?;
     let (object, savings) = shrink(&object)
         .expect("it is an object")
         .expect("of an AVR");
-    let short = link(ROUTINES, &object).expect("it links as before");
-    let [plain, short] = [results(&plain), results(&short)];
-    let differ = (0..FUNCTIONS).filter(|&number| plain[number] != short[number]);
-    Some((differ.collect(), savings.frames > 0))
+    let shrunk_image = link(ROUTINES, &object).expect("it links as before");
+    let [plain_results, shrunk_results] = [
+        run_for_results(&plain_image),
+        run_for_results(&shrunk_image),
+    ];
+    let differing =
+        (0..FUNCTIONS).filter(|&number| plain_results[number] != shrunk_results[number]);
+    Some((differing.collect(), savings.frames > 0))
 }
 
 #[test]
 fn random_functions_with_arguments_on_the_stack_compute_the_same() {
     let seeds = scaled(PROGRAMS);
-    let next = AtomicU64::new(0);
-    let claim = || Some(next.fetch_add(1, Relaxed)).filter(|&seed| seed < seeds);
-    let share = || -> Vec<_> {
+    let next_seed = AtomicU64::new(0);
+    let claim = || Some(next_seed.fetch_add(1, Relaxed)).filter(|&seed| seed < seeds);
+    let run_share = || -> Vec<_> {
         iter::from_fn(claim)
             .filter_map(|seed| Some((seed, differences(seed)?)))
             .collect()
     };
     let cores = thread::available_parallelism().map_or(1, usize::from);
-    let tried: Vec<_> = thread::scope(|scope| {
-        let shares: Vec<_> = (0..cores).map(|_| scope.spawn(share)).collect();
-        let done = shares.into_iter().map(|share| share.join());
-        done.flat_map(|share| share.expect("no thread panics"))
+    let tried_programs: Vec<_> = thread::scope(|scope| {
+        let shares: Vec<_> = (0..cores).map(|_| scope.spawn(run_share)).collect();
+        let finished = shares.into_iter().map(|share| share.join());
+        finished
+            .flat_map(|result| result.expect("no thread panics"))
             .collect()
     });
-    for (seed, (differ, is_rewritten)) in &tried {
-        assert!(differ.is_empty(), "of program {seed}: {differ:?}");
+    for (seed, (differing, is_rewritten)) in &tried_programs {
+        assert!(differing.is_empty(), "of program {seed}: {differing:?}");
         assert!(is_rewritten, "program {seed} has frames to share");
     }
-    assert!(tried.len() as u64 >= seeds * 9 / 10, "{}", tried.len());
+    assert!(
+        tried_programs.len() as u64 >= seeds * 9 / 10,
+        "{}",
+        tried_programs.len()
+    );
 }

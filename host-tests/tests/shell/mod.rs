@@ -36,8 +36,8 @@ impl Shell {
         command.args(arguments).current_dir(root());
         // A user's shell does not have the variables of the cargo and make around this test.
         for (name, _) in std::env::vars() {
-            let of_cargo = name.starts_with("CARGO") && name != "CARGO_HOME";
-            if of_cargo || name.starts_with("MAKE") || name == "MFLAGS" {
+            let is_of_cargo = name.starts_with("CARGO") && name != "CARGO_HOME";
+            if is_of_cargo || name.starts_with("MAKE") || name == "MFLAGS" {
                 command.env_remove(name);
             }
         }
@@ -72,9 +72,9 @@ impl Shell {
     /// Returns everything printed by a command that has ended. Waits for its last output, which may still be in
     /// a pipe.
     pub fn last_screen(&self) -> String {
-        let read = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
+        let is_read = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
         let screen = self.screen();
-        assert!(read, "waited {LIMIT} for the rest of\n{screen}");
+        assert!(is_read, "waited {LIMIT} for the rest of\n{screen}");
         screen
     }
 
@@ -90,20 +90,20 @@ impl Shell {
     /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command
     /// never ends.
     pub fn interrupt(&mut self) {
-        let mut pressed: Option<Instant> = None;
-        let ended = LIMIT.wait_for(|| {
+        let mut pressed_at: Option<Instant> = None;
+        let has_ended = LIMIT.wait_for(|| {
             if self.has_ended() {
                 return true;
             }
-            if pressed.is_none_or(|then| then.elapsed() > CTRL_C_INTERVAL) {
+            if pressed_at.is_none_or(|instant| instant.elapsed() > CTRL_C_INTERVAL) {
                 self.signal(Signal::INT);
-                pressed = Some(Instant::now());
+                pressed_at = Some(Instant::now());
             }
             false
         });
         let (line, screen) = (&self.line, self.screen());
         assert!(
-            ended,
+            has_ended,
             "waited {LIMIT} for the end of `{line}` by Ctrl-C:\n{screen}"
         );
     }

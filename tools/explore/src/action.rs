@@ -80,7 +80,7 @@ const LINES: [&str; 30] = [
 impl Action {
     /// Returns every action, even if the current state does not permit it.
     pub fn all() -> Vec<Self> {
-        let mut all = vec![
+        let mut actions = vec![
             Self::Frames(1),
             Self::Frames(5),
             Self::Frames(25),
@@ -89,25 +89,25 @@ impl Action {
             Self::Noise,
         ];
         let is_tried = |word: &&Word| {
-            let mut words = LINES.iter().filter_map(|line| line.split(' ').next());
-            words.any(|tried| tried == word.text())
+            let mut first_words = LINES.iter().filter_map(|line| line.split(' ').next());
+            first_words.any(|first_word| first_word == word.text())
         };
-        let others = Word::ALL.iter().filter(|word| !is_tried(word));
-        all.extend(LINES.map(Self::Say));
-        all.extend(Rate::ALL.map(Self::SendAt));
-        all.extend(others.map(|word| Self::Say(word.example())));
+        let other_words = Word::ALL.iter().filter(|word| !is_tried(word));
+        actions.extend(LINES.map(Self::Say));
+        actions.extend(Rate::ALL.map(Self::SendAt));
+        actions.extend(other_words.map(|word| Self::Say(word.example())));
         // The last hand-over of a frame was 16 ms ago. In these times main misses no hand-over, one, three or
         // five; or the watchdog ends the pulses; or the watchdog resets the chip.
-        all.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
-        all.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
-        all.extend([Self::Weak(true), Self::Weak(false)]);
-        all.extend([Self::Late, Self::Stack]);
-        all.extend([Cause::External, Cause::BrownOut].map(Self::Reset));
-        all.extend([None, Some(0x00), Some(0x5a), Some(0xff)].map(Self::LosePower));
-        all.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, true)));
-        all.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, false)));
-        all.extend([Self::StopReading(true), Self::StopReading(false)]);
-        all
+        actions.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
+        actions.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
+        actions.extend([Self::Weak(true), Self::Weak(false)]);
+        actions.extend([Self::Late, Self::Stack]);
+        actions.extend([Cause::External, Cause::BrownOut].map(Self::Reset));
+        actions.extend([None, Some(0x00), Some(0x5a), Some(0xff)].map(Self::LosePower));
+        actions.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, true)));
+        actions.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, false)));
+        actions.extend([Self::StopReading(true), Self::StopReading(false)]);
+        actions
     }
 }
 
@@ -131,12 +131,12 @@ impl fmt::Display for Action {
             Self::LosePower(Some(byte)) => {
                 write!(f, "power is lost in a write, the byte is {byte:#04x}")
             }
-            Self::Contact(pin, closed) => {
+            Self::Contact(pin, is_closed) => {
                 let contact = if *pin == BUTTON { "button" } else { "nose" };
                 write!(
                     f,
                     "the {contact} {}",
-                    if *closed { "closes" } else { "opens" }
+                    if *is_closed { "closes" } else { "opens" }
                 )
             }
             Self::StopReading(true) => f.write_str("nobody listens any more"),

@@ -41,7 +41,7 @@ const RULES: &[Field] = &[
     ("Motion", "calibration", Skip),
     ("Count", "phase_covered", Coarse(|phase| phase >> 14)),
     ("Count", "phase", Skip),
-    ("Routine", "frames_left", Coarse(countdown)),
+    ("Routine", "frames_left", Coarse(coarse_countdown)),
     ("Stance", "sent", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
     (
@@ -54,13 +54,13 @@ const RULES: &[Field] = &[
     ("Safety", "handled_late_edges", Skip),
     // The observer counts the silence, too, where it matters.
     ("Safety", "silence_ms", Skip),
-    ("Safety", "boot_timer", Coarse(countdown)),
+    ("Safety", "boot_timer", Coarse(coarse_countdown)),
     ("Supply", "reading", Skip),
-    ("Supply", "frames_at_other_level", Coarse(countdown)),
+    ("Supply", "frames_at_other_level", Coarse(coarse_countdown)),
     ("Cycling", "gait", Skip),
     ("Cycling", "phase", Coarse(|phase| phase >> 22)),
-    ("Cycling", "pace", Coarse(pace)),
-    ("Moving", "pace", Coarse(pace)),
+    ("Cycling", "pace", Coarse(coarse_pace)),
+    ("Moving", "pace", Coarse(coarse_pace)),
     ("PointToPoint", "from", Coarse(|sweep| sweep >> 11)),
     ("PointToPoint", "step", Skip),
     ("PointToPoint", "elapsed", Coarse(|share| share >> 13)),
@@ -85,7 +85,7 @@ const LINE_ARRIVAL_FIELDS: &[Field] = &[
     ("Control", "is_unattended", Skip),
 ];
 
-fn countdown(frames: u64) -> u64 {
+fn coarse_countdown(frames: u64) -> u64 {
     match frames {
         0 | 1 => frames,
         2..=5 => 2,
@@ -95,7 +95,7 @@ fn countdown(frames: u64) -> u64 {
     }
 }
 
-fn pace(pace: u64) -> u64 {
+fn coarse_pace(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
@@ -191,10 +191,10 @@ impl Write for Reader {
             _ if self.is_field_name_next => {
                 self.is_field_name_next = false;
                 if self.skipped.is_none() {
-                    self.name(piece);
+                    self.begin_field(piece);
                 }
             }
-            _ if self.skipped.is_none() => self.value(piece),
+            _ if self.skipped.is_none() => self.add_value(piece),
             _ => {}
         }
         if self.skipped.is_none() {
@@ -209,27 +209,27 @@ impl Reader {
     fn end_field(&mut self) {
         let depth = self.within.len();
         self.skipped = self.skipped.filter(|skipped| *skipped != depth);
-        self.number = self.number.filter(|(_, number)| *number != depth);
+        self.number = self.number.filter(|(_, field_depth)| *field_depth != depth);
     }
 
-    fn name(&mut self, field: &str) {
+    fn begin_field(&mut self, field: &str) {
         let name = hash(field);
         self.fingerprint.add(name);
-        let within = *self.within.last().unwrap_or(&0);
+        let struct_hash = *self.within.last().unwrap_or(&0);
         let rule = self
             .rules
             .iter()
-            .find(|(owner, of, _)| *of == field && hash(owner) == within);
+            .find(|(owner, field_name, _)| *field_name == field && hash(owner) == struct_hash);
         match rule {
             Some((_, _, Skip)) => self.skipped = Some(self.within.len()),
-            Some((_, _, Coarse(what))) => self.number = Some((*what, self.within.len())),
+            Some((_, _, Coarse(round))) => self.number = Some((*round, self.within.len())),
             None => {}
         }
     }
 
-    fn value(&mut self, piece: &str) {
+    fn add_value(&mut self, piece: &str) {
         match (piece.parse::<u64>(), self.number) {
-            (Ok(number), Some((coarse, _))) => self.fingerprint.add(coarse(number)),
+            (Ok(number), Some((round, _))) => self.fingerprint.add(round(number)),
             (Ok(number), None) => self.fingerprint.add(number),
             (Err(_), _) => self.fingerprint.add(hash(piece)),
         }
@@ -298,10 +298,10 @@ mod tests {
             coarse_fingerprint(&motion_with(|motion| motion.list[2] = 4)),
             fingerprint
         );
-        let exact = fingerprint_without_line_arrival(&MOTION);
+        let exact_fingerprint = fingerprint_without_line_arrival(&MOTION);
         assert_ne!(
             fingerprint_without_line_arrival(&motion_with(|motion| motion.frames = 8)),
-            exact
+            exact_fingerprint
         );
     }
 

@@ -97,11 +97,11 @@ const ACTIVITIES: [&[Action]; 11] = [
 ];
 
 /// Returns an EEPROM with valid settings that leave servo A3 too little travel for the gaits.
-fn cut_off(robot: &Robot) -> Eeprom {
+fn short_travel_memory(robot: &Robot) -> Eeprom {
     let mut settings = Settings::of(robot);
-    let mut set = settings.servo(Servo::ALL[2]);
-    set.max = Sweep(robot.reach(Servo::ALL[2]).max.0 / 2);
-    settings.set_servo(Servo::ALL[2], set);
+    let mut servo_settings = settings.servo(Servo::ALL[2]);
+    servo_settings.max = Sweep(robot.reach(Servo::ALL[2]).max.0 / 2);
+    settings.set_servo(Servo::ALL[2], servo_settings);
     let mut memory = Eeprom::blank();
     let mut writing = COPIES[0].start_write();
     while writing.step(settings.bytes(), &mut memory) == Progress::InProgress {}
@@ -125,31 +125,34 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
             (*name, Eeprom::with(*world.running.board.memory.bytes()))
         })
         .collect();
-    let saved = |memories: &[(&'static str, Eeprom)]| memories[1].1.clone();
-    let mut foreign = saved(&memories);
-    foreign.bytes_mut().rotate_left(1);
-    let mut worn = saved(&memories);
-    worn.is_worn = true;
+    let saved_memory = |memories: &[(&'static str, Eeprom)]| memories[1].1.clone();
+    let mut foreign_memory = saved_memory(&memories);
+    foreign_memory.bytes_mut().rotate_left(1);
+    let mut worn_memory = saved_memory(&memories);
+    worn_memory.is_worn = true;
     memories.extend([
-        ("foreign bytes in the memory", foreign),
-        ("a worn memory", worn),
-        ("saved settings that cut the gaits off", cut_off(&robot)),
+        ("foreign bytes in the memory", foreign_memory),
+        ("a worn memory", worn_memory),
+        (
+            "saved settings that cut the gaits off",
+            short_travel_memory(&robot),
+        ),
     ]);
     memories.push((WITH_BOOT_LOADER, Eeprom::blank()));
-    let mut all = Vec::new();
-    for (with, memory) in memories {
+    let mut states = Vec::new();
+    for (conditions, memory) in memories {
         for actions in ACTIVITIES {
             let mut world = World::power_on(robot, memory.clone());
-            world.running.board.has_boot_loader = with == WITH_BOOT_LOADER;
+            world.running.board.has_boot_loader = conditions == WITH_BOOT_LOADER;
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
-                all.push(InitialState {
-                    conditions: with,
+                states.push(InitialState {
+                    conditions,
                     actions,
                     world,
                 });
             }
         }
     }
-    all
+    states
 }

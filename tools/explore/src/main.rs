@@ -5,32 +5,32 @@ use std::process::ExitCode;
 use lizard_explore::{search, small::small_robot};
 
 fn main() -> ExitCode {
-    let max = std::env::args()
+    let max_states = std::env::args()
         .nth(1)
         .map_or(Ok(10_000_000), |count| count.parse());
-    let Ok(max) = max else {
+    let Ok(max_states) = max_states else {
         eprintln!("explore [how many states]");
         return ExitCode::FAILURE;
     };
     let robot = small_robot();
     let start = std::time::Instant::now();
-    let found = search(robot, max);
+    let result = search(robot, max_states);
     println!(
         "{} distinct states by {} actions in {:.0} s, the longest sequence of {}, {}",
-        found.states,
-        found.tried,
+        result.states,
+        result.tried,
         start.elapsed().as_secs_f64(),
-        found.longest,
-        if found.is_complete {
+        result.longest,
+        if result.is_complete {
             "closed"
         } else {
             "not closed"
         },
     );
-    for (rule, (times, sequence)) in &found.broken {
+    for (rule, (times, sequence)) in &result.broken {
         println!("\nBROKEN {times} times: {}\n{sequence}", rule.sentence());
     }
-    if found.broken.is_empty() {
+    if result.broken.is_empty() {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

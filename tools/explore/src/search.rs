@@ -50,53 +50,53 @@ struct Step {
 pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     let actions = Action::all();
     let initial_states = initial_states::all(robot);
-    let known: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
+    let known_states: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
-    let mut found = SearchResult::default();
-    let mut now: Vec<(World, u32)> = Vec::new();
+    let mut result = SearchResult::default();
+    let mut frontier: Vec<(World, u32)> = Vec::new();
     for (index, initial_state) in initial_states.iter().enumerate() {
         steps.push(Step {
             from: u32::MAX,
             action: 0,
         });
-        if is_new(&known, initial_state.world.fingerprint()) {
-            now.push((initial_state.world.clone(), index as u32));
+        if is_new(&known_states, initial_state.world.fingerprint()) {
+            frontier.push((initial_state.world.clone(), index as u32));
         }
     }
-    let states = AtomicUsize::new(now.len());
+    let state_count = AtomicUsize::new(frontier.len());
     // Each panic is reported as a broken rule.
-    let hook = panic::take_hook();
+    let panic_hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
-    while !now.is_empty() && states.load(Ordering::Relaxed) < max {
-        found.longest += 1;
-        let queue = Mutex::new(now.into_iter());
+    while !frontier.is_empty() && state_count.load(Ordering::Relaxed) < max {
+        result.longest += 1;
+        let queue = Mutex::new(frontier.into_iter());
         let threads = thread::available_parallelism().map_or(1, usize::from);
-        let parts: Vec<ThreadResult> = thread::scope(|scope| {
-            let walk = || walk(&queue, &actions, &known, &states, max);
-            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(walk)).collect();
+        let thread_results: Vec<ThreadResult> = thread::scope(|scope| {
+            let run_thread = || explore_queue(&queue, &actions, &known_states, &state_count, max);
+            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(run_thread)).collect();
             threads
                 .into_iter()
                 .map(|thread| thread.join().expect("a thread of the walk"))
                 .collect()
         });
-        let mut next = Vec::new();
+        let mut next_frontier = Vec::new();
         let mut broken = Vec::new();
-        for part in parts {
-            found.tried += part.tried;
-            broken.extend(part.broken);
-            next.extend(part.reached);
+        for thread_result in thread_results {
+            result.tried += thread_result.tried;
+            broken.extend(thread_result.broken);
+            next_frontier.extend(thread_result.reached);
         }
         // The broken rules are sorted, so that the result does not depend on which thread was faster.
         broken.sort_by_key(|(from, action, _)| (*from, *action));
         for (from, action, fault) in broken {
-            let entry = found.broken.entry(fault.rule).or_insert_with(|| {
+            let entry = result.broken.entry(fault.rule).or_insert_with(|| {
                 let description =
                     describe(&initial_states, &steps, &actions, Step { from, action });
                 (0, format!("{description}\n  {}", fault.seen))
             });
             entry.0 += 1;
         }
-        now = next
+        frontier = next_frontier
             .into_iter()
             .map(|(world, step)| {
                 steps.push(step);
@@ -104,10 +104,10 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
             })
             .collect();
     }
-    panic::set_hook(hook);
-    found.is_complete = now.is_empty();
-    found.states = states.into_inner();
-    found
+    panic::set_hook(panic_hook);
+    result.is_complete = frontier.is_empty();
+    result.states = state_count.into_inner();
+    result
 }
 
 /// The results of one thread.
@@ -118,23 +118,23 @@ struct ThreadResult {
     broken: Vec<(u32, u8, BrokenRule)>,
 }
 
-fn is_new(known: &[Mutex<SeenStates>], fingerprint: u64) -> bool {
-    let shard = &known[(fingerprint >> 58) as usize];
+fn is_new(known_states: &[Mutex<SeenStates>], fingerprint: u64) -> bool {
+    let shard = &known_states[(fingerprint >> 58) as usize];
     shard
         .lock()
         .expect("no thread has failed")
         .insert(fingerprint)
 }
 
-fn walk(
+fn explore_queue(
     queue: &Mutex<vec::IntoIter<(World, u32)>>,
     actions: &[Action],
-    known: &[Mutex<SeenStates>],
-    states: &AtomicUsize,
-    most: usize,
+    known_states: &[Mutex<SeenStates>],
+    state_count: &AtomicUsize,
+    max: usize,
 ) -> ThreadResult {
-    let mut part = ThreadResult::default();
-    while states.load(Ordering::Relaxed) < most {
+    let mut result = ThreadResult::default();
+    while state_count.load(Ordering::Relaxed) < max {
         let chunk: Vec<_> = {
             let mut queue = queue.lock().expect("no thread has failed");
             queue.by_ref().take(CHUNK).collect()
@@ -143,10 +143,10 @@ fn walk(
             break;
         }
         for (world, from) in chunk {
-            part.expand(&world, from, actions, known, states);
+            result.expand(&world, from, actions, known_states, state_count);
         }
     }
-    part
+    result
 }
 
 impl ThreadResult {
@@ -156,24 +156,24 @@ impl ThreadResult {
         world: &World,
         from: u32,
         actions: &[Action],
-        known: &[Mutex<SeenStates>],
-        states: &AtomicUsize,
+        known_states: &[Mutex<SeenStates>],
+        state_count: &AtomicUsize,
     ) {
         for (number, action) in actions.iter().enumerate() {
             if !world.is_possible(*action) {
                 continue;
             }
             self.tried += 1;
-            let mut next = world.clone();
+            let mut next_world = world.clone();
             let step = Step {
                 from,
                 action: number as u8,
             };
-            match apply_catching_panics(&mut next, *action) {
+            match apply_catching_panics(&mut next_world, *action) {
                 Err(broken) => self.broken.push((step.from, step.action, broken)),
-                Ok(()) if is_new(known, next.fingerprint()) => {
-                    states.fetch_add(1, Ordering::Relaxed);
-                    self.reached.push((next, step));
+                Ok(()) if is_new(known_states, next_world.fingerprint()) => {
+                    state_count.fetch_add(1, Ordering::Relaxed);
+                    self.reached.push((next_world, step));
                 }
                 Ok(()) => {}
             }
@@ -183,8 +183,8 @@ impl ThreadResult {
 
 /// Applies an action. A panic counts as a broken rule.
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
-    let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
-    applied.unwrap_or_else(|reason| {
+    let result = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
+    result.unwrap_or_else(|reason| {
         let message = reason.downcast_ref::<String>().cloned();
         let message = message.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
         Err(BrokenRule::new(Rule::Lives, message.unwrap_or_default()))
@@ -199,19 +199,19 @@ fn describe(
     last: Step,
 ) -> String {
     let mut sequence = vec![actions[usize::from(last.action)]];
-    let mut at = last.from;
-    while steps[at as usize].from != u32::MAX {
-        sequence.push(actions[usize::from(steps[at as usize].action)]);
-        at = steps[at as usize].from;
+    let mut index = last.from;
+    while steps[index as usize].from != u32::MAX {
+        sequence.push(actions[usize::from(steps[index as usize].action)]);
+        index = steps[index as usize].from;
     }
-    let initial_state = &initial_states[at as usize];
+    let initial_state = &initial_states[index as usize];
     let mut text = format!("  power on with {}", initial_state.conditions);
-    let played = initial_state
+    let all_actions = initial_state
         .actions
         .iter()
         .copied()
         .chain(sequence.into_iter().rev());
-    for action in played {
+    for action in all_actions {
         _ = write!(text, "; {action}");
     }
     text

@@ -11,7 +11,7 @@ use lizard_robot::flash;
 
 /// The slew limit, 1/65536 turn in a frame: a third of the paper's, so that a servo that starts with
 /// a pulse for a wrong position jumps by more than the limit.
-const PER_FRAME: u16 = 364;
+const SLEW_PER_FRAME: u16 = 364;
 
 /// The sweep to either side of neutral that the gaits declare, 1/65536 turn; only `stray` exceeds it.
 const DECLARED_REACH: i16 = 1_000;
@@ -30,12 +30,12 @@ pub const NOSE: u8 = 16;
 pub fn small_robot() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
-    let turn = |n: usize| n as f64 / SAMPLES as f64 * std::f64::consts::TAU;
-    let wave = |of: &dyn Fn(usize) -> f64| -> Wave {
-        std::array::from_fn(|n| (of(n) * 1820.0).round() as i16)
+    let angle_rad = |n: usize| n as f64 / SAMPLES as f64 * std::f64::consts::TAU;
+    let wave_of = |height_at: &dyn Fn(usize) -> f64| -> Wave {
+        std::array::from_fn(|n| (height_at(n) * 1820.0).round() as i16)
     };
-    let mut small = Content {
-        slew: Slew::new(PER_FRAME),
+    let mut content = Content {
+        slew: Slew::new(SLEW_PER_FRAME),
         reach: [Reach {
             min: Sweep(-DECLARED_REACH),
             max: Sweep(DECLARED_REACH),
@@ -43,32 +43,32 @@ pub fn small_robot() -> Robot<'static> {
         gaits: Vec::new(),
         names: Vec::new(),
         waves: vec![
-            wave(&|n| turn(n).sin()),
-            wave(&|n| 4.0 * (1.0 - turn(n).cos())),
+            wave_of(&|n| angle_rad(n).sin()),
+            wave_of(&|n| 4.0 * (1.0 - angle_rad(n).cos())),
         ],
         ..paper.content().clone()
     };
     // A cycle of sixteen frames.
     let increment = (1 << 24) / 16;
-    add(&mut small, "stand", increment, 0, [0; 4]);
-    add(
-        &mut small,
+    add_gait(&mut content, "stand", increment, 0, [0; 4]);
+    add_gait(
+        &mut content,
         "walk",
         increment,
         0,
         [7_000, -6_000, 5_000, 4_000],
     );
-    add(
-        &mut small,
+    add_gait(
+        &mut content,
         "trot",
         -increment,
         0,
         [-5_000, 6_000, 4_000, 7_000],
     );
-    add(&mut small, "stray", increment / 12, 1, [16_384, 0, 0, 0]);
+    add_gait(&mut content, "stray", increment / 12, 1, [16_384, 0, 0, 0]);
     let (walk, trot) = (1, 2);
     add_routine(
-        &mut small,
+        &mut content,
         "round",
         &[(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)],
     );
@@ -80,13 +80,13 @@ pub fn small_robot() -> Robot<'static> {
         (Step::FRAMES, walk, Step::ENDLESS),
         (Step::CYCLES, trot, 1),
     ];
-    add_routine(&mut small, "patrol", &patrol);
-    Robot::open(flash(&small.section())).expect("whole")
+    add_routine(&mut content, "patrol", &patrol);
+    Robot::open(flash(&content.section())).expect("whole")
 }
 
-fn add(to: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4]) {
-    to.gaits.push(Gait {
-        name_start: to.names.len() as u16,
+fn add_gait(content: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4]) {
+    content.gaits.push(Gait {
+        name_start: content.names.len() as u16,
         name_length: name.len() as u16,
         increment,
         channels: gains.map(|gain| Channel {
@@ -95,21 +95,21 @@ fn add(to: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4])
             gain,
         }),
     });
-    to.names.extend(name.bytes());
+    content.names.extend(name.bytes());
 }
 
 /// Adds an endless routine.
-fn add_routine(to: &mut Content, name: &str, steps: &[(u8, u8, u16)]) {
-    to.gaits.push(Gait {
-        name_start: to.names.len() as u16,
+fn add_routine(content: &mut Content, name: &str, steps: &[(u8, u8, u16)]) {
+    content.gaits.push(Gait {
+        name_start: content.names.len() as u16,
         name_length: name.len() as u16,
-        ..Gait::routine(to.steps.len() as u16, steps.len() as u16, 0)
+        ..Gait::routine(content.steps.len() as u16, steps.len() as u16, 0)
     });
-    to.names.extend(name.bytes());
-    let step = |(kind, gait, count): &(u8, u8, u16)| Step {
+    content.names.extend(name.bytes());
+    let step_of = |(kind, gait, count): &(u8, u8, u16)| Step {
         kind: *kind,
         gait: *gait,
         count: *count,
     };
-    to.steps.extend(steps.iter().map(step));
+    content.steps.extend(steps.iter().map(step_of));
 }

@@ -84,12 +84,12 @@ impl World {
         for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
             let record = &memory[usize::from(record)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
-            let used = if record[0] == VALID_MARK {
+            let used_bytes = if record[0] == VALID_MARK {
                 record
             } else {
                 &record[..2]
             };
-            for byte in used {
+            for byte in used_bytes {
                 fingerprint.add(u64::from(*byte));
             }
         }
@@ -97,7 +97,7 @@ impl World {
             &board.ram.peek_restart(None),
         ));
         fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
-        let truth = board.converter.actual();
+        let reading = board.converter.actual();
         let flags = [
             board.memory.is_worn,
             board.has_boot_loader,
@@ -115,9 +115,13 @@ impl World {
             self.is_late,
             self.judged_answers > 0,
         ];
-        fingerprint.add(flags.iter().fold(u64::from(truth.reference), |all, flag| {
-            all << 1 | u64::from(*flag)
-        }));
+        fingerprint.add(
+            flags
+                .iter()
+                .fold(u64::from(reading.reference), |bits, flag| {
+                    bits << 1 | u64::from(*flag)
+                }),
+        );
         fingerprint.0
     }
 
@@ -138,11 +142,11 @@ impl World {
             | Action::Supply(_) => true,
             Action::LosePower(Some(_)) => board.memory.address_in_write().is_some(),
             Action::SendAt(rate) => rate != self.sender_rate,
-            Action::Weak(weak) => weak != self.sags_when_servos_wake,
+            Action::Weak(is_weak) => is_weak != self.sags_when_servos_wake,
             Action::Late => board.late_edges < 3,
             Action::Stack => board.is_stack_intact,
-            Action::Contact(pin, closed) => closed != (board.closed & 1 << pin != 0),
-            Action::StopReading(deaf) => deaf != board.transmitter.is_held,
+            Action::Contact(pin, is_closed) => is_closed != (board.closed & 1 << pin != 0),
+            Action::StopReading(is_deaf) => is_deaf != board.transmitter.is_held,
         }
     }
 
@@ -166,15 +170,15 @@ impl World {
                 self.running.main.step(&mut self.running.board);
                 self.listen(self.now)?;
             }
-            Action::Frames(count) => self.frames(count)?,
+            Action::Frames(count) => self.run_frames(count)?,
             Action::Stall(ms) => self.stall(ms)?,
             Action::Supply(mv) => {
                 let supplies = self.robot().supplies();
-                let truth = compute_reading(&supplies, u32::from(mv), 0);
-                self.running.board.converter.set(truth);
+                let reading = compute_reading(&supplies, u32::from(mv), 0);
+                self.running.board.converter.set(reading);
                 self.observe(Event::Supply(u32::from(mv)));
             }
-            Action::Weak(weak) => self.sags_when_servos_wake = weak,
+            Action::Weak(is_weak) => self.sags_when_servos_wake = is_weak,
             Action::Late => {
                 self.running.board.late_edges += 1;
                 self.observe(Event::Fault);
@@ -186,15 +190,15 @@ impl World {
                 self.frame()?;
             }
             Action::Reset(cause) => self.reset(cause),
-            Action::LosePower(torn) => {
-                self.running.lose_power(torn);
+            Action::LosePower(torn_byte) => {
+                self.running.lose_power(torn_byte);
                 self.note_restart(Cause::Power);
             }
-            Action::Contact(pin, closed) => self.set_contact(pin, closed)?,
-            Action::StopReading(deaf) => self.running.board.transmitter.is_held = deaf,
+            Action::Contact(pin, is_closed) => self.set_contact(pin, is_closed)?,
+            Action::StopReading(is_deaf) => self.running.board.transmitter.is_held = is_deaf,
         }
-        let robot_rests = self.running.motion().is_resting();
-        if was_kept && robot_rests && !self.rest_is_kept() {
+        let is_resting = self.running.motion().is_resting();
+        if was_kept && is_resting && !self.rest_is_kept() {
             return broken(Rule::RestKept, action.to_string());
         }
         self.judge_writes()?;
@@ -224,9 +228,9 @@ impl World {
     }
 
     /// Runs some frames, with main running.
-    fn frames(&mut self, count: u8) -> Verdict {
+    fn run_frames(&mut self, count: u8) -> Verdict {
         let start = self.now;
-        let fault = (self.fault(), self.observer.stopped_since());
+        let stop_before = (self.fault(), self.observer.stopped_since());
         let mut edges = Vec::new();
         for _ in 0..count {
             let was_lit = self.running.board.is_lit();
@@ -242,10 +246,10 @@ impl World {
         if self.observer.has_unanswered_lines() {
             return broken(Rule::Answered, "frames went by");
         }
-        let is_same = (self.fault(), self.observer.stopped_since()) == fault;
+        let is_same = (self.fault(), self.observer.stopped_since()) == stop_before;
         if is_same && self.observer.runs_for() > self.now - start {
-            led::check_pattern(&edges, start + 3 * FRAME, self.now, fault.0)
-                .map_err(|seen| BrokenRule::new(Rule::Led, seen))?;
+            led::check_pattern(&edges, start + 3 * FRAME, self.now, stop_before.0)
+                .map_err(|message| BrokenRule::new(Rule::Led, message))?;
         }
         Ok(())
     }
@@ -263,10 +267,12 @@ impl World {
         }
         // `stand` and `stop` within one frame leave the robot held; that reason is already reported.
         let was_held = self.running.motion().hazard().is_some();
-        let since = self.now;
-        let rested = self.running.motion().is_resting();
+        let frame_start = self.now;
+        let was_resting = self.running.motion().is_resting();
         self.running.frame();
-        if self.running.board.transmitter.is_held && self.running.motion().is_resting() != rested {
+        if self.running.board.transmitter.is_held
+            && self.running.motion().is_resting() != was_resting
+        {
             self.predict_boot();
         }
         self.judge_pulses(true)?;
@@ -274,7 +280,7 @@ impl World {
             self.observe(Event::Fault);
         }
         // Main decided at the start of the frame, so the output counts from there.
-        self.listen(since + MS)?;
+        self.listen(frame_start + MS)?;
         self.judge_writes()?;
         let is_heard =
             !self.running.board.transmitter.is_held && !self.running.is_stopped_by_watchdog();
@@ -289,7 +295,7 @@ impl World {
                 .started_pulses()
                 .0
                 .iter()
-                .filter(|one| one.0 > 0)
+                .filter(|width| width.0 > 0)
                 .count()
                 == 3
         {
@@ -307,13 +313,13 @@ impl World {
             }
             self.judge_pulses(false)?;
         }
-        let left = ms % 20;
-        if left > 0 {
-            if self.pass_time(left) {
+        let remaining_ms = ms % 20;
+        if remaining_ms > 0 {
+            if self.pass_time(remaining_ms) {
                 return self.listen(self.now);
             }
             self.running.settle();
-            if self.pass_time(20 - left) {
+            if self.pass_time(20 - remaining_ms) {
                 return self.listen(self.now);
             }
             self.judge_pulses(false)?;

@@ -9,13 +9,13 @@ const STATES: usize = 100_000;
 #[test]
 fn no_short_sequence_of_actions_breaks_a_rule() {
     let robot = small_robot();
-    let found = search(robot, STATES);
+    let result = search(robot, STATES);
     assert!(
-        found.states >= STATES || found.is_complete,
+        result.states >= STATES || result.is_complete,
         "{} states",
-        found.states
+        result.states
     );
-    let broken: Vec<String> = found
+    let broken: Vec<String> = result
         .broken
         .iter()
         .map(|(rule, (times, sequence))| {

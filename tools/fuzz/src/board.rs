@@ -25,10 +25,10 @@ pub struct Board {
 
 /// Returns the observer's limits for a robot whose supply is good and whose lines come between frames.
 fn limits(robot: &Robot) -> Limits {
-    let cycles = |us: f64| (us * 16.0).round() as u32;
+    let cycles_of = |us: f64| (us * 16.0).round() as u32;
     let servos = robot.servos().each_ref();
     Limits {
-        widths: servos.map(|servo| (cycles(servo.min_us) - 3, cycles(servo.max_us) + 3)),
+        widths: servos.map(|servo| (cycles_of(servo.min_us) - 3, cycles_of(servo.max_us) + 3)),
         ..Limits::default()
     }
 }
@@ -97,18 +97,18 @@ impl Board {
     /// If the robot breaks a rule.
     pub fn send_byte(&mut self, byte: u8) {
         self.output.clear();
-        let mut ended = None;
+        let mut ended_line = None;
         match byte {
             b'\r' | b'\n' => {
                 let line = std::mem::take(&mut self.line);
-                let overlong = std::mem::take(&mut self.is_overlong);
+                let is_overlong = std::mem::take(&mut self.is_overlong);
                 let text = String::from_utf8_lossy(&line).to_ascii_lowercase();
                 let text = text.trim().replace('\t', " ");
-                if overlong || !line.trim_ascii().is_empty() {
+                if is_overlong || !line.trim_ascii().is_empty() {
                     let is_known = parse(text.as_bytes(), self.robot.firmware()).is_ok();
-                    let is_command = !overlong && is_known;
+                    let is_command = !is_overlong && is_known;
                     self.observe(Event::Line { is_command });
-                    ended = Some(if overlong { String::new() } else { text });
+                    ended_line = Some(if is_overlong { String::new() } else { text });
                 }
             }
             0x08 | 0x7f => _ = self.line.pop(),
@@ -120,7 +120,7 @@ impl Board {
         self.observe(Event::Byte);
         self.running.board.send(&[byte]);
         self.settle();
-        if let Some(line) = ended {
+        if let Some(line) = ended_line {
             self.observe_answer(&line);
         }
         self.assert_rules_hold();
@@ -179,10 +179,10 @@ impl Board {
         let is_whole = matches!(outcome, SavedState::Latest | SavedState::Blank);
         assert!(is_whole, "{rule}: {outcome:?}");
         let is_forgotten = self.memory().read(REST_POSE.0) == 0xff;
-        let is_rest = copies::last_rest_pose(robot, self.memory()).is_some();
-        assert!(is_forgotten || is_rest, "{rule}: a pose");
+        let has_rest_pose = copies::last_rest_pose(robot, self.memory()).is_some();
+        assert!(is_forgotten || has_rest_pose, "{rule}: a pose");
         assert!(
-            (192..1024).all(|at| self.memory().read(at) == 0xff),
+            (192..1024).all(|address| self.memory().read(address) == 0xff),
             "{rule}"
         );
     }

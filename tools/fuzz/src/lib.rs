@@ -39,8 +39,8 @@ pub fn robot() -> &'static Robot {
 /// If the robot breaks a rule.
 pub fn console(data: &[u8]) {
     let mut board = Board::new(robot(), Eeprom::blank());
-    for eight in data.chunks(8) {
-        for byte in eight {
+    for chunk in data.chunks(8) {
+        for byte in chunk {
             board.send_byte(*byte);
         }
         board.frame();
@@ -59,29 +59,29 @@ pub fn memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
     let (records, patches) = data.split_at(data.len().min(3 * CONTENT_BYTES));
-    let places = [COPIES[0], COPIES[1], REST_POSE];
-    for (place, change) in places.into_iter().zip(records.chunks(CONTENT_BYTES)) {
+    let addresses = [COPIES[0], COPIES[1], REST_POSE];
+    for (address, changes) in addresses.into_iter().zip(records.chunks(CONTENT_BYTES)) {
         let mut content = *Settings::of(robot.firmware()).bytes();
-        for (byte, change) in content.iter_mut().zip(change) {
+        for (byte, change) in content.iter_mut().zip(changes) {
             *byte ^= change;
         }
-        write(place, &content, &mut memory);
+        write_record(address, &content, &mut memory);
     }
     for patch in patches.chunks_exact(3) {
-        let at = u16::from_le_bytes([patch[0], patch[1]]) % 1024;
-        memory.bytes_mut()[usize::from(at)] = patch[2];
+        let address = u16::from_le_bytes([patch[0], patch[1]]) % 1024;
+        memory.bytes_mut()[usize::from(address)] = patch[2];
     }
-    let before = memory.clone();
+    let memory_before = memory.clone();
     let mut board = Board::new(robot, memory);
     // Three and a half seconds, so that the `boot` action runs, too.
     for _ in 0..175 {
         board.frame();
     }
-    let kept = board.memory().bytes();
-    let settings = 0..usize::from(REST_POSE.0);
+    let bytes_after = board.memory().bytes();
+    let settings_range = 0..usize::from(REST_POSE.0);
     assert_eq!(
-        kept[settings.clone()],
-        before.bytes()[settings],
+        bytes_after[settings_range.clone()],
+        memory_before.bytes()[settings_range],
         "nobody saved"
     );
     for byte in b"status\nstand\n" {
@@ -93,7 +93,7 @@ pub fn memory(data: &[u8]) {
 }
 
 /// Writes a record as the core does.
-fn write(place: Address, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
-    let mut writing = place.start_write();
+fn write_record(address: Address, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
+    let mut writing = address.start_write();
     while writing.step(content, memory) == Progress::InProgress {}
 }

@@ -3,23 +3,23 @@
 /** Reads an Intel HEX file's text into `flash`, a Uint8Array. Throws a sentence that names the line. */
 export function load(text, flash) {
   let base = 0;
-  let ended = false;
+  let hasEnded = false;
   text.split(/\r?\n/).forEach((line, index) => {
-    if (line === '' || ended) return;
-    const wrong = (what) => new Error(`line ${index + 1} of the HEX file ${what}`);
-    if (!/^:([0-9a-f]{2}){5,}$/i.test(line)) throw wrong('is no record');
+    if (line === '' || hasEnded) return;
+    const errorOf = (problem) => new Error(`line ${index + 1} of the HEX file ${problem}`);
+    if (!/^:([0-9a-f]{2}){5,}$/i.test(line)) throw errorOf('is no record');
     const bytes = Uint8Array.from(line.slice(1).match(/../g), (pair) => parseInt(pair, 16));
-    if (bytes.reduce((sum, byte) => (sum + byte) & 0xff, 0) !== 0) throw wrong('has a wrong checksum');
-    if (bytes.length !== bytes[0] + 5) throw wrong('has a wrong length');
+    if (bytes.reduce((sum, byte) => (sum + byte) & 0xff, 0) !== 0) throw errorOf('has a wrong checksum');
+    if (bytes.length !== bytes[0] + 5) throw errorOf('has a wrong length');
     const address = base + (bytes[1] << 8) + bytes[2];
     const data = bytes.subarray(4, -1);
     switch (bytes[3]) {
       case 0:
-        if (address + data.length > flash.length) throw wrong('is beyond the flash');
+        if (address + data.length > flash.length) throw errorOf('is beyond the flash');
         flash.set(data, address);
         break;
       case 1:
-        ended = true;
+        hasEnded = true;
         break;
       case 2:
         base = ((data[0] << 8) + data[1]) << 4;
@@ -31,8 +31,8 @@ export function load(text, flash) {
       case 5:
         break;
       default:
-        throw wrong('is of an unknown kind');
+        throw errorOf('is of an unknown kind');
     }
   });
-  if (!ended) throw new Error('the HEX file has no end');
+  if (!hasEnded) throw new Error('the HEX file has no end');
 }

@@ -3,7 +3,7 @@
 const RXEN = 0x10;
 const RXC = 0x80;
 const FE = 0x10;
-const HOLDS = 3;
+const CAPACITY = 3;
 
 /**
  * Adds `receive(byte, isGarbled)` to an Uno, for a byte that arrives on the serial line, garbled if it has no stop bit; it
@@ -12,9 +12,9 @@ const HOLDS = 3;
 export function receiveBuffer(uno) {
   const { cpu, usart } = uno;
   const { UCSRA, UCSRB, UDR } = usart.config;
-  const waiting = [];
-  const on = () => cpu.data[UCSRB] & RXEN;
-  const full = () => cpu.data[UCSRA] & RXC;
+  const waitingBytes = [];
+  const isOn = () => cpu.data[UCSRB] & RXEN;
+  const isFull = () => cpu.data[UCSRA] & RXC;
   const show = ([byte, isGarbled]) => {
     cpu.data[UCSRA] = isGarbled ? cpu.data[UCSRA] | FE : cpu.data[UCSRA] & ~FE;
     usart.writeByte(byte, true);
@@ -22,16 +22,16 @@ export function receiveBuffer(uno) {
   const read = cpu.readHooks[UDR];
   cpu.readHooks[UDR] = (...args) => {
     const byte = read(...args);
-    if (waiting.length > 0) show(waiting.shift());
+    if (waitingBytes.length > 0) show(waitingBytes.shift());
     return byte;
   };
   uno.receive = (byte, isGarbled = false) => {
-    if (!on()) {
-      waiting.length = 0;
+    if (!isOn()) {
+      waitingBytes.length = 0;
       return false;
     }
-    if (!full()) show([byte, isGarbled]);
-    else if (waiting.length + 1 < HOLDS) waiting.push([byte, isGarbled]);
+    if (!isFull()) show([byte, isGarbled]);
+    else if (waitingBytes.length + 1 < CAPACITY) waitingBytes.push([byte, isGarbled]);
     else return false;
     return true;
   };

@@ -1,7 +1,7 @@
 // An oscilloscope on the UNO's pins.
 
 /** Arduino's number of each port's bit 0: D0 to D7, D8 to D13, and 14 to 19 for A0 to A5. */
-const FIRST = { D: 0, B: 8, C: 14 };
+const FIRST_PIN = { D: 0, B: 8, C: 14 };
 
 export class Scope {
   /** Watches the ports of an Uno; calls `onPulse(pin, rise, width)` when a pulse has ended. */
@@ -10,7 +10,7 @@ export class Scope {
     const changes = [];
     for (const [name, port] of Object.entries(uno.ports)) {
       port.addListener((now, before) => {
-        changes.push({ first: FIRST[name], now, before });
+        changes.push({ first: FIRST_PIN[name], now, before });
         uno.hasChanged = true;
       });
     }

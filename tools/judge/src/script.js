@@ -11,21 +11,21 @@ export function read(text) {
   let end;
   text.split('\n').forEach((line, index) => {
     if (line === '') return;
-    const wrong = (what) => new Error(`line ${index + 1} of the script ${what}: ${JSON.stringify(line)}`);
-    if (end !== undefined) throw wrong('comes after the end');
+    const errorOf = (problem) => new Error(`line ${index + 1} of the script ${problem}: ${JSON.stringify(line)}`);
+    if (end !== undefined) throw errorOf('comes after the end');
     const [, pin, mv] = /^analogue (1[4-9]) (\d+)$/.exec(line) ?? [];
     if (pin !== undefined) {
       analogue.push({ channel: pin - 14, volts: mv / 1000 });
       return;
     }
     const match = /^(\d+) ([0-9a-f]{2})$|^end (\d+)$/.exec(line);
-    if (!match) throw wrong('is none of `analogue <pin> <mV>`, `<cycle> <hex byte>` and `end <cycle>`');
+    if (!match) throw errorOf('is none of `analogue <pin> <mV>`, `<cycle> <hex byte>` and `end <cycle>`');
     if (match[3] !== undefined) {
       end = Number(match[3]);
       return;
     }
     const cycle = Number(match[1]);
-    if (cycle < (bytes.at(-1)?.cycle ?? 0)) throw wrong('is earlier than the one before');
+    if (cycle < (bytes.at(-1)?.cycle ?? 0)) throw errorOf('is earlier than the one before');
     bytes.push({ cycle, byte: parseInt(match[2], 16) });
   });
   if (end === undefined) throw new Error('the script has no `end <cycle>`');

@@ -8,27 +8,27 @@ const COMMAND = 0x1f;
 const FILL = 0x01;
 const ERASE = 0x03;
 const WRITE = 0x05;
-const PAGE = 128;
+const PAGE_BYTES = 128;
 const Z = 30;
 
 export function selfProgramming(uno) {
   const { flash } = uno;
-  const page = new Uint8Array(PAGE).fill(0xff);
+  const page = new Uint8Array(PAGE_BYTES).fill(0xff);
   const execute = (cpu) => {
     const { data } = cpu;
     avrInstruction(cpu);
     const address = data[Z] | (data[Z + 1] << 8);
-    const start = address & ~(PAGE - 1) & (flash.length - 1);
+    const start = address & ~(PAGE_BYTES - 1) & (flash.length - 1);
     switch (data[SPMCSR] & COMMAND) {
       case FILL:
-        page.set(data.subarray(0, 2), address & (PAGE - 2));
+        page.set(data.subarray(0, 2), address & (PAGE_BYTES - 2));
         break;
       case ERASE:
-        flash.fill(0xff, start, start + PAGE);
+        flash.fill(0xff, start, start + PAGE_BYTES);
         break;
       case WRITE:
         // A cell can only be cleared; a set bit needs an erase.
-        page.forEach((byte, at) => (flash[start + at] &= byte));
+        page.forEach((byte, index) => (flash[start + index] &= byte));
         page.fill(0xff);
         break;
     }

@@ -3,7 +3,7 @@
 // That changes nothing but the speed; a test compares the two.
 
 /** Returns the cycle at which a running timer next sets a flag or wraps. */
-function nextFlag(timer) {
+function nextFlagCycle(timer) {
   const { tcnt, TOP, lastCycle, divider } = timer;
   let ticks = TOP + 1 - tcnt;
   for (const compare of [timer.ocrA, timer.ocrB]) {
@@ -19,8 +19,8 @@ export function wakeTimersAtTheirFlags({ cpu, timers }) {
   const addClockEvent = cpu.addClockEvent.bind(cpu);
   cpu.addClockEvent = (callback, cycles) => {
     const timer = timerOf.get(callback);
-    const steady = timer?.divider && !timer.updateDivider && !timer.tcntUpdated;
-    return addClockEvent(callback, steady ? nextFlag(timer) - cpu.cycles : cycles);
+    const isSteady = timer?.divider && !timer.updateDivider && !timer.tcntUpdated;
+    return addClockEvent(callback, isSteady ? nextFlagCycle(timer) - cpu.cycles : cycles);
   };
   for (const timer of timers) {
     const { OCRA, OCRB, TCNT, TCCRA, ICR } = timer.config;
@@ -28,9 +28,9 @@ export function wakeTimersAtTheirFlags({ cpu, timers }) {
       const write = cpu.writeHooks[register];
       cpu.writeHooks[register] = (...args) => {
         if (timer.divider) timer.count(false);
-        const done = write(...args);
+        const isWritten = write(...args);
         if (timer.divider) cpu.updateClockEvent(timer.count, 1);
-        return done;
+        return isWritten;
       };
     }
   }

@@ -22,13 +22,13 @@ import {
   watchdogConfig,
 } from 'avr8js';
 
-const FREQUENCY = 16_000_000;
+const FREQUENCY_HZ = 16_000_000;
 const FLASH_WORDS = 16 * 1024;
-const SRAM = 2048;
-const EEPROM = 1024;
+const SRAM_BYTES = 2048;
+const EEPROM_BYTES = 1024;
 
 /** Erase and write, 3.4 ms together (data sheet, table 8-2): half for each, since avr8js adds them. */
-const EEPROM_CYCLES = (3.4e-3 * FREQUENCY) / 2;
+const EEPROM_CYCLES = (3.4e-3 * FREQUENCY_HZ) / 2;
 
 const MCUSR = 0x54;
 const SREG = 0x5f;
@@ -39,9 +39,9 @@ const RXC = 0x80;
 export class Uno {
   /** Makes a board at power-on, with these corrections of avr8js and an empty flash. */
   constructor(corrections) {
-    const words = new Uint16Array(FLASH_WORDS).fill(0xffff);
-    this.flash = new Uint8Array(words.buffer);
-    const cpu = new CPU(words, SRAM);
+    const flashWords = new Uint16Array(FLASH_WORDS).fill(0xffff);
+    this.flash = new Uint8Array(flashWords.buffer);
+    const cpu = new CPU(flashWords, SRAM_BYTES);
     this.cpu = cpu;
     this.ports = {
       B: new AVRIOPort(cpu, portBConfig),
@@ -50,14 +50,14 @@ export class Uno {
     };
     const timers = [timer0Config, timer1Config, timer2Config];
     this.timers = timers.map((config) => new AVRTimer(cpu, config));
-    this.usart = new AVRUSART(cpu, usart0Config, FREQUENCY);
+    this.usart = new AVRUSART(cpu, usart0Config, FREQUENCY_HZ);
     this.adc = new AVRADC(cpu, adcConfig);
     const cycles = { eraseCycles: EEPROM_CYCLES, writeCycles: EEPROM_CYCLES };
-    const memory = new EEPROMMemoryBackend(EEPROM);
+    const memory = new EEPROMMemoryBackend(EEPROM_BYTES);
     this.eeprom = new AVREEPROM(cpu, memory, { ...eepromConfig, ...cycles });
     /** The contents of the EEPROM, bytes. */
     this.memory = memory.memory;
-    new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY));
+    new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY_HZ));
     cpu.data[MCUSR] = PORF;
     // avr8js resets the processor alone and leaves every peripheral as it was.
     cpu.reset = () => {
@@ -80,17 +80,17 @@ export class Uno {
   }
 
   /** Executes the instructions whose opcode passes a test by `execute(cpu)`. Only these cost more time than avr8js itself. */
-  executeBy(execute, passes) {
-    const number = this.executors.push(execute) - 1;
-    for (let opcode = 0; opcode <= 0xffff; opcode++) if (passes(opcode)) this.executorOf[opcode] = number;
+  executeBy(execute, matches) {
+    const index = this.executors.push(execute) - 1;
+    for (let opcode = 0; opcode <= 0xffff; opcode++) if (matches(opcode)) this.executorOf[opcode] = index;
   }
 
   /** Runs to a cycle, or an instruction farther. */
-  run(until) {
+  run(endCycle) {
     const { cpu, executors, executorOf } = this;
     const { data, progMem } = cpu;
-    this.until = until;
-    while (cpu.cycles < until) {
+    this.until = endCycle;
+    while (cpu.cycles < endCycle) {
       if (this.sleep !== null) {
         this.sleep();
       } else {
@@ -112,7 +112,7 @@ export class Uno {
   deliver(bytes) {
     const { cpu, usart } = this;
     const queue = bytes.values();
-    const next = () => {
+    const deliverNext = () => {
       const { value } = queue.next();
       if (value === undefined) return;
       const arrive = () => {
@@ -121,10 +121,10 @@ export class Uno {
           throw new Error(`at cycle ${cpu.cycles} a byte comes before the last was read, which avr8js does not simulate`);
         }
         usart.writeByte(value.byte, true);
-        next();
+        deliverNext();
       };
       cpu.addClockEvent(arrive, value.cycle - cpu.cycles);
     };
-    next();
+    deliverNext();
   }
 }

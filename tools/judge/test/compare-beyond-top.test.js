@@ -22,12 +22,12 @@ const OCF1A = 2;
 const OCF1B = 4;
 
 test('a compare value beyond the top never matches', () => {
-  const flags = (corrections, compare) => run(corrections, program(compare), 1000).cpu.data[20];
-  for (const beyond of [100, 1000, 0xffff]) {
-    assert.equal(flags([], beyond), OCF1A | OCF1B, fixed('compare-beyond-top.js'));
-    assert.equal(flags([compareBeyondTop], beyond), OCF1A);
+  const flagsOf = (corrections, compare) => run(corrections, program(compare), 1000).cpu.data[20];
+  for (const value of [100, 1000, 0xffff]) {
+    assert.equal(flagsOf([], value), OCF1A | OCF1B, fixed('compare-beyond-top.js'));
+    assert.equal(flagsOf([compareBeyondTop], value), OCF1A);
   }
-  for (const within of [0, 1, 50, 98, 99]) {
-    assert.equal(flags([compareBeyondTop], within), OCF1A | OCF1B);
+  for (const value of [0, 1, 50, 98, 99]) {
+    assert.equal(flagsOf([compareBeyondTop], value), OCF1A | OCF1B);
   }
 });

@@ -19,7 +19,7 @@ const program = `
     rjmp stop`;
 
 test('the transmit interrupt comes again until a byte is written', () => {
-  const calls = (corrections) => run(corrections, program, 200).cpu.data[16];
-  assert.equal(calls([]), 1, fixed('data-register-empty.js'));
-  assert.ok(calls([dataRegisterEmpty]) > 10);
+  const callCount = (corrections) => run(corrections, program, 200).cpu.data[16];
+  assert.equal(callCount([]), 1, fixed('data-register-empty.js'));
+  assert.ok(callCount([dataRegisterEmpty]) > 10);
 });

@@ -23,7 +23,7 @@ const program = `
 
 test('the EEPROM interrupt waits until a byte is written', () => {
   // 3.4 ms for each.
-  const calls = (corrections) => run(corrections, program, 160_000).cpu.data[20];
-  assert.ok(calls([]) > 3, fixed('eeprom-ready.js'));
-  assert.equal(calls([eepromReady]), 3);
+  const callCount = (corrections) => run(corrections, program, 160_000).cpu.data[20];
+  assert.ok(callCount([]) > 3, fixed('eeprom-ready.js'));
+  assert.equal(callCount([eepromReady]), 3);
 });

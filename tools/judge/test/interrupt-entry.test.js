@@ -23,12 +23,12 @@ const program = `
     rjmp stop`;
 
 /** Cycles of the entry: between the readings there are also LDS, 2, and SEI, 1. */
-function entry(corrections) {
+function entryCycles(corrections) {
   const { data } = run(corrections, program, 100).cpu;
   return data[17] - data[16] - 3;
 }
 
 test('an interrupt is entered in four cycles', () => {
-  assert.equal(entry([]), 2, fixed('interrupt-entry.js'));
-  assert.equal(entry([interruptEntry]), 4);
+  assert.equal(entryCycles([]), 2, fixed('interrupt-entry.js'));
+  assert.equal(entryCycles([interruptEntry]), 4);
 });

@@ -35,13 +35,13 @@ const program = (switchOn) => `
   stop:
     rjmp stop`;
 
-const seen = (corrections, switchOn) => run(corrections, program(switchOn), 100).cpu.data.slice(20, 22);
+const countsSeen = (corrections, switchOn) => run(corrections, program(switchOn), 100).cpu.data.slice(20, 22);
 
 // 0x5f is SREG's address as a store has it.
-const toSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
-for (const switchOn of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', `${toSreg} std Z+1, r18`, `${toSreg} inc r30\n st Z, r18`]) {
+const pointZAtSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
+for (const switchOn of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', `${pointZAtSreg} std Z+1, r18`, `${pointZAtSreg} inc r30\n st Z, r18`]) {
   test(`one instruction runs between \`${switchOn}\` and an interrupt, and one between two interrupts`, () => {
-    assert.deepEqual([...seen([], switchOn)], [0, 0], fixed('interrupt-waits.js'));
-    assert.deepEqual([...seen([interruptWaits], switchOn)], [1, 2]);
+    assert.deepEqual([...countsSeen([], switchOn)], [0, 0], fixed('interrupt-waits.js'));
+    assert.deepEqual([...countsSeen([interruptWaits], switchOn)], [1, 2]);
   });
 }

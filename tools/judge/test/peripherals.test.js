@@ -5,10 +5,10 @@ import test from 'node:test';
 import { corrections } from '../src/corrections/index.js';
 import { run, uno } from './program.js';
 
-const MS = 16_000;
+const CYCLES_PER_MS = 16_000;
 
 /** Writes r16 to EEPROM address 5, counts in r24 and r25 while EEPE is up, and reads it back to r17. */
-const WRITE = `
+const WRITE_PROGRAM = `
     ldi r16, 0x5a
     ldi r18, 5
     out 0x21, r18     ; EEARL
@@ -25,18 +25,18 @@ const WRITE = `
     rjmp stop`;
 
 test('a byte of EEPROM takes 3.4 ms to write, and can be read back', () => {
-  const board = run(corrections, WRITE, 5 * MS);
+  const board = run(corrections, WRITE_PROGRAM, 5 * CYCLES_PER_MS);
   const { data } = board.cpu;
   // A turn of the loop takes five cycles.
-  const busy = (data[24] + 256 * data[25]) * 5;
-  assert.ok(Math.abs(busy - 3.4 * MS) < 20, `${busy} cycles`);
+  const busyCycles = (data[24] + 256 * data[25]) * 5;
+  assert.ok(Math.abs(busyCycles - 3.4 * CYCLES_PER_MS) < 20, `${busyCycles} cycles`);
   assert.equal(data[17], 0x5a);
   assert.deepEqual([...board.eeprom.backend.memory.slice(4, 7)], [0xff, 0x5a, 0xff]);
 });
 
 test('EEPE without EEMPE just before writes nothing', () => {
-  const late = WRITE.replace('sbi 0x1f, 1 ', 'nop\n nop\n nop\n nop\n sbi 0x1f, 1 ');
-  assert.equal(run(corrections, late, 5 * MS).eeprom.backend.memory[5], 0xff);
+  const lateProgram = WRITE_PROGRAM.replace('sbi 0x1f, 1 ', 'nop\n nop\n nop\n nop\n sbi 0x1f, 1 ');
+  assert.equal(run(corrections, lateProgram, 5 * CYCLES_PER_MS).eeprom.backend.memory[5], 0xff);
 });
 
 test('the bandgap against 5 V reads 225', () => {
@@ -53,14 +53,14 @@ test('the bandgap against 5 V reads 225', () => {
       lds r18, 0x78     ; ADCL
       lds r19, 0x79     ; ADCH
     stop:
-      rjmp stop`, MS).cpu;
+      rjmp stop`, CYCLES_PER_MS).cpu;
   assert.equal(data[18] + 256 * data[19], 225);
   // The first conversion takes 25 cycles of its clock; a turn of the loop takes seven.
   assert.ok(Math.abs((data[24] + 256 * data[25]) * 7 - 25 * 128) < 20);
 });
 
 /** The watchdog at 16 ms, interrupt and reset; the handler counts in r20 and leaves WDIE off. */
-const watchdog = (loop) => `
+const watchdogProgram = (loop) => `
     jmp main
     _LOC 0x18         ; WDT
     inc r20
@@ -77,17 +77,17 @@ const watchdog = (loop) => `
     rjmp again`;
 
 test('a watchdog that is fed is silent', () => {
-  assert.equal(run(corrections, watchdog('wdr'), 100 * MS).cpu.data[20], 0);
+  assert.equal(run(corrections, watchdogProgram('wdr'), 100 * CYCLES_PER_MS).cpu.data[20], 0);
 });
 
 test('a watchdog that is not fed interrupts after 16 ms', () => {
-  assert.equal(run(corrections, watchdog('nop'), 15 * MS).cpu.data[20], 0);
-  assert.equal(run(corrections, watchdog('nop'), 17 * MS).cpu.data[20], 1);
+  assert.equal(run(corrections, watchdogProgram('nop'), 15 * CYCLES_PER_MS).cpu.data[20], 0);
+  assert.equal(run(corrections, watchdogProgram('nop'), 17 * CYCLES_PER_MS).cpu.data[20], 1);
 });
 
 test('a watchdog reset ends the run, because avr8js resets the processor alone', () => {
-  const board = uno(corrections, watchdog('nop'));
-  assert.throws(() => board.run(40 * MS), /^Error: the watchdog resets the UNO at cycle 51\d{4}, /);
+  const board = uno(corrections, watchdogProgram('nop'));
+  assert.throws(() => board.run(40 * CYCLES_PER_MS), /^Error: the watchdog resets the UNO at cycle 51\d{4}, /);
 });
 
 test('a byte that would overrun the last one ends the run', () => {

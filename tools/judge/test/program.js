@@ -7,9 +7,9 @@ import { Uno } from '../src/uno.js';
 export function uno(corrections, source) {
   const { bytes, errors } = assembler.assemble(source);
   if (errors.length > 0) throw new Error(`the program is wrong: ${JSON.stringify(errors)}`);
-  const uno = new Uno(corrections);
-  uno.flash.set(bytes);
-  return uno;
+  const board = new Uno(corrections);
+  board.flash.set(bytes);
+  return board;
 }
 
 /** Runs a program for some cycles and returns the Uno. */

@@ -26,9 +26,9 @@ const program = (erase) => `
     rjmp stop`;
 
 test('a page is filled, erased and written', () => {
-  const words = (corrections) => run(corrections, program(true), 100).cpu.progMem.subarray(0x100, 0x102);
-  assert.equal(words([])[0], 0xffff, 'avr8js itself can do it now: self-programming.js can go');
-  assert.deepEqual([...words([selfProgramming])], [0x1234, 0xffff]);
+  const wordsAfter = (corrections) => run(corrections, program(true), 100).cpu.progMem.subarray(0x100, 0x102);
+  assert.equal(wordsAfter([])[0], 0xffff, 'avr8js itself can do it now: self-programming.js can go');
+  assert.deepEqual([...wordsAfter([selfProgramming])], [0x1234, 0xffff]);
 });
 
 test('SPMCSR reports that the operation is done', () => {
@@ -36,9 +36,9 @@ test('SPMCSR reports that the operation is done', () => {
 });
 
 test('a write without an erase only clears bits', () => {
-  const twice = (board) => {
+  const programUsedByte = (board) => {
     board.flash[0x200] = 0xf0;
     selfProgramming(board);
   };
-  assert.equal(run([twice], program(false), 100).cpu.progMem[0x100] & 0xff, 0x30);
+  assert.equal(run([programUsedByte], program(false), 100).cpu.progMem[0x100] & 0xff, 0x30);
 });

@@ -34,9 +34,9 @@ const program = (wait, mode) => `
     rjmp again`;
 
 test('SLEEP lasts until an interrupt', () => {
-  const loops = (corrections) => run(corrections, program('sleep', 1), 400).cpu.data[21];
-  assert.notEqual(loops([]), 0, fixed('sleep.js'));
-  assert.equal(loops([sleep]), 0);
+  const loopCount = (corrections) => run(corrections, program('sleep', 1), 400).cpu.data[21];
+  assert.notEqual(loopCount([]), 0, fixed('sleep.js'));
+  assert.equal(loopCount([sleep]), 0);
 });
 
 test('SLEEP does nothing unless SE is set', () => {
@@ -52,11 +52,11 @@ test('an interrupt takes eight cycles from sleep', () => {
 test('sleep is simulated event by event, not cycle by cycle', () => {
   const board = uno([interruptEntry, interruptWaits, sleep], 'ldi r16, 1\n out 0x33, r16\n sei\n sleep\n');
   let steps = 0;
-  let pass = null;
+  let passTime = null;
   Object.defineProperty(board, 'sleep', {
-    get: () => pass,
+    get: () => passTime,
     set: (sleep) => {
-      pass = () => {
+      passTime = () => {
         steps += 1;
         sleep();
       };

@@ -53,8 +53,8 @@ for (const [name, mode] of [['normal mode', 0], ['clear on match', 8]]) {
         return board;
       });
       const [slow, fast] = boards.map(({ cpu }) => ({ cycles: cpu.cycles, data: [...cpu.data] }));
-      const kept = slow.data[26] + 256 * slow.data[27] - 0x100;
-      assert.ok(kept > 1, `${kept} values`);
+      const valueCount = slow.data[26] + 256 * slow.data[27] - 0x100;
+      assert.ok(valueCount > 1, `${valueCount} values`);
       assert.deepEqual(fast, slow);
     });
   }

@@ -20,7 +20,7 @@ const program = (control) => `
   stop:
     rjmp stop`;
 
-function status(corrections, control) {
+function waitingFlag(corrections, control) {
   const board = uno(corrections, program(control));
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   board.run(200);
@@ -30,8 +30,8 @@ function status(corrections, control) {
 }
 
 test('a waiting byte survives a write of UCSR0B if the receiver stays on', () => {
-  assert.equal(status([], 0x18), 0, fixed('waiting-byte.js'));
-  assert.equal(status([waitingByte], 0x18), 1);
+  assert.equal(waitingFlag([], 0x18), 0, fixed('waiting-byte.js'));
+  assert.equal(waitingFlag([waitingByte], 0x18), 1);
 });
 
 test('the interrupt of a waiting byte stays pending, too', () => {

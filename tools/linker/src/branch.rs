@@ -13,31 +13,31 @@ use crate::edit::{Edit, Reference};
 use crate::instruction::{is_branch, is_rjmp, may_skip_next};
 
 /// Distance that a branch certainly reaches, bytes. Later edits never increase a distance.
-const REACH: u64 = 2 * 60;
+const REACH_BYTES: u64 = 2 * 60;
 
 /// Returns the edit that replaces the first branch over a jump, where nothing else refers to that jump;
-/// `None` if there is no such branch. `place` gives the offset of a reference's target if the target is in
+/// `None` if there is no such branch. `offset_of` gives the offset of a reference's target if the target is in
 /// this code; `targets` are the offsets that something refers to.
 pub fn edit(
     code: &Code,
     targets: &[u64],
-    place: &dyn Fn(&Reference) -> Option<u64>,
+    offset_of: &dyn Fn(&Reference) -> Option<u64>,
 ) -> Option<Edit> {
     code.instructions
         .windows(2)
         .enumerate()
         .find_map(|(index, pair)| {
             let [branch, jump] = pair else { return None };
-            let skipped = index > 0 && may_skip_next(code.instructions[index - 1].code);
-            if skipped || !is_branch(branch.code) || !is_rjmp(jump.code) {
+            let may_be_skipped = index > 0 && may_skip_next(code.instructions[index - 1].code);
+            if may_be_skipped || !is_branch(branch.code) || !is_rjmp(jump.code) {
                 return None;
             }
-            let next = jump.offset + 2;
-            let over = place(code.reference(branch.offset)?)?;
-            let there = code.reference(jump.offset)?;
-            let target = place(there)?;
-            if over != next
-                || target.abs_diff(branch.offset) > REACH
+            let next_offset = jump.offset + 2;
+            let branch_target = offset_of(code.reference(branch.offset)?)?;
+            let reference = code.reference(jump.offset)?;
+            let target = offset_of(reference)?;
+            if branch_target != next_offset
+                || target.abs_diff(branch.offset) > REACH_BYTES
                 || targets.contains(&jump.offset)
             {
                 return None;
@@ -50,7 +50,7 @@ pub fn edit(
                 references: vec![Reference {
                     offset: 0,
                     kind: elf::R_AVR_7_PCREL,
-                    ..*there
+                    ..*reference
                 }],
             })
         })

@@ -27,25 +27,31 @@ impl Code {
     /// Decodes the code; `None` if a jump in it has no relocation, because then its target is
     /// unknown and nothing may be moved.
     pub fn read(bytes: &[u8], references: Vec<Reference>) -> Option<Self> {
-        let word = |at: usize| Some(u16::from_le_bytes([*bytes.get(at)?, *bytes.get(at + 1)?]));
+        let word = |index: usize| {
+            Some(u16::from_le_bytes([
+                *bytes.get(index)?,
+                *bytes.get(index + 1)?,
+            ]))
+        };
         let mut instructions = Vec::new();
-        let mut at = 0;
-        while at < bytes.len() {
-            let code = word(at)?;
+        let mut index = 0;
+        while index < bytes.len() {
+            let code = word(index)?;
             instructions.push(PlacedInstruction {
-                offset: at as u64,
+                offset: index as u64,
                 code,
             });
-            at += if is_two_words(code) { 4 } else { 2 };
+            index += if is_two_words(code) { 4 } else { 2 };
         }
         let code = Self {
             instructions,
             references,
             size: bytes.len() as u64,
         };
-        let known =
-            |at: &PlacedInstruction| !is_relative(at.code) || code.reference(at.offset).is_some();
-        let is_valid = at == bytes.len() && code.instructions.iter().all(known);
+        let has_known_target = |instruction: &PlacedInstruction| {
+            !is_relative(instruction.code) || code.reference(instruction.offset).is_some()
+        };
+        let is_valid = index == bytes.len() && code.instructions.iter().all(has_known_target);
         is_valid.then_some(code)
     }
 
@@ -58,7 +64,9 @@ impl Code {
 
     /// Returns the first word of each instruction from the instruction with this index on.
     pub fn words(&self, index: usize) -> impl Iterator<Item = u16> {
-        self.instructions[index..].iter().map(|at| at.code)
+        self.instructions[index..]
+            .iter()
+            .map(|instruction| instruction.code)
     }
 
     /// Returns the offset in bytes of the instruction with this index, or the size of the code if the index is
@@ -66,6 +74,6 @@ impl Code {
     pub fn offset(&self, index: usize) -> u64 {
         self.instructions
             .get(index)
-            .map_or(self.size, |at| at.offset)
+            .map_or(self.size, |instruction| instruction.offset)
     }
 }

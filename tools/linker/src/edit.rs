@@ -16,7 +16,7 @@ pub struct Reference {
     pub addend: i64,
 }
 
-/// A replacement of the bytes from `at` on.
+/// A replacement of the bytes from `offset` on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
     /// Bytes from the beginning of the code.
@@ -57,11 +57,11 @@ impl Edits {
     /// Orders the edits; `None` if two overlap or one covers an offset that something refers to.
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
         edits.sort_by_key(|edit| edit.offset);
-        let apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
-        let keep_targets = !targets
+        let are_apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
+        let are_targets_kept = !targets
             .iter()
             .any(|target| edits.iter().any(|edit| edit.covers(*target)));
-        (apart && keep_targets).then_some(Self(edits))
+        (are_apart && are_targets_kept).then_some(Self(edits))
     }
 
     /// Returns the number of bytes that the edits save.
@@ -71,47 +71,49 @@ impl Edits {
 
     /// Returns the new offset of the code that was at `offset`.
     pub fn new_offset(&self, offset: u64) -> u64 {
-        let before = self
+        let earlier_edits = self
             .0
             .iter()
             .filter(|edit| edit.offset < offset && edit.end() <= offset);
-        offset.wrapping_add_signed(-before.map(Edit::gain).sum::<i64>())
+        offset.wrapping_add_signed(-earlier_edits.map(Edit::gain).sum::<i64>())
     }
 
     /// Returns the edited code.
     pub fn bytes(&self, old: &[u8]) -> Vec<u8> {
-        let mut new = Vec::with_capacity(old.len());
-        let mut done = 0;
+        let mut new_bytes = Vec::with_capacity(old.len());
+        let mut copied_end = 0;
         for edit in &self.0 {
-            new.extend_from_slice(&old[done..edit.offset as usize]);
-            new.extend(edit.insert.iter().flat_map(|word| word.to_le_bytes()));
-            done = edit.end() as usize;
+            new_bytes.extend_from_slice(&old[copied_end..edit.offset as usize]);
+            new_bytes.extend(edit.insert.iter().flat_map(|word| word.to_le_bytes()));
+            copied_end = edit.end() as usize;
         }
-        new.extend_from_slice(&old[done..]);
-        new
+        new_bytes.extend_from_slice(&old[copied_end..]);
+        new_bytes
     }
 
     /// Returns the references of the edited code, with new offsets but old addends.
     pub fn references(&self, old: &[Reference]) -> Vec<Reference> {
-        let inside = |offset: u64| {
-            let holds = |edit: &Edit| edit.offset <= offset && offset < edit.end();
-            self.0.iter().any(holds)
+        let is_replaced = |offset: u64| {
+            let contains_offset = |edit: &Edit| edit.offset <= offset && offset < edit.end();
+            self.0.iter().any(contains_offset)
         };
-        let kept = old.iter().filter(|reference| !inside(reference.offset));
-        let kept = kept.map(|reference| Reference {
+        let kept_references = old
+            .iter()
+            .filter(|reference| !is_replaced(reference.offset));
+        let kept_references = kept_references.map(|reference| Reference {
             offset: self.new_offset(reference.offset),
             ..*reference
         });
-        let new = self.0.iter().flat_map(|edit| {
+        let new_references = self.0.iter().flat_map(|edit| {
             let start = self.new_offset(edit.offset);
-            let at_its_place = move |reference: &Reference| Reference {
+            let move_reference = move |reference: &Reference| Reference {
                 offset: start + reference.offset,
                 ..*reference
             };
-            edit.references.iter().map(at_its_place)
+            edit.references.iter().map(move_reference)
         });
-        let mut all: Vec<Reference> = kept.chain(new).collect();
-        all.sort_by_key(|reference| reference.offset);
-        all
+        let mut references: Vec<Reference> = kept_references.chain(new_references).collect();
+        references.sort_by_key(|reference| reference.offset);
+        references
     }
 }

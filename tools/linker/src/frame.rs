@@ -46,7 +46,7 @@ use crate::instruction::{
 };
 
 /// The call-saved registers, in the order in which they are pushed.
-const SAVED: [u8; 18] = [
+const CALL_SAVED: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
@@ -79,16 +79,20 @@ impl Frame {
     /// Recognizes the frame of a function; `None` if the frame has none of the known forms.
     pub fn of(code: &Code) -> Option<Self> {
         let registers: Vec<u8> = code.words(0).map_while(pushed_register).collect();
-        let ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
+        let is_ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
         let lowest = *registers.first()?;
-        if !ascending || !registers.iter().all(|register| SAVED.contains(register)) {
+        if !is_ascending
+            || !registers
+                .iter()
+                .all(|register| CALL_SAVED.contains(register))
+        {
             return None;
         }
-        let (room, words) = match room(code, registers.len()) {
-            Some((room, words)) => (room, words),
+        let (room, room_length) = match prologue_room(code, registers.len()) {
+            Some((room, room_length)) => (room, room_length),
             None => (0, 0),
         };
-        let has_room = words > 0;
+        let has_room = room_length > 0;
         if has_room && !registers.ends_with(&[28, 29]) {
             return None;
         }
@@ -97,21 +101,21 @@ impl Frame {
         let is_known = |register: &u8| *register >= FIRST_REGISTERS[first];
         let is_same = registers
             .iter()
-            .eq(SAVED.iter().filter(|register| is_known(register)));
-        let body = registers.len() + words;
-        let mut ends = Vec::new();
+            .eq(CALL_SAVED.iter().filter(|register| is_known(register)));
+        let body = registers.len() + room_length;
+        let mut epilogue_spans = Vec::new();
         let mut index = body;
         // Every use of the stack pointer and every pop has to belong to an epilogue.
-        while let Some(at) = code.instructions.get(index) {
-            if let Some(words) = epilogue_length(code, index, &registers, room, has_room) {
+        while let Some(instruction) = code.instructions.get(index) {
+            if let Some(length) = epilogue_length(code, index, &registers, room, has_room) {
                 let start = code.offset(index);
-                ends.push((start, code.offset(index + words) - start));
-                index += words;
-            } else if accesses_stack_pointer(at.code)
-                || popped_register(at.code).is_some()
-                || pushed_register(at.code).is_some()
-                || at.code == RET
-                || at.code == RETI
+                epilogue_spans.push((start, code.offset(index + length) - start));
+                index += length;
+            } else if accesses_stack_pointer(instruction.code)
+                || popped_register(instruction.code).is_some()
+                || pushed_register(instruction.code).is_some()
+                || instruction.code == RET
+                || instruction.code == RETI
                 || has_room && !is_same && !is_local(code, index, room)
             {
                 return None;
@@ -123,16 +127,16 @@ impl Frame {
             first,
             room,
             prologue_size: code.offset(body),
-            epilogues: ends,
+            epilogues: epilogue_spans,
         })
     }
 
     /// Returns the edits that make the function use the shared routines.
     pub fn edits(&self, routines: Routines) -> Vec<Edit> {
-        let replace = |at, remove, code, symbol| Edit {
-            offset: at,
+        let replace = |offset, remove, opcode, symbol| Edit {
+            offset,
             remove,
-            insert: vec![encode_ldi_r26(self.room), code, 0],
+            insert: vec![encode_ldi_r26(self.room), opcode, 0],
             references: vec![Reference {
                 offset: 2,
                 kind: elf::R_AVR_CALL,
@@ -144,7 +148,7 @@ impl Frame {
         edits.extend(
             self.epilogues
                 .iter()
-                .map(|(at, size)| replace(*at, *size, JMP, routines.restore)),
+                .map(|(offset, size)| replace(*offset, *size, JMP, routines.restore)),
         );
         edits
     }
@@ -152,15 +156,17 @@ impl Frame {
 
 /// Returns the room in bytes that a prologue makes below the registers, and the number of instructions that make
 /// it; `None` if no such instructions are at `index`.
-fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
+fn prologue_room(code: &Code, index: usize) -> Option<(u8, usize)> {
     let words: Vec<u16> = code.words(index).take(9).collect();
-    let (down, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
-    let (room, rest, count) = match (down, rest.split_first()) {
+    let (subtract_word, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
+    let (room, rest, count) = match (subtract_word, rest.split_first()) {
         // sbiw r28
-        (down, _) if down & 0xff30 == 0x9720 => (down >> 2 & 0x30 | down & 0x0f, rest, 8),
+        (subtract_word, _) if subtract_word & 0xff30 == 0x9720 => {
+            (subtract_word >> 2 & 0x30 | subtract_word & 0x0f, rest, 8)
+        }
         // subi r28 and sbci r29 with 0
-        (down, Some((0x40d0, rest))) if down & 0xf0f0 == 0x50c0 => {
-            (down >> 4 & 0xf0 | down & 0x0f, rest, 9)
+        (subtract_word, Some((0x40d0, rest))) if subtract_word & 0xf0f0 == 0x50c0 => {
+            (subtract_word >> 4 & 0xf0 | subtract_word & 0x0f, rest, 9)
         }
         _ => return None,
     };
@@ -214,13 +220,15 @@ fn epilogue_length(
     let mut count = 0;
     if has_room {
         let low = u16::from(room);
-        let less = low.wrapping_neg();
-        let up = words.next()?;
+        let negative_room = low.wrapping_neg();
+        let add_word = words.next()?;
         count += 1;
-        if up != 0x9620 | low << 2 & 0xc0 | low & 0x0f || room > 63 {
+        if add_word != 0x9620 | low << 2 & 0xc0 | low & 0x0f || room > 63 {
             // subi r28 and sbci r29
-            let high = 0x40d0 | 0x0f0f;
-            if up != 0x50c0 | less << 4 & 0x0f00 | less & 0x0f || words.next()? != high {
+            let expected_high = 0x40d0 | 0x0f0f;
+            if add_word != 0x50c0 | negative_room << 4 & 0x0f00 | negative_room & 0x0f
+                || words.next()? != expected_high
+            {
                 return None;
             }
             count += 1;

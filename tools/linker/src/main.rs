@@ -21,17 +21,17 @@ fn main() -> ExitCode {
 
 fn run() -> Result<ExitCode, String> {
     let mut arguments = Vec::new();
-    let mut written = Vec::new();
+    let mut written_files = Vec::new();
     for argument in std::env::args_os().skip(1) {
-        if let Some(short) = write_shortened(Path::new(&argument))? {
-            arguments.extend(short.iter().map(|path| path.clone().into_os_string()));
-            written.extend(short);
+        if let Some(paths) = write_shortened(Path::new(&argument))? {
+            arguments.extend(paths.iter().map(|path| path.clone().into_os_string()));
+            written_files.extend(paths);
         } else {
             arguments.push(argument);
         }
     }
     let status = Command::new("avr-gcc").args(arguments).status();
-    for path in written {
+    for path in written_files {
         // A temporary file that is left behind does no harm.
         let _ = fs::remove_file(path);
     }
@@ -50,7 +50,8 @@ fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);
     };
-    let Some((new, _)) = shrink(&file).map_err(|error| format!("{}: {error}", path.display()))?
+    let Some((new_object, _)) =
+        shrink(&file).map_err(|error| format!("{}: {error}", path.display()))?
     else {
         return Ok(None);
     };
@@ -62,6 +63,6 @@ fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     Ok(Some([
         // The routines come first, so that they are placed after `.lowtext` and before the rest.
         write("frames.S", ROUTINES.as_bytes())?,
-        write("short.o", &new)?,
+        write("short.o", &new_object)?,
     ]))
 }

@@ -17,8 +17,8 @@ mod layout;
 pub struct ShrinkError(object::build::Error);
 
 impl fmt::Display for ShrinkError {
-    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
-        write!(to, "the object file cannot be edited: {}", self.0)
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        write!(formatter, "the object file cannot be edited: {}", self.0)
     }
 }
 
@@ -65,9 +65,9 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
         }
     }
     savings.calls = object.order();
-    let mut new = Vec::new();
-    object.0.write(&mut new)?;
-    Ok(Some((new, savings)))
+    let mut new_file = Vec::new();
+    object.0.write(&mut new_file)?;
+    Ok(Some((new_file, savings)))
 }
 
 struct Object<'a>(Builder<'a>);
@@ -88,36 +88,36 @@ impl Object<'_> {
 
     /// Adds symbols for the routines of [`FIRST_REGISTERS`], which are in another object.
     fn add_routine_symbols(&mut self) -> Vec<Routines> {
-        let mut undefined = |name: String| {
+        let mut add_undefined = |name: String| {
             let symbol = self.0.symbols.add();
             symbol.name = name.into_bytes().into();
             symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
             symbol.id()
         };
-        let mut of = |first: &u8| Routines {
-            save: undefined(format!("__frame_save_{first}")),
-            restore: undefined(format!("__frame_restore_{first}")),
+        let mut routines_of = |first: &u8| Routines {
+            save: add_undefined(format!("__frame_save_{first}")),
+            restore: add_undefined(format!("__frame_restore_{first}")),
         };
-        FIRST_REGISTERS.iter().map(&mut of).collect()
+        FIRST_REGISTERS.iter().map(&mut routines_of).collect()
     }
 
     /// Returns the sections that hold one function each, in the order of the file, without interrupt
     /// handlers and assembly.
     fn functions(&self) -> Vec<SectionId> {
         let is_function = |section: &&Section| {
-            let mut functions = 0;
+            let mut function_count = 0;
             for symbol in &self.0.symbols {
                 if symbol.section != Some(section.id()) || symbol.st_type() == elf::STT_SECTION {
                     continue;
                 }
-                let is_all = symbol.st_value == 0 && symbol.st_size == section.sh_size;
+                let covers_section = symbol.st_value == 0 && symbol.st_size == section.sh_size;
                 let is_interrupt = symbol.name.starts_with(b"__vector");
-                if symbol.st_type() != elf::STT_FUNC || !is_all || is_interrupt {
+                if symbol.st_type() != elf::STT_FUNC || !covers_section || is_interrupt {
                     return false;
                 }
-                functions += 1;
+                function_count += 1;
             }
-            functions == 1 && section.name.starts_with(b".text.")
+            function_count == 1 && section.name.starts_with(b".text.")
         };
         self.0
             .sections
@@ -131,10 +131,11 @@ impl Object<'_> {
     fn references(&self, section: SectionId) -> Vec<Reference> {
         let mut references = Vec::new();
         for table in &self.0.sections {
-            if let (Some(of), SectionData::Relocation(all)) = (table.sh_info_section, &table.data)
-                && of == section
+            if let (Some(target_section), SectionData::Relocation(relocations)) =
+                (table.sh_info_section, &table.data)
+                && target_section == section
             {
-                references.extend(all.iter().filter_map(|relocation| {
+                references.extend(relocations.iter().filter_map(|relocation| {
                     Some(Reference {
                         offset: relocation.r_offset,
                         kind: relocation.r_type,
@@ -159,7 +160,7 @@ impl Object<'_> {
     }
 
     /// Returns the offset of a symbol plus an addend; `None` if the symbol is in another section.
-    fn place(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
+    fn symbol_offset(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
         let symbol = self.0.symbols.get(symbol);
         (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
     }
@@ -173,16 +174,16 @@ impl Object<'_> {
     fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
-            if let SectionData::Relocation(all) = &table.data {
-                let own = edit.filter(|_| table.sh_info_section == Some(section));
-                let places = all.iter().filter_map(|relocation| {
+            if let SectionData::Relocation(relocations) = &table.data {
+                let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
+                let offsets = relocations.iter().filter_map(|relocation| {
                     let offset = relocation.r_offset;
-                    let replaced =
-                        own.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
-                    let symbol = relocation.symbol.filter(|_| !replaced)?;
-                    self.place(section, symbol, relocation.r_addend)
+                    let is_replaced =
+                        own_edit.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
+                    let symbol = relocation.symbol.filter(|_| !is_replaced)?;
+                    self.symbol_offset(section, symbol, relocation.r_addend)
                 });
-                targets.extend(places);
+                targets.extend(offsets);
             }
         }
         targets
@@ -190,13 +191,13 @@ impl Object<'_> {
 
     /// Returns the edits of each function that gets shorter with shared prologues and epilogues.
     fn frame_edits(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
-        let edits = |section| {
+        let edits_of = |section| {
             let frame = Frame::of(&self.code(section)?)?;
             let edits = frame.edits(routines[frame.first]);
             let edits = Edits::new(edits, &self.targets(section))?;
             (edits.gain() > 0).then_some((section, edits))
         };
-        self.functions().into_iter().filter_map(edits).collect()
+        self.functions().into_iter().filter_map(edits_of).collect()
     }
 
     /// Returns the next edit that `edit` finds in a section; `None` if it finds no edit.
@@ -206,8 +207,9 @@ impl Object<'_> {
     {
         let code = self.code(section)?;
         let targets = self.targets(section);
-        let place = |reference: &Reference| self.place(section, reference.symbol, reference.addend);
-        let edit = edit(&code, &targets, &place)?;
+        let offset_of =
+            |reference: &Reference| self.symbol_offset(section, reference.symbol, reference.addend);
+        let edit = edit(&code, &targets, &offset_of)?;
         let targets = self.targets_without(section, Some(&edit));
         Edits::new(vec![edit], &targets)
     }
@@ -224,30 +226,30 @@ impl Object<'_> {
             .map(|symbol| (symbol.id(), symbol.st_value))
             .collect();
         // An addend changes by the difference between the shifts of its target and of its symbol.
-        let addend = |symbol: SymbolId, addend: i64| {
+        let new_addend = |symbol: SymbolId, addend: i64| {
             let value = values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
-                let place = value.wrapping_add_signed(addend);
+                let target = value.wrapping_add_signed(addend);
                 edits
-                    .new_offset(place)
+                    .new_offset(target)
                     .wrapping_sub(edits.new_offset(*value)) as i64
             })
         };
         for reference in &mut references {
-            reference.addend = addend(reference.symbol, reference.addend);
+            reference.addend = new_addend(reference.symbol, reference.addend);
         }
         for table in &mut self.0.sections {
-            let own = table.sh_info_section == Some(section);
-            let SectionData::Relocation(all) = &mut table.data else {
+            let is_own = table.sh_info_section == Some(section);
+            let SectionData::Relocation(relocations) = &mut table.data else {
                 continue;
             };
-            if own {
-                all.clear();
-                all.extend(references.iter().map(relocation));
+            if is_own {
+                relocations.clear();
+                relocations.extend(references.iter().map(relocation));
             } else {
-                for relocation in all {
+                for relocation in relocations {
                     if let Some(symbol) = relocation.symbol {
-                        relocation.r_addend = addend(symbol, relocation.r_addend);
+                        relocation.r_addend = new_addend(symbol, relocation.r_addend);
                     }
                 }
             }
@@ -258,9 +260,9 @@ impl Object<'_> {
             symbol.st_value = edits.new_offset(*value);
             symbol.st_size = end - symbol.st_value;
         }
-        let code = self.0.sections.get_mut(section);
-        code.sh_size = bytes.len() as u64;
-        code.data = SectionData::Data(bytes.into());
+        let code_section = self.0.sections.get_mut(section);
+        code_section.sh_size = bytes.len() as u64;
+        code_section.data = SectionData::Data(bytes.into());
     }
 }
 

@@ -9,7 +9,7 @@
 //! relocation, and no function falls through into the next.
 
 /// The reach of a relative call, bytes, less the error of the estimated sizes.
-const REACH: u32 = 4096 - 96;
+const REACH_BYTES: u32 = 4096 - 96;
 
 /// The cost of a call out of reach. Each byte beyond the reach adds 1, only to show the search in which
 /// direction an order improves.
@@ -53,53 +53,55 @@ impl Pieces {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
         let movable = self.sizes.len().saturating_sub(1);
         let mut random = fastrand::Rng::with_seed(SEED);
-        let mut now = self.cost(&order);
-        let (mut best, mut min) = (order.clone(), now);
-        for left in (0..TRIES).rev() {
-            if min == 0 || movable < 2 {
+        let mut current_cost = self.cost(&order);
+        let (mut best_order, mut best_cost) = (order.clone(), current_cost);
+        for tries_left in (0..TRIES).rev() {
+            if best_cost == 0 || movable < 2 {
                 break;
             }
-            let worse = u64::from(MAX_EXTRA_COST) * u64::from(left) / u64::from(TRIES);
+            let accepted_rise =
+                u64::from(MAX_EXTRA_COST) * u64::from(tries_left) / u64::from(TRIES);
             let [from, to] = [0; 2].map(|_| random.usize(..movable));
             move_piece(&mut order, from, to);
             let cost = self.cost(&order);
-            if cost > now + worse {
+            if cost > current_cost + accepted_rise {
                 move_piece(&mut order, to, from);
                 continue;
             }
-            now = cost;
-            if now < min {
-                (best, min) = (order.clone(), now);
+            current_cost = cost;
+            if current_cost < best_cost {
+                (best_order, best_cost) = (order.clone(), current_cost);
             }
         }
-        best
+        best_order
     }
 
     /// Returns the number of calls out of reach in an order.
     pub fn far_call_count(&self, order: &[usize]) -> usize {
         self.bytes_beyond_reach(order)
-            .filter(|beyond| *beyond > 0)
+            .filter(|bytes| *bytes > 0)
             .count()
     }
 
     /// Returns the cost of an order.
     fn cost(&self, order: &[usize]) -> u64 {
-        let far = self.bytes_beyond_reach(order).filter(|beyond| *beyond > 0);
-        far.map(|beyond| u64::from(OUT_OF_REACH_COST + beyond))
+        let far_distances = self.bytes_beyond_reach(order).filter(|bytes| *bytes > 0);
+        far_distances
+            .map(|bytes| u64::from(OUT_OF_REACH_COST + bytes))
             .sum()
     }
 
     /// Returns the number of bytes by which each call is out of reach; 0 within reach.
     fn bytes_beyond_reach(&self, order: &[usize]) -> impl Iterator<Item = u32> {
-        let mut places = vec![0; self.sizes.len()];
-        let mut place = 0;
+        let mut offsets = vec![0; self.sizes.len()];
+        let mut offset = 0;
         for piece in order {
-            places[*piece] = place;
-            place += self.sizes[*piece];
+            offsets[*piece] = offset;
+            offset += self.sizes[*piece];
         }
         self.calls.iter().map(move |call| {
-            let distance = (places[call.from] + call.offset).abs_diff(places[call.to]);
-            distance.saturating_sub(REACH)
+            let distance = (offsets[call.from] + call.offset).abs_diff(offsets[call.to]);
+            distance.saturating_sub(REACH_BYTES)
         })
     }
 }
@@ -145,8 +147,8 @@ mod tests {
     #[test]
     fn pieces_that_call_each_other_are_near_each_other_if_possible() {
         let pieces = pairs();
-        let compiled: Vec<usize> = (0..21).collect();
-        assert_eq!(pieces.far_call_count(&compiled), 11);
+        let compiled_order: Vec<usize> = (0..21).collect();
+        assert_eq!(pieces.far_call_count(&compiled_order), 11);
         assert_eq!(pieces.far_call_count(&pieces.find_order()), 0);
     }
 
@@ -155,15 +157,15 @@ mod tests {
         let order = pairs().find_order();
         assert_eq!(order, pairs().find_order());
         assert_eq!(order.last(), Some(&20));
-        let mut all = order;
-        all.sort_unstable();
-        assert_eq!(all, (0..21).collect::<Vec<_>>());
+        let mut sorted_order = order;
+        sorted_order.sort_unstable();
+        assert_eq!(sorted_order, (0..21).collect::<Vec<_>>());
     }
 
     #[test]
     fn no_piece_and_one_piece_have_an_order() {
         assert!(Pieces::default().find_order().is_empty());
-        let one = Pieces {
+        let pieces = Pieces {
             sizes: vec![9000, 0],
             calls: vec![Call {
                 from: 0,
@@ -171,7 +173,7 @@ mod tests {
                 to: 1,
             }],
         };
-        assert_eq!(one.find_order(), [0, 1]);
-        assert_eq!(one.far_call_count(&[0, 1]), 1);
+        assert_eq!(pieces.find_order(), [0, 1]);
+        assert_eq!(pieces.far_call_count(&[0, 1]), 1);
     }
 }

@@ -126,55 +126,54 @@ pub fn stored() -> Assumptions {
 /// # Panics
 /// If a displacement is missing.
 pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) -> String {
-    let on = Surface::ALL.map(|surface| {
-        let words = surface.to_string();
-        let of = GAITS.map(|gait| surfaces["paper"][gait][&words]);
-        (words, of)
+    let surface_rows = Surface::ALL.map(|surface| {
+        let description = surface.to_string();
+        let displacements = GAITS.map(|gait| surfaces["paper"][gait][&description]);
+        (description, displacements)
     });
-    let changed = Assumption::ALL.map(
-        |Assumption {
-             description: words, ..
-         }| {
-            let of = GAITS.map(|gait| assumptions[words][gait]);
-            (words.to_owned(), of)
-        },
-    );
-    let percent = |of: [Displacement; GAITS.len()]| {
-        let mut changes = of.into_iter().zip(GAITS).map(|(displacement, gait)| {
-            let level = surface::level_displacement(figures, gait);
-            let part = match level.0[0].abs() > level.0[2].abs() {
-                true => Part::Ahead,
-                false => Part::Turn,
-            };
-            100.0 * (part.value(displacement) / part.value(level) - 1.0)
-        });
+    let assumption_rows = Assumption::ALL.map(|Assumption { description, .. }| {
+        let displacements = GAITS.map(|gait| assumptions[description][gait]);
+        (description.to_owned(), displacements)
+    });
+    let percent_changes = |displacements: [Displacement; GAITS.len()]| {
+        let mut changes = displacements
+            .into_iter()
+            .zip(GAITS)
+            .map(|(displacement, gait)| {
+                let level = surface::level_displacement(figures, gait);
+                let part = match level.0[0].abs() > level.0[2].abs() {
+                    true => Part::Ahead,
+                    false => Part::Turn,
+                };
+                100.0 * (part.value(displacement) / part.value(level) - 1.0)
+            });
         std::array::from_fn(|_| changes.next().expect("one of each gait"))
     };
-    let largest = |changes: &[f64; GAITS.len()]| {
+    let largest_change = |changes: &[f64; GAITS.len()]| {
         changes
             .iter()
-            .fold(0.0, |largest: f64, of| largest.max(of.abs()))
+            .fold(0.0, |largest: f64, change| largest.max(change.abs()))
     };
-    let mut rows: Vec<(String, [f64; GAITS.len()])> = on
+    let mut rows: Vec<(String, [f64; GAITS.len()])> = surface_rows
         .into_iter()
-        .chain(changed)
-        .map(|(words, of)| (words, percent(of)))
+        .chain(assumption_rows)
+        .map(|(description, displacements)| (description, percent_changes(displacements)))
         .collect();
-    rows.sort_by(|(_, a), (_, b)| largest(b).total_cmp(&largest(a)));
-    let wide = rows
+    rows.sort_by(|(_, a), (_, b)| largest_change(b).total_cmp(&largest_change(a)));
+    let width = rows
         .iter()
-        .map(|(words, _)| words.len())
+        .map(|(description, _)| description.len())
         .fold(0, usize::max);
-    let mut text = format!("{:wide$}", "");
+    let mut text = format!("{:width$}", "");
     for gait in GAITS {
         _ = write!(text, "{gait:>10}");
     }
     text.push('\n');
     let (large, small): (Vec<_>, Vec<_>) = rows
         .into_iter()
-        .partition(|(_, changes)| largest(changes) >= MIN_CHANGE_PERCENT);
-    for (words, changes) in large {
-        _ = write!(text, "{words:wide$}");
+        .partition(|(_, changes)| largest_change(changes) >= MIN_CHANGE_PERCENT);
+    for (description, changes) in large {
+        _ = write!(text, "{description:width$}");
         for change in changes {
             // Adding positive zero turns a negative one positive.
             _ = write!(text, "{:>+10.0}", change.round() + 0.0);
@@ -183,8 +182,8 @@ pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) 
     }
     if !small.is_empty() {
         _ = write!(text, "\nLess than {MIN_CHANGE_PERCENT:.0} %:\n");
-        for (words, _) in small {
-            _ = writeln!(text, "  {words}");
+        for (description, _) in small {
+            _ = writeln!(text, "  {description}");
         }
     }
     text

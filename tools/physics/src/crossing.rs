@@ -10,9 +10,9 @@ use crate::table::Part;
 
 /// The distance of the nearest foot from the edge before and after the measured cycles, mm: feet
 /// swing by 15 mm, and a dome touches an edge 2 mm high while its middle is 11 mm away.
-const CLEARANCE: f64 = 25.0;
+const CLEARANCE_MM: f64 = 25.0;
 /// The turn after which the measurement of a gait that turns on the spot ends, deg: other feet are at the edge then.
-const MAX_TURN: f64 = 180.0;
+const MAX_TURN_DEG: f64 = 180.0;
 
 /// An edge across the path of a gait, and the cycles in which it is crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,9 +30,9 @@ pub struct Crossing {
 impl Crossing {
     /// Finds the crossing of a gait with this displacement in one cycle, after some cycles that are not
     /// measured.
-    pub fn of(robot: &Robot, by_cycle: Displacement, unmeasured: u32) -> Self {
+    pub fn of(robot: &Robot, by_cycle: Displacement, unmeasured_cycles: u32) -> Self {
         let feet = robot.ground().feet.positions([0.0; 4]);
-        let along = |place: Place, heading: f64| {
+        let distances_along = |place: Place, heading: f64| {
             let (sin, cos) = heading.to_radians().sin_cos();
             feet_at(place, feet).map(|[ahead, left]| ahead * cos + left * sin)
         };
@@ -42,7 +42,7 @@ impl Crossing {
             left,
             turn,
         };
-        let begin = (0..unmeasured).fold(Place::START, |place, _| place.after(cycle));
+        let begin = (0..unmeasured_cycles).fold(Place::START, |place, _| place.after(cycle));
         let is_turn = !matches!(gait_purposes(by_cycle)[..], [Part::Ahead, ..]);
         let mut end = begin;
         for cycles in 1.. {
@@ -53,13 +53,18 @@ impl Crossing {
                 direction_from(end, begin)
             };
             // Takes the extreme of all feet, since a foot that is ahead at the beginning may be behind after an arc.
-            let distance = along(begin, heading).into_iter().fold(f64::MIN, f64::max) + CLEARANCE;
-            let last = along(end, heading).into_iter().fold(f64::MAX, f64::min);
-            let passes = last > distance + CLEARANCE;
-            if passes || end.seen_from(begin).turn.abs() >= MAX_TURN {
+            let distance = distances_along(begin, heading)
+                .into_iter()
+                .fold(f64::MIN, f64::max)
+                + CLEARANCE_MM;
+            let nearest_end = distances_along(end, heading)
+                .into_iter()
+                .fold(f64::MAX, f64::min);
+            let has_passed = nearest_end > distance + CLEARANCE_MM;
+            if has_passed || end.seen_from(begin).turn.abs() >= MAX_TURN_DEG {
                 return Self {
                     cycles,
-                    is_crossed: passes,
+                    is_crossed: has_passed,
                     heading,
                     distance,
                 };
@@ -68,15 +73,15 @@ impl Crossing {
         unreachable!("every gait that is walked moves")
     }
 
-    /// Returns the block, `high` mm high, that forms the floor beyond the edge.
-    pub fn block(&self, high: f64) -> Block {
+    /// Returns the block, `height_mm` mm high, that forms the floor beyond the edge.
+    pub fn block(&self, height_mm: f64) -> Block {
         /// The size of the block, mm.
-        const SIZE: f64 = 1000.0;
+        const SIZE_MM: f64 = 1000.0;
         let (sin, cos) = self.heading.to_radians().sin_cos();
-        let middle = self.distance + SIZE / 2.0;
+        let middle = self.distance + SIZE_MM / 2.0;
         Block {
             centre: [-middle * sin, middle * cos],
-            size: [SIZE, SIZE, high],
+            size: [SIZE_MM, SIZE_MM, height_mm],
             rotation: self.heading,
         }
     }
@@ -88,7 +93,7 @@ fn feet_at(place: Place, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
 }
 
 /// Returns the direction of a place from another place, deg counter-clockwise from ahead.
-fn direction_from(place: Place, other: Place) -> f64 {
-    let offset = [place.left - other.left, place.forward - other.forward];
+fn direction_from(place: Place, origin: Place) -> f64 {
+    let offset = [place.left - origin.left, place.forward - origin.forward];
     offset[0].atan2(offset[1]).to_degrees()
 }

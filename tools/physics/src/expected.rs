@@ -13,7 +13,7 @@ pub fn expected(robot: &Robot) -> String {
     let stiffness = ground.stance.stiffness;
     let reach = ground.feet.reach;
     let strut = robot.strut_of(&robot.parts().spring);
-    let (servo, need) = (*robot.servo_type(), HardestGait::of(robot));
+    let (servo, hardest_gait) = (*robot.servo_type(), HardestGait::of(robot));
     let rows = [
         (
             "1",
@@ -77,7 +77,7 @@ pub fn expected(robot: &Robot) -> String {
             format!(
                 "{} s; up to {:.2} s will do with the torque of the next line",
                 servo.s_per_60_deg,
-                need.limit(servo.s_per_60_deg, |s_per_60_deg| ServoType {
+                hardest_gait.limit(servo.s_per_60_deg, |s_per_60_deg| ServoType {
                     s_per_60_deg,
                     ..servo
                 })
@@ -90,7 +90,7 @@ pub fn expected(robot: &Robot) -> String {
             format!(
                 "{} kg cm; {:.1} or more will do with the time of the line above",
                 servo.stall_kg_cm,
-                need.limit(servo.stall_kg_cm, |stall_kg_cm| ServoType {
+                hardest_gait.limit(servo.stall_kg_cm, |stall_kg_cm| ServoType {
                     stall_kg_cm,
                     ..servo
                 })
@@ -103,7 +103,7 @@ pub fn expected(robot: &Robot) -> String {
             format!(
                 "{} V; {:.1} V or more will do",
                 servo.volts,
-                servo.volts * need.line / HIGH_LINE_SHARE
+                servo.volts * hardest_gait.line / HIGH_LINE_SHARE
             ),
             "[servo] volts",
         ),
@@ -132,9 +132,13 @@ pub fn expected(robot: &Robot) -> String {
     ];
     let mut text =
         "| trial | measured | expected | key of robot.toml |\n|---|---|---|---|\n".to_owned();
-    for (trial, what, value, key) in rows {
+    for (trial, quantity, value, key) in rows {
         let keys: Vec<String> = key.split(", ").map(|key| format!("`{key}`")).collect();
-        _ = writeln!(text, "| {trial} | {what} | {value} | {} |", keys.join(", "));
+        _ = writeln!(
+            text,
+            "| {trial} | {quantity} | {value} | {} |",
+            keys.join(", ")
+        );
     }
     text
 }
@@ -149,8 +153,8 @@ struct HardestGait<'a> {
 
 impl<'a> HardestGait<'a> {
     fn of(robot: &'a Robot) -> Self {
-        let line = |gait| Self::line(robot, gait, robot.servo_type());
-        let lines = robot.gaits().iter().map(|gait| (gait, line(gait)));
+        let line_share_of = |gait| Self::line(robot, gait, robot.servo_type());
+        let lines = robot.gaits().iter().map(|gait| (gait, line_share_of(gait)));
         let hardest = lines.max_by(|(_, a), (_, b)| a.total_cmp(b));
         let (gait, line) = hardest.expect("every robot stands");
         Self { robot, gait, line }
@@ -162,22 +166,23 @@ impl<'a> HardestGait<'a> {
     }
 
     /// Returns the value of a servo's key at which the gait nearly uses up the servo's torque-speed line. The search
-    /// stays within a factor of four of `own`, the servo's own value; `servo` makes the servo with another value.
-    fn limit(&self, own: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
-        let does = |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= HIGH_LINE_SHARE;
-        let mut good = own;
-        let mut bad = if does(2.0 * own) {
-            own / 4.0
+    /// stays within a factor of four of `own_value`, the servo's own value; `servo` makes the servo with another value.
+    fn limit(&self, own_value: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
+        let is_enough =
+            |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= HIGH_LINE_SHARE;
+        let mut good_value = own_value;
+        let mut bad_value = if is_enough(2.0 * own_value) {
+            own_value / 4.0
         } else {
-            4.0 * own
+            4.0 * own_value
         };
         for _ in 0..10 {
-            let middle = f64::midpoint(good, bad);
-            match does(middle) {
-                true => good = middle,
-                false => bad = middle,
+            let middle = f64::midpoint(good_value, bad_value);
+            match is_enough(middle) {
+                true => good_value = middle,
+                false => bad_value = middle,
             }
         }
-        good
+        good_value
     }
 }

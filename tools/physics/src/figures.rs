@@ -22,7 +22,7 @@ impl Displacement {
 impl From<[f64; 3]> for Displacement {
     fn from(displacement: [f64; 3]) -> Self {
         // Adding 0 turns -0 into 0.
-        Self(displacement.map(|part| (100.0 * part).round() / 100.0 + 0.0))
+        Self(displacement.map(|component| (100.0 * component).round() / 100.0 + 0.0))
     }
 }
 
@@ -73,11 +73,11 @@ impl Answers {
     /// Returns a message if MuJoCo and the model differ by more than allowed; otherwise, or if the model has no
     /// displacement, `None`.
     pub fn disagreement(&self, case: Case) -> Option<String> {
-        let (error, turned) = self.mujoco.distance_to(&self.model?);
+        let (error, turn_error) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
-        (error > mm || turned > deg).then(|| {
+        (error > mm || turn_error > deg).then(|| {
             format!(
-                "MuJoCo is {error:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
+                "MuJoCo is {error:.1} mm and {turn_error:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
             )
         })
     }
@@ -102,18 +102,18 @@ impl Figures {
     /// # Panics
     /// Never: names and numbers can always be written as JSON.
     pub fn text(&self) -> String {
-        let block = |lines: Vec<String>| format!("{{\n{}\n}}", lines.join(",\n"));
+        let json_object = |lines: Vec<String>| format!("{{\n{}\n}}", lines.join(",\n"));
         let robots = self.0.iter().map(|(robot, gaits)| {
             let gaits = gaits.iter().map(|(gait, cases)| {
                 let cases = cases.iter().map(|(case, answers)| {
                     let answers = serde_json::to_string(answers).expect("numbers");
                     format!("{case:?}: {answers}")
                 });
-                format!("{gait:?}: {}", block(cases.collect()))
+                format!("{gait:?}: {}", json_object(cases.collect()))
             });
-            format!("{robot:?}: {}", block(gaits.collect()))
+            format!("{robot:?}: {}", json_object(gaits.collect()))
         });
-        block(robots.collect()) + "\n"
+        json_object(robots.collect()) + "\n"
     }
 
     /// Returns the answers for a robot's gait in a case; `None` if none are stored.

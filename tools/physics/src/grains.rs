@@ -83,8 +83,8 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
         ratio,
         ..*robot.ground()
     };
-    let decided = gait.predict(&ground).is_decided();
-    decided.then(|| gait.simulate_cycle(&ground).travel.into())
+    let is_decided = gait.predict(&ground).is_decided();
+    is_decided.then(|| gait.simulate_cycle(&ground).travel.into())
 }
 
 /// Computes the answers of the model and MuJoCo for every gait and ratio.
@@ -96,12 +96,12 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
 /// If the robot does not have the gaits.
 pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
     let assembly = Assembly::new(robot);
-    let name = |gait: &str, index: usize| format!("{gait}-{index}");
+    let walk_name = |gait: &str, index: usize| format!("{gait}-{index}");
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect(name));
     let mut jobs = Jobs::new()?;
     let scenes = gaits.iter().flat_map(|gait| {
         let ratios = RATIOS.into_iter().enumerate();
-        ratios.map(|(index, ratio)| scene(name(gait.name(), index), &assembly, gait, ratio))
+        ratios.map(|(index, ratio)| scene(walk_name(gait.name(), index), &assembly, gait, ratio))
     });
     jobs.add(&assembly, scenes.map(|scene| (Legs::Rigid, scene)))?;
     let by_mujoco = jobs.start()?.wait()?;
@@ -111,7 +111,7 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
             .enumerate()
             .map(|(index, ratio)| Answers {
                 model: model(robot, gait, ratio),
-                mujoco: by_mujoco[&name(gait.name(), index)],
+                mujoco: by_mujoco[&walk_name(gait.name(), index)],
             });
         (gait.name().to_owned(), answers.collect())
     });
@@ -125,8 +125,8 @@ pub(crate) fn settling_cycles(gait: &CheckedGait) -> u32 {
 
 /// Returns the answers of a gait at the ratio in the robot's file.
 pub(crate) fn answers_at_own_ratio(answers: &[Answers]) -> Answers {
-    let own = crate::robot(ROBOT).ground().ratio;
-    let index = RATIOS.iter().position(|ratio| *ratio == own);
+    let own_ratio = crate::robot(ROBOT).ground().ratio;
+    let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
     answers[index.expect("the file's ratio is one of the table's")]
 }
 
@@ -144,22 +144,22 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
 
 /// Returns a message for each answer of MuJoCo that is too far from the model's.
 pub fn disagreements(grains: &Grains) -> Vec<String> {
-    let mut words = Vec::new();
-    for (gait, against) in GAITS {
+    let mut messages = Vec::new();
+    for (gait, is_against_grain) in GAITS {
         for (ratio, answers) in RATIOS.into_iter().zip(&grains[gait]) {
             let Some(model) = answers.model else { continue };
             let (distance_error, turn_error) = answers.mujoco.distance_to(&model);
             let displacement = model.0[0].hypot(model.0[1]);
             let max_distance_error = BOUND.mm.max(BOUND.share * displacement);
             let is_too_far = distance_error > max_distance_error || turn_error > BOUND.deg;
-            if is_too_far && !(against && ratio > MAX_RATIO_AGAINST) {
-                words.push(format!(
+            if is_too_far && !(is_against_grain && ratio > MAX_RATIO_AGAINST) {
+                messages.push(format!(
                     "{ROBOT}: {gait} (r {ratio}): MuJoCo is {distance_error:.1} mm and {turn_error:.1} deg from the model"
                 ));
             }
         }
     }
-    words
+    messages
 }
 
 /// Returns a table of the model's and MuJoCo's speeds, mm/s ahead and deg/s counter-clockwise.
@@ -169,8 +169,8 @@ pub fn disagreements(grains: &Grains) -> Vec<String> {
 pub fn table(robot: &Robot, grains: &Grains) -> String {
     let mut text = format!("{:16}", "model, MuJoCo");
     for ratio in RATIOS {
-        let head = format!("r = {ratio:.1}");
-        _ = write!(text, "  {head:>13}");
+        let heading = format!("r = {ratio:.1}");
+        _ = write!(text, "  {heading:>13}");
     }
     text.push('\n');
     // The part of the displacement for which a gait is made: 0 is ahead, 2 the turn.
@@ -179,15 +179,16 @@ pub fn table(robot: &Robot, grains: &Grains) -> String {
         "arc-left" => vec![(gait, 0), (gait, 2)],
         _ => vec![(gait, 0)],
     });
-    for (gait, part) in rows {
+    for (gait, component) in rows {
         let period = robot.gait(gait).expect(gait).period();
-        let unit = if part == 0 { "mm/s" } else { "deg/s" };
+        let unit = if component == 0 { "mm/s" } else { "deg/s" };
         _ = write!(text, "{gait:10}{unit:>6}");
         for answers in &grains[gait] {
-            let speed =
-                |displacement: Displacement| format!("{:+.1}", displacement.0[part] / period + 0.0);
-            let model = answers.model.map_or_else(|| "-".to_owned(), speed);
-            _ = write!(text, "  {model:>6} {:>6}", speed(answers.mujoco));
+            let speed_text = |displacement: Displacement| {
+                format!("{:+.1}", displacement.0[component] / period + 0.0)
+            };
+            let model = answers.model.map_or_else(|| "-".to_owned(), speed_text);
+            _ = write!(text, "  {model:>6} {:>6}", speed_text(answers.mujoco));
         }
         text.push('\n');
     }

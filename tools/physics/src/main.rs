@@ -31,13 +31,13 @@ const ASSUMPTIONS: &str = "assumptions";
 const PADS: &str = "pads";
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let one_in = match &words[..] {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let one_in = match &arguments[..] {
         [] => Some(1),
         [write] if write == "--write" => None,
         [flag, n] if flag == "--one-in" && n.parse().is_ok_and(|n: usize| n > 0) => n.parse().ok(),
         _ => {
-            eprintln!("physics: --write, or --one-in and a number from 1 on, not {words:?}");
+            eprintln!("physics: --write, or --one-in and a number from 1 on, not {arguments:?}");
             return ExitCode::from(2);
         }
     };
@@ -61,71 +61,89 @@ fn main() -> ExitCode {
 }
 
 /// Returns the name of a walk, by which its file is written and its answer is found.
-fn name(robot: &str, index: usize) -> String {
+fn walk_name(robot: &str, index: usize) -> String {
     format!("{robot}-{index}")
 }
 
 /// Does every `one_in`-th walk and compares the answers with the stored ones; with `None`, does all walks
 /// and stores their answers. Returns a message for each fault.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
-    let (write, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
+    let (is_writing, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
-    let mut number = 0..;
-    let mut is_one = || {
-        number
+    let mut walk_numbers = 0..;
+    let mut is_chosen = || {
+        walk_numbers
             .next()
             .is_some_and(|n: usize| n.is_multiple_of(one_in))
     };
-    let all: Vec<Vec<Row>> = robots
+    let rows_by_robot: Vec<Vec<Row>> = robots
         .iter()
-        .map(|(_, robot)| rows(robot).into_iter().filter(|_| is_one()).collect())
+        .map(|(_, robot)| rows(robot).into_iter().filter(|_| is_chosen()).collect())
         .collect();
-    let kept = Figures::stored();
-    let uneven: Vec<UnevenWalk> = UnevenWalk::all(&kept)
+    let stored_figures = Figures::stored();
+    let uneven_walks: Vec<UnevenWalk> = UnevenWalk::all(&stored_figures)
         .into_iter()
-        .filter(|_| is_one())
+        .filter(|_| is_chosen())
         .collect();
     let mut jobs = Jobs::new()?;
-    for ((of, robot), rows) in robots.iter().zip(&all) {
+    for ((robot_name, robot), rows) in robots.iter().zip(&rows_by_robot) {
         let assembly = Assembly::new(robot);
-        let named = rows.iter().enumerate();
-        let walks = named.map(|(index, row)| row.scene(&name(of, index), &assembly));
+        let indexed_rows = rows.iter().enumerate();
+        let walks =
+            indexed_rows.map(|(index, row)| row.scene(&walk_name(robot_name, index), &assembly));
         jobs.add(&assembly, walks)?;
     }
-    for (index, walk) in uneven.iter().enumerate() {
+    for (index, walk) in uneven_walks.iter().enumerate() {
         let assembly = Assembly::new(&robot(walk.robot));
-        let scene = walk
-            .surface
-            .scene(&name(SURFACE, index), &assembly, &walk.gait, walk.level);
+        let scene = walk.surface.scene(
+            &walk_name(SURFACE, index),
+            &assembly,
+            &walk.gait,
+            walk.level,
+        );
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
-    let driven = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
-    let driven: Vec<(Variant, &str)> = driven.concat().into_iter().filter(|_| is_one()).collect();
-    for (index, (variant, gait)) in driven.iter().enumerate() {
+    let servo_walks = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
+    let servo_walks: Vec<(Variant, &str)> = servo_walks
+        .concat()
+        .into_iter()
+        .filter(|_| is_chosen())
+        .collect();
+    for (index, (variant, gait)) in servo_walks.iter().enumerate() {
         let assembly = Assembly::new(&variant.robot());
-        let scene = variant.scene(&name(SERVOS, index), &assembly, gait);
+        let scene = variant.scene(&walk_name(SERVOS, index), &assembly, gait);
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
-    let assumed =
+    let assumption_walks =
         Assumption::ALL.map(|assumption| assumptions::GAITS.map(|gait| (assumption, gait)));
-    let assumed: Vec<(Assumption, &str)> =
-        assumed.concat().into_iter().filter(|_| is_one()).collect();
-    for (index, (assumption, gait)) in assumed.iter().enumerate() {
+    let assumption_walks: Vec<(Assumption, &str)> = assumption_walks
+        .concat()
+        .into_iter()
+        .filter(|_| is_chosen())
+        .collect();
+    for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
         let assembly = Assembly::new(&assumption.robot());
-        let level = surface::level_displacement(&kept, gait);
-        let scene = assumption.scene(&name(ASSUMPTIONS, index), &assembly, gait, level);
+        let level = surface::level_displacement(&stored_figures, gait);
+        let scene = assumption.scene(&walk_name(ASSUMPTIONS, index), &assembly, gait, level);
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
-    let shapes = Shape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
-    let shapes: Vec<(Shape, Surface)> = shapes.concat().into_iter().filter(|_| is_one()).collect();
+    let pad_walks = Shape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
+    let pad_walks: Vec<(Shape, Surface)> = pad_walks
+        .concat()
+        .into_iter()
+        .filter(|_| is_chosen())
+        .collect();
     let paper = Assembly::new(&robot("paper"));
-    let walks = shapes.iter().enumerate().map(|(index, (shape, surface))| {
-        let level = surface::level_displacement(&kept, pads::GAIT);
-        (
-            Legs::Rigid,
-            shape.scene(&name(PADS, index), &paper, *surface, level),
-        )
-    });
+    let walks = pad_walks
+        .iter()
+        .enumerate()
+        .map(|(index, (shape, surface))| {
+            let level = surface::level_displacement(&stored_figures, pads::GAIT);
+            (
+                Legs::Rigid,
+                shape.scene(&walk_name(PADS, index), &paper, *surface, level),
+            )
+        });
     jobs.add(&paper, walks)?;
     println!(
         "physics: {} walks by MuJoCo take some minutes",
@@ -133,110 +151,121 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     );
     let by_mujoco = jobs.start()?.wait()?;
 
-    let (mut found, mut faults) = (Figures::default(), Vec::new());
-    for ((of, robot), rows) in robots.iter().zip(&all) {
+    let (mut figures, mut faults) = (Figures::default(), Vec::new());
+    for ((robot_name, robot), rows) in robots.iter().zip(&rows_by_robot) {
         for (index, row) in rows.iter().enumerate() {
             let answers = Answers {
                 model: row.model(robot),
-                mujoco: by_mujoco[&name(of, index)],
+                mujoco: by_mujoco[&walk_name(robot_name, index)],
             };
-            let mut words: Vec<String> = answers.disagreement(row.case).into_iter().collect();
-            if !write {
-                words.extend(describe_changes(
-                    kept.get(of, &row.gait, row.case),
+            let mut messages: Vec<String> = answers.disagreement(row.case).into_iter().collect();
+            if !is_writing {
+                messages.extend(describe_changes(
+                    stored_figures.get(robot_name, &row.gait, row.case),
                     &answers,
                 ));
             }
-            let describe = |words| format!("{of}: {} ({}): {words}", row.gait, row.case);
-            faults.extend(words.into_iter().map(describe));
-            found.store(of, &row.gait, row.case, answers);
+            let describe =
+                |message| format!("{robot_name}: {} ({}): {message}", row.gait, row.case);
+            faults.extend(messages.into_iter().map(describe));
+            figures.store(robot_name, &row.gait, row.case, answers);
         }
-        println!("\n{}", table(of, robot, &found));
+        println!("\n{}", table(robot_name, robot, &figures));
     }
-    let (before, mut surfaces) = (surface::stored(), Surfaces::new());
-    for (index, walk) in uneven.iter().enumerate() {
+    let (stored_surfaces, mut surfaces) = (surface::stored(), Surfaces::new());
+    for (index, walk) in uneven_walks.iter().enumerate() {
         let UnevenWalk {
             robot,
             gait,
             level,
             surface,
         } = walk;
-        let displacement = by_mujoco[&name(SURFACE, index)];
-        let mut words = surface::excess_losses(*surface, *level, displacement);
+        let displacement = by_mujoco[&walk_name(SURFACE, index)];
+        let mut messages = surface::excess_losses(*surface, *level, displacement);
         if surface::is_known_shortfall(robot, gait, *surface) {
-            words.clear();
+            messages.clear();
         }
-        if !write {
-            let of = before.get(*robot).and_then(|of| of.get(gait));
-            let was = of.and_then(|of| of.get(&surface.to_string()));
-            words.extend(match was {
-                Some(was) => describe_difference("MuJoCo", *was, displacement),
+        if !is_writing {
+            let stored_by_gait = stored_surfaces
+                .get(*robot)
+                .and_then(|by_gait| by_gait.get(gait));
+            let stored_displacement =
+                stored_by_gait.and_then(|by_surface| by_surface.get(&surface.to_string()));
+            messages.extend(match stored_displacement {
+                Some(stored_displacement) => {
+                    describe_difference("MuJoCo", *stored_displacement, displacement)
+                }
                 None => Some(NOT_KEPT.to_owned()),
             });
         }
-        let describe = |words| format!("{robot}: {gait} ({surface}): {words}");
-        faults.extend(words.into_iter().map(describe));
-        let of = surfaces.entry((*robot).to_owned()).or_default();
-        let of = of.entry(gait.clone()).or_default();
-        of.insert(surface.to_string(), displacement);
+        let describe = |message| format!("{robot}: {gait} ({surface}): {message}");
+        faults.extend(messages.into_iter().map(describe));
+        let by_gait = surfaces.entry((*robot).to_owned()).or_default();
+        let by_surface = by_gait.entry(gait.clone()).or_default();
+        by_surface.insert(surface.to_string(), displacement);
     }
     for robot in surface::ROBOTS {
         println!(
             "\nrobots/{robot}.toml\n{}",
-            surfaces_table(robot, &kept, &surfaces)
+            surfaces_table(robot, &stored_figures, &surfaces)
         );
     }
-    let (before, mut by_servos) = (servos::stored(), Servos::new());
-    for (index, (variant, gait)) in driven.iter().enumerate() {
+    let (stored_servos, mut by_servos) = (servos::stored(), Servos::new());
+    for (index, (variant, gait)) in servo_walks.iter().enumerate() {
         let answers = Answers {
             model: Some(variant.model(gait)),
-            mujoco: by_mujoco[&name(SERVOS, index)],
+            mujoco: by_mujoco[&walk_name(SERVOS, index)],
         };
-        let mut words: Vec<String> = variant.disagreement(gait, &answers).into_iter().collect();
-        if !write {
-            let was = before.get(variant.name).and_then(|of| of.get(*gait));
-            words.extend(describe_changes(was, &answers));
+        let mut messages: Vec<String> = variant.disagreement(gait, &answers).into_iter().collect();
+        if !is_writing {
+            let stored_answers = stored_servos
+                .get(variant.name)
+                .and_then(|by_gait| by_gait.get(*gait));
+            messages.extend(describe_changes(stored_answers, &answers));
         }
-        let describe = |words| format!("paper, {}: {gait}: {words}", variant.name);
-        faults.extend(words.into_iter().map(describe));
-        let of = by_servos.entry(variant.name.to_owned()).or_default();
-        of.insert((*gait).to_owned(), answers);
+        let describe = |message| format!("paper, {}: {gait}: {message}", variant.name);
+        faults.extend(messages.into_iter().map(describe));
+        let by_gait = by_servos.entry(variant.name.to_owned()).or_default();
+        by_gait.insert((*gait).to_owned(), answers);
     }
     println!("\n{}", servos_table(&by_servos));
     let mut by_assumption = Assumptions::new();
-    for (index, (assumption, gait)) in assumed.iter().enumerate() {
-        let displacement = by_mujoco[&name(ASSUMPTIONS, index)];
-        let of = by_assumption
+    for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
+        let displacement = by_mujoco[&walk_name(ASSUMPTIONS, index)];
+        let by_gait = by_assumption
             .entry(assumption.description.to_owned())
             .or_default();
-        of.insert((*gait).to_owned(), displacement);
+        by_gait.insert((*gait).to_owned(), displacement);
     }
     let mut by_shape = Shapes::new();
-    for (index, (shape, surface)) in shapes.iter().enumerate() {
-        let of = by_shape.entry(shape.name()).or_default();
-        of.insert(surface.to_string(), by_mujoco[&name(PADS, index)]);
+    for (index, (shape, surface)) in pad_walks.iter().enumerate() {
+        let by_surface = by_shape.entry(shape.name()).or_default();
+        by_surface.insert(surface.to_string(), by_mujoco[&walk_name(PADS, index)]);
     }
     println!("\n{}", pads::table(&by_shape));
-    if !write {
+    if !is_writing {
         faults.extend(describe_displacement_changes(
             &assumptions::stored(),
             &by_assumption,
         ));
         faults.extend(describe_displacement_changes(&pads::stored(), &by_shape));
     }
-    let pads = robot(grains::ROBOT);
+    let grain_robot = robot(grains::ROBOT);
     // With `--one-in`, which saves time, the pads with a grain are left out.
     if one_in == 1 {
-        let walked = grains::measure(&pads)?;
-        println!("\nrobots/grain.toml\n{}", grains::table(&pads, &walked));
-        faults.extend(grains::disagreements(&walked));
-        match write {
-            true => grains::store(&walked)?,
-            false => faults.extend(describe_grain_changes(&grains::stored(), &walked)),
+        let grain_answers = grains::measure(&grain_robot)?;
+        println!(
+            "\nrobots/grain.toml\n{}",
+            grains::table(&grain_robot, &grain_answers)
+        );
+        faults.extend(grains::disagreements(&grain_answers));
+        match is_writing {
+            true => grains::store(&grain_answers)?,
+            false => faults.extend(describe_grain_changes(&grains::stored(), &grain_answers)),
         }
     }
-    if write {
-        std::fs::write(crate_folder().join("figures.json"), found.text())?;
+    if is_writing {
+        std::fs::write(crate_folder().join("figures.json"), figures.text())?;
         std::fs::write(crate_folder().join("surfaces.json"), blocks(&surfaces))?;
         std::fs::write(
             crate_folder().join("assumptions.json"),
@@ -245,11 +274,11 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         std::fs::write(crate_folder().join("pads.json"), lines(&by_shape))?;
         std::fs::write(crate_folder().join("servos.json"), servos::text(&by_servos))?;
         println!("physics: written to tools/physics; `make docs` puts it into the pages");
-    } else if one_in == 1 && kept.count() != found.count() {
+    } else if one_in == 1 && stored_figures.count() != figures.count() {
         faults.push(format!(
             "{} figures are kept, and there are {}; `make physics WRITE=1` keeps these",
-            kept.count(),
-            found.count()
+            stored_figures.count(),
+            figures.count()
         ));
     }
     Ok(faults)
@@ -266,34 +295,34 @@ struct UnevenWalk {
 
 impl UnevenWalk {
     fn all(figures: &Figures) -> Vec<Self> {
-        let mut all = Vec::new();
+        let mut walks = Vec::new();
         for robot in surface::ROBOTS {
             for (gait, level) in surface::gaits(figures, robot) {
-                let of = |surface| Self {
+                let walk_on = |surface| Self {
                     robot,
                     gait: gait.clone(),
                     level,
                     surface,
                 };
-                all.extend(Surface::of(robot).into_iter().map(of));
+                walks.extend(Surface::of(robot).into_iter().map(walk_on));
             }
         }
-        all
+        walks
     }
 }
 
 /// Returns a message for each answer on pads with a grain that differs from the stored one.
-fn describe_grain_changes(kept: &Grains, now: &Grains) -> Vec<String> {
-    let each = now.iter().flat_map(|(gait, answers)| {
-        let kept = kept.get(gait).map_or(&[][..], Vec::as_slice);
+fn describe_grain_changes(stored: &Grains, current: &Grains) -> Vec<String> {
+    let messages = current.iter().flat_map(|(gait, answers)| {
+        let stored = stored.get(gait).map_or(&[][..], Vec::as_slice);
         let pairs = answers.iter().zip(grains::RATIOS).enumerate();
         pairs.flat_map(move |(index, (answers, ratio))| {
-            let words = describe_changes(kept.get(index), answers);
-            let describe = move |words| format!("grain: {gait} (r {ratio}): {words}");
-            words.into_iter().map(describe)
+            let changes = describe_changes(stored.get(index), answers);
+            let describe = move |change| format!("grain: {gait} (r {ratio}): {change}");
+            changes.into_iter().map(describe)
         })
     });
-    each.collect()
+    messages.collect()
 }
 
 /// Displacements by group and name: by assumption and gait, or by pad shape and surface.
@@ -302,44 +331,52 @@ type StoredDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 /// Returns a message for each displacement that differs from the stored one.
 fn describe_displacement_changes(
     stored: &StoredDisplacements,
-    now: &StoredDisplacements,
+    current: &StoredDisplacements,
 ) -> Vec<String> {
-    let all = now
-        .iter()
-        .flat_map(|(group, of)| of.iter().map(move |(name, is)| (group, name, is)));
-    let words = all.filter_map(|(group, name, is)| {
-        let words = match stored.get(group).and_then(|of| of.get(name)) {
-            Some(was) => describe_difference("MuJoCo", *was, *is)?,
+    let displacements = current.iter().flat_map(|(group, by_name)| {
+        by_name
+            .iter()
+            .map(move |(name, displacement)| (group, name, displacement))
+    });
+    let messages = displacements.filter_map(|(group, name, displacement)| {
+        let message = match stored.get(group).and_then(|by_name| by_name.get(name)) {
+            Some(stored_displacement) => {
+                describe_difference("MuJoCo", *stored_displacement, *displacement)?
+            }
             None => NOT_KEPT.to_owned(),
         };
-        Some(format!("paper, {group}: {name}: {words}"))
+        Some(format!("paper, {group}: {name}: {message}"))
     });
-    words.collect()
+    messages.collect()
 }
 
 /// Returns a message for each answer that differs from the stored one, the model's and MuJoCo's.
-fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
-    let Some(before) = kept else {
+fn describe_changes(stored: Option<&Answers>, current: &Answers) -> Vec<String> {
+    let Some(stored) = stored else {
         return vec![NOT_KEPT.to_owned()];
     };
     // If two feet pull against two, the model has no answer, and MuJoCo's differs between machines.
-    let (Some(was), Some(is)) = (before.model, now.model) else {
+    let (Some(stored_model), Some(current_model)) = (stored.model, current.model) else {
         return Vec::new();
     };
-    let all = [
-        ("the model", was, is),
-        ("MuJoCo", before.mujoco, now.mujoco),
+    let pairs = [
+        ("the model", stored_model, current_model),
+        ("MuJoCo", stored.mujoco, current.mujoco),
     ];
-    let changed = all.into_iter();
-    changed
-        .filter_map(|(who, before, now)| describe_difference(who, before, now))
+    let pairs = pairs.into_iter();
+    pairs
+        .filter_map(|(source, stored, current)| describe_difference(source, stored, current))
         .collect()
 }
 
 /// Returns a message if a displacement differs from the stored one by more than [`TOLERANCES`].
-fn describe_difference(who: &str, before: Displacement, now: Displacement) -> Option<String> {
-    let (mm, deg) = before.distance_to(&now);
+fn describe_difference(
+    source: &str,
+    stored: Displacement,
+    current: Displacement,
+) -> Option<String> {
+    let (mm, deg) = stored.distance_to(&current);
     (mm > TOLERANCES.0 || deg > TOLERANCES.1).then(|| {
-        format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
+        format!("{source} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
     })
 }

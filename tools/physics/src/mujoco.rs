@@ -90,12 +90,18 @@ impl Jobs {
         let robot = assembly.robot();
         let neutral = robot.lizard().solve(&robot.neutral());
         let neutral = neutral.expect("every robot closes at neutral");
-        let mut known: Vec<(Legs, Pieces)> = Vec::new();
+        let mut known_pieces: Vec<(Legs, Pieces)> = Vec::new();
         for (legs, scene) in walks {
-            if known.iter().all(|(of, _)| *of != legs) {
-                known.push((legs, Pieces::of(assembly, &scene)?));
+            if known_pieces
+                .iter()
+                .all(|(known_legs, _)| *known_legs != legs)
+            {
+                known_pieces.push((legs, Pieces::of(assembly, &scene)?));
             }
-            for (_, pieces) in known.iter().filter(|(of, _)| *of == legs) {
+            for (_, pieces) in known_pieces
+                .iter()
+                .filter(|(known_legs, _)| *known_legs == legs)
+            {
                 let file = self.folder.path().join(format!("{}.xml", scene.name));
                 std::fs::write(file, pieces.mjcf(&neutral, &scene))?;
                 self.count += 1;
@@ -154,18 +160,18 @@ impl RunningJudge {
         if !output.status.success() {
             return Err(MujocoError::Ended(output.status));
         }
-        let mut ways = BTreeMap::new();
+        let mut displacements = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
             let answer: Line =
                 serde_json::from_str(line).map_err(|_| MujocoError::Words(line.to_owned()))?;
-            let Some(way) = answer.way else {
+            let Some(displacement) = answer.way else {
                 return Err(MujocoError::Trouble {
                     file: answer.file,
                     trouble: answer.trouble.unwrap_or_default(),
                 });
             };
-            ways.insert(answer.file, way.into());
+            displacements.insert(answer.file, displacement.into());
         }
-        Ok(ways)
+        Ok(displacements)
     }
 }

@@ -83,12 +83,13 @@ pub fn table(shapes: &Shapes) -> String {
         "---|".repeat(SURFACES.len())
     );
     for shape in Shape::ALL {
-        let of = shapes.get(&shape.name());
+        let by_surface = shapes.get(&shape.name());
         let cells = SURFACES.map(|surface| {
-            let displacement = of.and_then(|of| of.get(&surface.to_string()));
+            let displacement =
+                by_surface.and_then(|by_surface| by_surface.get(&surface.to_string()));
             // Adding 0 turns -0 into 0.
-            let ahead = displacement.map(|of| of.0[0].round() + 0.0);
-            ahead.map_or(" - |".to_owned(), |ahead| format!(" {ahead} |"))
+            let ahead_mm = displacement.map(|displacement| displacement.0[0].round() + 0.0);
+            ahead_mm.map_or(" - |".to_owned(), |ahead_mm| format!(" {ahead_mm} |"))
         });
         _ = writeln!(text, "| {} |{}", shape.name(), cells.concat());
     }

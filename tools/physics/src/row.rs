@@ -31,8 +31,8 @@ impl Row {
     /// If the robot has no such gait.
     pub fn model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("it is the robot's");
-        let walked = || gait.simulate_cycle(&self.case.ground(robot)).travel;
-        self.is_decided.then(|| walked().into())
+        let simulate = || gait.simulate_cycle(&self.case.ground(robot)).travel;
+        self.is_decided.then(|| simulate().into())
     }
 }
 
@@ -44,15 +44,15 @@ pub fn rows(robot: &Robot) -> Vec<Row> {
 }
 
 fn rows_of(robot: &Robot, gait: &CheckedGait) -> Vec<Row> {
-    let [first, ..] = Case::ALL;
-    let decided = gait.predict(&first.ground(robot)).is_decided();
+    let [first_case, ..] = Case::ALL;
+    let is_decided = gait.predict(&first_case.ground(robot)).is_decided();
     let cases = Case::ALL
         .into_iter()
-        .filter(|case| decided || *case == first);
-    let row = |case| Row {
+        .filter(|case| is_decided || *case == first_case);
+    let row_of = |case| Row {
         gait: gait.name().to_owned(),
         case,
-        is_decided: decided,
+        is_decided,
     };
-    cases.map(row).collect()
+    cases.map(row_of).collect()
 }

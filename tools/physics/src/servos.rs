@@ -94,7 +94,7 @@ impl Variant {
     pub fn robot(&self) -> Robot {
         let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
         let mut text = text.expect("robots/paper.toml");
-        let own = crate::robot("paper").ground().body.mass;
+        let own_mass = crate::robot("paper").ground().body.mass;
         let mut replace = |old: &str, new: &str| {
             assert!(text.contains(old), "{old}");
             text = text.replacen(old, new, 1);
@@ -111,8 +111,8 @@ impl Variant {
             &format!("[ground]\nfriction = {}", self.friction),
         );
         replace(
-            &format!("mass = {own:.1}"),
-            &format!("mass = {:.1}", own + self.extra_mass),
+            &format!("mass = {own_mass:.1}"),
+            &format!("mass = {:.1}", own_mass + self.extra_mass),
         );
         Robot::parse(&text).expect(self.name)
     }
@@ -148,15 +148,15 @@ impl Variant {
 
     /// Returns the share by which the model may differ from MuJoCo in a gait.
     fn max_deviation_share(&self, gait: &str) -> f64 {
-        let further = self.exceptions.iter().find(|(of, _)| *of == gait);
-        further.map_or(MAX_DEVIATION_SHARE, |(_, share)| *share)
+        let exception = self.exceptions.iter().find(|(name, _)| *name == gait);
+        exception.map_or(MAX_DEVIATION_SHARE, |(_, share)| *share)
     }
 
     /// Returns a message if the model differs from MuJoCo too much in a gait.
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
-        let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
+        let (_, component) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
-            [answers.model?, answers.mujoco].map(|displacement| displacement.0[part]);
+            [answers.model?, answers.mujoco].map(|displacement| displacement.0[component]);
         let error = model / mujoco - 1.0;
         (error.abs() > self.max_deviation_share(gait)).then(|| {
             let percent = 100.0 * error;
@@ -198,17 +198,21 @@ pub fn text(servos: &Servos) -> String {
 
 /// Returns the table of all variants in Markdown, with a dash where an answer is missing.
 pub fn servos_table(servos: &Servos) -> String {
-    let heads = GAITS.map(|(gait, part)| {
-        let unit = if part == 2 { "deg" } else { "mm" };
+    let heads = GAITS.map(|(gait, component)| {
+        let unit = if component == 2 { "deg" } else { "mm" };
         format!(" {gait}, {unit} |")
     });
     let lines = "---|".repeat(GAITS.len());
     let mut table = format!("| model, MuJoCo |{}\n|---|{lines}\n", heads.concat());
     for variant in Variant::ALL {
         _ = write!(table, "| {} |", variant.name);
-        for (gait, part) in GAITS {
-            let answers = servos.get(variant.name).and_then(|of| of.get(gait));
-            let pair = answers.and_then(|of| Some((of.model?.0[part], of.mujoco.0[part])));
+        for (gait, component) in GAITS {
+            let answers = servos
+                .get(variant.name)
+                .and_then(|by_gait| by_gait.get(gait));
+            let pair = answers.and_then(|answers| {
+                Some((answers.model?.0[component], answers.mujoco.0[component]))
+            });
             _ = match pair {
                 Some((model, mujoco)) => write!(table, " {model:.1}, {mujoco:.1} |"),
                 None => write!(table, " - |"),

@@ -26,11 +26,12 @@ const MIN_DISPLACEMENT: (f64, f64) = (9.0, 3.0);
 /// Returns the purpose of a gait with this displacement on a level floor: distance, turn, or both; empty for
 /// a gait that does not walk.
 pub(crate) fn gait_purposes(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
-    let all = [
+    let purposes = [
         (Part::Ahead, ahead.abs() > MIN_DISPLACEMENT.0),
         (Part::Turn, turn.abs() > MIN_DISPLACEMENT.1),
     ];
-    all.into_iter()
+    purposes
+        .into_iter()
         .filter(|(_, is_for)| *is_for)
         .map(|(part, _)| part)
         .collect()
@@ -52,9 +53,9 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
             })
             .into();
     }
-    let known = crate::robot(robot);
-    let moving = known.gaits().iter().filter(|gait| gait.moves());
-    let level = moving.map(|gait| {
+    let loaded_robot = crate::robot(robot);
+    let moving = loaded_robot.gaits().iter().filter(|gait| gait.moves());
+    let level_answers = moving.map(|gait| {
         let answers = figures.get(robot, gait.name(), Case::ALL[0]);
         (
             gait.name().to_owned(),
@@ -62,7 +63,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
         )
     });
     // If two feet pull against the other two, the contact model has no answer and the gait has no definite path.
-    level
+    level_answers
         .filter(|(_, answers)| answers.model.is_some())
         .map(|(gait, answers)| (gait, answers.mujoco))
         .filter(|(_, level)| !gait_purposes(*level).is_empty())
@@ -132,8 +133,8 @@ impl Surface {
             Self::Blocks(tenths) => floor.blocks = strewn_blocks(robot, mm(tenths)),
             Self::Slope(deg) => floor.slope = direction * f64::from(deg),
             Self::UnequalFriction => {
-                let side = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
-                floor.friction = robot.ground().feet.positions([0.0; 4]).map(side);
+                let friction_of = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
+                floor.friction = robot.ground().feet.positions([0.0; 4]).map(friction_of);
             }
             // The screw's steel head rubs on the floor.
             Self::NoPad => floor.friction[0] = 0.2,
@@ -156,16 +157,16 @@ impl Surface {
         scene.ratio = robot.ground().ratio;
         let gait = robot.gait(gait).expect("it is the robot's");
         // On pads without a grain, a gait has its full speed from the first cycle on.
-        let settling = match scene.ratio == 1.0 {
+        let settling_cycles = match scene.ratio == 1.0 {
             true => 0,
             false => grains::settling_cycles(gait),
         };
-        let crossing = Crossing::of(robot, level, settling);
-        let [cycles, measured] = match self.is_climbed() {
-            true => [settling + crossing.cycles, crossing.cycles],
+        let crossing = Crossing::of(robot, level, settling_cycles);
+        let [cycles, measured_cycles] = match self.is_climbed() {
+            true => [settling_cycles + crossing.cycles, crossing.cycles],
             false => [2, 1],
         };
-        scene.course = Some(Course::of(robot, gait, cycles, measured));
+        scene.course = Some(Course::of(robot, gait, cycles, measured_cycles));
         scene.floor = self.floor(assembly, &crossing, direction);
         if self == Self::NoPad {
             // The foot stands on the head of its screw.
@@ -181,30 +182,32 @@ fn mm(tenths: u8) -> f64 {
 
 /// Returns blocks of 10 to 20 mm at pseudo-random places, the same in each call: one block in each square of
 /// 30 mm, so that they cover a quarter of the floor. No block is under a foot at the start.
-fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
-    const SQUARE: f64 = 30.0;
-    const REACH: i32 = 12;
+fn strewn_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
+    const SQUARE_MM: f64 = 30.0;
+    const REACH_SQUARES: i32 = 12;
     let feet = robot.ground().feet.positions([0.0; 4]);
     let mut seed: u32 = 1;
-    let mut random = |low: f64, max: f64| {
+    let mut random_between = |low: f64, max: f64| {
         // The constants of Numerical Recipes; the upper half of the bits is random enough.
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         low + (max - low) * f64::from(seed >> 16) / 65536.0
     };
     let mut blocks = Vec::new();
-    for row in -REACH..REACH {
-        for column in -REACH / 2..REACH / 2 {
-            let [wide, long] = [random(10.0, 20.0), random(10.0, 20.0)];
-            let mut place = |square: i32| SQUARE * f64::from(square) + random(0.0, SQUARE);
-            let at = [place(column), place(row)];
-            let distance = |[forward, left]: [f64; 2]| (at[0] + left).hypot(at[1] - forward);
-            if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE {
-                let size = [wide, long, high];
-                let turned = 0.0;
+    for row in -REACH_SQUARES..REACH_SQUARES {
+        for column in -REACH_SQUARES / 2..REACH_SQUARES / 2 {
+            let [width, length] = [random_between(10.0, 20.0), random_between(10.0, 20.0)];
+            let mut random_place =
+                |square: i32| SQUARE_MM * f64::from(square) + random_between(0.0, SQUARE_MM);
+            let centre = [random_place(column), random_place(row)];
+            let distance =
+                |[forward, left]: [f64; 2]| (centre[0] + left).hypot(centre[1] - forward);
+            if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE_MM {
+                let size = [width, length, height_mm];
+                let rotation = 0.0;
                 blocks.push(Block {
-                    centre: at,
+                    centre,
                     size,
-                    rotation: turned,
+                    rotation,
                 });
             }
         }
@@ -272,53 +275,63 @@ pub fn excess_losses(
     level: Displacement,
     displacement: Displacement,
 ) -> Vec<String> {
-    let loss = |part: Part| {
-        let [was, is] = [level, displacement].map(|displacement| part.value(displacement));
+    let loss_message = |part: Part| {
+        let [level_value, value] =
+            [level, displacement].map(|displacement| part.value(displacement));
         let unit = part.unit();
-        let least = min_share(surface, part)?;
-        (is / was < least).then(|| {
-            format!("{is:.1} {unit} a cycle of {was:.1} on a level floor; {least:.2} must be kept")
+        let least_share = min_share(surface, part)?;
+        (value / level_value < least_share).then(|| {
+            format!("{value:.1} {unit} a cycle of {level_value:.1} on a level floor; {least_share:.2} must be kept")
         })
     };
-    gait_purposes(level).into_iter().filter_map(loss).collect()
+    gait_purposes(level)
+        .into_iter()
+        .filter_map(loss_message)
+        .collect()
 }
 
 /// Returns the table of a robot's gaits on its surfaces in Markdown.
 pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> String {
-    let of_robot = Surface::of(robot);
-    let heads = of_robot.iter().map(|surface| format!(" {surface} |"));
-    let lines = "---|".repeat(of_robot.len());
+    let robot_surfaces = Surface::of(robot);
+    let heads = robot_surfaces.iter().map(|surface| format!(" {surface} |"));
+    let lines = "---|".repeat(robot_surfaces.len());
     let mut text = format!(
         "| gait | level |{}\n|---|---|{lines}\n",
         heads.collect::<String>()
     );
-    for (gait, flat) in gaits(figures, robot) {
-        let stored = surfaces.get(robot).and_then(|of| of.get(&gait));
-        for part in gait_purposes(flat) {
-            let cell = |displacement| format!(" {:+.1}", part.value(displacement));
-            let displacements = of_robot.iter().map(|surface| {
-                let displacement = stored.and_then(|of| of.get(&surface.to_string()));
+    for (gait, level) in gaits(figures, robot) {
+        let stored = surfaces.get(robot).and_then(|by_gait| by_gait.get(&gait));
+        for part in gait_purposes(level) {
+            let cell_of = |displacement| format!(" {:+.1}", part.value(displacement));
+            let displacements = robot_surfaces.iter().map(|surface| {
+                let displacement =
+                    stored.and_then(|by_surface| by_surface.get(&surface.to_string()));
                 let Some(displacement) = displacement else {
                     return " - |".to_owned();
                 };
-                let share = part.value(*displacement) / part.value(flat);
-                let is_less = min_share(*surface, part).is_some_and(|least| share < least);
+                let share = part.value(*displacement) / part.value(level);
+                let is_less =
+                    min_share(*surface, part).is_some_and(|least_share| share < least_share);
                 let mark = if is_less { "!" } else { "" };
-                format!("{}{mark} |", cell(*displacement))
+                format!("{}{mark} |", cell_of(*displacement))
             });
-            let (flat, displacements) = (cell(flat), displacements.collect::<String>());
-            _ = writeln!(text, "| {gait}, {} |{flat} |{displacements}", part.unit());
+            let (level_cell, displacements) = (cell_of(level), displacements.collect::<String>());
+            _ = writeln!(
+                text,
+                "| {gait}, {} |{level_cell} |{displacements}",
+                part.unit()
+            );
         }
     }
     for (name, part) in [("a displacement", Part::Ahead), ("a turn", Part::Turn)] {
-        let bars = of_robot
+        let cells = robot_surfaces
             .iter()
             .map(|surface| match min_share(*surface, part) {
                 Some(share) => format!(" {:.0} % |", 100.0 * share),
                 None => " - |".to_owned(),
             });
-        let bars = bars.collect::<String>();
-        _ = writeln!(text, "| at least, of {name} | 100 % |{bars}");
+        let cells = cells.collect::<String>();
+        _ = writeln!(text, "| at least, of {name} | 100 % |{cells}");
     }
     text
 }

@@ -61,8 +61,8 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             .into_iter()
             .filter(|case| Case::ALL.contains(case))
             .collect();
-        let widest = gaits(robot).map(str::len).max().unwrap_or(0);
-        _ = write!(text, "{:widest$}    ", "");
+        let width = gaits(robot).map(str::len).max().unwrap_or(0);
+        _ = write!(text, "{:width$}    ", "");
         let heads = cases.iter().map(|case| match case.feet {
             Feet::Level => "level",
             Feet::Stiff => "0.6 mm long, 2 N/mm",
@@ -72,17 +72,17 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             _ = write!(text, "  {head:<20}");
         }
         text = text.trim_end().to_owned();
-        _ = write!(text, "\n{:<widest$}    ", "gait");
+        _ = write!(text, "\n{:<width$}    ", "gait");
         for _ in &cases {
             _ = write!(text, "  {:>6}  {:>6}      ", "model", "MuJoCo");
         }
         text = text.trim_end().to_owned() + "\n";
         for gait in gaits(robot) {
-            let Some(first) = figures.get(name, gait, cases[0]) else {
+            let Some(first_answers) = figures.get(name, gait, cases[0]) else {
                 continue;
             };
-            for part in Part::of(first.model.unwrap_or(first.mujoco)) {
-                _ = write!(text, "{gait:<widest$} {:>3}", part.unit());
+            for part in Part::of(first_answers.model.unwrap_or(first_answers.mujoco)) {
+                _ = write!(text, "{gait:<width$} {:>3}", part.unit());
                 for answers in cases
                     .iter()
                     .filter_map(|case| figures.get(name, gait, *case))
@@ -117,20 +117,21 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
-        let of = |feet: Feet| {
+        let answers_with = |feet: Feet| {
             let legs = Legs::Rigid;
             figures.get(name, gait.name(), Case { legs, feet })
         };
-        let (Some(level), Some(long)) = (of(Feet::Level), of(Feet::Soft)) else {
+        let (Some(level), Some(long)) = (answers_with(Feet::Level), answers_with(Feet::Soft))
+        else {
             continue;
         };
-        let (Some(model), Some(rocks)) = (level.model, long.model) else {
+        let (Some(model), Some(long_model)) = (level.model, long.model) else {
             continue;
         };
-        let cell = |displacements: &[Displacement]| {
+        let cell_of = |displacements: &[Displacement]| {
             let parts = Part::of(model)
                 .into_iter()
-                .map(|part| range(part, displacements));
+                .map(|part| range_text(part, displacements));
             parts.collect::<Vec<_>>().join(", ")
         };
         _ = writeln!(
@@ -138,18 +139,18 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
             "| {} | {} | {} | {} | {} | {} |",
             gait.name(),
             gait.period(),
-            cell(&[model]),
-            cell(&[gait
+            cell_of(&[model]),
+            cell_of(&[gait
                 .simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
                 .into()]),
-            cell(&[level.mujoco]),
-            cell(&[rocks, long.mujoco])
+            cell_of(&[level.mujoco]),
+            cell_of(&[long_model, long.mujoco])
         );
     }
     text
 }
 
-fn range(part: Part, displacements: &[Displacement]) -> String {
+fn range_text(part: Part, displacements: &[Displacement]) -> String {
     let values = displacements
         .iter()
         .map(|displacement| part.value(*displacement));

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// # Panics
 /// Never: the values are names and numbers.
 pub fn lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
-    joined(map, |value| serde_json::to_string(value).expect("numbers")) + "\n"
+    join_lines(map, |value| serde_json::to_string(value).expect("numbers")) + "\n"
 }
 
 /// Formats a map of maps as a JSON object of objects with one line per inner key.
@@ -17,12 +17,12 @@ pub fn lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
 /// # Panics
 /// Never: the values are names and numbers.
 pub fn blocks<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
-    joined(map, |inner| lines(inner).trim_end().to_owned()) + "\n"
+    join_lines(map, |inner| lines(inner).trim_end().to_owned()) + "\n"
 }
 
-fn joined<T>(map: &BTreeMap<String, T>, text: impl Fn(&T) -> String) -> String {
+fn join_lines<T>(map: &BTreeMap<String, T>, text_of: impl Fn(&T) -> String) -> String {
     let lines = map
         .iter()
-        .map(|(key, value)| format!("{key:?}: {}", text(value)));
+        .map(|(key, value)| format!("{key:?}: {}", text_of(value)));
     format!("{{\n{}\n}}", lines.collect::<Vec<_>>().join(",\n"))
 }

@@ -14,35 +14,38 @@ use lizard_physics::{
     spread, table,
 };
 
-/// Compares the text between a marker and the next end marker of a page with `wanted`; replaces it if
+/// Compares the text between a marker and the next end marker of a page with `expected_text`; replaces it if
 /// `BLESS_PHYSICS` is set.
-fn check_block(page: &str, marker: &str, wanted: &str) {
+fn check_block(page: &str, marker: &str, expected_text: &str) {
     let file = crate_folder().join("../..").join(page);
     let text = std::fs::read_to_string(&file).expect(page);
     let begin = format!("<!-- {marker} -->\n");
     let start = text.find(&begin).expect(&begin) + begin.len();
     let end = start + text[start..].find("<!-- end -->").expect("an end");
-    let now = format!("{}{wanted}{}", &text[..start], &text[end..]);
+    let new_text = format!("{}{expected_text}{}", &text[..start], &text[end..]);
     if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, now).expect(page);
+        std::fs::write(&file, new_text).expect(page);
     } else {
-        assert_eq!(text, now, "{page} is out of date; run with BLESS_PHYSICS=1");
+        assert_eq!(
+            text, new_text,
+            "{page} is out of date; run with BLESS_PHYSICS=1"
+        );
     }
 }
 
 #[test]
 fn the_pages_have_the_displacements_of_model_and_engine() {
-    let kept = Figures::stored();
+    let figures = Figures::stored();
     for name in ROBOTS {
         let robot = robot(name);
-        let all = format!("```text\n{}```\n", table(name, &robot, &kept));
+        let fenced_table = format!("```text\n{}```\n", table(name, &robot, &figures));
         check_block(
             "docs/judges.md",
             &format!("physics of robots/{name}.toml"),
-            &all,
+            &fenced_table,
         );
         if name == "paper" {
-            let displacements = spread(name, &robot, &kept);
+            let displacements = spread(name, &robot, &figures);
             for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
                 check_block(page, "ways of robots/paper.toml", &displacements);
             }
@@ -50,12 +53,12 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
     }
     let surfaces = surface::stored();
     for name in surface::ROBOTS {
-        let table = surfaces_table(name, &kept, &surfaces);
+        let table = surfaces_table(name, &figures, &surfaces);
         let marker = format!("surfaces of robots/{name}.toml");
         check_block("docs/judges.md", &marker, &table);
     }
     check_block("docs/judges.md", "pads", &pads::table(&pads::stored()));
-    let changes = assumptions::table(&kept, &surfaces, &assumptions::stored());
+    let changes = assumptions::table(&figures, &surfaces, &assumptions::stored());
     let fenced = format!("```text\n{changes}```\n");
     check_block("docs/limits.md", "assumptions by MuJoCo", &fenced);
     let robot = robot("paper");
@@ -70,43 +73,47 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
 fn the_stored_figures_are_written_as_they_are_read() {
     let file = crate_folder().join("figures.json");
     let text = std::fs::read_to_string(&file).expect("figures.json");
-    let now = Figures::stored().text();
+    let new_text = Figures::stored().text();
     if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, now).expect("figures.json");
+        std::fs::write(&file, new_text).expect("figures.json");
     } else {
-        assert_eq!(text, now);
+        assert_eq!(text, new_text);
     }
 }
 
 #[test]
 fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() {
-    let (figures, kept) = (Figures::stored(), surface::stored());
+    let (figures, stored_surfaces) = (Figures::stored(), surface::stored());
     let mut count = 0;
     for name in surface::ROBOTS {
         for (gait, level) in surface::gaits(&figures, name) {
             for surface in Surface::of(name) {
-                let displacement = kept[name][&gait][&surface.to_string()];
+                let displacement = stored_surfaces[name][&gait][&surface.to_string()];
                 let losses = surface::excess_losses(surface, level, displacement);
-                let is_below = surface::is_known_shortfall(name, &gait, surface);
+                let is_known_shortfall = surface::is_known_shortfall(name, &gait, surface);
                 assert_eq!(
                     !losses.is_empty(),
-                    is_below,
+                    is_known_shortfall,
                     "{name}: {gait}, {surface}: {losses:?}"
                 );
                 count += 1;
             }
         }
     }
-    let all = kept.values().flat_map(|gaits| gaits.values());
-    let all = all.map(std::collections::BTreeMap::len);
-    assert_eq!(all.sum::<usize>(), count, "and no others are kept");
+    let stored_counts = stored_surfaces.values().flat_map(|gaits| gaits.values());
+    let stored_counts = stored_counts.map(std::collections::BTreeMap::len);
+    assert_eq!(
+        stored_counts.sum::<usize>(),
+        count,
+        "and no others are kept"
+    );
     assert!(count > 100, "{count}");
     // The check fails for a robot that an edge keeps from moving or turning, or that turns in the wrong direction.
-    let stopped = Displacement([0.0; 3]);
-    for (gait, losses) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
+    let no_displacement = Displacement([0.0; 3]);
+    for (gait, loss_count) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
         let level = surface::level_displacement(&figures, gait);
-        let found = surface::excess_losses(Surface::Edge(20), level, stopped);
-        assert_eq!(found.len(), losses, "{gait}: {found:?}");
+        let messages = surface::excess_losses(Surface::Edge(20), level, no_displacement);
+        assert_eq!(messages.len(), loss_count, "{gait}: {messages:?}");
     }
     let [left, right] = ["left", "right"].map(|gait| surface::level_displacement(&figures, gait));
     assert_eq!(
@@ -118,13 +125,13 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
 #[test]
 fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gaits_that_only_turn() {
     let figures = Figures::stored();
-    let mut turns = Vec::new();
+    let mut turning_gaits = Vec::new();
     for name in surface::ROBOTS {
         let feet = robot(name).ground().feet.positions([0.0; 4]);
         for (gait, level) in surface::gaits(&figures, name) {
             let crossing = Crossing::of(&robot(name), level, 0);
             if !crossing.is_crossed {
-                turns.push(gait);
+                turning_gaits.push(gait);
                 continue;
             }
             let block = crossing.block(2.0);
@@ -133,64 +140,65 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
             let (sin, cos) = block.rotation.to_radians().sin_cos();
             let half = block.size[1] / 2.0;
             let edge = [block.centre[0] + half * sin, block.centre[1] - half * cos];
-            let beyond =
+            let distance_beyond =
                 |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
             let mut pose = [0.0; 3];
             for [ahead, left] in feet {
                 assert!(
-                    beyond([-left, ahead]) < -20.0,
+                    distance_beyond([-left, ahead]) < -20.0,
                     "{name}: {gait} starts behind it"
                 );
             }
             for _ in 0..crossing.cycles {
-                pose = moved(pose, level.0);
+                pose = move_pose(pose, level.0);
             }
             for [ahead, left] in feet {
-                let [ahead, left, _] = moved(pose, [ahead, left, 0.0]);
+                let [ahead, left, _] = move_pose(pose, [ahead, left, 0.0]);
                 assert!(
-                    beyond([-left, ahead]) > 20.0,
+                    distance_beyond([-left, ahead]) > 20.0,
                     "{name}: {gait} ends beyond it"
                 );
             }
         }
     }
-    turns.sort_unstable();
-    turns.dedup();
-    let wanted = [
+    turning_gaits.sort_unstable();
+    turning_gaits.dedup();
+    let expected_gaits = [
         "left",
         "right",
         "turn-slowly-on-the-spot-all-the-way-to-the-left",
         "turn-slowly-to-the-right",
     ];
-    assert_eq!(turns, wanted);
+    assert_eq!(turning_gaits, expected_gaits);
 }
 
 /// Returns a pose (mm ahead, mm to the left, deg) after a displacement in the pose's own frame.
-fn moved([x, y, turn]: [f64; 3], [ahead, left, by]: [f64; 3]) -> [f64; 3] {
+fn move_pose([x, y, turn]: [f64; 3], [ahead, left, turn_change]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = turn.to_radians().sin_cos();
     [
         x + ahead * cos - left * sin,
         y + ahead * sin + left * cos,
-        turn + by,
+        turn + turn_change,
     ]
 }
 
 #[test]
 fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
-    let (assumed, shapes) = (assumptions::stored(), pads::stored());
-    for Assumption {
-        description: words, ..
-    } in Assumption::ALL
-    {
-        assert_eq!(assumed[words].len(), assumptions::GAITS.len(), "{words}");
+    let (stored_assumptions, shapes) = (assumptions::stored(), pads::stored());
+    for Assumption { description, .. } in Assumption::ALL {
+        assert_eq!(
+            stored_assumptions[description].len(),
+            assumptions::GAITS.len(),
+            "{description}"
+        );
     }
-    assert_eq!(assumed.len(), Assumption::ALL.len());
+    assert_eq!(stored_assumptions.len(), Assumption::ALL.len());
     for shape in Shape::ALL {
         assert_eq!(shapes[&shape.name()].len(), SURFACES.len());
     }
     assert_eq!(shapes.len(), Shape::ALL.len());
     for (file, text) in [
-        ("assumptions.json", lines(&assumed)),
+        ("assumptions.json", lines(&stored_assumptions)),
         ("pads.json", lines(&shapes)),
         ("surfaces.json", blocks(&surface::stored())),
     ] {
@@ -200,49 +208,65 @@ fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
         );
     }
     // The row `30` has the pads of robot.toml, so surfaces.json must have the same displacements for `walk`.
-    let own = &shapes["30"];
+    let default_row = &shapes["30"];
     for surface in SURFACES {
         let name = surface.to_string();
-        let (mm, _) = own[&name].distance_to(&surface::stored()["paper"]["walk"][&name]);
+        let (mm, _) = default_row[&name].distance_to(&surface::stored()["paper"]["walk"][&name]);
         assert!(mm < 0.05, "{name}: {mm}");
     }
 }
 
 #[test]
 fn every_walk_is_stored_and_close_to_the_model() {
-    let kept = Figures::stored();
+    let figures = Figures::stored();
     let mut count = 0;
     for name in ROBOTS {
         let robot = robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
-            let of = |case| kept.get(name, gait.name(), case);
-            let decided = of(Case::ALL[0]).is_some_and(|answers| answers.model.is_some());
+            let answers_for = |case| figures.get(name, gait.name(), case);
+            let is_decided =
+                answers_for(Case::ALL[0]).is_some_and(|answers| answers.model.is_some());
             for case in Case::ALL {
-                let Some(answers) = of(case) else {
-                    assert!(!decided && case != Case::ALL[0], "{name}: {}", gait.name());
+                let Some(answers) = answers_for(case) else {
+                    assert!(
+                        !is_decided && case != Case::ALL[0],
+                        "{name}: {}",
+                        gait.name()
+                    );
                     continue;
                 };
                 assert_eq!(answers.disagreement(case), None, "{name}: {}", gait.name());
-                assert_eq!(answers.model.is_some(), decided, "{name}: {}", gait.name());
+                assert_eq!(
+                    answers.model.is_some(),
+                    is_decided,
+                    "{name}: {}",
+                    gait.name()
+                );
                 count += 1;
             }
         }
     }
-    assert_eq!(kept.count(), count, "and no others are kept");
+    assert_eq!(figures.count(), count, "and no others are kept");
 }
 
 #[test]
 fn the_stored_answers_of_the_model_are_up_to_date() {
-    let (kept, robot) = (Figures::stored(), robot("paper"));
+    let (figures, robot) = (Figures::stored(), robot("paper"));
     let mut count = 0;
     for row in rows(&robot) {
-        let answers = kept.get("paper", &row.gait, row.case).expect("it is kept");
+        let answers = figures
+            .get("paper", &row.gait, row.case)
+            .expect("it is kept");
         assert_eq!(answers.model.is_some(), row.is_decided, "{}", row.gait);
-        let (Some(was), Some(is)) = (answers.model, row.model(&robot)) else {
+        let (Some(stored), Some(computed)) = (answers.model, row.model(&robot)) else {
             continue;
         };
-        let (mm, deg) = was.distance_to(&is);
-        assert!(mm < 0.05 && deg < 0.05, "{}: {was:?} {is:?}", row.gait);
+        let (mm, deg) = stored.distance_to(&computed);
+        assert!(
+            mm < 0.05 && deg < 0.05,
+            "{}: {stored:?} {computed:?}",
+            row.gait
+        );
         count += 1;
     }
     assert!(count >= 40, "{count}");
@@ -250,31 +274,41 @@ fn the_stored_answers_of_the_model_are_up_to_date() {
 
 #[test]
 fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
-    let kept = Figures::stored();
-    let case = |feet| Case {
+    let figures = Figures::stored();
+    let case_with = |feet| Case {
         legs: Legs::Rigid,
         feet,
     };
     let mut count = 0;
     for name in ROBOTS {
         for gait in robot(name).gaits().iter().filter(|gait| gait.moves()) {
-            let of = |feet| kept.get(name, gait.name(), case(feet));
-            let (Some(level), Some(long)) = (of(Feet::Level), of(Feet::Soft)) else {
+            let answers_for = |feet| figures.get(name, gait.name(), case_with(feet));
+            let (Some(level), Some(long)) = (answers_for(Feet::Level), answers_for(Feet::Soft))
+            else {
                 continue;
             };
             let model = level.model.zip(long.model);
-            for (before, after) in model.into_iter().chain([(level.mujoco, long.mujoco)]) {
-                let ahead = |displacement: Displacement| displacement.0[0].hypot(displacement.0[1]);
-                let turn = |displacement: Displacement| displacement.0[2].abs();
+            for (level_displacement, long_displacement) in
+                model.into_iter().chain([(level.mujoco, long.mujoco)])
+            {
+                let distance_of =
+                    |displacement: Displacement| displacement.0[0].hypot(displacement.0[1]);
+                let turn_of = |displacement: Displacement| displacement.0[2].abs();
                 // A gait is judged by its distance if it has one, else by its turn; a gait without either is skipped.
-                let (was, is) = match (ahead(before) > 4.0, turn(before) > 1.0) {
-                    (true, _) => (ahead(before), ahead(after)),
-                    (false, true) => (turn(before), turn(after)),
+                let (level_value, long_value) = match (
+                    distance_of(level_displacement) > 4.0,
+                    turn_of(level_displacement) > 1.0,
+                ) {
+                    (true, _) => (
+                        distance_of(level_displacement),
+                        distance_of(long_displacement),
+                    ),
+                    (false, true) => (turn_of(level_displacement), turn_of(long_displacement)),
                     (false, false) => continue,
                 };
                 assert!(
-                    is > 0.9 * was,
-                    "{name}: {} {before:?} {after:?}",
+                    long_value > 0.9 * level_value,
+                    "{name}: {} {level_displacement:?} {long_displacement:?}",
                     gait.name()
                 );
                 count += 1;
@@ -300,21 +334,22 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
         let (section, name) = key.split_once("] ").expect(key);
         let header = format!("\n{section}]");
         // No key takes an array, so a known key is refused for its type; an unknown key gives another error.
-        let wrong = match text.contains(&header) {
+        let wrong_text = match text.contains(&header) {
             true => {
-                let at = text.find(&header).expect("it is there") + 1;
-                let body = at + text[at..].find('\n').expect("its line ends") + 1;
-                let end = text[body..]
+                let header_start = text.find(&header).expect("it is there") + 1;
+                let body_start =
+                    header_start + text[header_start..].find('\n').expect("its line ends") + 1;
+                let end = text[body_start..]
                     .find("\n[")
-                    .map_or(text.len(), |end| body + end);
-                let others = text[body..end]
+                    .map_or(text.len(), |end| body_start + end);
+                let other_lines = text[body_start..end]
                     .lines()
                     .filter(|line| !line.starts_with(&format!("{name} ")));
-                let others: Vec<&str> = others.collect();
+                let other_lines: Vec<&str> = other_lines.collect();
                 format!(
                     "{}{name} = []\n{}{}",
-                    &text[..body],
-                    others.join("\n"),
+                    &text[..body_start],
+                    other_lines.join("\n"),
                     &text[end..]
                 )
             }
@@ -323,11 +358,11 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
             }
             false => format!("{text}\n{section}]\n{name} = []\n"),
         };
-        let refused = Robot::parse(&wrong).expect_err(key).to_string();
+        let message = Robot::parse(&wrong_text).expect_err(key).to_string();
         let path = format!("{}.{name}", section.trim_start_matches('['));
         assert!(
-            refused.contains(&path) && !refused.contains("not a known key"),
-            "{refused}"
+            message.contains(&path) && !message.contains("not a known key"),
+            "{message}"
         );
         count += 1;
     }

@@ -5,29 +5,32 @@
 use lizard_physics::grains::{self, GAITS, Grains, RATIOS};
 use lizard_physics::{crate_folder, robot};
 
-/// Returns the speeds of a gait at a friction ratio, by the model, if known, and by MuJoCo. `part` is the index
+/// Returns the speeds of a gait at a friction ratio, by the model, if known, and by MuJoCo. `component` is the index
 /// in the displacement: 0 for mm/s ahead, 2 for deg/s of turn.
-fn speeds(kept: &Grains, gait: &str, ratio: f64, part: usize) -> Vec<f64> {
+fn speeds(stored: &Grains, gait: &str, ratio: f64, component: usize) -> Vec<f64> {
     let period = robot(grains::ROBOT).gait(gait).expect(gait).period();
     let index = RATIOS.iter().position(|known| *known == ratio);
-    let answers = kept[gait][index.expect("a ratio of the table")];
+    let answers = stored[gait][index.expect("a ratio of the table")];
     let displacements = answers.model.into_iter().chain([answers.mujoco]);
     displacements
-        .map(|displacement| displacement.0[part] / period)
+        .map(|displacement| displacement.0[component] / period)
         .collect()
 }
 
-/// Compares a file's text between `begin` and `end` with `wanted`; replaces it if `BLESS_PHYSICS` is set.
-fn block(path: &str, begin: &str, end: &str, wanted: &str) {
+/// Compares a file's text between `begin` and `end` with `expected`; replaces it if `BLESS_PHYSICS` is set.
+fn check_block(path: &str, begin: &str, end: &str, expected: &str) {
     let file = crate_folder().join("../..").join(path);
     let text = std::fs::read_to_string(&file).expect(path);
     let start = text.find(begin).expect(begin) + begin.len();
     let stop = start + text[start..].find(end).expect(end);
-    let now = format!("{}{wanted}{}", &text[..start], &text[stop..]);
+    let new_text = format!("{}{expected}{}", &text[..start], &text[stop..]);
     if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, now).expect(path);
+        std::fs::write(&file, new_text).expect(path);
     } else {
-        assert_eq!(text, now, "{path} is out of date; run with BLESS_PHYSICS=1");
+        assert_eq!(
+            text, new_text,
+            "{path} is out of date; run with BLESS_PHYSICS=1"
+        );
     }
 }
 
@@ -35,63 +38,69 @@ fn block(path: &str, begin: &str, end: &str, wanted: &str) {
 fn the_page_and_the_robots_file_have_the_speeds_of_model_and_engine() {
     let table = grains::table(&robot(grains::ROBOT), &grains::stored());
     let start = "<!-- speeds of robots/grain.toml -->\n```text\n";
-    block("docs/gaits.md", start, "```\n<!-- end -->", &table);
+    check_block("docs/gaits.md", start, "```\n<!-- end -->", &table);
     let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
     let start = "# leads nowhere.\n#\n";
-    block("robots/grain.toml", start, "#\n# Fit all", &comment);
+    check_block("robots/grain.toml", start, "#\n# Fit all", &comment);
 }
 
 #[test]
 fn every_speed_is_stored_as_it_is_read_and_close_to_the_model() {
-    let kept = grains::stored();
+    let stored = grains::stored();
     let text = std::fs::read_to_string(crate_folder().join("grains.json")).expect("grains.json");
-    assert_eq!(text, grains::text(&kept));
-    assert_eq!(grains::disagreements(&kept), Vec::<String>::new());
+    assert_eq!(text, grains::text(&stored));
+    assert_eq!(grains::disagreements(&stored), Vec::<String>::new());
     for (gait, _) in GAITS {
-        assert_eq!(kept[gait].len(), RATIOS.len(), "{gait}");
+        assert_eq!(stored[gait].len(), RATIOS.len(), "{gait}");
     }
 }
 
 #[test]
 fn the_stored_answers_of_the_model_are_its_present_ones() {
-    let (kept, robot) = (grains::stored(), robot(grains::ROBOT));
+    let (stored, robot) = (grains::stored(), robot(grains::ROBOT));
     for (name, _) in GAITS {
         let gait = robot.gait(name).expect(name);
-        for (ratio, answers) in RATIOS.into_iter().zip(&kept[name]) {
-            let now = grains::model(&robot, gait, ratio);
-            assert_eq!(now.is_some(), answers.model.is_some(), "{name} {ratio}");
-            let Some((was, is)) = answers.model.zip(now) else {
+        for (ratio, answers) in RATIOS.into_iter().zip(&stored[name]) {
+            let current = grains::model(&robot, gait, ratio);
+            assert_eq!(current.is_some(), answers.model.is_some(), "{name} {ratio}");
+            let Some((stored_model, current_model)) = answers.model.zip(current) else {
                 continue;
             };
-            let (mm, deg) = was.distance_to(&is);
-            assert!(mm < 0.05 && deg < 0.05, "{name} {ratio}: {was:?} {is:?}");
+            let (mm, deg) = stored_model.distance_to(&current_model);
+            assert!(
+                mm < 0.05 && deg < 0.05,
+                "{name} {ratio}: {stored_model:?} {current_model:?}"
+            );
         }
     }
 }
 
 #[test]
 fn with_a_grain_the_robot_runs_at_90_mm_a_second_and_still_turns() {
-    let kept = grains::stored();
+    let stored = grains::stored();
     assert_eq!(
         robot(grains::ROBOT).ground().ratio,
         1.5,
         "robots/grain.toml"
     );
-    let run = speeds(&kept, "run", 1.5, 0);
-    assert!(run.len() == 2 && run.iter().all(|mm| *mm > 90.0), "{run:?}");
+    let run_speeds = speeds(&stored, "run", 1.5, 0);
+    assert!(
+        run_speeds.len() == 2 && run_speeds.iter().all(|mm| *mm > 90.0),
+        "{run_speeds:?}"
+    );
     for ratio in RATIOS {
-        let turn = speeds(&kept, "arc-left", ratio, 2);
+        let turn_speeds = speeds(&stored, "arc-left", ratio, 2);
         assert!(
-            turn.len() == 2 && turn.iter().all(|deg| *deg > 14.0),
-            "{turn:?}"
+            turn_speeds.len() == 2 && turn_speeds.iter().all(|deg| *deg > 14.0),
+            "{turn_speeds:?}"
         );
     }
-    for (gait, part, min) in [("left", 2, 14.0), ("back", 0, 30.0)] {
-        let against = speeds(&kept, gait, 1.5, part);
-        let still = |speed: &f64| speed.abs() > min;
+    for (gait, component, min) in [("left", 2, 14.0), ("back", 0, 30.0)] {
+        let gait_speeds = speeds(&stored, gait, 1.5, component);
+        let is_fast = |speed: &f64| speed.abs() > min;
         assert!(
-            against.len() == 2 && against.iter().all(still),
-            "{against:?}"
+            gait_speeds.len() == 2 && gait_speeds.iter().all(is_fast),
+            "{gait_speeds:?}"
         );
     }
 }

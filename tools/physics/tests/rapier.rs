@@ -71,13 +71,16 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     let (distance, turn) = by_model.distance_to(&Displacement([40.95, -0.44, 0.0]));
     assert!(distance <= 0.5 && turn <= 0.3, "{by_model:?}");
     let stored = lizard_physics::Figures::stored();
-    let speed = |robot: &str, gait: &str, period: f64| {
-        let level = lizard_physics::Case::ALL[0];
-        stored.get(robot, gait, level).expect(gait).mujoco.0[0] / period
+    let speed_of = |robot: &str, gait: &str, period: f64| {
+        let level_case = lizard_physics::Case::ALL[0];
+        stored.get(robot, gait, level_case).expect(gait).mujoco.0[0] / period
     };
-    let slow = speed("paper", "walk", walk.period());
-    let fast = speed("own-gaits", "stride", stride.period());
-    assert!(fast > 1.25 * slow, "walk {slow:.1} mm/s, stride {fast:.1}");
+    let walk_speed = speed_of("paper", "walk", walk.period());
+    let stride_speed = speed_of("own-gaits", "stride", stride.period());
+    assert!(
+        stride_speed > 1.25 * walk_speed,
+        "walk {walk_speed:.1} mm/s, stride {stride_speed:.1}"
+    );
 }
 
 /// The engine's displacements on rigid legs at a friction of 0.4.

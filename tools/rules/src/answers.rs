@@ -16,7 +16,7 @@ const QUIET_TIME: Time = 140 * MS;
 const SAVING_TIME: Time = 400 * MS;
 
 /// Lines that no robot may accept.
-const WRONG: [&str; 7] = [
+const WRONG_LINES: [&str; 7] = [
     "walk 0",
     "nonsense",
     "trim 1 90",
@@ -29,33 +29,36 @@ const WRONG: [&str; 7] = [
 impl Observer {
     /// Judges the answer to a line sent at `asked`, and records the promises in it.
     pub(crate) fn answer(&mut self, line: &str, effect: Effect, asked: Time, text: &str) {
-        let at = self.now;
+        let now = self.now;
         if text.starts_with("ok gait=") {
             return self.status(text);
         }
         if !text.starts_with("ok") {
             return;
         }
-        if WRONG.contains(&line) {
+        if WRONG_LINES.contains(&line) {
             self.fail(Rule::Wrong, format!("{line}: {text}"));
         }
         self.note_done(text);
         match effect {
-            Effect::Moves if !self.is_troubled(at) => {
-                self.pending.moves = Some((at, at + UNTIL_AWAKE, [false; 4]));
+            Effect::Moves if !self.is_troubled(now) => {
+                self.pending.moves = Some((now, now + UNTIL_AWAKE, [false; 4]));
             }
             Effect::Rests => {
                 if self.disturbed <= asked {
-                    self.pending.quiet =
-                        Some((at + self.limits.frame_left, at + QUIET_TIME, Rule::RestEnds));
+                    self.pending.quiet = Some((
+                        now + self.limits.frame_left,
+                        now + QUIET_TIME,
+                        Rule::RestEnds,
+                    ));
                 }
-                let least_good = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                let good = self
+                let least_good_mv = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
+                let is_good = self
                     .supply
-                    .is_good_since(self.first_rest_command, least_good);
-                let again = self.first_rest_command > self.start
+                    .is_good_since(self.first_rest_command, least_good_mv);
+                let is_repeated = self.first_rest_command > self.start
                     && asked > self.first_rest_command + SAVING_TIME;
-                if again && good && self.limits.keeps_memory {
+                if is_repeated && is_good && self.limits.keeps_memory {
                     self.pending.unwritten = Some(asked + 500 * MS);
                 } else if self.first_rest_command < self.start {
                     self.first_rest_command = asked;
@@ -71,8 +74,8 @@ impl Observer {
             && self.now > until
         {
             self.pending.moves = None;
-            let missing = has_pulses.iter().position(|has| !has);
-            if let Some(servo) = missing
+            let missing_servo = has_pulses.iter().position(|has_pulse| !has_pulse);
+            if let Some(servo) = missing_servo
                 && !self.is_troubled(from)
             {
                 self.fail(Rule::Moves, format!("A{} has no pulses", servo + 1));
@@ -88,16 +91,16 @@ impl Observer {
 
     /// Judges the promises about pulses when a pulse begins.
     pub(crate) fn judge_expected_pulse(&mut self, servo: usize) {
-        let at = self.now;
+        let now = self.now;
         if let Some((_, _, has_pulses)) = &mut self.pending.moves {
             has_pulses[servo] = true;
         }
         self.pending.status = None;
         if let Some((from, until, rule)) = self.pending.quiet
-            && (from..until).contains(&at)
+            && (from..until).contains(&now)
             && (rule == Rule::RestEnds || !self.is_troubled(from - self.limits.frame_left))
         {
-            let ms = (at - from + self.limits.frame_left) / MS;
+            let ms = (now - from + self.limits.frame_left) / MS;
             self.fail(rule, format!("A{} has a pulse {ms} ms later", servo + 1));
             self.pending.quiet = None;
         }
@@ -107,10 +110,10 @@ impl Observer {
     /// undisturbed for long enough to save the pose of the last whole pulse.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
         let since = self.servos[servo].whole_at;
-        let least_good = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
+        let least_good_mv = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
         self.limits.keeps_memory
             && self.now - since > SAVING_TIME
-            && self.supply.is_good_since(since, least_good)
+            && self.supply.is_good_since(since, least_good_mv)
             && self.disturbed <= since
             && !self.is_unsaved
     }

@@ -40,10 +40,11 @@ pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> 
                 flashes = Some(0);
             }
             (_, 630..=650) if code == 0 => {}
-            (high, ms) => {
-                let at = pair[0].0 as f64 / MS as f64;
-                let seen = format!("the LED is high={high} for {ms} ms from {at:.3} ms on");
-                return Err(format!("fault {code}: {seen}"));
+            (is_high, ms) => {
+                let start_ms = pair[0].0 as f64 / MS as f64;
+                let message =
+                    format!("the LED is high={is_high} for {ms} ms from {start_ms:.3} ms on");
+                return Err(format!("fault {code}: {message}"));
             }
         }
     }

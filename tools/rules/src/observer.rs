@@ -244,11 +244,11 @@ impl Observer {
     /// True if a cause outside the firmware may have ended the pulses since this time: a reset, a stall, blocked
     /// interrupts or a low supply.
     pub(crate) fn is_troubled(&self, since: Time) -> bool {
-        let rest = self.limits.levels[2] + self.limits.supply_error_mv;
+        let rest_mv = self.limits.levels[2] + self.limits.supply_error_mv;
         self.start >= since
             || self.cut >= since
             || self.disturbed > since
-            || self.supply.time_below(rest, since - 400 * MS, self.now) > 0
+            || self.supply.time_below(rest_mv, since - 400 * MS, self.now) > 0
     }
 
     /// Judges an event.
@@ -256,7 +256,7 @@ impl Observer {
         self.advance(time);
         match event {
             Event::Pass => {}
-            Event::Start(cause) => self.program_starts(cause),
+            Event::Start(cause) => self.note_program_start(cause),
             Event::Cut => self.cut = time,
             Event::Stalled(until) => {
                 self.disturbed = self.disturbed.max(until);
@@ -272,8 +272,8 @@ impl Observer {
                 }
             }
             Event::Supply(mv) => {
-                let poor = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                self.supply.set(time, mv, poor);
+                let poor_below_mv = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
+                self.supply.set(time, mv, poor_below_mv);
             }
             Event::Byte => {
                 self.last_byte = time;
@@ -286,7 +286,7 @@ impl Observer {
                     self.command_read = time;
                 }
             }
-            Event::Order { effect, done } => self.order(effect, done),
+            Event::Order { effect, done } => self.note_order(effect, done),
             Event::Calibrated { is_saved } => {
                 self.is_unsaved = !is_saved;
                 if !is_saved {
@@ -319,10 +319,11 @@ impl Observer {
         self.permission.advance(self.now);
         self.check_silence();
         self.check_pending();
-        let stop = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
-        let low = self.now - 280 * MS;
-        let calm = low > self.start && self.disturbed < low;
-        if self.reports.stopped.is_none() && calm && self.supply.is_low_since(stop, low) {
+        let stop_mv = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
+        let low_since = self.now - 280 * MS;
+        let is_calm = low_since > self.start && self.disturbed < low_since;
+        if self.reports.stopped.is_none() && is_calm && self.supply.is_low_since(stop_mv, low_since)
+        {
             self.reports.stop(self.now);
         }
     }
@@ -334,45 +335,45 @@ impl Observer {
         self.pending.status = None;
     }
 
-    fn program_starts(&mut self, cause: Cause) {
-        let at = self.now;
+    fn note_program_start(&mut self, cause: Cause) {
+        let now = self.now;
         // A brown-out may last long, and the program may have hung before it.
         let ran_until = if cause == Cause::BrownOut {
             self.cut.max(self.start)
         } else {
-            at
+            now
         };
         let is_hung = cause == Cause::Watchdog || self.disturbed > ran_until - 300 * MS;
         self.check_reset(cause);
         for servo in 0..4 {
-            let rests = self.must_keep_rest_pose(servo);
+            let outlasts_rest = self.must_keep_rest_pose(servo);
             let takes_over = cause != Cause::Power && !self.limits.is_narrowed;
             let is_lost = match cause {
                 Cause::BrownOut => self.limits.brown_outs_clear_ram && !is_hung,
                 cause => cause == Cause::Power,
             };
             self.servos[servo].is_lost |= is_lost;
-            self.servos[servo].restart(is_hung, self.permission.may, takes_over, rests);
+            self.servos[servo].restart(is_hung, self.permission.may, takes_over, outlasts_rest);
         }
-        self.start = at;
+        self.start = now;
         self.cause = cause;
         self.lines = 0;
-        self.last_line = at;
+        self.last_line = now;
         self.deadman = 0;
         self.is_driven = false;
         self.first_rest_command = NEVER;
         self.unfinished_motions = 0;
-        self.permission.start(cause, at, self.limits.boots_to_rest);
-        let keeps = matches!(self.pending.quiet, Some((.., Rule::RestEnds)));
+        self.permission.start(cause, now, self.limits.boots_to_rest);
+        let is_rest_promised = matches!(self.pending.quiet, Some((.., Rule::RestEnds)));
         let quiet = self
             .pending
             .quiet
-            .filter(|_| keeps && cause != Cause::Power);
+            .filter(|_| is_rest_promised && cause != Cause::Power);
         self.pending = Pending {
             quiet,
             ..Pending::default()
         };
-        self.reports.start(cause, at);
+        self.reports.start(cause, now);
     }
 
     /// The total time for which main was stalled in the 300 ms before `time`.
@@ -382,28 +383,28 @@ impl Observer {
     }
 
     fn check_reset(&mut self, cause: Cause) {
-        let at = self.now;
+        let now = self.now;
         if cause == Cause::Watchdog {
-            let stalled = self.stalled(at);
+            let stalled_time = self.stalled(now);
             // The watchdog's first stage, less the frame in which the watchdog was fed. At the end of
             // the first stage the pulses end; the reset follows in the second stage.
-            if stalled < 100 * MS {
-                let ms = stalled / MS;
+            if stalled_time < 100 * MS {
+                let ms = stalled_time / MS;
                 self.fail(Rule::NeedlessReset, format!("stalled for {ms} ms"));
             }
         }
         if cause == Cause::BrownOut {
-            let first = self.brown_outs[0];
-            if first > at - 4_000 * MS && self.ordered < first {
-                let ms = (at - first) / MS;
+            let first_brown_out = self.brown_outs[0];
+            if first_brown_out > now - 4_000 * MS && self.ordered < first_brown_out {
+                let ms = (now - first_brown_out) / MS;
                 self.fail(Rule::BrownOuts, format!("six of them in {ms} ms"));
             }
             self.brown_outs.rotate_left(1);
-            self.brown_outs[4] = at;
+            self.brown_outs[4] = now;
         }
     }
 
-    fn order(&mut self, effect: Effect, done: Option<bool>) {
+    fn note_order(&mut self, effect: Effect, done: Option<bool>) {
         self.pending.moves = None;
         if done == Some(false) {
             return;
@@ -423,8 +424,8 @@ impl Observer {
             self.reports.order(done.is_some());
             self.unfinished_motions += 1;
         }
-        let calm = self.disturbed <= self.now;
+        let is_calm = self.disturbed <= self.now;
         self.permission
-            .order(self.now, effect, done.is_some() && calm);
+            .order(self.now, effect, done.is_some() && is_calm);
     }
 }

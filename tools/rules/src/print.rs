@@ -20,8 +20,8 @@ pub const fn frames_class(age: Time) -> u8 {
 impl Observer {
     /// A value whose `Debug` output is the same for equivalent states.
     pub fn coarse(&self) -> impl fmt::Debug + use<> {
-        let age = |at: Time| frames_class(self.now.saturating_sub(at));
-        let signed = |age: i64| {
+        let age_class = |time: Time| frames_class(self.now.saturating_sub(time));
+        let signed_class = |age: i64| {
             if age > 0 {
                 i16::from(frames_class(age))
             } else {
@@ -38,23 +38,23 @@ impl Observer {
                 servo.is_lost,
             )
         });
-        let last = self.servos.iter().map(|servo| servo.at).max();
-        let silent = last.map(age);
-        let since_line = if self.deadman > 0 {
+        let last_pulse = self.servos.iter().map(|servo| servo.at).max();
+        let silence_class = last_pulse.map(age_class);
+        let frames_since_line = if self.deadman > 0 {
             (self.now - self.last_line) / (20 * MS)
         } else {
             0
         };
-        let recent = |at: Time, ms: Time| self.now - at < ms * MS;
+        let is_recent = |time: Time, ms: Time| self.now - time < ms * MS;
         let brown_outs = self
             .brown_outs
             .iter()
-            .filter(|at| recent(**at, 4_000) && **at > self.ordered);
+            .filter(|time| is_recent(**time, 4_000) && **time > self.ordered);
         (
             (
                 servos,
-                silent,
-                (since_line, self.is_driven),
+                silence_class,
+                (frames_since_line, self.is_driven),
                 self.deadman,
                 self.lines,
             ),
@@ -64,17 +64,17 @@ impl Observer {
                 self.permission.boot.is_some(),
             ),
             (
-                recent(self.start, 500),
-                recent(self.ordered, 45),
-                recent(self.disturbed, 300),
+                is_recent(self.start, 500),
+                is_recent(self.ordered, 45),
+                is_recent(self.disturbed, 300),
             ),
             self.supply
                 .times_since_crossed(self.limits.levels, self.now)
-                .map(signed),
+                .map(signed_class),
             (
-                self.reports.stopped.map(age),
+                self.reports.stopped.map(age_class),
                 self.reports.is_reported,
-                recent(self.reports.reported_at, 400),
+                is_recent(self.reports.reported_at, 400),
             ),
             (brown_outs.count(), self.cause),
         )

@@ -82,8 +82,11 @@ impl Observer {
                 }
                 let silence = since - self.last_line;
                 if (self.limits.queued..self.deadman).contains(&silence) {
-                    let (ms, says) = (silence / MS, self.deadman / MS);
-                    self.fail(Rule::Deadman, format!("deadman {says}, after {ms} ms"));
+                    let (silence_ms, deadman_ms) = (silence / MS, self.deadman / MS);
+                    self.fail(
+                        Rule::Deadman,
+                        format!("deadman {deadman_ms}, after {silence_ms} ms"),
+                    );
                 }
             }
         }
@@ -112,10 +115,10 @@ impl Observer {
 
     /// Updates `deadman` and `is_driven` from the answer to a line; a refusal changes nothing.
     pub(crate) fn note_done(&mut self, answer: &str) {
-        let Some(done) = answer.strip_prefix("ok ") else {
+        let Some(accepted) = answer.strip_prefix("ok ") else {
             return;
         };
-        let (word, arguments) = done.split_once(' ').unwrap_or((done, ""));
+        let (word, arguments) = accepted.split_once(' ').unwrap_or((accepted, ""));
         match Word::find(word.as_bytes()) {
             Some(Word::Deadman) => self.deadman = arguments.parse().unwrap_or(0) * MS,
             // Another `deadman` time may have been saved.
@@ -133,50 +136,53 @@ impl Observer {
     /// Checks that a stop has been reported on the console by now. Called only while somebody
     /// reads the console.
     pub fn check_reported(&mut self) {
-        let stopped = self.reports.stopped;
-        let is_due = |at| self.now - at > self.limits.report_time;
-        if stopped.is_some_and(is_due) && !self.reports.is_reported {
+        let stopped_at = self.reports.stopped;
+        let is_due = |time| self.now - time > self.limits.report_time;
+        if stopped_at.is_some_and(is_due) && !self.reports.is_reported {
             self.fail(Rule::Told, "nothing on the console");
         }
     }
 
     /// Judges an answer to `status`.
     pub(crate) fn status(&mut self, text: &str) {
-        let at = self.now;
-        let value = |key: &str| {
+        let now = self.now;
+        let value_of = |key: &str| {
             let mut pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
             pairs.find(|(name, _)| *name == key).map(|(_, value)| value)
         };
-        let (gait, fault) = (value("gait"), value("fault"));
+        let (gait, fault) = (value_of("gait"), value_of("fault"));
         let has_fault = fault != Some("none");
-        if !has_fault && value("guard") == Some("held") {
+        if !has_fault && value_of("guard") == Some("held") {
             self.fail(Rule::GuardNamed, text);
         }
         let report_time = self.limits.report_time;
-        let is_due = |since| at - since > report_time;
+        let is_due = |since| now - since > report_time;
         if !has_fault && self.reports.stopped.is_some_and(is_due) {
             self.fail(Rule::Told, text);
         }
-        let hung = self.cause == Cause::Watchdog && is_due(self.start);
-        if hung && value("reset") != Some("watchdog") {
+        let is_hung = self.cause == Cause::Watchdog && is_due(self.start);
+        if is_hung && value_of("reset") != Some("watchdog") {
             self.fail(Rule::Told, text);
         }
-        let stop = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
-        let low = at - 340 * MS;
-        if !has_fault && low > self.start && self.supply.is_low_since(stop, low) {
+        let stop_mv = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
+        let low_since = now - 340 * MS;
+        if !has_fault && low_since > self.start && self.supply.is_low_since(stop_mv, low_since) {
             self.fail(Rule::Told, format!("the supply is low: {text}"));
         }
         self.check_reported();
         if has_fault && self.reports.stopped.is_none() {
-            self.reports.stopped = Some(at);
+            self.reports.stopped = Some(now);
             self.reports.is_reported = true;
         }
         if gait == Some("rest") {
-            self.pending.quiet =
-                Some((at + self.limits.frame_left, at + 140 * MS, Rule::RestIsRest));
-        } else if !has_fault && self.ordered < at - 400 * MS && !self.is_troubled(at - 400 * MS) {
-            let silent = self.servos.iter().all(|servo| servo.at < at - 200 * MS);
-            self.pending.status = silent.then(|| (at + 200 * MS, text.to_owned()));
+            self.pending.quiet = Some((
+                now + self.limits.frame_left,
+                now + 140 * MS,
+                Rule::RestIsRest,
+            ));
+        } else if !has_fault && self.ordered < now - 400 * MS && !self.is_troubled(now - 400 * MS) {
+            let is_silent = self.servos.iter().all(|servo| servo.at < now - 200 * MS);
+            self.pending.status = is_silent.then(|| (now + 200 * MS, text.to_owned()));
         }
     }
 }

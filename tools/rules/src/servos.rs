@@ -11,17 +11,17 @@ use crate::rule::Rule;
 const MAX_PULSE_GAP: Time = 30 * MS;
 
 /// Longest time for which a gait may go on after `deadman` has run out.
-const LATE: Time = 40 * MS;
+const MAX_LATE_TIME: Time = 40 * MS;
 
 /// Largest difference of consecutive pulses of a servo that stands still, cycles.
-const STEADY: u32 = 16;
+const STEADY_CYCLES: u32 = 16;
 
 /// Longest time from a `rest` order to the end of the last pulse.
 const UNTIL_REST: Time = 45 * MS;
 
 /// Shortest time from a reset until `boot` acts: 3 s, less about a frame, since the first tick comes
 /// early.
-const BOOT: Time = 2_975 * MS;
+const BOOT_TIME: Time = 2_975 * MS;
 
 /// Shortest time between the first pulses of two servos that wake: 0.1 s, less about a frame.
 const MIN_WAKE_GAP: Time = 75 * MS;
@@ -43,10 +43,10 @@ pub(crate) struct Permission {
 
 impl Permission {
     pub(crate) fn advance(&mut self, now: Time) {
-        if self.boot.take_if(|at| *at <= now).is_some() {
+        if self.boot.take_if(|time| *time <= now).is_some() {
             self.may = true;
         }
-        if self.end.take_if(|(at, _)| *at <= now).is_some() {
+        if self.end.take_if(|(time, _)| *time <= now).is_some() {
             self.may = false;
         }
     }
@@ -60,8 +60,8 @@ impl Permission {
     pub(crate) fn start(&mut self, cause: Cause, time: Time, boots_to_rest: bool) {
         self.cancel_order();
         self.may |= cause == Cause::Power;
-        let boots = cause != Cause::Watchdog && !boots_to_rest;
-        self.boot = boots.then_some(time + BOOT);
+        let can_boot = cause != Cause::Watchdog && !boots_to_rest;
+        self.boot = can_boot.then_some(time + BOOT_TIME);
     }
 
     pub(crate) fn order(&mut self, time: Time, effect: Effect, is_sure: bool) {
@@ -162,14 +162,14 @@ impl Servo {
     pub(crate) fn restart(
         &mut self,
         is_hung: bool,
-        may: bool,
+        was_allowed: bool,
         takes_over: bool,
         outlasts_rest: bool,
     ) {
         self.is_hung |= is_hung;
         self.since = match self.since {
-            Since::Nothing if !may && outlasts_rest => Since::ResetInRest,
-            Since::Nothing | Since::Reset if may && takes_over => Since::Reset,
+            Since::Nothing if !was_allowed && outlasts_rest => Since::ResetInRest,
+            Since::Nothing | Since::Reset if was_allowed && takes_over => Since::Reset,
             Since::ResetInRest => Since::ResetInRest,
             Since::Reset if takes_over => Since::Reset,
             _ => Since::Unknown,
@@ -180,25 +180,25 @@ impl Servo {
 impl Observer {
     /// Judges a pulse by its width, its permission and the servo's previous pulses.
     pub(crate) fn pulse(&mut self, pulse: Pulse) {
-        let at = self.now;
+        let now = self.now;
         let servo = self.servos[pulse.servo];
         let name = format_args!("A{}", pulse.servo + 1);
         let (min, max) = self.limits.widths[pulse.servo];
-        let short = pulse.width < min && !pulse.is_cut;
+        let is_short = pulse.width < min && !pulse.is_cut;
         // A falling edge that is held up comes late, at worst with the next slot.
-        let long = pulse.width > max && !pulse.is_held_up || pulse.width > 65_000;
-        if short || long {
+        let is_long = pulse.width > max && !pulse.is_held_up || pulse.width > 65_000;
+        if is_short || is_long {
             let seen = format!("{name} gets {} cycles", pulse.width);
             self.fail(Rule::Travel, seen);
         }
-        let begins = at - servo.at > MAX_PULSE_GAP;
-        if begins {
+        let is_first = now - servo.at > MAX_PULSE_GAP;
+        if is_first {
             self.judge_first_pulse(pulse);
         }
         self.judge_expected_pulse(pulse.servo);
         let leap = pulse.width.abs_diff(servo.width);
         let is_whole = !pulse.is_cut && !pulse.is_held_up;
-        let is_known = servo.whole_at > NEVER && !(begins && servo.is_calibrated);
+        let is_known = servo.whole_at > NEVER && !(is_first && servo.is_calibrated);
         if is_whole && is_known && leap > self.limits.leap[pulse.servo] {
             let seen = format!("{name} has {} cycles and then {}", servo.width, pulse.width);
             match servo.since {
@@ -208,17 +208,17 @@ impl Observer {
                 Since::Unknown => {}
             }
         }
-        if is_whole && !begins && leap > STEADY {
+        if is_whole && !is_first && leap > STEADY_CYCLES {
             self.judge_silence(pulse.servo);
         }
         let servo = &mut self.servos[pulse.servo];
-        servo.at = at;
-        servo.end = at + Time::from(pulse.width);
+        servo.at = now;
+        servo.end = now + Time::from(pulse.width);
         if is_whole {
             *servo = Servo {
                 width: pulse.width,
-                whole_at: at,
-                since: if servo.held_up > at {
+                whole_at: now,
+                since: if servo.held_up > now {
                     Since::Unknown
                 } else {
                     Since::Nothing
@@ -237,16 +237,19 @@ impl Observer {
         let silence = self.now - self.command_read;
         // For about a frame after a stall, main is late.
         let is_calm = self.disturbed + 25 * MS <= self.command_read;
-        if self.is_driven && self.deadman > 0 && is_calm && silence > self.deadman + LATE {
-            let (ms, says) = (silence / MS, self.deadman / MS);
-            let seen = format!("deadman {says}, A{} moves after {ms} ms", servo + 1);
+        if self.is_driven && self.deadman > 0 && is_calm && silence > self.deadman + MAX_LATE_TIME {
+            let (silence_ms, deadman_ms) = (silence / MS, self.deadman / MS);
+            let seen = format!(
+                "deadman {deadman_ms}, A{} moves after {silence_ms} ms",
+                servo + 1
+            );
             self.fail(Rule::Silenced, seen);
         }
     }
 
     /// Judges a servo's first pulse after a pause.
     fn judge_first_pulse(&mut self, pulse: Pulse) {
-        let at = self.now;
+        let now = self.now;
         let servo = self.servos[pulse.servo];
         let name = format!("A{}", pulse.servo + 1);
         if !self.permission.may {
@@ -255,7 +258,7 @@ impl Observer {
         let is_after_hang = servo.is_hung
             && !servo.is_lost
             && servo.whole_at > NEVER
-            && at - servo.whole_at < 1_000 * MS;
+            && now - servo.whole_at < 1_000 * MS;
         let is_unordered = self.ordered < servo.whole_at;
         let leap = pulse.width.abs_diff(servo.width);
         if is_after_hang && is_unordered && !pulse.is_cut && leap > self.limits.leap[pulse.servo] {
@@ -265,17 +268,17 @@ impl Observer {
             );
             self.fail(Rule::Held, seen);
         }
-        let (last_servo, last, last_after_hang) = self.last_begin;
-        let is_soon = at - last < MIN_WAKE_GAP;
+        let (last_servo, last_time, was_after_hang) = self.last_begin;
+        let is_soon = now - last_time < MIN_WAKE_GAP;
         if is_soon && pulse.servo == last_servo {
             // A late pulse has cost the servo a frame or two; this is no new wake-up.
             return;
         }
-        if is_soon && !(is_after_hang && last_after_hang) {
-            let ms = (at - last) / MS;
+        if is_soon && !(is_after_hang && was_after_hang) {
+            let ms = (now - last_time) / MS;
             self.fail(Rule::OneByOne, format!("{name}, {ms} ms after another"));
         }
-        self.last_begin = (pulse.servo, at, is_after_hang);
+        self.last_begin = (pulse.servo, now, is_after_hang);
     }
 
     /// Judges an unexplained end of all pulses: the program hung, so a reset must follow.
@@ -287,7 +290,7 @@ impl Observer {
             return;
         }
         self.is_silence_judged = true;
-        let [_, stop, rest] = self
+        let [_, stop_mv, rest_mv] = self
             .limits
             .levels
             .map(|mv| mv + self.limits.supply_error_mv);
@@ -295,9 +298,9 @@ impl Observer {
             || self.cut > end - 25 * MS
             || self.start > end - 25 * MS
             || self.booted_to_rest > end - 60 * MS
-            || self.supply.time_below(rest, end - 600 * MS, end) > 0
+            || self.supply.time_below(rest_mv, end - 600 * MS, end) > 0
             // A rest within a routine is final if the supply forbids to move on, or if no line arrives.
-            || self.supply.time_below(stop, end, end + self.limits.longest_rest) > 0
+            || self.supply.time_below(stop_mv, end, end + self.limits.longest_rest) > 0
             || self.reports.reported_at > end;
         if !has_reason {
             let ms = (self.now - end) / MS;

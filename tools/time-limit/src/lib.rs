@@ -61,10 +61,10 @@ impl TimeLimit {
     /// Waits until the condition holds.
     ///
     /// # Panics
-    /// If the condition does not hold within the limit; `what` completes the message `waited 300s for`.
+    /// If the condition does not hold within the limit; `event` completes the message `waited 300s for`.
     #[track_caller]
-    pub fn expect(self, what: &str, condition: impl FnMut() -> bool) {
-        assert!(self.wait_for(condition), "waited {self} for {what}");
+    pub fn expect(self, event: &str, condition: impl FnMut() -> bool) {
+        assert!(self.wait_for(condition), "waited {self} for {event}");
     }
 
     /// Runs `work`, which may block as a read or a join does, and returns its result. `work` runs on a
@@ -75,17 +75,17 @@ impl TimeLimit {
     #[track_caller]
     pub fn within<T: Send + 'static>(
         self,
-        what: &str,
+        event: &str,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> T {
-        let (done, result) = mpsc::channel();
+        let (sender, receiver) = mpsc::channel();
         let worker = thread::spawn(move || {
             // The receiver is gone if the limit was reached first.
-            let _ = done.send(work());
+            let _ = sender.send(work());
         });
-        match result.recv_timeout(self.0) {
+        match receiver.recv_timeout(self.0) {
             Ok(result) => result,
-            Err(RecvTimeoutError::Timeout) => panic!("waited {self} for {what}"),
+            Err(RecvTimeoutError::Timeout) => panic!("waited {self} for {event}"),
             Err(RecvTimeoutError::Disconnected) => match worker.join() {
                 Err(panic) => std::panic::resume_unwind(panic),
                 Ok(()) => unreachable!("a worker that returns has sent"),
@@ -100,12 +100,12 @@ impl TimeLimit {
     /// Returns the system's error. Returns [`ErrorKind::TimedOut`] with a message if the program does not exit
     /// within the limit; the program is then killed.
     pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
-        let mut ended = Ok(None);
+        let mut wait_result = Ok(None);
         self.wait_for(|| {
-            ended = child.try_wait();
-            !matches!(ended, Ok(None))
+            wait_result = child.try_wait();
+            !matches!(wait_result, Ok(None))
         });
-        if let Some(status) = ended? {
+        if let Some(status) = wait_result? {
             return Ok(status);
         }
         child.kill()?;
@@ -121,8 +121,8 @@ impl TimeLimit {
     /// beyond the limit, or if a process that it started keeps its output open for that long.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
-        let too_long = |what: &str| {
-            let message = format!("waited {self} for the end of {what}`{name}`");
+        let timeout_error = |process: &str| {
+            let message = format!("waited {self} for the end of {process}`{name}`");
             io::Error::new(ErrorKind::TimedOut, message)
         };
         let mut child = command
@@ -135,23 +135,23 @@ impl TimeLimit {
             // Writing fails, which is no error, if the program reads no input or refuses its arguments.
             thread::spawn(move || stdin.write_all(&input));
         }
-        let printed = [
+        let readers = [
             child.stdout.take().map(read_all),
             child.stderr.take().map(read_all),
         ];
         let status = self
             .end_of(&mut child)
             .map_err(|error| match error.kind() {
-                ErrorKind::TimedOut => too_long(""),
+                ErrorKind::TimedOut => timeout_error(""),
                 _ => error,
             })?;
-        let mut read = Vec::new();
-        for bytes in printed.into_iter().flatten() {
-            let left = bytes.recv_timeout(self.0);
-            read.push(left.map_err(|_| too_long("what was started by "))??);
+        let mut outputs = Vec::new();
+        for receiver in readers.into_iter().flatten() {
+            let received = receiver.recv_timeout(self.0);
+            outputs.push(received.map_err(|_| timeout_error("what was started by "))??);
         }
-        let stderr = read.pop().unwrap_or_default();
-        let stdout = read.pop().unwrap_or_default();
+        let stderr = outputs.pop().unwrap_or_default();
+        let stdout = outputs.pop().unwrap_or_default();
         Ok(Output {
             status,
             stdout,
@@ -162,11 +162,11 @@ impl TimeLimit {
 
 /// Reads a pipe to its end on a thread of its own, since a full pipe would block its program.
 fn read_all(mut pipe: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<Vec<u8>>> {
-    let (done, bytes) = mpsc::channel();
+    let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
-        let mut all = Vec::new();
-        let result = pipe.read_to_end(&mut all);
-        done.send(result.map(|_| all))
+        let mut contents = Vec::new();
+        let result = pipe.read_to_end(&mut contents);
+        sender.send(result.map(|_| contents))
     });
-    bytes
+    receiver
 }

@@ -17,7 +17,7 @@ fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
         .err()
         .expect("it fails");
     match panic.downcast::<String>() {
-        Ok(words) => *words,
+        Ok(message) => *message,
         Err(panic) => (*panic.downcast::<&str>().expect("it fails with words")).to_owned(),
     }
 }
@@ -30,35 +30,35 @@ fn shell(script: &str) -> Command {
 
 #[test]
 fn a_condition_that_never_holds_fails_and_names_the_event() {
-    let words = panic_message(|| SHORT.expect("the cows", || false));
-    assert_eq!(words, "waited 100ms for the cows");
+    let message = panic_message(|| SHORT.expect("the cows", || false));
+    assert_eq!(message, "waited 100ms for the cows");
     assert!(!SHORT.wait_for(|| false));
 }
 
 #[test]
 fn a_condition_is_checked_until_it_holds() {
     let start = Instant::now();
-    let mut asked = 0;
+    let mut check_count = 0;
     LIMIT.expect("the third time", || {
-        asked += 1;
-        asked == 3
+        check_count += 1;
+        check_count == 3
     });
-    assert_eq!(asked, 3);
+    assert_eq!(check_count, 3);
     assert!(LIMIT.wait_for(|| start.elapsed() > Duration::from_millis(20)));
 }
 
 #[test]
 fn work_that_blocks_fails_and_names_the_event() {
     let (_send, receive) = mpsc::channel::<()>();
-    let words = panic_message(|| SHORT.within("a word of nobody", move || receive.recv()));
-    assert_eq!(words, "waited 100ms for a word of nobody");
+    let message = panic_message(|| SHORT.within("a word of nobody", move || receive.recv()));
+    assert_eq!(message, "waited 100ms for a word of nobody");
 }
 
 #[test]
 fn work_that_ends_gives_its_result_or_its_own_failure() {
     assert_eq!(LIMIT.within("a sum", || 2 + 2), 4);
-    let words = panic_message(|| LIMIT.within("a sum", || panic!("no sum")));
-    assert_eq!(words, "no sum");
+    let message = panic_message(|| LIMIT.within("a sum", || panic!("no sum")));
+    assert_eq!(message, "no sum");
 }
 
 #[test]
@@ -104,9 +104,9 @@ fn a_program_that_prints_forever_fails_with_its_name() {
 #[test]
 fn processes_that_a_program_leaves_running_are_not_waited_for() {
     let error = SHORT.output(&mut shell("sleep 2 &"), b"");
-    let words = error.expect_err("it may still print").to_string();
+    let message = error.expect_err("it may still print").to_string();
     assert_eq!(
-        words,
+        message,
         "waited 100ms for the end of what was started by `sh`"
     );
 }

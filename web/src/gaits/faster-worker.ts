@@ -34,9 +34,9 @@ const functions = {
    * Returns the best gait so far, compared with the gait to beat on a number of random robots; null while no gait has
    * kept the limits.
    */
-  best(robots: number): Best | null {
-    const found = robot.fasterFound(robots);
-    return found && { ...found, trial: robot.trial(found.bars) as Trial };
+  best(robotCount: number): Best | null {
+    const bestGait = robot.fasterFound(robotCount);
+    return bestGait && { ...bestGait, trial: robot.trial(bestGait.bars) as Trial };
   },
 };
 

@@ -9,7 +9,7 @@ import type { Best, FasterFunctions } from './faster-worker';
 export type { Best };
 
 /** Number of gaits between two reports of the best so far: one population of the search. */
-const LOOK = 20;
+const GAITS_PER_REPORT = 20;
 /**
  * Number of random robots for a report (`look`) and for the final comparison (`end`), the latter as in `lizard tune`.
  */
@@ -31,9 +31,9 @@ export class FasterSearch {
   constructor(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onAnswer: (answer: Answer) => void) {
     this.search(module, question, onAnswer)
       .catch((error: unknown): Answer => ({ of: 'end', refused: messageOf(error) }))
-      .then((end) => {
+      .then((lastAnswer) => {
         this.drop();
-        onAnswer(end);
+        onAnswer(lastAnswer);
       });
   }
 
@@ -49,16 +49,16 @@ export class FasterSearch {
 
   private async search(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, say: (answer: Answer) => void): Promise<Answer> {
     const { helper } = this;
-    const loaded = await module;
-    const begun = await helper.ask((search) => search.begin(loaded, question));
-    say({ of: 'start', ...begun });
-    let [shown, done] = [-Infinity, 0];
-    while (done < begun.all && !this.isStopped) {
-      const tried = await helper.ask((search) => search.step());
-      done = tried.done;
+    const loadedModule = await module;
+    const start = await helper.ask((search) => search.begin(loadedModule, question));
+    say({ of: 'start', ...start });
+    let [shownScore, done] = [-Infinity, 0];
+    while (done < start.all && !this.isStopped) {
+      const progress = await helper.ask((search) => search.step());
+      done = progress.done;
       say({ of: 'progress', done });
-      if (done % LOOK !== 0 || done === begun.all || tried.best === null || tried.best <= shown) continue;
-      shown = tried.best;
+      if (done % GAITS_PER_REPORT !== 0 || done === start.all || progress.best === null || progress.best <= shownScore) continue;
+      shownScore = progress.best;
       const best = await helper.ask((search) => search.best(ROBOTS.look));
       if (best) say({ of: 'best', best });
     }

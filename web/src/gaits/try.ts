@@ -6,30 +6,30 @@ import type { Session } from '../session';
 const WAKE_MS = 2500;
 
 /** Puts the gait into the session's robot. A board on USB gets the gait only when the robot is written to it. */
-export async function takeGait(session: Session, made: EditedGait): Promise<Refused | null> {
-  return session.change(session.robot.putGait(session.toml, made));
+export async function takeGait(session: Session, gait: EditedGait): Promise<Refused | null> {
+  return session.change(session.robot.putGait(session.toml, gait));
 }
 
 /**
  * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refused for a board on
  * USB, which has only the gaits that are written on it.
  */
-export async function tryGait(session: Session, made: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
-  const refused = await wakeWith(session, made);
-  if (!refused) await ask(made.name.replaceAll('-', ' '));
-  return refused;
+export async function tryGait(session: Session, gait: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
+  const refusal = await wakeWith(session, gait);
+  if (!refusal) await ask(gait.name.replaceAll('-', ' '));
+  return refusal;
 }
 
 /**
  * Puts the gait into the session's robot, restarts the simulated board and waits until it stands. Refused for a board
  * on USB.
  */
-export async function wakeWith(session: Session, made: EditedGait): Promise<Refused | null> {
+export async function wakeWith(session: Session, gait: EditedGait): Promise<Refused | null> {
   if (session.isReal) {
     return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };
   }
-  const refused = await takeGait(session, made);
-  if (refused) return refused;
+  const refusal = await takeGait(session, gait);
+  if (refusal) return refusal;
   await session.link.wait(WAKE_MS);
   return null;
 }

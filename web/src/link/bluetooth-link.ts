@@ -35,11 +35,11 @@ const SERIAL_SERVICES = [
   },
 ];
 /** The prefixes of the names of modules that do not advertise their service. */
-const NAMES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
+const NAME_PREFIXES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
 /** The largest number of bytes in a packet. */
-const PACKET = 20;
+const PACKET_BYTES = 20;
 /** Time from one attempt to reach a module to the next, ms. */
-const RETRY = 500;
+const RETRY_MS = 500;
 
 function bluetooth(): Bluetooth | undefined {
   return (navigator as Navigator & { bluetooth?: Bluetooth }).bluetooth;
@@ -81,17 +81,17 @@ export class BluetoothLink implements Link {
     const radio = bluetooth();
     if (!radio) throw new Error(bluetoothProblem() ?? '');
     // False without a radio, but also if the page may not use it.
-    const isThere = await radio.getAvailability();
-    const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAMES.map((namePrefix) => ({ namePrefix }))];
+    const isAvailable = await radio.getAvailability();
+    const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAME_PREFIXES.map((namePrefix) => ({ namePrefix }))];
     let device: Device;
     try {
       device = await radio.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
     } catch (error) {
       // The error of a chooser closed without a choice. Without the system's permission a browser gives the same
       // error with another message.
-      const isChoice = error instanceof DOMException && error.name === 'NotFoundError';
-      if (isChoice && !isThere) throw new Error('This machine has no Bluetooth, or it is switched off.');
-      if (isChoice && !/permission|denied/i.test(error.message)) return null;
+      const isNotFound = error instanceof DOMException && error.name === 'NotFoundError';
+      if (isNotFound && !isAvailable) throw new Error('This machine has no Bluetooth, or it is switched off.');
+      if (isNotFound && !/permission|denied/i.test(error.message)) return null;
       throw new Error(`The browser may not use Bluetooth: allow it in its settings, and in those of the system. It says: ${String(error)}`);
     }
     const link = new BluetoothLink(device);
@@ -101,16 +101,16 @@ export class BluetoothLink implements Link {
 
   private async reach(): Promise<void> {
     const server = await this.device.gatt.connect();
-    for (const line of SERIAL_SERVICES) {
-      const service = await server.getPrimaryService(line.service).catch(() => null);
+    for (const candidate of SERIAL_SERVICES) {
+      const service = await server.getPrimaryService(candidate.service).catch(() => null);
       if (!service) continue;
-      const from = await service.getCharacteristic(line.from);
-      from.addEventListener('characteristicvaluechanged', () => {
-        const { value } = from;
+      const readCharacteristic = await service.getCharacteristic(candidate.from);
+      readCharacteristic.addEventListener('characteristicvaluechanged', () => {
+        const { value } = readCharacteristic;
         if (value) this.onBytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength).slice());
       });
-      await from.startNotifications();
-      this.writeCharacteristic = line.to === line.from ? from : await service.getCharacteristic(line.to);
+      await readCharacteristic.startNotifications();
+      this.writeCharacteristic = candidate.to === candidate.from ? readCharacteristic : await service.getCharacteristic(candidate.to);
       return;
     }
     this.device.gatt.disconnect();
@@ -123,7 +123,7 @@ export class BluetoothLink implements Link {
     this.writeCharacteristic = null;
     this.onReach(false);
     while (!this.isClosing && !this.writeCharacteristic) {
-      await sleep(RETRY);
+      await sleep(RETRY_MS);
       await this.reach().catch(() => {});
     }
     if (!this.isClosing) this.onReach(true);
@@ -134,11 +134,11 @@ export class BluetoothLink implements Link {
   }
 
   private async send(bytes: Uint8Array): Promise<void> {
-    for (let at = 0; at < bytes.length; at += PACKET) {
-      const to = this.writeCharacteristic;
-      if (!to) throw new Error(`the ${this.name} is out of reach`);
-      const packet = bytes.slice(at, at + PACKET);
-      await (to.properties.writeWithoutResponse ? to.writeValueWithoutResponse(packet) : to.writeValueWithResponse(packet));
+    for (let start = 0; start < bytes.length; start += PACKET_BYTES) {
+      const characteristic = this.writeCharacteristic;
+      if (!characteristic) throw new Error(`the ${this.name} is out of reach`);
+      const packet = bytes.slice(start, start + PACKET_BYTES);
+      await (characteristic.properties.writeWithoutResponse ? characteristic.writeValueWithoutResponse(packet) : characteristic.writeValueWithResponse(packet));
     }
   }
 
@@ -152,7 +152,7 @@ export class BluetoothLink implements Link {
   async close(): Promise<void> {
     this.isClosing = true;
     // The bytes of earlier writes go out first, unless that takes too long.
-    await Promise.race([this.packets.catch(() => {}), sleep(RETRY)]);
+    await Promise.race([this.packets.catch(() => {}), sleep(RETRY_MS)]);
     this.device.gatt.disconnect();
   }
 }

@@ -39,16 +39,16 @@ export class BootLine implements Upload.Line {
     return this.link.write(bytes);
   }
 
-  async read(count: number, time: number): Promise<Uint8Array> {
+  async read(count: number, ms: number): Promise<Uint8Array> {
     if (this.received.length < count) {
-      const isComplete = new Promise<void>((complete) => (this.arrived = () => this.received.length >= count && complete()));
-      await Promise.race([this.link.wait(time), isComplete]);
+      const isComplete = new Promise<void>((resolve) => (this.arrived = () => this.received.length >= count && resolve()));
+      await Promise.race([this.link.wait(ms), isComplete]);
     }
     return Uint8Array.from(this.received.splice(0, count));
   }
 
-  async discard(time: number): Promise<void> {
-    await this.link.wait(time);
+  async discard(ms: number): Promise<void> {
+    await this.link.wait(ms);
     this.received = [];
   }
 

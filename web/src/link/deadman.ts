@@ -9,7 +9,7 @@ import type { Dialogue } from './dialogue';
  */
 const DRIVING_DEADMAN_MS = 901;
 /** Number of lines that the page sends within the `deadman` time: two of three may be lost. */
-const LINES = 3;
+const LINES_PER_DEADMAN = 3;
 
 export class Deadman {
   /** The robot's own setting, ms; null until it is read. */
@@ -33,7 +33,7 @@ export class Deadman {
     const ms = this.own ? Math.min(this.own, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
     const line = `${WORDS.deadman} ${ms}`;
     const isSet = (await this.askQuietly(line))?.ok ?? false;
-    if (isSet && this.isSet) this.dialogue.keepAlive(line, Math.floor(ms / LINES));
+    if (isSet && this.isSet) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
     return isSet;
   }
 

@@ -9,9 +9,9 @@ export const GREETING = '# lizard ';
 /** The largest length of a line of the robot; longer lines are noise and are cut. */
 const MAX_LINE_LENGTH = 500;
 /** Time within which an answer must come, ms. */
-const TIMEOUT = 3000;
+const TIMEOUT_MS = 3000;
 /** Time from one `stop` to its repetition while none is answered, ms. */
-const STOP_INTERVAL = 250;
+const STOP_INTERVAL_MS = 250;
 /** Time after the first answer to a repeated `stop` within which the answers to its repetitions have come, ms. */
 const LATE_STOP_ANSWERS_MS = 500;
 /** Time without an expected answer after which a robot counts as silent, ms. */
@@ -100,19 +100,19 @@ export class Dialogue {
     readonly link: Link,
     private readonly listener: DialogueListener,
   ) {
-    link.onBytes = (bytes) => this.bytes(bytes);
+    link.onBytes = (bytes) => this.receiveBytes(bytes);
   }
 
   /**
    * Sends a line and waits at most `timeout` ms for its answer. `stop` is sent at once, and its answer is awaited
    * without a limit. A quiet line is not shown in the console.
    */
-  ask(line: string, quiet = false, timeout = TIMEOUT): Promise<Answer> {
+  ask(line: string, quiet = false, timeout = TIMEOUT_MS): Promise<Answer> {
     return new Promise((answered, failed) => {
       if (this.isClosed) throw new Error(`"${line}" was not sent: the boot loader has the line`);
       if (line.trim().toLowerCase() === WORDS.stop) return this.halt({ answered, failed });
       this.waiting.push({ line, quiet, timeout, answered, failed });
-      void this.next();
+      void this.sendNext();
     });
   }
 
@@ -152,25 +152,25 @@ export class Dialogue {
       stop.times += 1;
       // The link itself reports a port that accepts no more bytes.
       this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
-      await this.link.wait(STOP_INTERVAL);
+      await this.link.wait(STOP_INTERVAL_MS);
     }
   }
 
   /**
-   * Sends a line every `every` ms, in addition to all others and without waiting for its answer; null ends the
+   * Sends a line every `intervalMs` ms, in addition to all others and without waiting for its answer; null ends the
    * repetition.
    */
-  keepAlive(line: string | null, every = 0): void {
+  keepAlive(line: string | null, intervalMs = 0): void {
     const repeated = (this.repeated = line === null ? null : { line });
     if (!repeated) return;
     this.repeatedAnswer = `ok ${repeated.line}`;
-    const go = async () => {
+    const repeatLine = async () => {
       while (this.repeated === repeated && !this.isClosed) {
         this.link.write(this.encoder.encode(`${repeated.line}\n`)).catch(() => {});
-        await this.link.wait(every);
+        await this.link.wait(intervalMs);
       }
     };
-    void go();
+    void repeatLine();
   }
 
   private finishStop(stop: Stop, answer: Answer): void {
@@ -178,22 +178,22 @@ export class Dialogue {
     this.listener.stopping(false);
     this.setHeard();
     // Answers come in order, so the answer to the line sent before `stop` has been lost.
-    const { pending: asked } = this;
+    const { pending: question } = this;
     this.pending = null;
-    asked?.failed(new DroppedQuestion());
+    question?.failed(new DroppedQuestion());
     for (const { answered } of stop.ends) answered(answer);
     const echoes = (this.echoes = stop.times > 1 ? this.link.wait(LATE_STOP_ANSWERS_MS) : null);
     void echoes?.then(() => {
       if (this.echoes === echoes) this.echoes = null;
-      void this.next();
+      void this.sendNext();
     });
-    void this.next();
+    void this.sendNext();
   }
 
-  private setHeard(does = true): void {
-    if (this.isSilent === !does) return;
-    this.isSilent = !does;
-    this.listener.silent(!does);
+  private setHeard(isHeard = true): void {
+    if (this.isSilent === !isHeard) return;
+    this.isSilent = !isHeard;
+    this.listener.silent(!isHeard);
   }
 
   /** Ends the dialogue; the link may then have another listener. */
@@ -202,7 +202,7 @@ export class Dialogue {
     this.forget();
   }
 
-  private async next(): Promise<void> {
+  private async sendNext(): Promise<void> {
     if (this.pending || this.stop || this.echoes || this.isClosed) return;
     const question = this.waiting.shift();
     if (!question) return;
@@ -218,26 +218,26 @@ export class Dialogue {
       if (this.pending !== question) return;
       this.pending = null;
       question.failed(error instanceof Error ? error : new Error(String(error)));
-      void this.next();
+      void this.sendNext();
     }
   }
 
-  private bytes(bytes: Uint8Array): void {
+  private receiveBytes(bytes: Uint8Array): void {
     if (this.isClosed) return;
     this.text += this.decoder.decode(bytes);
     const lines = this.text.split(/\r?\n/);
     this.text = (lines.pop() ?? '').slice(-MAX_LINE_LENGTH);
-    for (const line of lines) if (line !== '') this.line(line.slice(-MAX_LINE_LENGTH));
+    for (const line of lines) if (line !== '') this.receiveLine(line.slice(-MAX_LINE_LENGTH));
   }
 
-  private line(received: string): void {
+  private receiveLine(received: string): void {
     // A reset cuts off the line that the board is sending, and the banner follows on the same line.
     const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE_TEXTS, '');
     if (line === '') return;
     this.listener.arrived(line);
     const { pending: question, stop } = this;
-    const answers = /^(ok|err)\b/.test(line);
-    if (!answers) {
+    const isAnswer = /^(ok|err)\b/.test(line);
+    if (!isAnswer) {
       // The settings that the page asks for by itself are not shown.
       if (!(question?.quiet && wordOf(question.line) === WORDS.cal && SETTING.test(line))) this.listener.received(line);
       this.notes.push(line);
@@ -249,15 +249,15 @@ export class Dialogue {
       this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
       return;
     }
-    const isFit = question !== null && isAnswerTo(line, question.line);
-    const isQuiet = isFit ? question.quiet : line === this.repeatedAnswer;
+    const isExpected = question !== null && isAnswerTo(line, question.line);
+    const isQuiet = isExpected ? question.quiet : line === this.repeatedAnswer;
     if (!isQuiet) this.listener.received(line);
-    if (!isFit) return;
+    if (!isExpected) return;
     this.pending = null;
     this.setHeard();
     const { notes } = this;
     this.notes = [];
     question.answered({ ok: line.startsWith('ok'), text: line, notes });
-    void this.next();
+    void this.sendNext();
   }
 }

@@ -3,7 +3,7 @@
 /** The baud rate of the firmware, and of every link that is not told another one. */
 export const BAUD = 115_200;
 
-export const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
+export const sleep = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
 export interface Link {
   /**
@@ -49,9 +49,9 @@ export class Timers {
   }
 
   advanceTo(now: number): void {
-    const over = this.waiting.filter(({ due }) => due <= now);
-    if (over.length === 0) return;
+    const dueTimers = this.waiting.filter(({ due }) => due <= now);
+    if (dueTimers.length === 0) return;
     this.waiting = this.waiting.filter(({ due }) => due > now);
-    for (const { done } of over) done();
+    for (const { done } of dueTimers) done();
   }
 }

@@ -20,12 +20,12 @@ interface Serial {
 /** Bluetooth's serial port profile, which an HC-05 has. */
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
-const ARDUINO = [0x2341, 0x2a03];
+const ARDUINO_VENDORS = [0x2341, 0x2a03];
 /** The message for a browser without Web Serial. */
 export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
-const GONE = 'the board is not connected any more';
+const GONE_MESSAGE = 'the board is not connected any more';
 /** Length of the pulse on the reset line, ms. */
-const RESET = 50;
+const RESET_MS = 50;
 
 function serial(): Serial | undefined {
   return (navigator as Navigator & { serial?: Serial }).serial;
@@ -58,16 +58,16 @@ export class PortLink implements Link {
 
   get mayBeNano(): boolean {
     const { usbVendorId } = this.port.getInfo();
-    return usbVendorId !== undefined && !ARDUINO.includes(usbVendorId);
+    return usbVendorId !== undefined && !ARDUINO_VENDORS.includes(usbVendorId);
   }
 
   /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
-    const ports = serial();
-    if (!ports) throw new Error(NO_SERIAL);
+    const serialApi = serial();
+    if (!serialApi) throw new Error(NO_SERIAL);
     let port: SerialPort;
     try {
-      port = await ports.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
+      port = await serialApi.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
     } catch (error) {
       // The error of a chooser that was closed without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
@@ -90,9 +90,9 @@ export class PortLink implements Link {
 
   async write(bytes: Uint8Array): Promise<void> {
     const { writable } = this.port;
-    if (!writable || this.closing) throw new Error(GONE);
+    if (!writable || this.closing) throw new Error(GONE_MESSAGE);
     this.writer ??= writable.getWriter();
-    await this.writer.write(bytes).catch(() => Promise.reject(new Error(GONE)));
+    await this.writer.write(bytes).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
   }
 
   async reset(baud = this.baud): Promise<void> {
@@ -101,11 +101,11 @@ export class PortLink implements Link {
       // Only opening sets a port's speed.
       await this.close();
       this.baud = baud;
-      await this.openPort().catch(() => Promise.reject(new Error(GONE)));
+      await this.openPort().catch(() => Promise.reject(new Error(GONE_MESSAGE)));
     }
     for (const isLow of [false, true]) {
-      await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE)));
-      await sleep(RESET);
+      await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
+      await sleep(RESET_MS);
     }
   }
 
@@ -123,13 +123,13 @@ export class PortLink implements Link {
   }
 
   private async listen(): Promise<void> {
-    let why = 'its port is closed.';
+    let reason = 'its port is closed.';
     // A line error (break, framing error) ends a stream, and the port then has a new one; an
     // unplugged board has none.
-    let ended: ReadableStream<Uint8Array> | null = null;
-    while (this.port.readable && this.port.readable !== ended && !this.closing) {
-      ended = this.port.readable;
-      this.reader = ended.getReader();
+    let endedStream: ReadableStream<Uint8Array> | null = null;
+    while (this.port.readable && this.port.readable !== endedStream && !this.closing) {
+      endedStream = this.port.readable;
+      this.reader = endedStream.getReader();
       try {
         for (;;) {
           const { value, done } = await this.reader.read();
@@ -137,11 +137,11 @@ export class PortLink implements Link {
           if (value) this.onBytes(value);
         }
       } catch (error) {
-        why = error instanceof Error ? error.message : String(error);
+        reason = error instanceof Error ? error.message : String(error);
       } finally {
         this.reader.releaseLock();
       }
     }
-    if (!this.closing) this.onGone(why);
+    if (!this.closing) this.onGone(reason);
   }
 }

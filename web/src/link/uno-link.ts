@@ -6,7 +6,7 @@ import { type Simulated, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY / 1000;
 /** Simulated time that the chip runs between two reads of its output, ms. */
-const SLICE = 2;
+const SLICE_MS = 2;
 
 /** Callbacks for the servo pulses of the simulated board. */
 export interface UnoEvents {
@@ -46,11 +46,11 @@ export class UnoLink implements Simulated {
     // The chip runs whole cycles only.
     this.cyclesToRun += Math.round(ms * CYCLES_PER_MS);
     while (this.cyclesToRun > 0) {
-      const slice = Math.min(this.cyclesToRun, SLICE * CYCLES_PER_MS);
-      const before = this.board.cycle;
-      this.board.run(slice);
+      const sliceCycles = Math.min(this.cyclesToRun, SLICE_MS * CYCLES_PER_MS);
+      const startCycle = this.board.cycle;
+      this.board.run(sliceCycles);
       // The last instruction may overrun the slice.
-      this.cyclesToRun -= this.board.cycle - before;
+      this.cyclesToRun -= this.board.cycle - startCycle;
       this.frames.advanceTo(this.board.cycle);
       if (this.sent.length > 0) {
         const bytes = Uint8Array.from(this.sent);

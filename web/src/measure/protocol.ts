@@ -14,12 +14,12 @@ const RETURN_GAIT = { way: 3, turn: 2 };
  * Distance from the middle of the sheet beyond which the robot returns first if the next walk would leave the sheet,
  * mm.
  */
-const RETURN_DISTANCE = 80;
+const RETURN_DISTANCE_MM = 80;
 /**
  * Outward movement near the edge of the sheet that ends a walk, mm; not less, since the body swings within each
  * cycle.
  */
-const MAX_OUTWARD = 20;
+const MAX_OUTWARD_MM = 20;
 /** Time for which the robot may walk without being seen by the camera, s. */
 const MAX_UNSEEN_S = 2;
 /**
@@ -107,13 +107,13 @@ export class Protocol {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
     for (const [i, { command, period }] of gaits.entries()) {
-      const { forward = 0 } = stage.ways().find((way) => way.command === command) ?? {};
-      for (let left = cycles; left >= MIN_CYCLES; ) {
-        await this.goBack(left * forward);
+      const { forward = 0 } = stage.ways().find((predicted) => predicted.command === command) ?? {};
+      for (let cyclesLeft = cycles; cyclesLeft >= MIN_CYCLES; ) {
+        await this.goBack(cyclesLeft * forward);
         await this.wait(pause);
-        stage.say(`${i + 1} of ${gaits.length}: ${command}, ${left} cycles`);
-        const [begin, end] = await this.walk(command, left, (during) => this.walks.push({ gait: command, during }));
-        left -= Math.max(MIN_CYCLES, Math.floor(((end - begin) * speed) / 100 / period));
+        stage.say(`${i + 1} of ${gaits.length}: ${command}, ${cyclesLeft} cycles`);
+        const [begin, end] = await this.walk(command, cyclesLeft, (during) => this.walks.push({ gait: command, during }));
+        cyclesLeft -= Math.max(MIN_CYCLES, Math.floor(((end - begin) * speed) / 100 / period));
       }
     }
     await this.wait(pause);
@@ -128,14 +128,14 @@ export class Protocol {
     const { waiting } = this;
     if (waiting === null || waiting.nearest === null) return;
     waiting.nearest = Math.min(waiting.nearest, distance(back));
-    if (back.isNear && distance(back) > waiting.nearest + MAX_OUTWARD) this.cut(waiting);
+    if (back.isNear && distance(back) > waiting.nearest + MAX_OUTWARD_MM) this.cut(waiting);
   }
 
   /** Takes a line that was sent to the robot, by the protocol or another part of the page. */
   sent(line: string): void {
-    const walks = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
+    const isWalk = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
-    else if (line !== this.lastSent && this.stage.ways().some(walks)) this.end(`the robot was sent "${line}"`);
+    else if (line !== this.lastSent && this.stage.ways().some(isWalk)) this.end(`the robot was sent "${line}"`);
   }
 
   /** Takes a line that the robot printed: `DONE` ends a walk, and arrives before `doing` is called. */
@@ -148,45 +148,45 @@ export class Protocol {
   /** Takes the robot's current activity; one that is not the protocol's ends the protocol. */
   setActivity(activity: string): void {
     const { waiting } = this;
-    const walks = waiting?.gait === activity;
-    const stands = activity === WORDS.stop || activity === GAITS.stand;
-    if (walks || (stands && (waiting === null || waiting.isCut))) return;
+    const isWalking = waiting?.gait === activity;
+    const isStanding = activity === WORDS.stop || activity === GAITS.stand;
+    if (isWalking || (isStanding && (waiting === null || waiting.isCut))) return;
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
   /**
    * Ends the protocol for an external reason, such as a camera that is switched off, and stops a robot that walks.
    */
-  stop(why: string): void {
-    const walks = this.waiting !== null;
-    this.end(why);
-    if (walks) void this.stage.ask(WORDS.stop);
+  stop(reason: string): void {
+    const isWalking = this.waiting !== null;
+    this.end(reason);
+    if (isWalking) void this.stage.ask(WORDS.stop);
   }
 
   /** Ends the protocol: nothing more is sent. */
-  end(why: string): void {
-    this.endReason ??= new Interrupted(why);
+  end(reason: string): void {
+    this.endReason ??= new Interrupted(reason);
     if (this.waiting) this.finish(this.waiting, this.endReason);
     this.waiting = null;
     this.onEnd();
   }
 
-  /** The robot's place; null if the camera has not seen the robot for `UNSEEN`. */
+  /** The robot's place; null if the camera has not seen the robot for `MAX_UNSEEN_S`. */
   private get place(): Back | null {
     return this.last && this.stage.now() - this.last.seconds < MAX_UNSEEN_S ? this.last.back : null;
   }
 
   /**
    * Brings the robot back if it is near the edge of the sheet: by a gait that leads to the middle, or else by hand.
-   * If only the next walk, of `way` mm, would leave the sheet, the robot returns to the middle if a gait can take it
+   * If only the next walk, of `forwardMm` mm, would leave the sheet, the robot returns to the middle if a gait can take it
    * there.
    */
-  private async goBack(way: number): Promise<void> {
+  private async goBack(forwardMm: number): Promise<void> {
     for (let n = 0; ; n++) {
       const { place, stage } = this;
       const isFit = place !== null && !place.isNear;
-      const leaves = place !== null && n === 0 && distance(place) > RETURN_DISTANCE && Math.hypot(place.ahead - way, place.aside) > place.reach;
-      if (isFit && !leaves) return;
+      const isLeaving = place !== null && n === 0 && distance(place) > RETURN_DISTANCE_MM && Math.hypot(place.ahead - forwardMm, place.aside) > place.reach;
+      if (isFit && !isLeaving) return;
       const gait = place && n < RETURN.tries && Math.abs(place.ahead) > RETURN.minAhead * distance(place) ? this.gaitToward(place.ahead) : null;
       if (place && gait) {
         stage.say(`Back to the middle by ${gait.command}`);
@@ -201,30 +201,30 @@ export class Protocol {
    * Returns the gait that hardly turns and walks farthest ahead, or back if `ahead` is negative; null if none is fit.
    */
   private gaitToward(ahead: number): PredictedCycle | null {
-    const way = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.turn ? forward * Math.sign(ahead) : 0);
-    const [best] = this.stage.ways().sort((a, b) => way(b) - way(a));
-    return best && way(best) > RETURN_GAIT.way ? best : null;
+    const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.turn ? forward * Math.sign(ahead) : 0);
+    const [best] = this.stage.ways().sort((a, b) => progressOf(b) - progressOf(a));
+    return best && progressOf(best) > RETURN_GAIT.way ? best : null;
   }
 
   /**
-   * Walks a gait to its last cycle, or to the edge of the sheet; returns begin and end, which `keep` also gets if it
+   * Walks a gait to its last cycle, or to the edge of the sheet; returns begin and end, which `record` also gets if it
    * was interrupted.
    */
-  private async walk(gait: string, cycles: number, keep: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
+  private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { stage } = this;
     const waiting: Waiting = { gait, nearest: null, isCut: false, end: null, done: () => {}, fail: () => {} };
-    const walked = new Promise<void>((done, fail) => Object.assign(waiting, { done, fail }));
+    const walkEnd = new Promise<void>((resolve, reject) => Object.assign(waiting, { done: resolve, fail: reject }));
     // The promise may reject before it is awaited.
-    walked.catch(() => {});
+    walkEnd.catch(() => {});
     this.waiting = waiting;
     const begin = stage.now();
     await this.ask(`${gait} ${cycles}`);
     waiting.nearest = this.place ? distance(this.place) : Infinity;
     void this.watch(waiting);
     try {
-      await walked;
+      await walkEnd;
     } finally {
-      keep([begin, waiting.end ?? begin]);
+      record([begin, waiting.end ?? begin]);
     }
     if (waiting.isCut) {
       await this.ask(GAITS.stand);

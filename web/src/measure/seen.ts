@@ -8,19 +8,19 @@ import type { Sight } from './worker';
 const NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];
 const DECK = 4;
 /** Edge of a tag on the floor, mm. */
-const EDGE = 50;
+const EDGE_MM = 50;
 /**
  * Distance beyond the floor's tags, and distance from the picture's edge, from which the robot is about to leave, mm.
  */
-const NEAR = 50;
+const NEAR_MM = 50;
 const PICTURE_MARGIN_MM = 150;
 /** Time over which the rate of pictures is counted, ms. */
-const RECENT = 2000;
+const RECENT_MS = 2000;
 /** Number of pictures without a tag after which the tag counts as hidden. */
-const MISSED = 3;
+const MAX_MISSED = 3;
 
 const minus = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
-const length = ([x, y]: Pixel) => Math.hypot(x, y);
+const lengthOf = ([x, y]: Pixel) => Math.hypot(x, y);
 const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
 
 /**
@@ -44,7 +44,7 @@ export class TagTracker {
   /** Time that the search for tags in the last picture took, ms. */
   ms = 0;
   private readonly floor: (Tag | undefined)[] = [];
-  private readonly missed = NAMES.map(() => MISSED);
+  private readonly missed = NAMES.map(() => MAX_MISSED);
   private readonly times: number[] = [];
 
   take({ tags, size, ms }: Sight): void {
@@ -53,7 +53,7 @@ export class TagTracker {
     for (const tag of tags) if (tag.id !== DECK) this.floor[tag.id] = tag;
     if (this.deck) this.path.push(mean(this.deck.corners));
     this.times.push(performance.now());
-    while ((this.times[0] ?? 0) < performance.now() - RECENT) this.times.shift();
+    while ((this.times[0] ?? 0) < performance.now() - RECENT_MS) this.times.shift();
   }
 
   /** Pictures per second. */
@@ -75,11 +75,11 @@ export class TagTracker {
 
   /** The tags that are not seen, as a sentence; empty if all are. */
   get trouble(): string {
-    const hidden = NAMES.filter((_, id) => (this.missed[id] ?? 0) >= MISSED);
-    if (hidden.length === 0) return '';
-    if (hidden.length === NAMES.length) return 'No tag of the sheet is seen: film from above, near enough and in even light, and not mirrored.';
-    const last = hidden.pop() ?? '';
-    return `Not seen: ${hidden.length > 0 ? `${hidden.join(', ')} and ${last}` : last}.`;
+    const hiddenNames = NAMES.filter((_, id) => (this.missed[id] ?? 0) >= MAX_MISSED);
+    if (hiddenNames.length === 0) return '';
+    if (hiddenNames.length === NAMES.length) return 'No tag of the sheet is seen: film from above, near enough and in even light, and not mirrored.';
+    const last = hiddenNames.pop() ?? '';
+    return `Not seen: ${hiddenNames.length > 0 ? `${hiddenNames.join(', ')} and ${last}` : last}.`;
   }
 
   /** The robot's displacement back to the middle; null if the deck's tag or all tags of the floor are unknown. */
@@ -88,15 +88,15 @@ export class TagTracker {
     const floor = this.floor.filter((tag) => tag !== undefined);
     if (!heading || !deck || floor.length === 0) return null;
     const middles = floor.map(({ corners }) => mean(corners));
-    const edges = floor.map(({ corners }) => length(minus(corners[0], corners[1])));
-    const scale = EDGE / (edges.reduce((sum, edge) => sum + edge, 0) / edges.length);
-    const [at, middle] = [mean(deck.corners), mean(middles)];
-    const way = minus(middle, at);
-    const far = length(heading);
-    const ahead = ((way[0] * heading[0] + way[1] * heading[1]) / far) * scale;
-    const aside = ((way[0] * heading[1] - way[1] * heading[0]) / far) * scale;
-    const reach = Math.max(...middles.map((each) => length(minus(each, middle)))) * scale + NEAR;
-    const edge = Math.min(at[0], at[1], size[0] - at[0], size[1] - at[1]) * scale;
+    const edges = floor.map(({ corners }) => lengthOf(minus(corners[0], corners[1])));
+    const scale = EDGE_MM / (edges.reduce((sum, edge) => sum + edge, 0) / edges.length);
+    const [deckMiddle, middle] = [mean(deck.corners), mean(middles)];
+    const offset = minus(middle, deckMiddle);
+    const headingLength = lengthOf(heading);
+    const ahead = ((offset[0] * heading[0] + offset[1] * heading[1]) / headingLength) * scale;
+    const aside = ((offset[0] * heading[1] - offset[1] * heading[0]) / headingLength) * scale;
+    const reach = Math.max(...middles.map((point) => lengthOf(minus(point, middle)))) * scale + NEAR_MM;
+    const edge = Math.min(deckMiddle[0], deckMiddle[1], size[0] - deckMiddle[0], size[1] - deckMiddle[1]) * scale;
     return { ahead, aside, reach, isNear: Math.hypot(ahead, aside) > reach || edge < PICTURE_MARGIN_MM };
   }
 

@@ -2,7 +2,7 @@
 import { messageOf } from '../trouble';
 
 /** Largest number of a film file's pictures that wait for their processing. */
-const LONGEST = 4;
+const MAX_WAITING = 4;
 const CAMERA = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
 
 /** Processes a picture and its time, s; resolves when that is done. */
@@ -36,13 +36,13 @@ export class Source {
   /** Opens the rear camera; `onEnd` is called if the camera is lost. Throws a message for the user. */
   async camera(onEnd: () => void): Promise<void> {
     this.stop();
-    const { generation: begun } = this;
+    const { generation: startGeneration } = this;
     const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
     if (!mediaDevices) throw new Error('This page may not use a camera: open it by an address that begins with https. A film file works here, too.');
     const stream = await mediaDevices.getUserMedia(CAMERA).catch((error: unknown) => {
-      throw new Error(refusal(error));
+      throw new Error(refusalOf(error));
     });
-    if (this.generation !== begun) {
+    if (this.generation !== startGeneration) {
       for (const track of stream.getTracks()) track.stop();
       return;
     }
@@ -56,18 +56,18 @@ export class Source {
   /** Plays a film file; resolves at its end. Throws a message for the user. */
   async file(file: File): Promise<void> {
     this.stop();
-    const { video, generation: begun } = this;
+    const { video, generation: startGeneration } = this;
     const address = URL.createObjectURL(file);
     try {
-      const ended = new Promise<void>((done, fail) => {
-        video.onended = () => done();
-        video.onerror = () => fail(new Error(`${file.name} is no film that this browser can play; MP4 or WebM with H.264 or VP9 will do.`));
-        video.onemptied = () => this.generation !== begun && done();
+      const filmEnd = new Promise<void>((resolve, reject) => {
+        video.onended = () => resolve();
+        video.onerror = () => reject(new Error(`${file.name} is no film that this browser can play; MP4 or WebM with H.264 or VP9 will do.`));
+        video.onemptied = () => this.generation !== startGeneration && resolve();
       });
       video.src = address;
-      this.follow(LONGEST);
-      await Promise.race([video.play().then(() => ended), ended]);
-      while (this.waitingPictures > 0 && this.generation === begun) await new Promise((later) => setTimeout(later, 20));
+      this.follow(MAX_WAITING);
+      await Promise.race([video.play().then(() => filmEnd), filmEnd]);
+      while (this.waitingPictures > 0 && this.generation === startGeneration) await new Promise((resolve) => setTimeout(resolve, 20));
     } finally {
       URL.revokeObjectURL(address);
     }
@@ -85,35 +85,35 @@ export class Source {
   }
 
   /**
-   * Gives each picture to `take` while fewer than `most` are waiting. Otherwise a film file pauses, and a camera's
+   * Gives each picture to `take` while fewer than `maxWaiting` are waiting. Otherwise a film file pauses, and a camera's
    * picture is dropped.
    */
-  private follow(most: number): void {
-    const { video, generation: begun } = this;
+  private follow(maxWaiting: number): void {
+    const { video, generation: startGeneration } = this;
     this.waitingPictures = 0;
-    const next = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
-      if (this.generation !== begun) return;
+    const onPicture = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
+      if (this.generation !== startGeneration) return;
       this.clockOffset = Math.min(this.clockOffset, performance.now() / 1000 - mediaTime);
-      video.requestVideoFrameCallback(next);
-      if (this.isCamera && this.waitingPictures >= most) return;
+      video.requestVideoFrameCallback(onPicture);
+      if (this.isCamera && this.waitingPictures >= maxWaiting) return;
       this.waitingPictures += 1;
-      if (!this.isCamera && this.waitingPictures >= most) video.pause();
+      if (!this.isCamera && this.waitingPictures >= maxWaiting) video.pause();
       void pictureOf(video)
         .then((picture) => this.take(picture, mediaTime))
         .finally(() => {
-          if (this.generation !== begun) return;
+          if (this.generation !== startGeneration) return;
           this.waitingPictures -= 1;
           if (!this.isCamera && video.paused && !video.ended) void video.play();
         });
     };
-    video.requestVideoFrameCallback(next);
+    video.requestVideoFrameCallback(onPicture);
   }
 }
 
 /** Returns the picture that a video shows: without a copy if the browser has VideoFrame. */
 const pictureOf = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
 
-function refusal(error: unknown): string {
+function refusalOf(error: unknown): string {
   const { name } = error as { name?: string };
   switch (name) {
     case 'NotAllowedError':

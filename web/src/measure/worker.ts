@@ -13,7 +13,7 @@ export interface Sight {
 
 let camera: Camera;
 /** The pixel formats that store brightness in a plane of its own. */
-const PLANES = ['I420', 'I420A', 'I422', 'I444', 'NV12'];
+const PLANE_FORMATS = ['I420', 'I420A', 'I422', 'I444', 'NV12'];
 let planes = new Uint8Array();
 const canvas = new OffscreenCanvas(1, 1);
 // The pixels are read back often, so the canvas is kept in memory and not on the graphics chip.
@@ -27,11 +27,11 @@ async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
   const { format, visibleRect, displayWidth, displayHeight } = picture;
   const { rotation = 0, flip = false } = picture as { rotation?: number; flip?: boolean };
   const isWhole = visibleRect?.width === displayWidth && visibleRect.height === displayHeight;
-  if (!format || !PLANES.includes(format) || !isWhole || rotation !== 0 || flip) return null;
+  if (!format || !PLANE_FORMATS.includes(format) || !isWhole || rotation !== 0 || flip) return null;
   const size = picture.allocationSize();
   if (planes.length !== size) planes = new Uint8Array(size);
-  const [first] = await picture.copyTo(planes);
-  return first?.offset === 0 && first.stride === displayWidth ? planes.subarray(0, displayWidth * displayHeight) : null;
+  const [firstPlane] = await picture.copyTo(planes);
+  return firstPlane?.offset === 0 && firstPlane.stride === displayWidth ? planes.subarray(0, displayWidth * displayHeight) : null;
 }
 
 /** Returns the pixels of a picture, four bytes for each. */
@@ -43,11 +43,11 @@ function coloursOf(picture: VideoFrame | ImageBitmap, width: number, height: num
 }
 
 /** Settles when all earlier calls are done; the next call waits for it. */
-let before: Promise<unknown> = Promise.resolve();
+let lastCall: Promise<unknown> = Promise.resolve();
 
-function inTurn<Answer>(act: () => Answer | Promise<Answer>): Promise<Answer> {
-  const answer = before.then(act);
-  before = answer.catch(() => {});
+function runInTurn<Answer>(act: () => Answer | Promise<Answer>): Promise<Answer> {
+  const answer = lastCall.then(act);
+  lastCall = answer.catch(() => {});
   return answer;
 }
 
@@ -59,24 +59,24 @@ const functions = {
 
   /** Finds the tags of a picture taken at `seconds`; if `isKept`, the picture is added to the film. */
   look: (picture: VideoFrame | ImageBitmap, seconds: number, isKept: boolean) =>
-    inTurn(async (): Promise<Sight> => {
-      const begun = performance.now();
+    runInTurn(async (): Promise<Sight> => {
+      const startMs = performance.now();
       const [width, height] = 'codedWidth' in picture ? [picture.displayWidth, picture.displayHeight] : [picture.width, picture.height];
       const grey = 'codedWidth' in picture ? await greyOf(picture).catch(() => null) : null;
       const pixels = grey ?? coloursOf(picture, width, height);
       picture.close();
-      return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], ms: performance.now() - begun };
+      return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], ms: performance.now() - startMs };
     }),
 
   /** Discards the film and begins a new one. */
   clear: () =>
-    inTurn(() => {
+    runInTurn(() => {
       camera.free();
       camera = new Camera();
     }),
 
   /** Measures gaits in the film. Throws the reason if they cannot be measured. */
-  measure: (asked: Asked) => inTurn(() => camera.measure(asked)),
+  measure: (question: Asked) => runInTurn(() => camera.measure(question)),
 
   /** Returns the sheet of tags as PDF, for letter paper if `isLetter`, else for A4. */
   sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,

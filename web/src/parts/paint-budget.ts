@@ -36,9 +36,9 @@ export class PaintBudget {
       if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false;
       gl.deleteSync(this.fence);
       this.fence = null;
-      const elapsed = now - this.start;
-      if (elapsed > QUICK_PICTURE_MS) {
-        this.nextPictureTime = now + Math.min(LONGEST_PAUSE_MS, PAUSE_FACTOR * elapsed);
+      const elapsedMs = now - this.start;
+      if (elapsedMs > QUICK_PICTURE_MS) {
+        this.nextPictureTime = now + Math.min(LONGEST_PAUSE_MS, PAUSE_FACTOR * elapsedMs);
         this.resolution = Math.max(COARSEST, this.resolution * RESOLUTION_FACTOR);
         this.quickPictures = 0;
       } else if (++this.quickPictures % QUICK_PICTURES_TO_REFINE === 0) this.resolution = Math.min(1, this.resolution / RESOLUTION_FACTOR);
@@ -46,9 +46,9 @@ export class PaintBudget {
     return now >= this.nextPictureTime;
   }
 
-  /** Records that a picture was handed over. A picture painted only `once` may take long: it counts as quick. */
-  notePicture(once: boolean, now = performance.now()): void {
-    this.start = once ? Infinity : now;
+  /** Records that a picture was handed over. If `isOnce`, it is painted only once and may take long: it counts as quick. */
+  notePicture(isOnce: boolean, now = performance.now()): void {
+    this.start = isOnce ? Infinity : now;
     this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     this.gl.flush();
   }

@@ -26,18 +26,18 @@ import type { Model, Solid } from './workshop';
 import { PaintBudget } from './paint-budget';
 
 /** Height by which a body with `lift` 1 rises in the fully exploded view, mm, as in the guide's pictures. */
-const LIFT = 45;
+const LIFT_MM = 45;
 /** Size of a cell of the floor's grid, mm, and number of cells along a side of the grid. */
-const CELL = 50;
+const CELL_MM = 50;
 const CELLS = 16;
 /** Movement of the pointer during a press below which the press is a click, CSS pixels. */
-const CLICK = 5;
+const CLICK_PX = 5;
 /** Turn of the view by one press of a key, rad. */
-const TURN = Math.PI / 24;
+const TURN_RAD = Math.PI / 24;
 /** Time without a change after which the view counts as still, ms. */
-const STILL = 400;
+const STILL_MS = 400;
 /** Share of the floor's colour in pale bodies: bodies of earlier steps, or all except the selected ones. */
-const PALE = 0.65;
+const PALE_SHARE = 0.65;
 
 /** The view's settings. */
 export interface ViewSettings {
@@ -93,13 +93,13 @@ export class Space {
     const { canvas } = this;
     // Without Ctrl the wheel scrolls the page, so the controls must not get it.
     canvas.parentElement?.addEventListener('wheel', (event) => event.ctrlKey || event.stopPropagation(), { capture: true });
-    let down: { x: number; y: number } | null = null;
-    canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (down = { x, y }));
+    let pressed: { x: number; y: number } | null = null;
+    canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (pressed = { x, y }));
     canvas.addEventListener('pointerup', ({ offsetX: x, offsetY: y }) => {
-      if (down && Math.hypot(x - down.x, y - down.y) < CLICK) onPick(this.at(x, y));
-      down = null;
+      if (pressed && Math.hypot(x - pressed.x, y - pressed.y) < CLICK_PX) onPick(this.bodyAt(x, y));
+      pressed = null;
     });
-    canvas.addEventListener('pointercancel', () => (down = null));
+    canvas.addEventListener('pointercancel', () => (pressed = null));
     canvas.addEventListener('keydown', (event) => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.press(event.key)) return;
       event.preventDefault();
@@ -109,29 +109,29 @@ export class Space {
 
   /** Turns, zooms or resets the view as the key asks; returns false if the key has no effect. */
   press(key: string): boolean {
-    const ways: Record<string, [number, number, number]> = {
-      ArrowLeft: [-TURN, 0, 1],
-      ArrowRight: [TURN, 0, 1],
-      ArrowUp: [0, TURN, 1],
-      ArrowDown: [0, -TURN, 1],
+    const moves: Record<string, [number, number, number]> = {
+      ArrowLeft: [-TURN_RAD, 0, 1],
+      ArrowRight: [TURN_RAD, 0, 1],
+      ArrowUp: [0, TURN_RAD, 1],
+      ArrowDown: [0, -TURN_RAD, 1],
       '+': [0, 0, 0.87],
       '-': [0, 0, 1.15],
       Home: [0, 0, 0],
     };
-    const way = ways[key];
-    if (!way) return false;
-    const [about, up, closer] = way;
-    if (closer === 0) this.home();
+    const move = moves[key];
+    if (!move) return false;
+    const [turnAbout, turnUp, zoom] = move;
+    if (zoom === 0) this.home();
     else {
       const { target } = this.controls;
-      const from = this.camera.position.clone().sub(target);
-      const rise = Math.asin(Math.max(-1, Math.min(1, from.z / from.length())));
-      const largest = Math.PI / 2 - 0.05;
-      const wanted = Math.max(-largest, Math.min(largest, rise + up));
-      const round = Math.atan2(from.y, from.x) + about;
-      const long = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, from.length() * closer));
-      this.camera.position.set(Math.cos(round) * Math.cos(wanted), Math.sin(round) * Math.cos(wanted), Math.sin(wanted));
-      this.camera.position.multiplyScalar(long).add(target);
+      const offset = this.camera.position.clone().sub(target);
+      const elevation = Math.asin(Math.max(-1, Math.min(1, offset.z / offset.length())));
+      const maxElevation = Math.PI / 2 - 0.05;
+      const newElevation = Math.max(-maxElevation, Math.min(maxElevation, elevation + turnUp));
+      const newDirection = Math.atan2(offset.y, offset.x) + turnAbout;
+      const distance = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, offset.length() * zoom));
+      this.camera.position.set(Math.cos(newDirection) * Math.cos(newElevation), Math.sin(newDirection) * Math.cos(newElevation), Math.sin(newElevation));
+      this.camera.position.multiplyScalar(distance).add(target);
       this.controls.update();
     }
     this.dirty = true;
@@ -143,8 +143,8 @@ export class Space {
     this.controls.target.set(0, -30, 5);
     // The camera is farther away for a narrow canvas, to show the whole robot.
     const { clientWidth, clientHeight } = this.canvas;
-    const far = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
-    this.camera.position.copy(new Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(far)).add(this.controls.target);
+    const distance = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
+    this.camera.position.copy(new Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(distance)).add(this.controls.target);
     this.controls.update();
     this.dirty = true;
   }
@@ -186,19 +186,19 @@ export class Space {
     this.scene.background = floor;
     if (this.grid) this.scene.remove(this.grid);
     this.grid?.dispose();
-    this.grid = new GridHelper(CELL * CELLS, CELLS, colours.grid, colours.grid);
+    this.grid = new GridHelper(CELL_MM * CELLS, CELLS, colours.grid, colours.grid);
     this.grid.geometry.rotateX(Math.PI / 2);
     this.grid.matrixAutoUpdate = false;
     this.scene.add(this.grid);
-    this.model?.bodies.forEach((body, number) => {
-      const mesh = this.meshes[number];
+    this.model?.bodies.forEach((body, index) => {
+      const mesh = this.meshes[index];
       if (!mesh) return;
       const isNew = step === null || body.step === step;
       mesh.visible = step === null || body.step <= step;
-      const chosen = clash.length > 0 ? clash : picked === null ? null : [picked];
-      const isPale = chosen ? !chosen.includes(number) : !isNew;
-      mesh.material.color.set(clash.includes(number) ? colours.alarm : colour(body)).lerp(floor, isPale ? PALE : 0);
-      const lift = new Matrix4().makeTranslation(0, 0, isNew ? apart * LIFT * body.lift : 0);
+      const chosenBodies = clash.length > 0 ? clash : picked === null ? null : [picked];
+      const isPale = chosenBodies ? !chosenBodies.includes(index) : !isNew;
+      mesh.material.color.set(clash.includes(index) ? colours.alarm : colourOf(body)).lerp(floor, isPale ? PALE_SHARE : 0);
+      const lift = new Matrix4().makeTranslation(0, 0, isNew ? apart * LIFT_MM * body.lift : 0);
       mesh.matrix.copy(lift.multiply(new Matrix4().fromArray(body.place)));
       mesh.matrixWorldNeedsUpdate = true;
     });
@@ -207,8 +207,8 @@ export class Space {
 
   /** Places every mount by four numbers: x and y in mm, cosine and sine of its angle. */
   pose(places: Float64Array): void {
-    this.mounts.forEach((mount, number) => {
-      const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * number, 4 * number + 4);
+    this.mounts.forEach((mount, index) => {
+      const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * index, 4 * index + 4);
       mount.matrix.set(cos, -sin, 0, x, sin, cos, 0, y, 0, 0, 1, 0, 0, 0, 0, 1);
       mount.matrixWorldNeedsUpdate = true;
     });
@@ -227,8 +227,8 @@ export class Space {
     const now = performance.now();
     if (this.dirty) this.changed = now;
     // A still view is painted once more at full resolution.
-    const still = now - this.changed > STILL;
-    const ratio = Math.min(2, devicePixelRatio) * (still ? 1 : this.paintBudget.resolution);
+    const isStill = now - this.changed > STILL_MS;
+    const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.paintBudget.resolution);
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
       this.renderer.setPixelRatio(ratio);
@@ -239,30 +239,30 @@ export class Space {
     }
     if (!this.dirty) return;
     this.dirty = false;
-    this.ground(place);
+    this.moveGround(place);
     this.renderer.render(this.scene, this.camera);
-    this.paintBudget.notePicture(still);
+    this.paintBudget.notePicture(isStill);
   }
 
   /** Moves the floor below the robot, which stays in the middle. */
-  private ground({ x, y, heading }: Place): void {
+  private moveGround({ x, y, heading }: Place): void {
     if (!this.grid) return;
     const turn = new Matrix4().makeRotationZ((-heading * Math.PI) / 180);
-    const rest = (value: number) => value - CELL * Math.round(value / CELL);
+    const remainder = (value: number) => value - CELL_MM * Math.round(value / CELL_MM);
     const depth = this.settings.step === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
-    const shift = new Matrix4().makeTranslation(-rest(x), -rest(y), depth);
+    const shift = new Matrix4().makeTranslation(-remainder(x), -remainder(y), depth);
     this.grid.matrix.copy(turn.multiply(shift));
     this.grid.matrixWorldNeedsUpdate = true;
   }
 
   /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null if there is none. */
-  private at(x: number, y: number): number | null {
+  private bodyAt(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this.camera);
-    const seen = this.meshes.filter((mesh) => mesh.visible);
-    const first = ray.intersectObjects(seen, false)[0];
-    return first ? this.meshes.indexOf(first.object as (typeof this.meshes)[number]) : null;
+    const visibleMeshes = this.meshes.filter((mesh) => mesh.visible);
+    const hit = ray.intersectObjects(visibleMeshes, false)[0];
+    return hit ? this.meshes.indexOf(hit.object as (typeof this.meshes)[number]) : null;
   }
 }
 
@@ -270,7 +270,7 @@ export class Space {
  * Returns a body's colour: the colour of its servo, as in the drawing, for a printed part; else the colour of its
  * material.
  */
-function colour({ kind, servo }: BodyEntry): string {
+function colourOf({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = palette();
   switch (kind) {
     case 'printed':

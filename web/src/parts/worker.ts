@@ -12,34 +12,34 @@ export interface Progress {
 }
 
 /** The parts whose solids are shown; null until they are made. */
-let shown: Parts | null = null;
+let shownParts: Parts | null = null;
 
 /** Makes all files of a robot; returns their bytes by their paths. */
 function filesOf(parts: Parts, progress: (progress: Progress) => void): Record<string, Uint8Array> {
-  const made: Record<string, Uint8Array> = {};
-  const all = parts.entry().files;
-  for (let number = 0; number < all; number++) {
-    progress({ doing: 'make', done: number, all });
-    for (const { path, bytes } of parts.files(number)) made[path] = bytes;
+  const filesByPath: Record<string, Uint8Array> = {};
+  const fileCount = parts.entry().files;
+  for (let number = 0; number < fileCount; number++) {
+    progress({ doing: 'make', done: number, all: fileCount });
+    for (const { path, bytes } of parts.files(number)) filesByPath[path] = bytes;
   }
-  return made;
+  return filesByPath;
 }
 
-const isSame = (one: Uint8Array, other: Uint8Array | undefined) => one.length === other?.length && one.every((byte, at) => byte === other[at]);
+const isSame = (bytes: Uint8Array, otherBytes: Uint8Array | undefined) => bytes.length === otherBytes?.length && bytes.every((byte, index) => byte === otherBytes[index]);
 
 const functions = {
   load: (module: WebAssembly.Module) => void initSync({ module }),
 
   /** Makes the parts to show. */
   model(toml: string) {
-    shown = null;
-    shown = new Parts(toml);
-    const solids = shown.solids().map(({ corners, triangles }) => ({ corners, triangles }));
-    return transfer({ model: shown.entry(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
+    shownParts = null;
+    shownParts = new Parts(toml);
+    const solids = shownParts.solids().map(({ corners, triangles }) => ({ corners, triangles }));
+    return transfer({ model: shownParts.entry(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
   },
 
   /** Returns the places of the shown parts' mounts; null without parts, or if a loop does not close. */
-  pose: (angles: number[], lags: number[]) => shown?.pose(angles, lags) ?? null,
+  pose: (angles: number[], lags: number[]) => shownParts?.pose(angles, lags) ?? null,
 
   /**
    * Proves that the parts of a robot fit; returns the least distance between two of them, mm, or null if no pair was
@@ -48,21 +48,21 @@ const functions = {
   fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
 
   /**
-   * Proves that the parts fit, makes all files and packs them; if `before` is a robot.toml, packs only files that
-   * differ from its files.
+   * Proves that the parts fit, makes all files and packs them; if `previousToml` is a robot.toml, packs only files
+   * that differ from its files.
    */
-  make(toml: string, before: string | null, progress: (progress: Progress) => void) {
+  make(toml: string, previousToml: string | null, progress: (progress: Progress) => void) {
     const parts = new Parts(toml);
-    const least = parts.prove((done, all) => progress({ doing: 'prove', done, all })) ?? null;
+    const leastMm = parts.prove((done, all) => progress({ doing: 'prove', done, all })) ?? null;
     const files = filesOf(parts, progress);
     const count = Object.keys(files).length;
-    if (before !== null) {
-      const known = filesOf(new Parts(before), progress);
-      for (const [path, bytes] of Object.entries(known)) if (isSame(bytes, files[path])) delete files[path];
+    if (previousToml !== null) {
+      const previousFiles = filesOf(new Parts(previousToml), progress);
+      for (const [path, bytes] of Object.entries(previousFiles)) if (isSame(bytes, files[path])) delete files[path];
     }
     // A fixed date, so that the same files make the same archive.
     const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' }) as Uint8Array<ArrayBuffer>;
-    return transfer({ zip, paths: Object.keys(files), count, least }, [zip.buffer]);
+    return transfer({ zip, paths: Object.keys(files), count, least: leastMm }, [zip.buffer]);
   },
 };
 

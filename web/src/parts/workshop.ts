@@ -33,7 +33,7 @@ class Workshop extends Helper<PartsFunctions> {
   }
 
   /** Loads the WebAssembly module, then calls a function of the worker. */
-  async first<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Promise<Answer> {
+  async loadAndAsk<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Promise<Answer> {
     const module = await files.parts();
     await this.ask((parts) => parts.load(module));
     return this.ask(call).catch((error: Error | Refused) => {
@@ -55,7 +55,7 @@ export class Solids {
   static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const workshop = new Workshop();
     try {
-      const { model, solids } = await workshop.first((parts) => parts.model(toml));
+      const { model, solids } = await workshop.loadAndAsk((parts) => parts.model(toml));
       return { solids: new Solids(workshop), model, meshes: solids };
     } catch (error) {
       workshop.end();
@@ -83,20 +83,20 @@ interface Work<Answer> {
   stop: () => void;
 }
 
-function work<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Work<Answer> {
+function startWork<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Work<Answer> {
   const workshop = new Workshop();
-  return { answer: workshop.first(call).finally(() => workshop.end()), stop: () => workshop.end() };
+  return { answer: workshop.loadAndAsk(call).finally(() => workshop.end()), stop: () => workshop.end() };
 }
 
 /**
  * Proves that the parts of a robot.toml fit; answers with the least distance between two, mm, null if no pair was
  * checked. Throws {@link Unfit}.
  */
-export const fit = (toml: string): Work<number | null> => work((parts) => parts.fit(toml));
+export const fit = (toml: string): Work<number | null> => startWork((parts) => parts.fit(toml));
 
 /**
- * Proves that the parts fit, makes all files and packs them; if `before` is a robot.toml, packs only files that
+ * Proves that the parts fit, makes all files and packs them; if `previousToml` is a robot.toml, packs only files that
  * differ from its files.
  */
-export const make = (toml: string, before: string | null, progress: (progress: Progress) => void): Work<Made> =>
-  work((parts) => parts.make(toml, before, proxy(progress)));
+export const make = (toml: string, previousToml: string | null, progress: (progress: Progress) => void): Work<Made> =>
+  startWork((parts) => parts.make(toml, previousToml, proxy(progress)));

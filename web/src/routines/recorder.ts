@@ -4,9 +4,9 @@ import type { Gait } from '../robot';
 import { GAITS, WORDS } from '../words';
 
 /** Shortest pause that becomes a step, s: a thumb that changes direction lets go for a moment. */
-const PAUSE = 0.5;
+const SHORTEST_PAUSE = 0.5;
 /** Shortest step, s. */
-const SHORTEST = 0.1;
+const SHORTEST_STEP = 0.1;
 /** Largest error, in cycles, of a count since the last phase that the robot reported. */
 const SLACK = 0.05;
 /**
@@ -26,7 +26,7 @@ interface Part {
 
 const isPause = ({ name }: Part) => name === GAITS.stand;
 /** True for a part that is too short to be a step. */
-const isShort = (part: Part) => part.seconds < (isPause(part) ? PAUSE : SHORTEST);
+const isShort = (part: Part) => part.seconds < (isPause(part) ? SHORTEST_PAUSE : SHORTEST_STEP);
 
 export class Recorder {
   private parts: Part[] = [];
@@ -45,22 +45,22 @@ export class Recorder {
   }
 
   /** Takes the robot's current activity. */
-  setGait(gait: string, at: number): void {
+  setGait(gait: string, time: number): void {
     if (gait === this.gait) return;
-    this.parts = this.partsUntil(at);
-    [this.gait, this.since, this.countedUntil, this.cycles] = [gait, at, at, 0];
+    this.parts = this.partsUntil(time);
+    [this.gait, this.since, this.countedUntil, this.cycles] = [gait, time, time, 0];
   }
 
   /** Takes a new pace, percent. */
-  setPace(percent: number, at: number): void {
-    this.count(at);
+  setPace(percent: number, time: number): void {
+    this.count(time);
     this.pace = percent;
   }
 
   /** Takes the reported phase of the robot's gait. */
-  setPhase(reported: number, at: number): void {
-    this.count(at);
-    const phase = this.currentGait?.reversed ? (1 - reported) % 1 : reported;
+  setPhase(reportedPhase: number, time: number): void {
+    this.count(time);
+    const phase = this.currentGait?.reversed ? (1 - reportedPhase) % 1 : reportedPhase;
     // The count is never too low, so a phase ahead of it belongs to the previous gait: the robot reports that phase
     // until it has reached the first pose of the new gait.
     if (phase > this.cycles + SLACK) {
@@ -71,11 +71,11 @@ export class Recorder {
   }
 
   /** Returns the steps until a time, from the first gait to the last one. */
-  steps(at: number): string[] {
-    const parts = this.partsUntil(at).filter((part) => !isShort(part));
-    const first = parts.findIndex((part) => !isPause(part));
-    const last = parts.findLastIndex((part) => !isPause(part));
-    const steps = first < 0 ? [] : parts.slice(first, last + 1);
+  steps(time: number): string[] {
+    const parts = this.partsUntil(time).filter((part) => !isShort(part));
+    const firstIndex = parts.findIndex((part) => !isPause(part));
+    const lastIndex = parts.findLastIndex((part) => !isPause(part));
+    const steps = firstIndex < 0 ? [] : parts.slice(firstIndex, lastIndex + 1);
     return steps.map(({ name, cycles, seconds }) => `${name} ${cycles || `${Number(seconds.toFixed(1))} s`}`);
   }
 
@@ -83,22 +83,22 @@ export class Recorder {
     return this.gaits.find(({ command }) => command === this.gait);
   }
 
-  private count(at: number): void {
+  private count(time: number): void {
     const { period } = this.currentGait ?? {};
-    if (period !== undefined) this.cycles += ((at - this.countedUntil) * this.pace) / 100 / period;
-    this.countedUntil = at;
+    if (period !== undefined) this.cycles += ((time - this.countedUntil) * this.pace) / 100 / period;
+    this.countedUntil = time;
   }
 
   /** Returns all parts until a time, the current activity as the last one; successive pauses are one part. */
-  private partsUntil(at: number): Part[] {
-    this.count(at);
+  private partsUntil(time: number): Part[] {
+    this.count(time);
     const { parts, gait, currentGait } = this;
-    const seconds = at - this.since;
+    const seconds = time - this.since;
     const part = PAUSES.includes(gait)
       ? { name: GAITS.stand, cycles: 0, seconds }
       : { name: gait, cycles: currentGait ? Math.max(0, Math.floor(this.cycles + SLACK)) : 0, seconds };
-    const before = parts.at(-1);
-    if (!before || !isPause(part) || !isPause(before)) return [...parts, part];
-    return [...parts.slice(0, -1), { ...before, seconds: before.seconds + seconds }];
+    const previous = parts.at(-1);
+    if (!previous || !isPause(part) || !isPause(previous)) return [...parts, part];
+    return [...parts.slice(0, -1), { ...previous, seconds: previous.seconds + seconds }];
   }
 }

@@ -12,8 +12,8 @@ const SIGN_TURNS = [10, 5, -10, -5];
 /** Turns for measuring a servo's scale, deg; tried in this order until the robot accepts one. */
 const SCALE_TURNS = [20, -20, 15, -15, 10, -10];
 /** Longest wait for the end of a motion, ms, and time from one `status` to the next, ms. */
-const MOTION_TIMEOUT = 5000;
-const POLL_INTERVAL = 60;
+const MOTION_TIMEOUT_MS = 5000;
+const POLL_INTERVAL_MS = 60;
 /** Tolerance of a reached pose, deg. */
 const TOLERANCE = 0.02;
 
@@ -100,13 +100,13 @@ export class Guide {
     return this.turnServo(servo, SCALE_TURNS);
   }
 
-  private async turnServo(servo: number, choices: number[]): Promise<number> {
+  private async turnServo(servo: number, turns: number[]): Promise<number> {
     const neutral = await this.stand();
     let refusal: Refusal | null = null;
-    for (const by of choices) {
+    for (const turn of turns) {
       try {
-        await this.point(servo, neutral[servo] + by);
-        return by;
+        await this.point(servo, neutral[servo] + turn);
+        return turn;
       } catch (error) {
         if (!(error instanceof Refusal)) throw error;
         refusal ??= error;
@@ -117,67 +117,67 @@ export class Guide {
 
   /** Moves one servo to an angle, deg, and the others to neutral. */
   async point(servo: number, degrees: number): Promise<void> {
-    const others = this.neutral ?? (await this.stand());
-    const pose = others.map((neutral, place) => (place === servo ? degrees : neutral));
-    await this.sendLine(`${WORDS.pose} ${pose.map((each) => angle(each).toFixed(2)).join(' ')}`);
+    const neutralAngles = this.neutral ?? (await this.stand());
+    const pose = neutralAngles.map((neutral, index) => (index === servo ? degrees : neutral));
+    await this.sendLine(`${WORDS.pose} ${pose.map((value) => angle(value).toFixed(2)).join(' ')}`);
     await settle(this.session, pose as Four<number>);
   }
 
   /** Reverses the sign of a servo. */
   async reverse(servo: number): Promise<void> {
     await this.stand();
-    const next = structuredClone(this.now);
-    const set = (next.servos[servo] = reversedServo(this.now.servos[servo]));
-    await this.sendLine(`${WORDS.dir} ${servo + 1} ${set.dir}`);
-    if (set.trim !== 0) await this.sendLine(`${WORDS.trim} ${servo + 1} ${set.trim.toFixed(2)}`);
-    this.now = next;
+    const newCalibration = structuredClone(this.now);
+    const reversed = (newCalibration.servos[servo] = reversedServo(this.now.servos[servo]));
+    await this.sendLine(`${WORDS.dir} ${servo + 1} ${reversed.dir}`);
+    if (reversed.trim !== 0) await this.sendLine(`${WORDS.trim} ${servo + 1} ${reversed.trim.toFixed(2)}`);
+    this.now = newCalibration;
     await settle(this.session);
   }
 
   /** Changes a servo's trim, deg counter-clockwise. */
-  async trim(servo: number, by: number): Promise<void> {
-    const next = structuredClone(this.now);
-    const trim = Math.round((next.servos[servo].trim + by) * 100) / 100 + 0;
-    next.servos[servo].trim = trim;
+  async trim(servo: number, change: number): Promise<void> {
+    const newCalibration = structuredClone(this.now);
+    const trim = Math.round((newCalibration.servos[servo].trim + change) * 100) / 100 + 0;
+    newCalibration.servos[servo].trim = trim;
     await this.sendLine(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
-    this.now = next;
+    this.now = newCalibration;
   }
 
   /**
-   * Sets a servo's scale from the turn that was `measured` for the commanded turn `asked`, deg; returns the scale, us
-   * per deg.
+   * Sets a servo's scale from the turn that was measured, `measuredTurn`, for the commanded turn `askedTurn`, deg;
+   * returns the scale, us per deg.
    */
-  async scale(servo: number, asked: number, measured: number): Promise<number> {
+  async scale(servo: number, askedTurn: number, measuredTurn: number): Promise<number> {
     await this.stand();
-    const next = structuredClone(this.now);
-    const old = this.now.servos[servo];
-    const { scale, trim } = (next.servos[servo] = scaledServo(old, (old.scale * Math.abs(asked)) / Math.abs(measured)));
+    const newCalibration = structuredClone(this.now);
+    const oldSettings = this.now.servos[servo];
+    const { scale, trim } = (newCalibration.servos[servo] = scaledServo(oldSettings, (oldSettings.scale * Math.abs(askedTurn)) / Math.abs(measuredTurn)));
     await this.sendLine(`${WORDS.scale} ${servo + 1} ${scale.toFixed(2)}`);
     try {
       // The horn stays where it is.
-      if (trim !== old.trim) await this.sendLine(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
+      if (trim !== oldSettings.trim) await this.sendLine(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
     } catch (error) {
-      if (error instanceof Refusal) await this.sendLine(`${WORDS.scale} ${servo + 1} ${old.scale.toFixed(2)}`);
+      if (error instanceof Refusal) await this.sendLine(`${WORDS.scale} ${servo + 1} ${oldSettings.scale.toFixed(2)}`);
       throw error;
     }
-    this.now = next;
+    this.now = newCalibration;
     return scale;
   }
 
   /** Sets a servo's travel, counter-clockwise from the first angle to the second, deg. */
   async limit(servo: number, from: number, to: number): Promise<void> {
-    const next = structuredClone(this.now);
+    const newCalibration = structuredClone(this.now);
     const limit: [number, number] = [angle(from), angle(to)];
-    next.servos[servo].limit = limit;
+    newCalibration.servos[servo].limit = limit;
     await this.sendLine(`${WORDS.limit} ${servo + 1} ${limit[0].toFixed(2)} ${limit[1].toFixed(2)}`);
-    this.now = next;
+    this.now = newCalibration;
   }
 
   /** Starts `walk`, or the first gait that moves; returns its command. */
   async walk(): Promise<string> {
     const { notes } = await this.sendLine(WORDS.help);
-    const list = notes.find((line) => line.startsWith('# gaits: '))?.slice('# gaits: '.length) ?? '';
-    const gaits = list.split('|').filter((name) => name !== '' && name !== GAITS.stand);
+    const gaitList = notes.find((line) => line.startsWith('# gaits: '))?.slice('# gaits: '.length) ?? '';
+    const gaits = gaitList.split('|').filter((name) => name !== '' && name !== GAITS.stand);
     const gait = gaits.includes(GAITS.walk) ? GAITS.walk : gaits[0];
     if (!gait) throw new Refusal('this robot has no gait');
     await this.sendLine(gait);
@@ -206,14 +206,14 @@ export class Guide {
    * Sets another calibration without saving it; if it is refused, the previous one is restored. Throws the robot's
    * reason.
    */
-  async setCalibration(set: Calibration): Promise<void> {
-    const had = structuredClone(this.now);
+  async setCalibration(calibration: Calibration): Promise<void> {
+    const previous = structuredClone(this.now);
     try {
-      await this.apply(set);
-      const read = readCalibration((await this.sendLine(WORDS.cal)).notes);
-      if (!read || !isSameCalibration(read, set)) throw new Refusal('the robot did not accept all of it');
+      await this.apply(calibration);
+      const readBack = readCalibration((await this.sendLine(WORDS.cal)).notes);
+      if (!readBack || !isSameCalibration(readBack, calibration)) throw new Refusal('the robot did not accept all of it');
     } catch (error) {
-      if (error instanceof Refusal) await this.apply(had);
+      if (error instanceof Refusal) await this.apply(previous);
       throw error;
     }
     await settle(this.session);
@@ -223,8 +223,8 @@ export class Guide {
    * Sends the lines of a calibration; refused lines are sent again after the others. Throws a refusal if some are
    * still refused.
    */
-  private async apply(set: Calibration): Promise<void> {
-    const transfer = new Transfer(set);
+  private async apply(calibration: Calibration): Promise<void> {
+    const transfer = new Transfer(calibration);
     let refusal: Refusal | null = null;
     for (let line = transfer.nextLine(); line !== undefined; line = transfer.nextLine()) {
       try {
@@ -235,7 +235,7 @@ export class Guide {
       }
     }
     if (!transfer.isDone && refusal) throw refusal;
-    this.now = structuredClone(set);
+    this.now = structuredClone(calibration);
   }
 
   private sendLine(line: string): Promise<Answer> {
@@ -254,22 +254,22 @@ async function sendLine(session: Session, line: string): Promise<Answer> {
 }
 
 /**
- * Waits until the robot stands still, in the pose `wanted` if given, but at most `MOTION_TIMEOUT`; returns its pose,
- * deg.
+ * Waits until the robot stands still, in the pose `expected` if given, but at most `MOTION_TIMEOUT_MS`; returns its
+ * pose, deg.
  */
-async function settle(session: Session, wanted: Four<number> | null = null): Promise<Four<number>> {
-  const isThere = (pose: Four<number>) => wanted?.every((each, n) => Math.abs(((each - pose[n] + 540) % 360) - 180) < TOLERANCE) ?? true;
+async function settle(session: Session, expected: Four<number> | null = null): Promise<Four<number>> {
+  const isExpected = (pose: Four<number>) => expected?.every((degrees, n) => Math.abs(((degrees - pose[n] + 540) % 360) - 180) < TOLERANCE) ?? true;
   const { link } = session;
-  let last = null as { frames: number; pose: string } | null;
-  for (let waited = 0; ; waited += POLL_INTERVAL) {
+  let lastReport = null as { frames: number; pose: string } | null;
+  for (let waitedMs = 0; ; waitedMs += POLL_INTERVAL_MS) {
     const answer = await session.ask(WORDS.status, true);
-    const now = answer && parseStatus(answer.text);
-    const here = now?.pose;
-    if (!now || !here || session.link !== link) throw new BoardChanged('The board has restarted or is gone; what was not saved is lost.');
-    const pose = here.join();
-    if (last?.pose !== pose) last = { frames: now.frames, pose };
-    else if (now.frames - last.frames >= session.description.still && isThere(here)) return here;
-    if (waited >= MOTION_TIMEOUT) return here;
-    await link.wait(POLL_INTERVAL);
+    const status = answer && parseStatus(answer.text);
+    const pose = status?.pose;
+    if (!status || !pose || session.link !== link) throw new BoardChanged('The board has restarted or is gone; what was not saved is lost.');
+    const poseText = pose.join();
+    if (lastReport?.pose !== poseText) lastReport = { frames: status.frames, pose: poseText };
+    else if (status.frames - lastReport.frames >= session.description.still && isExpected(pose)) return pose;
+    if (waitedMs >= MOTION_TIMEOUT_MS) return pose;
+    await link.wait(POLL_INTERVAL_MS);
   }
 }

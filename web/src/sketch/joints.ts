@@ -42,43 +42,43 @@ const ENDS = [
 
 /** Returns the bars of the robot's loops and legs at the pose of the scene. */
 export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
-  const bar = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
+  const barOf = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
   return [
     ...SIDES.flatMap((side, n) => {
       const { tips: [front, rear], tube } = sliders[n];
       return [
-        bar(linkKey(side.chassis), shafts[side.front], shafts[side.rear]),
-        bar(linkKey(side.frontArm), shafts[side.front], front),
-        bar(linkKey(side.rearArm), shafts[side.rear], rear),
-        bar(linkKey(side.rearHalf), rear, tube),
-        bar(linkKey(side.frontHalf), tube, front),
+        barOf(linkKey(side.chassis), shafts[side.front], shafts[side.rear]),
+        barOf(linkKey(side.frontArm), shafts[side.front], front),
+        barOf(linkKey(side.rearArm), shafts[side.rear], rear),
+        barOf(linkKey(side.rearHalf), rear, tube),
+        barOf(linkKey(side.frontHalf), tube, front),
       ];
     }),
     ...ENDS.flatMap((end, n) => [
-      bar(linkKey(end.base), shafts[end.left], shafts[end.right]),
-      bar(linkKey(end.leftCrank), shafts[end.left], tips[end.left]),
-      bar(linkKey(end.rightCrank), shafts[end.right], tips[end.right]),
-      bar(linkKey(end.leftCoupler), tips[end.left], points[n]),
-      bar(linkKey(end.rightCoupler), tips[end.right], points[n]),
+      barOf(linkKey(end.base), shafts[end.left], shafts[end.right]),
+      barOf(linkKey(end.leftCrank), shafts[end.left], tips[end.left]),
+      barOf(linkKey(end.rightCrank), shafts[end.right], tips[end.right]),
+      barOf(linkKey(end.leftCoupler), tips[end.left], points[n]),
+      barOf(linkKey(end.rightCoupler), tips[end.right], points[n]),
     ]),
     ...legs.flatMap(({ pivots, joints }) => [
-      bar('leg.ground', pivots[0], pivots[1]),
-      bar('leg.crank', pivots[0], joints[0]),
-      bar('leg.coupler', joints[0], joints[1]),
-      bar('leg.follower', pivots[1], joints[1]),
+      barOf('leg.ground', pivots[0], pivots[1]),
+      barOf('leg.crank', pivots[0], joints[0]),
+      barOf('leg.coupler', joints[0], joints[1]),
+      barOf('leg.follower', pivots[1], joints[1]),
     ]),
   ];
 }
 
 /** Returns the joints that can be dragged; `value` returns a length in robot.toml, mm, by its key. */
-export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (key: string) => number): Joint[] {
+export function joints({ shafts, tips, points, sliders, legs }: Scene, lengthOf: (key: string) => number): Joint[] {
   /**
    * Lengthens each half of a slider by half the change of the distance between its arm tips, so that its travel
    * stays.
    */
-  const halves = (side: (typeof SIDES)[number], change: number): Edits => [
-    [linkKey(side.rearHalf), round(value(linkKey(side.rearHalf)) + change / 2)],
-    [linkKey(side.frontHalf), round(value(linkKey(side.frontHalf)) + change / 2)],
+  const halfEdits = (side: (typeof SIDES)[number], change: number): Edits => [
+    [linkKey(side.rearHalf), round(lengthOf(linkKey(side.rearHalf)) + change / 2)],
+    [linkKey(side.frontHalf), round(lengthOf(linkKey(side.frontHalf)) + change / 2)],
   ];
   const cranks = ENDS.flatMap((end): Joint[] =>
     (['left', 'right'] as const).map((hand) => {
@@ -95,24 +95,24 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
     name: `point of the ${end.name}`,
     at: points[n],
     lengthsAt(to, isSymmetric) {
-      const middle = (tips[end.left][0] + tips[end.right][0]) / 2;
-      const at: Point = isSymmetric ? [middle, to[1]] : to;
-      return [[linkKey(end.leftCoupler), round(distance(tips[end.left], at))], [linkKey(end.rightCoupler), round(distance(tips[end.right], at))]];
+      const middleX = (tips[end.left][0] + tips[end.right][0]) / 2;
+      const point: Point = isSymmetric ? [middleX, to[1]] : to;
+      return [[linkKey(end.leftCoupler), round(distance(tips[end.left], point))], [linkKey(end.rightCoupler), round(distance(tips[end.right], point))]];
     },
   }));
   const arms = SIDES.flatMap((side, n): Joint[] =>
-    (['front', 'rear'] as const).map((place) => {
+    (['front', 'rear'] as const).map((position) => {
       const { tips: [front, rear] } = sliders[n];
-      const [shaft, tip, key] = place === 'front' ? [shafts[side.front], front, 'frontArm' as const] : [shafts[side.rear], rear, 'rearArm' as const];
+      const [shaft, tip, key] = position === 'front' ? [shafts[side.front], front, 'frontArm' as const] : [shafts[side.rear], rear, 'rearArm' as const];
       return {
-        name: `end of the ${place} ${side.name} arm`,
+        name: `end of the ${position} ${side.name} arm`,
         at: tip,
         lengthsAt(to, isSymmetric) {
           const length = round(distanceAlong(shaft, tip, to));
           const scale = length / distance(shaft, tip);
           const movedTip: Point = [shaft[0] + scale * (tip[0] - shaft[0]), shaft[1] + scale * (tip[1] - shaft[1])];
-          const change = place === 'front' ? distance(movedTip, rear) - distance(front, rear) : distance(front, movedTip) - distance(front, rear);
-          return (isSymmetric ? SIDES : [side]).flatMap((each): Edits => [[linkKey(each[key]), length], ...halves(each, change)]);
+          const change = position === 'front' ? distance(movedTip, rear) - distance(front, rear) : distance(front, movedTip) - distance(front, rear);
+          return (isSymmetric ? SIDES : [side]).flatMap((movedSide): Edits => [[linkKey(movedSide[key]), length], ...halfEdits(movedSide, change)]);
         },
       };
     }),
@@ -122,13 +122,13 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
       name: `the ${end.name}'s ${hand} servo`,
       at: shafts[end[hand]],
       lengthsAt(to) {
-        const [own, other] = [shafts[end[hand]], shafts[end[hand === 'left' ? 'right' : 'left']]];
-        const middle = (own[0] + other[0]) / 2;
+        const [ownShaft, otherShaft] = [shafts[end[hand]], shafts[end[hand === 'left' ? 'right' : 'left']]];
+        const middleX = (ownShaft[0] + otherShaft[0]) / 2;
         // The head's servos move outward by +y, the tail's by -y.
-        const change = round((n === 0 ? 1 : -1) * (to[1] - own[1]));
+        const change = round((n === 0 ? 1 : -1) * (to[1] - ownShaft[1]));
         // Both sides change, so that equal sides stay equal: a rectangle or an isosceles trapezium.
-        const chassis = SIDES.flatMap((side): Edits => (change === 0 ? [] : [[linkKey(side.chassis), value(linkKey(side.chassis)) + change], ...halves(side, change)]));
-        return [[linkKey(end.base), round(2 * Math.abs(to[0] - middle))], ...chassis];
+        const chassis = SIDES.flatMap((side): Edits => (change === 0 ? [] : [[linkKey(side.chassis), lengthOf(linkKey(side.chassis)) + change], ...halfEdits(side, change)]));
+        return [[linkKey(end.base), round(2 * Math.abs(to[0] - middleX))], ...chassis];
       },
     })),
   );

@@ -16,7 +16,7 @@ const RATE_ERROR = 0.045;
 const UNREADABLE = 0xfe;
 const MCUSR = 0x54;
 /** Address of the RAM, after the registers. */
-const RAM = 0x100;
+const RAM_START = 0x100;
 /** Byte address of a boot loader of 512 bytes. */
 export const BOOT = 0x7e00;
 
@@ -48,8 +48,9 @@ export class SimulatedBoard {
   private readonly contacts = new Map<number, boolean>();
 
   /**
-   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` what it has from `BOOT` on, `rail` the converter's
-   * channel for the servos' rail and the voltage at its pin, `eeprom` the content of a previous board's EEPROM.
+   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` what it has from `BOOT` on, `rail` the
+   * converter's channel for the servos' rail and the voltage at its pin, `eeprom` the content of a previous board's
+   * EEPROM.
    */
   constructor(
     image: Uint8Array | null,
@@ -122,9 +123,9 @@ export class SimulatedBoard {
     this.before += cpu.cycles;
     this.line.length = 0;
     this.lineIsBusy = false;
-    const ram = cpu.data.slice(RAM);
+    const ram = cpu.data.slice(RAM_START);
     this.begin(cause, flash, memory);
-    if (cause !== 'power') this.uno.cpu.data.set(ram, RAM);
+    if (cause !== 'power') this.uno.cpu.data.set(ram, RAM_START);
   }
 
   private begin(cause: Cause, flash: Uint8Array, eeprom?: Uint8Array): void {
@@ -141,8 +142,8 @@ export class SimulatedBoard {
     if (this.rail) uno.adc.channelValues[this.rail[0]] = this.rail[1];
     for (const [pin, isClosed] of this.contacts) this.setPinLevel(pin, isClosed);
     uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE : byte);
-    const before = this.before;
-    new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, before + rise, width));
+    const cyclesBefore = this.before;
+    new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
   }
 
   /** True while the chip's baud rate and that of the other side differ too much. */

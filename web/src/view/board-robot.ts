@@ -27,13 +27,13 @@ export class BoardRobot {
   /** Reports that the board has another robot; removes the message if it does not. */
   async follow(): Promise<void> {
     const session = this.session();
-    const other = session.otherRobot;
-    if (!session.isReal || !other) return this.troubles.say('other', null);
-    const known = await this.find(other.hash);
-    if (session.otherRobot?.hash !== other.hash) return;
-    const has = `The ${session.link.name} has another robot, ${other.name}, and is drawn and predicted here as ${nameOf(session)}.`;
-    if (!known) return this.troubles.say('other', `${has} This page does not know it: open its robot.toml in Build, or write this one.`);
-    this.troubles.say('other', has, { label: `Show ${other.name}`, act: () => this.show(known) });
+    const otherRobot = session.otherRobot;
+    if (!session.isReal || !otherRobot) return this.troubles.say('other', null);
+    const knownRobot = await this.find(otherRobot.hash);
+    if (session.otherRobot?.hash !== otherRobot.hash) return;
+    const message = `The ${session.link.name} has another robot, ${otherRobot.name}, and is drawn and predicted here as ${nameOf(session)}.`;
+    if (!knownRobot) return this.troubles.say('other', `${message} This page does not know it: open its robot.toml in Build, or write this one.`);
+    this.troubles.say('other', message, { label: `Show ${otherRobot.name}`, act: () => this.show(knownRobot) });
   }
 
   /**
@@ -41,16 +41,16 @@ export class BoardRobot {
    * it.
    */
   private async find(hash: string): Promise<Known | null> {
-    const isIt = (toml: string) => {
-      const read = this.reader.read(toml);
-      return !isRefused(read) && read.hash === hash;
+    const hasHash = (toml: string) => {
+      const answer = this.reader.read(toml);
+      return !isRefused(answer) && answer.hash === hash;
     };
-    const own = kept.aside().find(({ toml }) => isIt(toml));
-    if (own) return own;
+    const ownRobot = kept.aside().find(({ toml }) => hasHash(toml));
+    if (ownRobot) return ownRobot;
     const names = await files.robots().catch(() => ({ all: [] }));
     for (const file of names.all) {
       const toml = await files.toml(file).catch(() => '');
-      if (isIt(toml)) return { file, toml };
+      if (hasHash(toml)) return { file, toml };
     }
     return null;
   }

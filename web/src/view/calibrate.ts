@@ -69,14 +69,14 @@ export class Calibrate {
       const numbers = make('div', { className: 'numbers' });
       group.append(numbers);
       this.box.append(group);
-      const number = (label: string, step: string) => {
+      const addNumber = (label: string, step: string) => {
         const input = make('input', { type: 'number', step });
         numbers.append(make('label', {}, label, input));
         return input;
       };
-      const min = number('from, deg', '1');
-      const max = number('to, deg', '1');
-      const scale = number('µs per deg', '0.01');
+      const min = addNumber('from, deg', '1');
+      const max = addNumber('to, deg', '1');
+      const scale = addNumber('µs per deg', '0.01');
       const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
       numbers.append(make('label', {}, 'longer pulse turns it', dir));
       for (const input of [min, max]) {
@@ -90,11 +90,11 @@ export class Calibrate {
 
   private makeTrim(group: HTMLElement, servo: number): HTMLInputElement {
     const trim = make('input', { type: 'range', min: '-20', max: '20', step: '0.25' });
-    const out = make('output', {});
-    group.append(make('label', { className: 'slider' }, 'trim ', trim, out));
-    const show = () => (out.textContent = `${Number(trim.value).toFixed(2)}°`);
-    trim.addEventListener('input', show);
-    trim.addEventListener('shown', show);
+    const output = make('output', {});
+    group.append(make('label', { className: 'slider' }, 'trim ', trim, output));
+    const showTrim = () => (output.textContent = `${Number(trim.value).toFixed(2)}°`);
+    trim.addEventListener('input', showTrim);
+    trim.addEventListener('shown', showTrim);
     trim.addEventListener('change', () => void this.set(`${WORDS.trim} ${servo} ${trim.value}`));
     return trim;
   }

@@ -11,19 +11,19 @@ export interface Surface {
  * Returns a canvas with its context in CSS pixels; null while its room or its panel is closed. The canvas is cleared,
  * except an opaque one: the caller must fill it. An opaque canvas saves blending.
  */
-export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | null {
+export function surface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;
   const scale = devicePixelRatio;
-  const [w, h] = [Math.round(width * scale), Math.round(height * scale)];
-  if (canvas.width !== w || canvas.height !== h) {
-    canvas.width = w;
-    canvas.height = h;
+  const [pixelWidth, pixelHeight] = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== pixelWidth || canvas.height !== pixelHeight) {
+    canvas.width = pixelWidth;
+    canvas.height = pixelHeight;
   }
-  const pen = canvas.getContext('2d', { alpha: !opaque });
+  const pen = canvas.getContext('2d', { alpha: !isOpaque });
   if (!pen) return null;
   pen.setTransform(scale, 0, 0, scale, 0, 0);
-  if (!opaque) pen.clearRect(0, 0, width, height);
+  if (!isOpaque) pen.clearRect(0, 0, width, height);
   return { pen, width, height };
 }
 
@@ -39,7 +39,7 @@ export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radi
 
 /** Finds an element of index.html. */
 export function element<T extends HTMLElement>(id: string): T {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no #${id}`);
-  return found as T;
+  const node = document.getElementById(id);
+  if (!node) throw new Error(`the page has no #${id}`);
+  return node as T;
 }

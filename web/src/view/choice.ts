@@ -10,14 +10,14 @@ export class Choice {
     private readonly robots: string[],
     forTests: string[],
   ) {
-    const tests = document.createElement('optgroup');
-    tests.label = 'for tests';
+    const testGroup = document.createElement('optgroup');
+    testGroup.label = 'for tests';
     robots.forEach((name) => {
       const option = new Option(`${name}.toml`, name);
-      if (forTests.includes(name)) tests.append(option);
+      if (forTests.includes(name)) testGroup.append(option);
       else this.list.add(option);
     });
-    if (tests.childElementCount > 0) this.list.append(tests);
+    if (testGroup.childElementCount > 0) this.list.append(testGroup);
     this.own.label = 'your own';
   }
 
@@ -30,8 +30,8 @@ export class Choice {
 
   /** The index of the chosen robot among the user's own robots; null if a file is chosen. */
   get chosenOwn(): number | null {
-    const number = [...this.own.children].indexOf(this.list.selectedOptions[0]);
-    return number < 0 ? null : number;
+    const index = [...this.own.children].indexOf(this.list.selectedOptions[0]);
+    return index < 0 ? null : index;
   }
 
   /**
@@ -42,9 +42,9 @@ export class Choice {
     return new Choice(all, tests);
   }
 
-  /** Calls `chosen` when the user has chosen a robot. */
-  onChange(chosen: () => void): void {
-    this.list.addEventListener('change', chosen);
+  /** Calls `act` when the user has chosen a robot. */
+  onChange(act: () => void): void {
+    this.list.addEventListener('change', act);
   }
 
   /** The chosen robot's file name. */
@@ -54,9 +54,9 @@ export class Choice {
 
   /** Selects a robot by its file name; returns true if it is in the list. */
   show(name: string): boolean {
-    const isThere = this.robots.includes(name);
-    if (isThere) this.list.value = name;
-    return isThere;
+    const isListed = this.robots.includes(name);
+    if (isListed) this.list.value = name;
+    return isListed;
   }
 
   /** Allows or forbids the user to choose. */

@@ -7,11 +7,11 @@ import { make } from './make';
  * values cannot be written into the text, it is saved unchanged and the reason is returned.
  */
 export function download(toml: string, floor: Floor | null): Refused | null {
-  const whole = floor && Robot.editFloor(toml, floor);
-  const refused = whole && (isRefused(whole) ? whole : whole.refusal);
-  const text = !whole || isRefused(whole) || refused ? toml : whole.text;
+  const edited = floor && Robot.editFloor(toml, floor);
+  const refusal = edited && (isRefused(edited) ? edited : edited.refusal);
+  const text = !edited || isRefused(edited) || refusal ? toml : edited.text;
   save('robot.toml', [text], 'application/toml');
-  return refused;
+  return refusal;
 }
 
 /** Saves a file. */

@@ -1,5 +1,5 @@
-// A button for each gait and each routine. A gait's button also shows the predicted displacement per cycle, and the share of
-// the servos' torque-speed line that the gait uses.
+// A button for each gait and each routine. A gait's button also shows the predicted displacement per cycle, and the
+// share of the servos' torque-speed line that the gait uses.
 import type { Description, GaitPrediction, Displacement } from '../robot';
 import type { Answer } from '../link/dialogue';
 import { WORDS } from '../words';
@@ -7,11 +7,11 @@ import { element } from './canvas';
 import { make } from './make';
 
 /** Number of characters that fit on a button of the usual width. */
-const LONG = 13;
+const BUTTON_CHARACTERS = 13;
 /** Share of the servos' torque-speed line from which the page warns of little reserve. */
 const HIGH_LOAD_SHARE = 0.9;
 /** The longest text of a prediction; a button reserves room for it. */
-const LONGEST = '-999.9 mm, -99.9°';
+const LONGEST_PREDICTION = '-999.9 mm, -99.9°';
 
 /** Formats a displacement as a short text: mm forward, and degrees if it turns; '' for null. */
 export function formatDisplacement(displacement: Displacement | null): string {
@@ -59,11 +59,11 @@ export class Drive {
     // A prediction names its gait by index, so the gaits come first.
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const note = make('span', {});
-      const room = make('small', {}, note);
+      const noteBox = make('small', {}, note);
       const line = make('span', { className: 'line', title: 'share of their torque-speed line that its servos use at this pace' });
-      if (moves) room.dataset.room = LONGEST;
+      if (moves) noteBox.dataset.room = LONGEST_PREDICTION;
       // A button with a long name is twice as wide.
-      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > LONG ? 'long' : '' }, command, room, ...(moves ? [line] : []));
+      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, noteBox, ...(moves ? [line] : []));
       button.dataset.command = command;
       this.list.append(button);
       return { command, button, note, line, moves };
@@ -88,22 +88,25 @@ export class Drive {
     this.showLine();
   }
 
-  /** Shows each gait's share of the torque-speed line at the robot's pace, and, once all are predicted, the gait with the largest. */
+  /**
+   * Shows each gait's share of the torque-speed line at the robot's pace, and, once all are predicted, the gait with
+   * the largest.
+   */
   private showLine(): void {
     const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
-    let [hardest, largest] = ['', 0];
+    let [hardestGait, largestShare] = ['', 0];
     for (const { command, line } of this.buttons) {
       const { lines } = this.predictions.get(command) ?? {};
       const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
       const isTight = share !== undefined && share >= HIGH_LOAD_SHARE;
       line.classList.toggle('tight', isTight);
       line.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
-      if (isKnown && share !== undefined && share > largest) [hardest, largest] = [command, share];
+      if (isKnown && share !== undefined && share > largestShare) [hardestGait, largestShare] = [command, share];
     }
     const note = element('line-note');
-    note.classList.toggle('warning', largest >= HIGH_LOAD_SHARE);
-    const meaning = largest >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largest >= HIGH_LOAD_SHARE ? ': little is left' : '';
-    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${largest.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
+    note.classList.toggle('warning', largestShare >= HIGH_LOAD_SHARE);
+    const meaning = largestShare >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largestShare >= HIGH_LOAD_SHARE ? ': little is left' : '';
+    note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
   }
 
   /** The prediction for a command; null until it is known. */
@@ -120,8 +123,8 @@ export class Drive {
   }
 
   doing(command: string): void {
-    for (const { button, command: own } of this.buttons) {
-      button.setAttribute('aria-pressed', String(own === command));
+    for (const { button, command: buttonCommand } of this.buttons) {
+      button.setAttribute('aria-pressed', String(buttonCommand === command));
     }
   }
 }

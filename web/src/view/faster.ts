@@ -13,7 +13,7 @@ export interface Edited {
   gait(): Bars | null;
   setGait(gait: Bars): void;
   /** Lets the found gait walk beside the previous one, and writes their displacements into `output`. */
-  compare(before: Bars, found: Bars, output: HTMLElement): Promise<void>;
+  compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void>;
 }
 
 const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
@@ -103,15 +103,15 @@ export class FasterView {
     this.reset();
     if ('refused' in answer) return this.say(`This gait cannot be made faster: ${answer.refused}.`);
     const { best, done } = answer;
-    const tried = done < this.total ? `Stopped after ${done} of ${this.total} gaits. ` : '';
+    const stopText = done < this.total ? `Stopped after ${done} of ${this.total} gaits. ` : '';
     if (best?.better) {
       this.show(best);
       const { comparison } = best;
-      return this.say(`${tried}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors, and ${percent(best)} faster where only 5 % are slower. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
+      return this.say(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors, and ${percent(best)} faster where only 5 % are slower. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
     }
     this.result.hidden = true;
-    if (done === 0) return this.say(`${tried}Nothing was tried yet.`);
-    this.say(`${tried}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
+    if (done === 0) return this.say(`${stopText}Nothing was tried yet.`);
+    this.say(`${stopText}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
   }
 
   /** Ends the search; the button starts a new one. */
@@ -122,12 +122,12 @@ export class FasterView {
   }
 
   private show(best: Best): void {
-    const { before } = this;
-    if (!before) return;
+    const { before: previousTrial } = this;
+    if (!previousTrial) return;
     this.best = best;
-    const columns = [before, best.trial].map((trial) => figures(trial, best.comparison.unit));
+    const columns = [previousTrial, best.trial].map((trial) => figures(trial, best.comparison.unit));
     element('faster-rows').replaceChildren(
-      ...Object.entries(ROWS).map(([row, words]) => tableRow([words, ...columns.map((column) => column[row as keyof typeof ROWS])])),
+      ...Object.entries(ROWS).map(([row, label]) => tableRow([label, ...columns.map((column) => column[row as keyof typeof ROWS])])),
     );
     this.replaced = null;
     this.takeIt.textContent = WORDS.take;
@@ -137,12 +137,12 @@ export class FasterView {
 
   /** Puts the found gait into the editor, or restores the gait that it replaced. */
   private takeOver(): void {
-    const now = this.edited.gait();
-    if (!now || !this.best) return;
-    const next = this.replaced ?? this.best.bars;
-    this.replaced = this.replaced ? null : now;
+    const currentGait = this.edited.gait();
+    if (!currentGait || !this.best) return;
+    const nextGait = this.replaced ?? this.best.bars;
+    this.replaced = this.replaced ? null : currentGait;
     this.takeIt.textContent = this.replaced ? WORDS.back : WORDS.take;
-    this.edited.setGait({ ...next, name: now.name });
+    this.edited.setGait({ ...nextGait, name: currentGait.name });
   }
 
   private async compare(): Promise<void> {

@@ -9,9 +9,9 @@ import { element } from './canvas';
 import type { PartsView } from './parts';
 
 /** Time without a further change until the parts are made, ms: dragging a joint makes many changes. */
-const QUIET = 400;
+const QUIET_MS = 400;
 /** Step of the lengths that are tried, mm. */
-const STEP = 0.5;
+const STEP_MM = 0.5;
 
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
@@ -26,7 +26,7 @@ interface Work {
 interface Wish {
   keys: string[];
   range: [number, number];
-  show: (found: [number, number] | null, message: string) => void;
+  show: (printable: [number, number] | null, message: string) => void;
 }
 
 export class FitView {
@@ -48,16 +48,16 @@ export class FitView {
 
   /** Takes the lengths of the session's robot. */
   showRobot(lengths: Length[]): void {
-    const wanted: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
+    const robotLengths: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
     this.wish = null;
     this.begin();
     this.parts.showRobot();
     const { file, toml, original } = this.session();
     // Not checked: a robot chosen from the list (whose file name is empty while it loads), an unchanged robot, and
     // changes made outside the room Build.
-    if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = wanted;
-    const changed = [...wanted].filter(([key, value]) => this.fitting.get(key) !== value);
-    if (changed.length > 0) this.schedule((work) => this.check(wanted, new Map(changed), work));
+    if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = robotLengths;
+    const changedLengths = [...robotLengths].filter(([key, value]) => this.fitting.get(key) !== value);
+    if (changedLengths.length > 0) this.schedule((work) => this.check(robotLengths, new Map(changedLengths), work));
   }
 
   /** Takes the robot.toml of lengths that are being dragged; null if the lengths are refused. */
@@ -98,7 +98,7 @@ export class FitView {
     const work: Work = { isOver: false, stop: () => {} };
     this.work = work;
     const run = () => act(work).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`, null));
-    this.timer = setTimeout(() => void run(), QUIET);
+    this.timer = setTimeout(() => void run(), QUIET_MS);
   }
 
   /** Proves that a robot's parts fit, and shows the result; returns true if they do. */
@@ -106,7 +106,7 @@ export class FitView {
     this.say('Checking that the parts fit…', null);
     const result = await this.proveParts(toml, work);
     if (work.isOver) return false;
-    if (result instanceof Error) this.say(refusal(result), result.meeting);
+    if (result instanceof Error) this.say(refusalOf(result), result.meeting);
     else this.say(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
   }
@@ -126,20 +126,20 @@ export class FitView {
     });
   }
 
-  private async check(wanted: Lengths, changed: Lengths, work: Work): Promise<void> {
+  private async check(robotLengths: Lengths, changedLengths: Lengths, work: Work): Promise<void> {
     const { toml } = this.session();
     if (await this.prove(toml, work)) {
-      this.fitting = wanted;
+      this.fitting = robotLengths;
       return this.search(work);
     }
     if (work.isOver) return;
-    const refused = this.message.textContent ?? '';
-    this.message.textContent = `${refused} Looking for the nearest that can…`;
-    const nearest = await this.nearest(changed, work);
+    const refusalText = this.message.textContent ?? '';
+    this.message.textContent = `${refusalText} Looking for the nearest that can…`;
+    const nearest = await this.findNearest(changedLengths, work);
     if (work.isOver) return;
-    this.message.textContent = refused;
+    this.message.textContent = refusalText;
     const { lengths } = this.session().description;
-    const names = lengths.filter(({ key }) => changed.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
+    const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
     this.use.textContent = `Use what fits: ${names.join(', ')}`;
     this.use.onclick = () => void this.session().change(nearest.text);
     this.use.hidden = false;
@@ -151,46 +151,46 @@ export class FitView {
     if (!wish) return;
     const { keys, range, show } = wish;
     show(null, 'Looking for the shortest and the longest that can be printed…');
-    const found: number[] = [];
-    for (const end of range) {
-      const { lengths } = await this.nearest(new Map(keys.map((key) => [key, end])), work, true);
+    const limits: number[] = [];
+    for (const wantedValue of range) {
+      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, wantedValue])), work, true);
       if (work.isOver) return;
-      found.push(lengths.get(keys[0] ?? '') ?? end);
+      limits.push(lengths.get(keys[0] ?? '') ?? wantedValue);
     }
-    const [least = 0, most = 0] = found;
+    const [shortest = 0, longest = 0] = limits;
     const { unit } = this.session().description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
-    show([least, most], `Can be printed from ${least} to ${most} ${unit}.`);
+    show([shortest, longest], `Can be printed from ${shortest} to ${longest} ${unit}.`);
   }
 
   /**
    * Returns the lengths nearest to the wanted ones whose parts fit: bisects between the last lengths that fit and the
    * wanted ones, to within one step. If `isOpen`, tries the wanted lengths first, since they may fit.
    */
-  private async nearest(wanted: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
+  private async findNearest(wantedLengths: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session();
-    const between = (share: number): Lengths =>
-      new Map([...wanted].map(([key, to]) => {
+    const lengthsAt = (share: number): Lengths =>
+      new Map([...wantedLengths].map(([key, to]) => {
         const from = this.fitting.get(key) ?? to;
-        return [key, share === 0 ? from : STEP * Math.round((from + (to - from) * share) / STEP)];
+        return [key, share === 0 ? from : STEP_MM * Math.round((from + (to - from) * share) / STEP_MM)];
       }));
-    const at = (share: number) => {
-      const lengths = between(share);
+    const robotAt = (share: number) => {
+      const lengths = lengthsAt(share);
       const { text, refusal } = Robot.lengths(toml, [...lengths], false);
       return { lengths, text, isRobot: refusal === null };
     };
-    const fits = async ({ text, isRobot }: ReturnType<typeof at>) => isRobot && !((await this.proveParts(text, work)) instanceof Error);
-    let best = at(0);
+    const partsFit = async ({ text, isRobot }: ReturnType<typeof robotAt>) => isRobot && !((await this.proveParts(text, work)) instanceof Error);
+    let best = robotAt(0);
     if (isOpen) {
-      const end = at(1);
-      if (await fits(end)) return end;
+      const wantedRobot = robotAt(1);
+      if (await partsFit(wantedRobot)) return wantedRobot;
     }
     let [low, high] = [0, 1];
-    const longest = Math.max(...[...wanted].map(([key, to]) => Math.abs(to - (this.fitting.get(key) ?? to))));
-    while ((high - low) * longest > STEP && !work.isOver) {
-      const middle = (low + high) / 2;
-      const tried = at(middle);
-      if (await fits(tried)) [low, best] = [middle, tried];
-      else high = middle;
+    const longestChange = Math.max(...[...wantedLengths].map(([key, to]) => Math.abs(to - (this.fitting.get(key) ?? to))));
+    while ((high - low) * longestChange > STEP_MM && !work.isOver) {
+      const middleShare = (low + high) / 2;
+      const candidate = robotAt(middleShare);
+      if (await partsFit(candidate)) [low, best] = [middleShare, candidate];
+      else high = middleShare;
     }
     return best;
   }
@@ -205,9 +205,9 @@ export class FitView {
 }
 
 /** Returns the message that names the two parts that come too close, or else what cannot be made. */
-function refusal({ message, meeting }: { message: string; meeting: Meeting | null }): string {
+function refusalOf({ message, meeting }: { message: string; meeting: Meeting | null }): string {
   if (!meeting) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
   const { first, second, mm } = meeting;
-  const near = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would come as near as ${mm.toFixed(2)} mm`;
-  return `These lengths cannot be printed: ${first} and ${second} ${near}.`;
+  const distanceText = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would come as near as ${mm.toFixed(2)} mm`;
+  return `These lengths cannot be printed: ${first} and ${second} ${distanceText}.`;
 }

@@ -40,19 +40,19 @@ export class FlashView {
     const { link, section, description } = this.session();
     this.forget();
     for (const control of [this.file, this.all, this.robot]) control.disabled = this.writer.isBusy || link.kind === 'radio';
-    const byRadio = `Nothing can be written to the ${link.name}: ${BY_CABLE}.`;
-    const byCable =
+    const radioNote = `Nothing can be written to the ${link.name}: ${BY_CABLE}.`;
+    const cableNote =
       `Writes to the ${link.name} by its boot loader, verifies, and starts it. The firmware is the same for every robot; what is saved in the board stays. ` +
       `The robot alone is ${section.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
-    this.note.textContent = link.kind === 'radio' ? byRadio : byCable;
+    this.note.textContent = link.kind === 'radio' ? radioNote : cableNote;
   }
 
   /** Scrolls to the panel and writes the robot, firmware and robot, or the image of a file. */
-  write(what: WriteContent): void {
+  write(content: WriteContent): void {
     reveal(this.note);
     this.message.scrollIntoView({ block: 'nearest' });
     this.forget();
-    void this.writer.write(what, this);
+    void this.writer.write(content, this);
   }
 
   /** Asks the user to confirm a file before it is written. */
@@ -68,11 +68,11 @@ export class FlashView {
       this.message.textContent = `not written: ${messageOf(error)}`;
       return;
     }
-    const what = isLizard
+    const meaning = isLizard
       ? 'It is lizard firmware.'
       : 'It is not this firmware: with it the board is no longer a lizard, until firmware and robot are written again.';
     element('flash-what').textContent =
-      `${file.name}, ${this.chosen.length} bytes. ${what} Write it to the ${this.session().link.name}?`;
+      `${file.name}, ${this.chosen.length} bytes. ${meaning} Write it to the ${this.session().link.name}?`;
     this.question.hidden = false;
     element('flash-no').focus();
   }

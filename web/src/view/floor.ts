@@ -4,12 +4,12 @@ import { circle, element, surface } from './canvas';
 import { drawLizard } from './lizard';
 import { onPaletteChange, palette } from './palette';
 
-const GRID = 50;
+const GRID_MM = 50;
 /** Least and greatest zoom, CSS pixels per mm: a robot of about 250 mm stays longer than 60 pixels. */
 const LEAST_ZOOM = 0.25;
 const MOST_ZOOM = 8;
 /** Least width and height of the view while the zoom follows the canvas, mm. */
-const VIEW = 420;
+const VIEW_MM = 420;
 /** Largest number of points of a track, and their least distance, mm. */
 const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
@@ -18,7 +18,7 @@ const TRACK_STEP = 0.5;
 const SECOND_OFFSET = 280;
 
 /** Distance from its goal at which the view stops moving, mm: a tenth of a pixel at the greatest zoom. */
-const AT_GOAL = 0.01;
+const GOAL_TOLERANCE = 0.01;
 
 /** Sideways movement after which a finger drags the floor, CSS pixels. */
 const DRAG_THRESHOLD = 12;
@@ -70,8 +70,8 @@ export class Floor {
       this.touches.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     });
     this.canvas.addEventListener('pointermove', (event) => this.drag(event));
-    for (const kind of ['pointerup', 'pointercancel'] as const) {
-      this.canvas.addEventListener(kind, (event) => {
+    for (const eventName of ['pointerup', 'pointercancel'] as const) {
+      this.canvas.addEventListener(eventName, (event) => {
         this.touches.delete(event.pointerId);
         this.dragging = false;
       });
@@ -86,7 +86,7 @@ export class Floor {
       },
       { passive: false },
     );
-    this.canvas.addEventListener('keydown', (event) => this.key(event));
+    this.canvas.addEventListener('keydown', (event) => this.handleKey(event));
     const forget = () => (this.painted = '');
     onPaletteChange(forget);
     // A browser that is short of memory empties canvases.
@@ -100,20 +100,23 @@ export class Floor {
   }
 
   /** Adds a place to the track of the robot, or of the second robot. */
-  addToTrack({ x, y }: Place, second = false): void {
-    const track = this.tracks[second ? 1 : 0] ?? [];
-    const last = track[track.length - 1];
-    if (last && Math.hypot(x - last.x, y - last.y) < TRACK_STEP) return;
+  addToTrack({ x, y }: Place, isSecond = false): void {
+    const track = this.tracks[isSecond ? 1 : 0] ?? [];
+    const lastPoint = track[track.length - 1];
+    if (lastPoint && Math.hypot(x - lastPoint.x, y - lastPoint.y) < TRACK_STEP) return;
     track.push({ x, y });
     if (track.length > LONGEST_TRACK) track.splice(0, LONGEST_TRACK / 4);
   }
 
-  /** Draws the floor and the robots, unless the canvas shows them already: painting takes half a core of a slow machine. */
+  /**
+   * Draws the floor and the robots, unless the canvas shows them already: painting takes half a core of a slow
+   * machine.
+   */
   draw(plate: Plate, frame: Frame | null, second: Frame | null): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
     this.shown = [plate, frame, second];
-    if (this.fits) this.zoom = Math.min(width / (VIEW + (second ? SECOND_OFFSET : 0)), height / VIEW);
+    if (this.fits) this.zoom = Math.min(width / (VIEW_MM + (second ? SECOND_OFFSET : 0)), height / VIEW_MM);
     if (this.following && frame) this.followTo(frame.place, second && second.place);
     // Tests read the scale of the picture.
     const zoom = this.zoom.toFixed(4);
@@ -138,7 +141,7 @@ export class Floor {
   private followTo(robot: Place, second: Place | null): void {
     const goal = second ? { x: (robot.x + second.x + SECOND_OFFSET) / 2, y: (robot.y + second.y) / 2 } : robot;
     const [x, y] = [goal.x - this.centre.x, goal.y - this.centre.y];
-    const share = Math.hypot(x, y) < AT_GOAL ? 1 : 0.08;
+    const share = Math.hypot(x, y) < GOAL_TOLERANCE ? 1 : 0.08;
     this.centre = { x: this.centre.x + x * share, y: this.centre.y + y * share };
   }
 
@@ -165,7 +168,7 @@ export class Floor {
     pen.translate(width / 2, height / 2);
     pen.scale(this.zoom, -this.zoom);
     pen.translate(-this.centre.x, -this.centre.y);
-    this.grid(pen, width, height);
+    this.drawGrid(pen, width, height);
     const robots: [number, Frame | null][] = second ? [[0, frame], [SECOND_OFFSET, second]] : [[0, frame]];
     robots.forEach(([shift, robot], n) => {
       pen.save();
@@ -180,23 +183,23 @@ export class Floor {
       pen.restore();
     });
     pen.restore();
-    return this.ruler(pen, height);
+    return this.drawRuler(pen, height);
   }
 
-  private grid(pen: CanvasRenderingContext2D, width: number, height: number): void {
-    const step = this.zoom < 0.4 ? GRID * 5 : GRID;
-    const [w, h] = [width / 2 / this.zoom, height / 2 / this.zoom];
+  private drawGrid(pen: CanvasRenderingContext2D, width: number, height: number): void {
+    const step = this.zoom < 0.4 ? GRID_MM * 5 : GRID_MM;
+    const [halfWidth, halfHeight] = [width / 2 / this.zoom, height / 2 / this.zoom];
     const { x, y } = this.centre;
     pen.strokeStyle = palette().grid;
     pen.lineWidth = 1 / this.zoom;
     pen.beginPath();
-    for (let at = Math.ceil((x - w) / step) * step; at <= x + w; at += step) {
-      pen.moveTo(at, y - h);
-      pen.lineTo(at, y + h);
+    for (let lineX = Math.ceil((x - halfWidth) / step) * step; lineX <= x + halfWidth; lineX += step) {
+      pen.moveTo(lineX, y - halfHeight);
+      pen.lineTo(lineX, y + halfHeight);
     }
-    for (let at = Math.ceil((y - h) / step) * step; at <= y + h; at += step) {
-      pen.moveTo(x - w, at);
-      pen.lineTo(x + w, at);
+    for (let lineY = Math.ceil((y - halfHeight) / step) * step; lineY <= y + halfHeight; lineY += step) {
+      pen.moveTo(x - halfWidth, lineY);
+      pen.lineTo(x + halfWidth, lineY);
     }
     pen.stroke();
   }
@@ -218,7 +221,7 @@ export class Floor {
     pen.stroke();
   }
 
-  private ruler(pen: CanvasRenderingContext2D, height: number): Label {
+  private drawRuler(pen: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
     // To the right of the on-screen stick.
     const [x, y] = [124, height - 18];
@@ -233,9 +236,9 @@ export class Floor {
     return { text: `${length} mm`, x: x + 4, y: y - 5 };
   }
 
-  private follow(on: boolean): void {
-    this.following = on;
-    this.followButton.setAttribute('aria-pressed', String(on));
+  private follow(isOn: boolean): void {
+    this.following = isOn;
+    this.followButton.setAttribute('aria-pressed', String(isOn));
   }
 
   /** Zooms about a point of the canvas, by default its middle. */
@@ -256,23 +259,23 @@ export class Floor {
   }
 
   private drag(event: PointerEvent): void {
-    const before = this.touches.get(event.pointerId);
-    if (!before) return;
-    const now = { x: event.offsetX, y: event.offsetY };
-    const other = [...this.touches].find(([id]) => id !== event.pointerId)?.[1];
-    if (other) {
-      const apart = (a: Touch) => Math.hypot(a.x - other.x, a.y - other.y);
-      this.zoomBy(apart(now) / Math.max(1, apart(before)), (now.x + other.x) / 2, (now.y + other.y) / 2);
+    const previous = this.touches.get(event.pointerId);
+    if (!previous) return;
+    const current = { x: event.offsetX, y: event.offsetY };
+    const otherTouch = [...this.touches].find(([id]) => id !== event.pointerId)?.[1];
+    if (otherTouch) {
+      const distanceToOther = (a: Touch) => Math.hypot(a.x - otherTouch.x, a.y - otherTouch.y);
+      this.zoomBy(distanceToOther(current) / Math.max(1, distanceToOther(previous)), (current.x + otherTouch.x) / 2, (current.y + otherTouch.y) / 2);
     } else {
       // A finger that scrolls the page moves a little before the browser takes over.
-      this.dragging ||= event.pointerType !== 'touch' || Math.abs(now.x - before.x) > DRAG_THRESHOLD;
+      this.dragging ||= event.pointerType !== 'touch' || Math.abs(current.x - previous.x) > DRAG_THRESHOLD;
       if (!this.dragging) return;
-      this.pan(now.x - before.x, now.y - before.y);
+      this.pan(current.x - previous.x, current.y - previous.y);
     }
-    this.touches.set(event.pointerId, now);
+    this.touches.set(event.pointerId, current);
   }
 
-  private key(event: KeyboardEvent): void {
+  private handleKey(event: KeyboardEvent): void {
     const moves: Record<string, () => void> = {
       ArrowLeft: () => this.pan(40, 0),
       ArrowRight: () => this.pan(-40, 0),

@@ -15,9 +15,9 @@ const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
 const OPPOSITE = [1, 0, 3, 2] as const;
 /** Radii of the four legs' rings, and width of a bar, in units of the picture. */
 const RINGS = [104, 82, 60, 38] as const;
-const WIDE = 16;
+const BAR_WIDTH = 16;
 /** Length of a leg's bar in a gait whose legs hold, as a share of the cycle. */
-const HELD = 0.25;
+const HELD_SHARE = 0.25;
 const SVG = 'http://www.w3.org/2000/svg';
 
 type Plain = 'period' | 'duty' | 'amplitude';
@@ -29,10 +29,10 @@ const NUMBERS: Record<Plain, Range> = {
   amplitude: { min: 0.5, max: 60, step: 0.1 },
 };
 /** Ranges of the numbers of each leg. */
-const OF_LEGS = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
+const LEG_NUMBERS = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
 
 const round = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
-const wrapped = (phase: number) => ((phase % 1) + 1) % 1;
+const wrapPhase = (phase: number) => ((phase % 1) + 1) % 1;
 
 export class GaitsView {
   private readonly panel = element<HTMLDetailsElement>('gait-editor');
@@ -56,16 +56,16 @@ export class GaitsView {
     writer: Writer,
     compare: Edited['compare'],
   ) {
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (what, value) => this.change({ [what]: value }) });
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (key, value) => this.change({ [key]: value }) });
     this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.change(gait), compare });
     this.panel.addEventListener('toggle', () => this.showRobot());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
     this.kindList.addEventListener('change', () => this.change({ held: this.kindList.value === 'held' }));
-    for (const plain of Object.keys(NUMBERS) as Plain[]) {
-      numberInput(element(`gait-${plain}`), NUMBERS[plain], (value) => value !== null && this.change({ [plain]: value }));
+    for (const key of Object.keys(NUMBERS) as Plain[]) {
+      numberInput(element(`gait-${key}`), NUMBERS[key], (value) => value !== null && this.change({ [key]: value }));
     }
-    LEGS.forEach((_, leg) => this.leg(leg));
+    LEGS.forEach((_, leg) => this.addLeg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
     element('gait-turn-round').addEventListener('click', () => this.gait && this.change(Robot.reversed(this.gait)));
   }
@@ -86,9 +86,9 @@ export class GaitsView {
   private fill({ gaits }: Description): void {
     const chosen = this.from.value;
     const { robot } = this.session();
-    const some = gaits.flatMap(({ name }, number) => (robot.bars(number) ? [{ name, number }] : []));
-    this.from.replaceChildren(...some.map(({ name, number }) => new Option(name, String(number))));
-    if (some.some(({ number }) => String(number) === chosen)) this.from.value = chosen;
+    const barGaits = gaits.flatMap(({ name }, number) => (robot.bars(number) ? [{ name, number }] : []));
+    this.from.replaceChildren(...barGaits.map(({ name, number }) => new Option(name, String(number))));
+    if (barGaits.some(({ number }) => String(number) === chosen)) this.from.value = chosen;
   }
 
   /** Starts to edit the chosen gait of the robot. */
@@ -100,9 +100,9 @@ export class GaitsView {
     this.trial.predict();
   }
 
-  private change(part: Partial<Bars>): void {
+  private change(changes: Partial<Bars>): void {
     if (!this.gait) return;
-    this.gait = { ...this.gait, ...part };
+    this.gait = { ...this.gait, ...changes };
     kept.putGait(this.gait);
     this.show();
     this.trial.predict();
@@ -118,12 +118,12 @@ export class GaitsView {
   private mirror(): void {
     if (!this.gait) return;
     const { start, gain } = this.gait;
-    const other = (values: Four<number>) => OPPOSITE.map((leg) => values[leg]) as Four<number>;
-    this.change({ start: other(start), gain: other(gain) });
+    const swapSides = (values: Four<number>) => OPPOSITE.map((leg) => values[leg]) as Four<number>;
+    this.change({ start: swapSides(start), gain: swapSides(gain) });
   }
 
   /** Makes the bar, its handle and the two numbers of a leg. */
-  private leg(leg: number): void {
+  private addLeg(leg: number): void {
     const bar = this.circle.appendChild(document.createElementNS(SVG, 'path'));
     const end = this.circle.appendChild(document.createElementNS(SVG, 'circle'));
     bar.classList.add('bar', `a${leg + 1}`);
@@ -131,13 +131,13 @@ export class GaitsView {
     end.setAttribute('r', '6');
     this.bars.push(bar);
     this.ends.push(end);
-    this.drag(bar, (by, beginning) => this.setLeg('start', leg, round(wrapped((beginning.start[leg] ?? 0) + by), 0.005)));
-    this.drag(end, (by, beginning) => this.change({ duty: round(Math.min(0.95, Math.max(0.05, beginning.duty + by)), 0.005) }));
+    this.drag(bar, (cycles, firstGait) => this.setLeg('start', leg, round(wrapPhase((firstGait.start[leg] ?? 0) + cycles), 0.005)));
+    this.drag(end, (cycles, firstGait) => this.change({ duty: round(Math.min(0.95, Math.max(0.05, firstGait.duty + cycles)), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
     for (const [key, label, list] of [['start', 'starts at', this.start], ['gain', 'share', this.gain]] as const) {
       const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
       row.append(make('td', {}, input));
-      numberInput(input, OF_LEGS[key], (value) => value !== null && this.setLeg(key, leg, value));
+      numberInput(input, LEG_NUMBERS[key], (value) => value !== null && this.setLeg(key, leg, value));
       list.push(input);
     }
   }
@@ -146,49 +146,49 @@ export class GaitsView {
    * Calls `move` with the angle by which the pointer has dragged the mark, in cycles, and the gait at the beginning
    * of the drag.
    */
-  private drag(mark: SVGElement, move: (by: number, beginning: Bars) => void): void {
-    let last = 0;
-    let by = 0;
-    let beginning: Bars | null = null;
-    const phase = ({ clientX, clientY }: PointerEvent) => {
+  private drag(mark: SVGElement, move: (cycles: number, firstGait: Bars) => void): void {
+    let lastPhase = 0;
+    let draggedCycles = 0;
+    let firstGait: Bars | null = null;
+    const phaseOf = ({ clientX, clientY }: PointerEvent) => {
       const { left, top, width, height } = this.circle.getBoundingClientRect();
       return Math.atan2(clientX - left - width / 2, top + height / 2 - clientY) / (2 * Math.PI);
     };
     mark.addEventListener('pointerdown', (event) => {
       mark.setPointerCapture(event.pointerId);
-      [last, by, beginning] = [phase(event), 0, this.gait];
+      [lastPhase, draggedCycles, firstGait] = [phaseOf(event), 0, this.gait];
     });
     mark.addEventListener('pointermove', (event) => {
-      if (!beginning || !mark.hasPointerCapture(event.pointerId)) return;
-      const now = phase(event);
+      if (!firstGait || !mark.hasPointerCapture(event.pointerId)) return;
+      const currentPhase = phaseOf(event);
       // The shorter direction.
-      by += wrapped(now - last + 0.5) - 0.5;
-      last = now;
-      move(by, beginning);
+      draggedCycles += wrapPhase(currentPhase - lastPhase + 0.5) - 0.5;
+      lastPhase = currentPhase;
+      move(draggedCycles, firstGait);
     });
-    for (const end of ['pointerup', 'pointercancel']) mark.addEventListener(end, () => (beginning = null));
+    for (const eventName of ['pointerup', 'pointercancel']) mark.addEventListener(eventName, () => (firstGait = null));
   }
 
   private show(): void {
     const { gait } = this;
     if (!gait) return;
     const put = (input: HTMLInputElement, value: number) => putNumber(input, round(value, 0.001));
-    for (const plain of Object.keys(NUMBERS) as Plain[]) put(element(`gait-${plain}`), gait[plain]);
+    for (const key of Object.keys(NUMBERS) as Plain[]) put(element(`gait-${key}`), gait[key]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.name) this.name.value = gait.name;
     this.kindList.value = gait.held ? 'held' : 'wave';
-    const long = gait.held ? HELD : gait.duty;
+    const share = gait.held ? HELD_SHARE : gait.duty;
     LEGS.forEach((_, leg) => {
       const [start, radius] = [gait.start[leg] ?? 0, RINGS[leg] ?? 0];
-      const [begin, end] = [this.start[leg], this.gain[leg]];
-      if (begin && end) {
-        put(begin, start);
-        put(end, gait.gain[leg] ?? 1);
+      const [startInput, gainInput] = [this.start[leg], this.gain[leg]];
+      if (startInput && gainInput) {
+        put(startInput, start);
+        put(gainInput, gait.gain[leg] ?? 1);
       }
-      this.bars[leg]?.setAttribute('d', arc(radius, start, long));
+      this.bars[leg]?.setAttribute('d', arc(radius, start, share));
       // A negative gain: the foot pushes the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
-      const [x, y] = at(radius, start + long);
+      const [x, y] = ringPoint(radius, start + share);
       this.ends[leg]?.setAttribute('cx', String(x));
       this.ends[leg]?.setAttribute('cy', String(y));
       const handle = this.ends[leg];
@@ -198,17 +198,17 @@ export class GaitsView {
 }
 
 /** Returns the point of a ring at a phase; phase 0 is at the top, and phases increase clockwise. */
-function at(radius: number, phase: number): [number, number] {
+function ringPoint(radius: number, phase: number): [number, number] {
   const angle = 2 * Math.PI * phase;
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];
 }
 
-function arc(radius: number, start: number, long: number): string {
-  const half = WIDE / 2;
+function arc(radius: number, start: number, share: number): string {
+  const half = BAR_WIDTH / 2;
   const [inner, outer] = [radius - half, radius + half];
-  const large = long > 0.5 ? 1 : 0;
-  const [a, b] = [at(outer, start), at(outer, start + long)];
-  const [c, d] = [at(inner, start + long), at(inner, start)];
-  const turn = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${large} ${sweep} ${x} ${y}`;
-  return `M ${a[0]} ${a[1]} ${turn(outer, 1, b)} L ${c[0]} ${c[1]} ${turn(inner, 0, d)} Z`;
+  const largeFlag = share > 0.5 ? 1 : 0;
+  const [a, b] = [ringPoint(outer, start), ringPoint(outer, start + share)];
+  const [c, d] = [ringPoint(inner, start + share), ringPoint(inner, start)];
+  const arcTo = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${largeFlag} ${sweep} ${x} ${y}`;
+  return `M ${a[0]} ${a[1]} ${arcTo(outer, 1, b)} L ${c[0]} ${c[1]} ${arcTo(inner, 0, d)} Z`;
 }

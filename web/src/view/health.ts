@@ -5,7 +5,7 @@ import { element } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
 
-const PERIOD = 500;
+const PERIOD_MS = 500;
 
 export class Health {
   private readonly panel = element<HTMLDetailsElement>('power');
@@ -19,7 +19,7 @@ export class Health {
       this.list.append(make('div', {}, make('dt', {}, name), value));
       this.values.set(name, value);
     }
-    setInterval(() => void this.ask(), PERIOD);
+    setInterval(() => void this.ask(), PERIOD_MS);
   }
 
   /** True while something else, such as the boot loader, uses the link. */
@@ -35,7 +35,7 @@ export class Health {
 
   private show(status: Status): void {
     if (!isShown(this.panel)) return;
-    const shown: Record<string, string> = {
+    const texts: Record<string, string> = {
       fault: status.fault,
       guard: status.guard,
       margin: status.margin === null ? '–' : status.margin.toFixed(3),
@@ -45,7 +45,7 @@ export class Health {
       'last reset': status.reset,
       restarts: String(status.resets),
     };
-    for (const [name, text] of Object.entries(shown)) {
+    for (const [name, text] of Object.entries(texts)) {
       const value = this.values.get(name);
       if (value && value.textContent !== text) value.textContent = text;
     }

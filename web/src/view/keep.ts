@@ -22,7 +22,7 @@ const FILMS = [
 ] as const;
 
 /** Duration of a frame of the firmware's core, s. */
-const FRAME = 0.02;
+const FRAME_SECONDS = 0.02;
 
 /** Two robots that walk side by side: the first is the page's own. */
 interface Pair {
@@ -70,7 +70,7 @@ export class Keep {
     onClick('png', () => this.takePicture(() => void this.savePng()));
     onClick('svg', () => this.takePicture(() => void this.saveSvg()));
     onClick('film', () => this.toggleFilm());
-    onClick('both', () => void this.startBoth(this.chosen()));
+    onClick('both', () => void this.startBoth(this.chosenPair()));
     onClick('alone', () => this.removeCompanion());
     this.moment.addEventListener('input', () => {
       this.isReplaying = true;
@@ -91,10 +91,10 @@ export class Keep {
     for (const list of [this.ownGait, this.otherGait]) {
       list.replaceChildren(...gaits.map(({ command }) => new Option(command)));
     }
-    const known = gaits.map(({ command }) => command);
-    const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
-    this.ownGait.value = known.find((gait) => gait === chosen[0]) ?? moving[moving.length > 1 ? 1 : 0] ?? '';
-    this.otherGait.value = known.find((gait) => gait === chosen[1]) ?? moving[0] ?? '';
+    const commands = gaits.map(({ command }) => command);
+    const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
+    this.ownGait.value = commands.find((gait) => gait === chosen[0]) ?? movingCommands[movingCommands.length > 1 ? 1 : 0] ?? '';
+    this.otherGait.value = commands.find((gait) => gait === chosen[1]) ?? movingCommands[0] ?? '';
     this.say('');
     this.updateButtons();
   }
@@ -106,7 +106,7 @@ export class Keep {
       this.say(`The recording is full: ${LONGEST} s.`);
     }
     if (!this.companion || this.isWaiting) return;
-    for (this.pendingTime += seconds; this.pendingTime > FRAME / 2; this.pendingTime -= FRAME) this.companion.step();
+    for (this.pendingTime += seconds; this.pendingTime > FRAME_SECONDS / 2; this.pendingTime -= FRAME_SECONDS) this.companion.step();
     const place = this.companion.frame?.place;
     if (place) this.floor.addToTrack(place, true);
   }
@@ -122,15 +122,15 @@ export class Keep {
   }
 
   /** The frame that the floor shows: the current one, or one of the replay. */
-  shown(now: Frame | null): Frame | null {
+  shown(current: Frame | null): Frame | null {
     const { recording } = this;
-    if (!this.isReplaying || !recording) return now;
+    if (!this.isReplaying || !recording) return current;
     if (this.playing) {
       const time = this.playing.from + (performance.now() - this.playing.since) / 1000;
       this.moment.value = String(time);
       if (time >= recording.seconds) this.playing = null;
     }
-    return recording.frameAt(this.moment.valueAsNumber)?.frame ?? now;
+    return recording.frameAt(this.moment.valueAsNumber)?.frame ?? current;
   }
 
   /** The current frame of the second robot. */
@@ -151,15 +151,15 @@ export class Keep {
     if (recording && isShown(this.panel)) {
       if (this.isRecording) this.moment.max = String(recording.seconds);
       const time = this.isRecording && !this.isReplaying ? recording.seconds : this.moment.valueAsNumber;
-      const of = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
-      element('moment-out').textContent = `${time.toFixed(1)}${of} s`;
+      const totalText = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
+      element('moment-out').textContent = `${time.toFixed(1)}${totalText} s`;
     }
     const panel = pair?.output.closest('details');
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
     const { last } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
-    const displacement = (frame: Frame | null) => (frame ? formatDisplacement(Robot.between(start, frame.place)) : '');
-    this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.output);
+    const displacementOf = (frame: Frame | null) => (frame ? formatDisplacement(Robot.between(start, frame.place)) : '');
+    this.say(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
   }
 
   private record(isOn: boolean): void {
@@ -180,7 +180,7 @@ export class Keep {
   private play(isOn: boolean): void {
     this.isReplaying = isOn;
     const { recording } = this;
-    const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME ? this.moment.valueAsNumber : 0;
+    const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME_SECONDS ? this.moment.valueAsNumber : 0;
     this.playing = isOn ? { since: performance.now(), from } : null;
     this.updateButtons();
   }
@@ -199,7 +199,7 @@ export class Keep {
     const { format } = this;
     if (this.film) this.film.stop();
     else if (format) {
-      const [type, ending] = format;
+      const [type, extension] = format;
       const pieces: Blob[] = [];
       const film = new MediaRecorder(element<HTMLCanvasElement>('floor').captureStream(), { mimeType: type });
       film.addEventListener('dataavailable', ({ data }) => pieces.push(data));
@@ -207,7 +207,7 @@ export class Keep {
         this.film = null;
         this.updateButtons();
         for (const track of film.stream.getTracks()) track.stop();
-        save(`run.${ending}`, pieces, type);
+        save(`run.${extension}`, pieces, type);
       });
       film.addEventListener('error', () => this.say('The browser could not write the film.'));
       film.start(1000);
@@ -218,7 +218,7 @@ export class Keep {
 
   private async savePng(): Promise<void> {
     const canvas = element<HTMLCanvasElement>('floor');
-    const blob = await new Promise<Blob | null>((made) => canvas.toBlob(made));
+    const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
     if (blob) save('floor.png', [blob], 'image/png');
     else this.say('The browser could not write the picture.');
   }
@@ -241,19 +241,19 @@ export class Keep {
     }
   }
 
-  private chosen(): Pair {
+  private chosenPair(): Pair {
     const gaits: [string, string] = [this.ownGait.value, this.otherGait.value];
     return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
   /** Lets the page's robot walk a found gait, and the second robot the gait before it. */
-  async compare(before: Bars, found: Bars, output: HTMLElement): Promise<void> {
+  async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
     const session = this.session();
-    const toml = session.robot.putGait(session.toml, before);
+    const toml = session.robot.putGait(session.toml, previousGait);
     this.say('The robot restarts with this gait…', output);
-    const refused = await wakeWith(session, found);
-    if (refused) return this.say(refused.refused, output);
-    const gait = found.name.replaceAll('-', ' ');
+    const refusal = await wakeWith(session, foundGait);
+    if (refusal) return this.say(refusal.refused, output);
+    const gait = foundGait.name.replaceAll('-', ' ');
     await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
 
@@ -289,18 +289,18 @@ export class Keep {
 
   private updateButtons(): void {
     const { recording, isRecording, isReplaying, film } = this;
-    const has = recording !== null && recording.moments.length > 0 && !isRecording;
-    const set = (id: string, text: string, pressed: boolean, enabled = true) => {
+    const hasRecording = recording !== null && recording.moments.length > 0 && !isRecording;
+    const setButton = (id: string, text: string, isPressed: boolean, isEnabled = true) => {
       const button = element<HTMLButtonElement>(id);
       if (button.textContent !== text) button.textContent = text;
-      button.setAttribute('aria-pressed', String(pressed));
-      button.disabled = !enabled;
+      button.setAttribute('aria-pressed', String(isPressed));
+      button.disabled = !isEnabled;
     };
-    set('record', isRecording ? 'Stop recording' : 'Record', isRecording);
-    set('replay', isReplaying ? 'Back to the robot' : 'Replay', isReplaying, has);
-    set('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
-    element<HTMLButtonElement>('csv').disabled = !has;
-    this.moment.disabled = !has;
+    setButton('record', isRecording ? 'Stop recording' : 'Record', isRecording);
+    setButton('replay', isReplaying ? 'Back to the robot' : 'Replay', isReplaying, hasRecording);
+    setButton('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
+    element<HTMLButtonElement>('csv').disabled = !hasRecording;
+    this.moment.disabled = !hasRecording;
     element<HTMLButtonElement>('alone').disabled = this.companion === null;
   }
 

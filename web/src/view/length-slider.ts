@@ -26,12 +26,12 @@ export class LengthSlider {
     element('lengths').addEventListener('focusin', ({ target }) => this.choose((target as HTMLInputElement).name));
     this.slide.addEventListener('focus', () => this.choose(this.key));
     this.symmetric.addEventListener('change', () => this.onChoice());
-    const moved = (isLast: boolean) => {
+    const handleMove = (isLast: boolean) => {
       this.write(this.slide.valueAsNumber);
       tryOut(withTwin(this.key, this.slide.valueAsNumber, this.lengths, this.symmetric.checked), isLast);
     };
-    this.slide.addEventListener('input', () => moved(false));
-    this.slide.addEventListener('change', () => moved(true));
+    this.slide.addEventListener('input', () => handleMove(false));
+    this.slide.addEventListener('change', () => handleMove(true));
   }
 
   /** The keys of the lengths that the slider sets: the chosen length and, with symmetry, its twin. */
@@ -75,10 +75,10 @@ export class LengthSlider {
     this.printed.textContent = message;
     this.marks.hidden = range === null;
     const { min, max } = this.slide;
-    const share = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
+    const percentOf = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
     if (!range) return;
-    this.marks.style.setProperty('--from', share(range[0]));
-    this.marks.style.setProperty('--to', share(range[1]));
+    this.marks.style.setProperty('--from', percentOf(range[0]));
+    this.marks.style.setProperty('--to', percentOf(range[1]));
   }
 
   private write(value: number): void {

@@ -54,22 +54,22 @@ export class Lengths {
     const { text, refusal } = Robot.lengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
-    const kept = lengths.filter((length) => edits.some(([each]) => each === length.key));
+    const refusedLengths = lengths.filter((length) => edits.some(([editedKey]) => editedKey === length.key));
     // The inputs show the robot's lengths again.
-    for (const length of kept) {
-      const box = this.inputs.get(length.key);
-      if (!box) continue;
-      box.value = String(length.value);
-      box.setAttribute('aria-invalid', 'true');
+    for (const length of refusedLengths) {
+      const lengthInput = this.inputs.get(length.key);
+      if (!lengthInput) continue;
+      lengthInput.value = String(length.value);
+      lengthInput.setAttribute('aria-invalid', 'true');
     }
-    this.say(refusalOf(`${value} ${kept[0]?.unit}`, edits, refusal, lengths));
+    this.say(refusalOf(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
     this.offer(edits);
   }
 
   private download(): void {
     const { toml, floor } = this.session();
-    const refused = download(toml, floor);
-    if (refused) this.say(`This robot.toml has not what Legs, feet and floor are set to: ${refused.refused}`);
+    const refusal = download(toml, floor);
+    if (refusal) this.say(`This robot.toml has not what Legs, feet and floor are set to: ${refusal.refused}`);
   }
 
   private say(message: string | null): void {

@@ -4,16 +4,16 @@ import { circle } from './canvas';
 import { palette, servoColour } from './palette';
 
 /** Radius of a foot and width of the plate's edge, mm. */
-const FOOT = 6;
-const RIM = 0.6;
+const FOOT_RADIUS = 6;
+const RIM_WIDTH = 0.6;
 /** Slide in a frame beyond which a foot counts as slipping, mm. */
-const SLIPS = 0.3;
+const SLIP_LIMIT = 0.3;
 
 type Pen = CanvasRenderingContext2D;
 
-function bar(pen: Pen, [x1, y1]: Point, [x2, y2]: Point, colour: string, mm: number): void {
+function drawBar(pen: Pen, [x1, y1]: Point, [x2, y2]: Point, colour: string, widthMm: number): void {
   pen.strokeStyle = colour;
-  pen.lineWidth = mm;
+  pen.lineWidth = widthMm;
   pen.lineCap = 'round';
   pen.beginPath();
   pen.moveTo(x1, y1);
@@ -21,10 +21,10 @@ function bar(pen: Pen, [x1, y1]: Point, [x2, y2]: Point, colour: string, mm: num
   pen.stroke();
 }
 
-function disc(pen: Pen, [x, y]: Point, mm: number, fill: string, edge?: string): void {
+function drawDisc(pen: Pen, [x, y]: Point, radiusMm: number, fill: string, edge?: string): void {
   pen.fillStyle = fill;
   pen.beginPath();
-  circle(pen, x, y, mm);
+  circle(pen, x, y, radiusMm);
   pen.fill();
   if (edge === undefined) return;
   pen.strokeStyle = edge;
@@ -33,77 +33,77 @@ function disc(pen: Pen, [x, y]: Point, mm: number, fill: string, edge?: string):
 }
 
 /** Number of turns of a drawn spring, and half its width, mm. */
-const TURNS = 5;
-const COIL = 2.4;
+const SPRING_TURNS = 5;
+const SPRING_HALF_WIDTH = 2.4;
 
 /** Draws a spring between two hooks. */
-function coil(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
+function drawSpring(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
   const length = Math.hypot(x2 - x1, y2 - y1);
   if (length < 1) return;
-  const [along, across] = [[(x2 - x1) / length, (y2 - y1) / length], [(y1 - y2) / length, (x2 - x1) / length]];
-  const at = (share: number, side: number): Point => [
-    x1 + along[0] * share * length + across[0] * side,
-    y1 + along[1] * share * length + across[1] * side,
+  const [direction, normal] = [[(x2 - x1) / length, (y2 - y1) / length], [(y1 - y2) / length, (x2 - x1) / length]];
+  const pointAt = (share: number, offset: number): Point => [
+    x1 + direction[0] * share * length + normal[0] * offset,
+    y1 + direction[1] * share * length + normal[1] * offset,
   ];
   pen.strokeStyle = palette().steel;
   pen.lineWidth = 0.9;
   pen.lineJoin = 'round';
   pen.beginPath();
   pen.moveTo(x1, y1);
-  pen.lineTo(...at(0.12, 0));
-  for (let n = 0; n < 2 * TURNS; n++) pen.lineTo(...at(0.12 + (0.76 * (n + 0.5)) / (2 * TURNS), n % 2 === 0 ? COIL : -COIL));
-  pen.lineTo(...at(0.88, 0));
+  pen.lineTo(...pointAt(0.12, 0));
+  for (let n = 0; n < 2 * SPRING_TURNS; n++) pen.lineTo(...pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH : -SPRING_HALF_WIDTH));
+  pen.lineTo(...pointAt(0.88, 0));
   pen.lineTo(x2, y2);
   pen.stroke();
 }
 
 /** Draws the outline of an animal from the head's point to the tail's. */
-function skin(pen: Pen, scene: Scene): void {
+function drawSkin(pen: Pen, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
-  const back = Math.max(...scene.shafts.map(([, y]) => y));
-  const neck = back + 16;
-  const flank = back * 0.74;
+  const backY = Math.max(...scene.shafts.map(([, y]) => y));
+  const neckY = backY + 16;
+  const flankY = backY * 0.74;
   pen.beginPath();
   pen.moveTo(hx, hy + 30);
-  pen.bezierCurveTo(hx + 18, hy + 30, hx + 27, hy + 2, 27, neck);
-  pen.bezierCurveTo(44, flank, 44, -flank, 27, -neck);
+  pen.bezierCurveTo(hx + 18, hy + 30, hx + 27, hy + 2, 27, neckY);
+  pen.bezierCurveTo(44, flankY, 44, -flankY, 27, -neckY);
   pen.bezierCurveTo(tx + 22, ty, tx + 6, ty - 6, tx + 3, ty - 40);
   pen.lineTo(tx - 3, ty - 40);
-  pen.bezierCurveTo(tx - 6, ty - 6, tx - 22, ty, -27, -neck);
-  pen.bezierCurveTo(-44, -flank, -44, flank, -27, neck);
+  pen.bezierCurveTo(tx - 6, ty - 6, tx - 22, ty, -27, -neckY);
+  pen.bezierCurveTo(-44, -flankY, -44, flankY, -27, neckY);
   pen.bezierCurveTo(hx - 27, hy + 2, hx - 18, hy + 30, hx, hy + 30);
   pen.fillStyle = palette().skin;
   pen.strokeStyle = palette()['skin-edge'];
   pen.lineWidth = 1;
   pen.fill();
   pen.stroke();
-  for (const side of [-9, 9]) disc(pen, [hx + side, hy + 12], 2.3, palette().ink);
+  for (const eyeX of [-9, 9]) drawDisc(pen, [hx + eyeX, hy + 12], 2.3, palette().ink);
 }
 
 const SERVOS = [0, 1, 2, 3];
 
 /** Draws a leg's bodies beside and below the plate: foot, leaf and coupler. */
-function foot(pen: Pen, scene: Scene, servo: number, slide: number): void {
+function drawFoot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
   const { joints, foot } = scene.legs[servo];
-  bar(pen, joints[1], foot, colours.steel, 2.2);
+  drawBar(pen, joints[1], foot, colours.steel, 2.2);
   // A foot that holds is filled; one that slips is a ring.
-  disc(pen, foot, FOOT, slide > SLIPS ? colours.card : colours.ink);
+  drawDisc(pen, foot, FOOT_RADIUS, slide > SLIP_LIMIT ? colours.card : colours.ink);
   pen.strokeStyle = colours.ink;
   pen.lineWidth = 2;
   pen.stroke();
-  bar(pen, joints[0], joints[1], servoColour(servo), 4.2);
+  drawBar(pen, joints[0], joints[1], servoColour(servo), 4.2);
 }
 
 /** Draws the plate, its arms that carry the legs' pivots, and the servos' cases. */
-function chassis(pen: Pen, plate: Plate): void {
+function drawChassis(pen: Pen, plate: Plate): void {
   const colours = palette();
-  const [wide, long] = plate.half;
-  for (const [rim, colour] of [[RIM, colours['frame-edge']], [0, colours.frame]] as const) {
-    for (const [from, to] of plate.arms) bar(pen, from, to, colour, 2 * (plate.arm + rim));
+  const [halfWidth, halfLength] = plate.half;
+  for (const [rim, colour] of [[RIM_WIDTH, colours['frame-edge']], [0, colours.frame]] as const) {
+    for (const [from, to] of plate.arms) drawBar(pen, from, to, colour, 2 * (plate.arm + rim));
     pen.fillStyle = colour;
     pen.beginPath();
-    pen.roundRect(-wide - rim, -long - rim, 2 * (wide + rim), 2 * (long + rim), plate.corner + rim);
+    pen.roundRect(-halfWidth - rim, -halfLength - rim, 2 * (halfWidth + rim), 2 * (halfLength + rim), plate.corner + rim);
     pen.fill();
   }
   const [width, length] = plate.case;
@@ -118,56 +118,56 @@ function chassis(pen: Pen, plate: Plate): void {
 }
 
 /** Draws a leg's bodies above the plate: crank, follower and strut. */
-function leg(pen: Pen, scene: Scene, servo: number): void {
+function drawLeg(pen: Pen, scene: Scene, servo: number): void {
   const colours = palette();
   const { pivots, joints, strut, sprung } = scene.legs[servo];
   const colour = servoColour(servo);
-  bar(pen, pivots[0], strut[1], colour, 3.2);
-  for (const n of [0, 1]) bar(pen, pivots[n], joints[n], colour, 3.2);
-  for (const spot of [...pivots, ...joints]) disc(pen, spot, 1.6, colours.card, colours.ink);
-  bar(pen, strut[0], strut[1], colours.steel, sprung ? 0.8 : 1.6);
-  if (sprung) coil(pen, strut[0], strut[1]);
-  disc(pen, strut[1], 1.2, colours.card, colours.ink);
-  bar(pen, scene.shafts[servo], strut[0], colour, 3);
+  drawBar(pen, pivots[0], strut[1], colour, 3.2);
+  for (const n of [0, 1]) drawBar(pen, pivots[n], joints[n], colour, 3.2);
+  for (const point of [...pivots, ...joints]) drawDisc(pen, point, 1.6, colours.card, colours.ink);
+  drawBar(pen, strut[0], strut[1], colours.steel, sprung ? 0.8 : 1.6);
+  if (sprung) drawSpring(pen, strut[0], strut[1]);
+  drawDisc(pen, strut[1], 1.2, colours.card, colours.ink);
+  drawBar(pen, scene.shafts[servo], strut[0], colour, 3);
 }
 
-function slider(pen: Pen, scene: Scene, side: 0 | 1): void {
+function drawSlider(pen: Pen, scene: Scene, side: 0 | 1): void {
   const colours = palette();
   const { shafts, tips, tube } = scene.sliders[side];
-  bar(pen, tips[0], tips[1], colours.steel, 1.8);
-  bar(pen, tips[1], tube, colours.tube, 5);
+  drawBar(pen, tips[0], tips[1], colours.steel, 1.8);
+  drawBar(pen, tips[1], tube, colours.tube, 5);
   const servos = side === 0 ? [0, 3] : [1, 2];
   servos.forEach((servo, n) => {
     pen.globalAlpha = 0.75;
-    bar(pen, shafts[n], tips[n], servoColour(servo), 3);
+    drawBar(pen, shafts[n], tips[n], servoColour(servo), 3);
     pen.globalAlpha = 1;
-    disc(pen, tips[n], 2, colours.card, colours.ink);
+    drawDisc(pen, tips[n], 2, colours.card, colours.ink);
   });
 }
 
-function fiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
+function drawFiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
   const colours = palette();
   const servos = end === 0 ? [0, 1] : [2, 3];
   const point = scene.points[end];
-  for (const servo of servos) bar(pen, scene.tips[servo], point, colours.steel, 3.4);
+  for (const servo of servos) drawBar(pen, scene.tips[servo], point, colours.steel, 3.4);
   for (const servo of servos) {
-    bar(pen, scene.shafts[servo], scene.tips[servo], servoColour(servo), 4.6);
-    disc(pen, scene.tips[servo], 2.2, colours.card, colours.ink);
-    disc(pen, scene.shafts[servo], 3.4, colours.ink);
-    disc(pen, scene.shafts[servo], 1.2, colours.card);
+    drawBar(pen, scene.shafts[servo], scene.tips[servo], servoColour(servo), 4.6);
+    drawDisc(pen, scene.tips[servo], 2.2, colours.card, colours.ink);
+    drawDisc(pen, scene.shafts[servo], 3.4, colours.ink);
+    drawDisc(pen, scene.shafts[servo], 1.2, colours.card);
   }
-  disc(pen, point, 3.2, '#f0e442', '#222222');
+  drawDisc(pen, point, 3.2, '#f0e442', '#222222');
 }
 
 /** Draws a pose, the lowest bodies first; `slides` is the distance that each foot slid in this frame, mm. */
 export function drawLizard(pen: Pen, plate: Plate, scene: Scene, slides: readonly number[]): void {
-  skin(pen, scene);
-  for (const servo of SERVOS) foot(pen, scene, servo, slides[servo] ?? 0);
-  chassis(pen, plate);
-  for (const servo of SERVOS) leg(pen, scene, servo);
-  slider(pen, scene, 0);
-  slider(pen, scene, 1);
-  fiveBar(pen, scene, 0);
-  fiveBar(pen, scene, 1);
-  for (const { strut } of scene.legs) disc(pen, strut[0], 1.2, palette().card, palette().ink);
+  drawSkin(pen, scene);
+  for (const servo of SERVOS) drawFoot(pen, scene, servo, slides[servo] ?? 0);
+  drawChassis(pen, plate);
+  for (const servo of SERVOS) drawLeg(pen, scene, servo);
+  drawSlider(pen, scene, 0);
+  drawSlider(pen, scene, 1);
+  drawFiveBar(pen, scene, 0);
+  drawFiveBar(pen, scene, 1);
+  for (const { strut } of scene.legs) drawDisc(pen, strut[0], 1.2, palette().card, palette().ink);
 }

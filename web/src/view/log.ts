@@ -3,7 +3,7 @@ import { element } from './canvas';
 import { make } from './make';
 
 /** Largest number of lines that are kept. */
-const MOST = 400;
+const MAX_LINES = 400;
 
 export class Log {
   private readonly box = element('log');
@@ -38,12 +38,12 @@ export class Log {
     this.add(line, line.startsWith('err') ? 'err' : line.startsWith('#') ? 'note' : 'ok');
   }
 
-  private add(text: string, kind: string): void {
+  private add(text: string, className: string): void {
     const { box } = this;
     // A reader who scrolled up is not disturbed.
-    const atEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
-    box.append(make('div', { className: kind }, text));
-    while (box.childElementCount > MOST) box.firstElementChild?.remove();
-    if (atEnd) box.scrollTop = box.scrollHeight;
+    const isAtEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
+    box.append(make('div', { className }, text));
+    while (box.childElementCount > MAX_LINES) box.firstElementChild?.remove();
+    if (isAtEnd) box.scrollTop = box.scrollHeight;
   }
 }

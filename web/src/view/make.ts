@@ -4,9 +4,9 @@ type Child = Node | string;
 
 /** Makes an element with its properties and children. */
 export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: Partial<HTMLElementTagNameMap[K]>, ...children: Child[]): HTMLElementTagNameMap[K] {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
+  const node = Object.assign(document.createElement(tag), properties);
+  node.append(...children);
+  return node;
 }
 
 export const words = (...children: Child[]): HTMLElement => make('p', {}, ...children);
@@ -33,7 +33,7 @@ export function tableRow([head = '', ...cells]: string[]): HTMLElement {
 
 /** Makes a table with a header row. */
 export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
-  const heads = head.map((text) => make('th', { scope: 'col' }, text));
-  const name = make('caption', { className: 'hidden' }, caption);
-  return make('table', { className: 'settings' }, name, make('thead', {}, make('tr', {}, ...heads)), make('tbody', {}, ...rows.map(tableRow)));
+  const headCells = head.map((text) => make('th', { scope: 'col' }, text));
+  const captionElement = make('caption', { className: 'hidden' }, caption);
+  return make('table', { className: 'settings' }, captionElement, make('thead', {}, make('tr', {}, ...headCells)), make('tbody', {}, ...rows.map(tableRow)));
 }

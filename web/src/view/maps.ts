@@ -4,7 +4,7 @@ import { element, surface } from './canvas';
 import { onPaletteChange, palette } from './palette';
 
 /** Number of frames whose positions are drawn as a trail. */
-const TRAIL = 100;
+const TRAIL_LENGTH = 100;
 
 class MapView {
   private readonly canvas: HTMLCanvasElement;
@@ -26,7 +26,7 @@ class MapView {
 
   add(scene: Scene): void {
     this.trail.push(scene.map[this.end]);
-    if (this.trail.length > TRAIL) this.trail.shift();
+    if (this.trail.length > TRAIL_LENGTH) this.trail.shift();
   }
 
   draw(): void {
@@ -34,36 +34,36 @@ class MapView {
     const area = surface(this.canvas);
     if (!area || !map) return;
     const { pen, width, height } = area;
-    if (this.still?.width !== this.canvas.width) this.still = this.background(map);
+    if (this.still?.width !== this.canvas.width) this.still = this.drawBackground(map);
     pen.drawImage(this.still, 0, 0, width, height);
     const scale = width / (map.to - map.from);
-    const place = ([left, right]: [number, number]): [number, number] => [
+    const pixelOf = ([left, right]: [number, number]): [number, number] => [
       (left - map.from) * scale,
       height - (right - map.from) * scale,
     ];
     pen.strokeStyle = palette().a1;
     pen.lineWidth = 1.5;
     pen.beginPath();
-    for (const point of this.trail) pen.lineTo(...place(point));
+    for (const point of this.trail) pen.lineTo(...pixelOf(point));
     pen.stroke();
-    const now = this.trail[this.trail.length - 1];
-    if (!now) return;
+    const currentPoint = this.trail[this.trail.length - 1];
+    if (!currentPoint) return;
     pen.fillStyle = palette().a1;
     pen.strokeStyle = palette().card;
     pen.lineWidth = 2;
     pen.beginPath();
-    pen.arc(...place(now), 5, 0, 2 * Math.PI);
+    pen.arc(...pixelOf(currentPoint), 5, 0, 2 * Math.PI);
     pen.fill();
     pen.stroke();
   }
 
-  private background(map: SingularityMap): HTMLCanvasElement {
-    const still = document.createElement('canvas');
+  private drawBackground(map: SingularityMap): HTMLCanvasElement {
+    const backgroundCanvas = document.createElement('canvas');
     const size = this.canvas.width;
-    still.width = size;
-    still.height = this.canvas.height;
-    const pen = still.getContext('2d');
-    if (!pen) return still;
+    backgroundCanvas.width = size;
+    backgroundCanvas.height = this.canvas.height;
+    const pen = backgroundCanvas.getContext('2d');
+    if (!pen) return backgroundCanvas;
     const colours = palette();
     pen.fillStyle = colours.floor;
     pen.fillRect(0, 0, size, size);
@@ -80,14 +80,14 @@ class MapView {
     const dot = Math.max(1.2, size / 160);
     for (const { kind, points } of map.curves) {
       pen.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
-      const grow = kind === 'couplers' ? 2.5 : 1;
+      const dotScale = kind === 'couplers' ? 2.5 : 1;
       for (const [left, right] of points) {
         pen.beginPath();
-        pen.arc((left - map.from) * scale, size - (right - map.from) * scale, dot * grow, 0, 2 * Math.PI);
+        pen.arc((left - map.from) * scale, size - (right - map.from) * scale, dot * dotScale, 0, 2 * Math.PI);
         pen.fill();
       }
     }
-    return still;
+    return backgroundCanvas;
   }
 }
 

@@ -22,7 +22,7 @@ import { OPENED } from './rooms';
 import { drawSight } from './sight';
 
 /** Least displacement per cycle of a gait that is ticked by default: mm ahead or deg of turn. */
-const LEAST = { way: 3, turn: 2 };
+const LEAST_DISPLACEMENT = { way: 3, turn: 2 };
 const NUMBERS: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
   cycles: { min: MIN_CYCLES, max: 50, step: 1, value: 8 },
@@ -88,13 +88,13 @@ export class MeasureView {
       numberInput(input, range, (typed) => (this.values[name] = typed ?? value));
       if (value !== null) putNumber(input, value);
     }
-    this.cameraButton.addEventListener('click', () => void this.tell(() => this.toggleCamera()));
+    this.cameraButton.addEventListener('click', () => void this.runAction(() => this.toggleCamera()));
     element('measure-file').addEventListener('change', ({ target }) => {
       const file = (target as HTMLInputElement).files?.[0];
-      if (file) void this.tell(() => this.play(file));
+      if (file) void this.runAction(() => this.play(file));
     });
-    element('measure-sheet').addEventListener('click', () => void this.tell(() => this.saveSheet()));
-    this.startButton.addEventListener('click', () => void this.tell(() => this.start()));
+    element('measure-sheet').addEventListener('click', () => void this.runAction(() => this.saveSheet()));
+    this.startButton.addEventListener('click', () => void this.runAction(() => this.start()));
     this.driver.addEventListener('change', () => this.show());
     document.addEventListener(OPENED, () => this.room.hidden && this.leave());
     this.show();
@@ -103,13 +103,13 @@ export class MeasureView {
   /** Ends driving, and lists the gaits of a newly chosen robot. */
   showRobot({ gaits }: Description): void {
     this.stop('another robot was chosen');
-    const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
+    const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gait.value;
     this.gait.replaceChildren(new Option('found by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
     if ([...this.gait.options].some(({ value }) => value === chosen)) this.gait.value = chosen;
     this.boxes.replaceChildren(
       make('legend', {}, 'Gaits'),
-      ...moving.map((command) => {
+      ...movingCommands.map((command) => {
         const box = make('input', { type: 'checkbox', name: command, onchange: () => this.ticked.set(command, box.checked) });
         return make('label', { className: 'check' }, box, ` ${command}`);
       }),
@@ -119,13 +119,13 @@ export class MeasureView {
 
   /** Ticks the gaits with a displacement, as far as predicted; the user's own ticks stay. */
   predicted(): void {
-    const goes = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= LEAST.way || Math.abs(turn ?? 0) >= LEAST.turn]));
-    for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? goes.get(box.name) ?? false;
+    const hasDisplacement = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= LEAST_DISPLACEMENT.way || Math.abs(turn ?? 0) >= LEAST_DISPLACEMENT.turn]));
+    for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? hasDisplacement.get(box.name) ?? false;
   }
 
   /** Ends driving for an external reason, and stops the robot. */
-  stop(why: string): void {
-    this.protocol?.stop(why);
+  stop(reason: string): void {
+    this.protocol?.stop(reason);
   }
 
   /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
@@ -152,19 +152,19 @@ export class MeasureView {
   write(): void {
     if (this.room.hidden || this.view.hidden) return;
     const { rate, trouble, ms } = this.seen;
-    this.put('measure-rate', `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
-    this.put('measure-seen', trouble || 'All five tags are seen.');
+    this.setText('measure-rate', `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
+    this.setText('measure-seen', trouble || 'All five tags are seen.');
     element('measure-seen').classList.toggle('refusal', trouble !== '');
   }
 
-  private loaded(): Promise<Film> {
+  private getFilm(): Promise<Film> {
     this.film ??= loadFilm();
     this.film.catch(() => (this.film = null));
     return this.film;
   }
 
   /** Runs an action that the user has asked for; shows the reason if it fails. */
-  private async tell(act: () => Promise<void>): Promise<void> {
+  private async runAction(act: () => Promise<void>): Promise<void> {
     try {
       await act();
     } catch (error) {
@@ -181,7 +181,7 @@ export class MeasureView {
     }
     this.say('Opening the camera…');
     this.hasFilm = false;
-    await this.loaded();
+    await this.getFilm();
     await this.source.camera(() => {
       this.leave();
       this.say('The camera is gone.', true);
@@ -200,7 +200,7 @@ export class MeasureView {
   }
 
   private async look(picture: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
-    const film = await this.loaded();
+    const film = await this.getFilm();
     const isKept = this.doing === 'record' || this.doing === 'play' || (this.doing === 'drive' && !this.isPutBack);
     try {
       this.seen.take(await film.ask((film) => film.look(transfer(picture, [picture]), seconds, isKept)));
@@ -213,7 +213,7 @@ export class MeasureView {
 
   private async play(file: File): Promise<void> {
     this.leave();
-    const film = await this.loaded();
+    const film = await this.getFilm();
     await film.ask((film) => film.clear());
     this.seen = new TagTracker();
     this.doing = 'play';
@@ -242,8 +242,8 @@ export class MeasureView {
     if (this.doing === 'drive') return void this.session().ask(WORDS.stop);
     if (this.hasFilm) return this.compute(this.wholeFilm);
     const isPage = this.driver.value === 'page';
-    const gaits = isPage ? this.drivable() : [];
-    const film = await this.loaded();
+    const gaits = isPage ? this.drivableGaits() : [];
+    const film = await this.getFilm();
     await film.ask((film) => film.clear());
     this.seen.clear();
     if (isPage) return this.drive(gaits);
@@ -252,7 +252,7 @@ export class MeasureView {
   }
 
   /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
-  private drivable(): Gait[] {
+  private drivableGaits(): Gait[] {
     const session = this.session();
     const ticked = [...this.boxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
     const gaits = session.description.gaits.filter(({ command }) => ticked.includes(command));
@@ -303,9 +303,9 @@ export class MeasureView {
     this.isPutBack = true;
     this.goButton.hidden = false;
     this.say('The robot is near the end of what the camera measures, or its tag is hidden: put it back to the middle of the strips, and press the button.', true);
-    await new Promise<void>((done) => {
-      this.goButton.onclick = () => done();
-      protocol.onEnd = done;
+    await new Promise<void>((resolve) => {
+      this.goButton.onclick = () => resolve();
+      protocol.onEnd = resolve;
     });
     this.goButton.hidden = true;
     this.isPutBack = false;
@@ -316,12 +316,12 @@ export class MeasureView {
     this.doing = 'compute';
     this.say('Measuring…');
     this.show();
-    const film = await this.loaded();
+    const film = await this.getFilm();
     const { height = null, ruler } = this.values;
     try {
-      const measured = await film.ask((film) => film.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks }));
-      this.measured.show(measured.gaits);
-      troubles.push(...measured.troubles);
+      const results = await film.ask((film) => film.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks }));
+      this.measured.show(results.gaits);
+      troubles.push(...results.troubles);
     } catch (error) {
       this.measured.show([]);
       troubles.push(messageOf(error));
@@ -332,7 +332,7 @@ export class MeasureView {
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
-    const film = await this.loaded();
+    const film = await this.getFilm();
     save('sheet.pdf', [await film.ask((film) => film.sheet(isLetter))], 'application/pdf');
     this.say('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
@@ -353,11 +353,11 @@ export class MeasureView {
   }
 
   private say(text: string, isTrouble = false): void {
-    this.put('measure-said', text);
+    this.setText('measure-said', text);
     element('measure-said').classList.toggle('refusal', isTrouble && text !== '');
   }
 
-  private put(id: string, text: string): void {
+  private setText(id: string, text: string): void {
     const box = element(id);
     if (box.textContent !== text) box.textContent = text;
   }

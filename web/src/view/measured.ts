@@ -6,27 +6,27 @@ import { save } from './download';
 import { make, table } from './make';
 
 /** Pixels of the PNG for each unit of the SVG. */
-const SHARP = 2;
+const PNG_SCALE = 2;
 
 export class Measured {
   private gaits: Report[] = [];
 
   /** Takes a function that returns the robot's name. */
   constructor(private readonly name: () => string) {
-    const on = (id: string, act: () => void) => element(`measured-${id}`).addEventListener('click', act);
-    on('svg', () => save('measured.svg', [this.card], 'image/svg+xml'));
-    on('png', () => void this.savePng());
-    on('csv', () => save('measured.csv', [csv(this.gaits)], 'text/csv'));
-    on('json', () => save('measured.json', [JSON.stringify({ gaits: this.gaits }, null, 2)], 'application/json'));
-    on('print', () => print());
+    const onClick = (id: string, act: () => void) => element(`measured-${id}`).addEventListener('click', act);
+    onClick('svg', () => save('measured.svg', [this.card], 'image/svg+xml'));
+    onClick('png', () => void this.savePng());
+    onClick('csv', () => save('measured.csv', [csv(this.gaits)], 'text/csv'));
+    onClick('json', () => save('measured.json', [JSON.stringify({ gaits: this.gaits }, null, 2)], 'application/json'));
+    onClick('print', () => print());
   }
 
   /** Shows the results of some gaits. */
   show(gaits: Report[]): void {
     this.gaits = gaits;
     element('measure-results').hidden = gaits.length === 0;
-    const parts = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), columnHeadings(report), rows(report)), make('p', { className: 'note' }, rangeOf(report))]);
-    element('measured').replaceChildren(...parts);
+    const sections = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), columnHeadings(report), rows(report)), make('p', { className: 'note' }, rangeOf(report))]);
+    element('measured').replaceChildren(...sections);
   }
 
   private get card(): string {
@@ -37,9 +37,9 @@ export class Measured {
     const image = new Image();
     image.src = `data:image/svg+xml,${encodeURIComponent(this.card)}`;
     await image.decode();
-    const canvas = Object.assign(document.createElement('canvas'), { width: SHARP * image.width, height: SHARP * image.height });
+    const canvas = Object.assign(document.createElement('canvas'), { width: PNG_SCALE * image.width, height: PNG_SCALE * image.height });
     canvas.getContext('2d')?.drawImage(image, 0, 0, canvas.width, canvas.height);
-    const blob = await new Promise<Blob | null>((made) => canvas.toBlob(made));
+    const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
     if (blob) save('measured.png', [blob], 'image/png');
   }
 }

@@ -15,10 +15,10 @@ export function numberInput(input: HTMLInputElement, { min, max, step }: Range, 
   input.addEventListener('input', () => {
     const value = input.valueAsNumber;
     const isEmpty = input.value === '' && !input.validity.badInput;
-    const isIn = value >= min && value <= max;
-    mark(input, !isEmpty && !isIn);
-    if (isIn || isEmpty) input.defaultValue = input.value;
-    if (isIn || isEmpty) take(isIn ? value : null);
+    const isInRange = value >= min && value <= max;
+    mark(input, !isEmpty && !isInRange);
+    if (isInRange || isEmpty) input.defaultValue = input.value;
+    if (isInRange || isEmpty) take(isInRange ? value : null);
   });
   input.addEventListener('change', () => {
     if (!input.hasAttribute('aria-invalid')) return;

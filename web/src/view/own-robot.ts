@@ -21,25 +21,25 @@ export class OwnRobot {
    * Puts the user's previous robot aside if it was changed and another robot has replaced it, and offers to restore
    * it.
    */
-  putAside(before: SavedChanges | null): void {
-    if (!before || before.toml === before.original || before.toml === this.session().toml) return;
-    this.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
+  putAside(previous: SavedChanges | null): void {
+    if (!previous || previous.toml === previous.original || previous.toml === this.session().toml) return;
+    this.setAside([previous, ...kept.aside().filter(({ toml }) => toml !== previous.toml)]);
     this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', act: () => void this.restore() });
   }
 
   /** Restores a robot that was put aside, and puts the current one aside. */
-  async restore(number = 0): Promise<void> {
-    const all = kept.aside();
-    const own = all[number];
+  async restore(index = 0): Promise<void> {
+    const robotsAside = kept.aside();
+    const ownRobot = robotsAside[index];
     this.troubles.say('own', null);
-    if (!own) return;
-    const before = kept.get();
-    await this.choose(own.file);
+    if (!ownRobot) return;
+    const previous = kept.get();
+    await this.choose(ownRobot.file);
     const session = this.session();
     // If its file has changed since, the stored text itself is loaded.
-    if (!(await session.recall(own)) && (await session.change(own.toml))) return;
-    this.setAside(all.filter((_, n) => n !== number));
-    this.putAside(before);
+    if (!(await session.recall(ownRobot)) && (await session.change(ownRobot.toml))) return;
+    this.setAside(robotsAside.filter((_, n) => n !== index));
+    this.putAside(previous);
   }
 
   private setAside(robots: SavedChanges[]): void {

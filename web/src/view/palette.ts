@@ -7,25 +7,25 @@ const NAMES = [
 
 export type Palette = Record<(typeof NAMES)[number], string>;
 
-let known: Palette | null = null;
-const changed: (() => void)[] = [];
+let cachedPalette: Palette | null = null;
+const changeCallbacks: (() => void)[] = [];
 
 export function palette(): Palette {
-  if (!known) {
+  if (!cachedPalette) {
     const style = getComputedStyle(document.documentElement);
-    known = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
+    cachedPalette = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
   }
-  return known;
+  return cachedPalette;
 }
 
 /** Calls `callback` when the colour scheme changes between light and dark. */
 export function onPaletteChange(callback: () => void): void {
-  changed.push(callback);
+  changeCallbacks.push(callback);
 }
 
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-  known = null;
-  for (const callback of changed) callback();
+  cachedPalette = null;
+  for (const callback of changeCallbacks) callback();
 });
 
 /** The colour of a servo and of its leg. */

@@ -14,7 +14,7 @@ import { isShown } from './rooms';
 const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
 
 /** Converts the guide's Markdown, which uses only bold and code, to plain text. */
-const plain = (words: string) => words.replaceAll('**', '').replaceAll('`', '');
+const plainText = (words: string) => words.replaceAll('**', '').replaceAll('`', '');
 
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
@@ -52,8 +52,8 @@ export class PartsView {
     for (const [id, key] of [['zoom-in', '+'], ['zoom-out', '-'], ['home', 'Home']] as const) {
       element(id).addEventListener('click', () => this.space?.press(key));
     }
-    this.buttons.all.addEventListener('click', () => void this.files('all'));
-    this.buttons.changed.addEventListener('click', () => void this.files('changed'));
+    this.buttons.all.addEventListener('click', () => void this.makeFiles('all'));
+    this.buttons.changed.addEventListener('click', () => void this.makeFiles('changed'));
     onPaletteChange(() => this.show());
   }
 
@@ -128,10 +128,10 @@ export class PartsView {
     this.list.replaceChildren(new Option('none', ''), ...bodies.map(({ name, number }) => new Option(name, String(number))));
   }
 
-  private stepBy(by: number): void {
+  private stepBy(change: number): void {
     if (!this.model) return;
-    const last = this.model.steps.length;
-    this.toStep(this.step === null ? (by > 0 ? 1 : last) : Math.max(1, Math.min(last, this.step + by)));
+    const lastStep = this.model.steps.length;
+    this.toStep(this.step === null ? (change > 0 ? 1 : lastStep) : Math.max(1, Math.min(lastStep, this.step + change)));
   }
 
   /** Shows a step's new parts exploded, as the guide's picture does; for null, all parts assembled. */
@@ -140,10 +140,10 @@ export class PartsView {
     if ((step === null) !== (this.step === null)) this.apart.value = step === null ? '0' : '100';
     this.step = step;
     this.requestedPose = '';
-    const found = step === null ? undefined : this.model.steps[step - 1];
+    const shownStep = step === null ? undefined : this.model.steps[step - 1];
     const count = this.model.steps.length;
-    this.say('step-title', found ? `${step} of ${count}: ${found.title}` : 'The whole robot');
-    this.say('step-words', found ? plain(found.words) : '');
+    this.say('step-title', shownStep ? `${step} of ${count}: ${shownStep.title}` : 'The whole robot');
+    this.say('step-words', shownStep ? plainText(shownStep.words) : '');
     element<HTMLButtonElement>('step-back').disabled = step === 1;
     element<HTMLButtonElement>('step-on').disabled = step === count;
     element<HTMLButtonElement>('step-all').disabled = step === null;
@@ -162,8 +162,8 @@ export class PartsView {
     } else if (!body) this.say('parts-said', this.space ? 'Click a part for its name and its file.' : '');
     else if (!part) this.say('parts-said', `${body.name}: ${body.kind}, bought; put on in step ${body.step}.`);
     else {
-      const often = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
-      this.say('parts-said', `${body.name}: ${often}, stl/${part.file}.stl and step/${part.file}.step; put on in step ${body.step}.`);
+      const countText = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
+      this.say('parts-said', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; put on in step ${body.step}.`);
     }
     this.show();
   }
@@ -190,28 +190,28 @@ export class PartsView {
     if (!space || !solids || !space.mayDraw() || !this.is3d) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide, or a pose in which two parts come too close, is shown.
-    const moving = this.step === null && !this.meeting && frame?.scene != null;
-    const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
-    const asked = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
-    if (asked !== this.requestedPose) {
-      this.requestedPose = asked;
+    const isMoving = this.step === null && !this.meeting && frame?.scene != null;
+    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
+    const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
+    if (poseText !== this.requestedPose) {
+      this.requestedPose = poseText;
       void solids.pose(angles, lags).then((places) => {
         if (solids !== this.solids) return;
         if (places) space.pose(places);
         // Another pose was being computed, so this one is requested again.
-        else if (this.requestedPose === asked) this.requestedPose = '';
+        else if (this.requestedPose === poseText) this.requestedPose = '';
       });
     }
-    space.draw(moving ? frame.place : ORIGIN);
+    space.draw(isMoving ? frame.place : ORIGIN);
   }
 
-  private async files(which: 'all' | 'changed'): Promise<void> {
+  private async makeFiles(selection: 'all' | 'changed'): Promise<void> {
     // The button also stops the making.
     if (this.stop) return this.stop();
     const { toml, original, file } = this.session();
     const bar = element<HTMLProgressElement>('parts-progress');
-    const words = { prove: 'Proving that no two parts meet', make: 'Making the files' };
-    const button = this.buttons[which];
+    const activityTexts = { prove: 'Proving that no two parts meet', make: 'Making the files' };
+    const button = this.buttons[selection];
     const label = button.textContent;
     bar.hidden = false;
     bar.removeAttribute('value');
@@ -219,41 +219,41 @@ export class PartsView {
     this.stop = () => {};
     this.say('files-said', 'Loading…');
     this.listFiles([]);
-    let stopped = false;
+    let isStopped = false;
     try {
       const workshop = await import('../parts/workshop');
-      const { answer, stop } = workshop.make(toml, which === 'all' ? null : original, ({ doing, done, all }: Progress) => {
+      const { answer, stop } = workshop.make(toml, selection === 'all' ? null : original, ({ doing, done, all }: Progress) => {
         // Reports may still arrive after the worker was terminated.
-        if (stopped) return;
+        if (isStopped) return;
         bar.max = all;
         bar.value = done;
-        this.say('files-said', `${words[doing]}: ${done} of ${all}.`);
+        this.say('files-said', `${activityTexts[doing]}: ${done} of ${all}.`);
       });
-      const halted = new Promise<null>((end) => {
+      const stopPromise = new Promise<null>((resolve) => {
         this.stop = () => {
-          stopped = true;
+          isStopped = true;
           stop();
-          end(null);
+          resolve(null);
         };
       });
-      const files = await Promise.race([answer, halted]);
+      const files = await Promise.race([answer, stopPromise]);
       if (!files) return;
-      if (files.paths.length > 0) save(`${file || 'robot'}-${which === 'all' ? 'parts' : 'changed-parts'}.zip`, [files.zip], 'application/zip');
-      this.say('files-said', this.saved(files, which));
-      if (which === 'changed') this.listFiles(files.paths);
+      if (files.paths.length > 0) save(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [files.zip], 'application/zip');
+      this.say('files-said', this.savedText(files, selection));
+      if (selection === 'changed') this.listFiles(files.paths);
     } catch (error) {
       this.say('files-said', `No files are made: ${messageOf(error)}`);
     } finally {
       this.stop = null;
       bar.hidden = true;
       button.textContent = label;
-      if (stopped) this.say('files-said', 'Stopped; nothing was saved.');
+      if (isStopped) this.say('files-said', 'Stopped; nothing was saved.');
     }
   }
 
-  private saved({ paths, count, least }: Made, which: 'all' | 'changed'): string {
-    const near = least === null ? '' : ` No two parts come nearer than ${least.toFixed(2)} mm at any pose that the guard accepts.`;
-    if (which === 'all') return `${count} files.${near}`;
+  private savedText({ paths, count, least: leastMm }: Made, selection: 'all' | 'changed'): string {
+    const distanceText = leastMm === null ? '' : ` No two parts come nearer than ${leastMm.toFixed(2)} mm at any pose that the guard accepts.`;
+    if (selection === 'all') return `${count} files.${distanceText}`;
     return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files are not those of ${this.session().file}.toml:`;
   }
 

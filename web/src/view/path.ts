@@ -44,11 +44,11 @@ export class PathView {
   private readonly shape = element<HTMLSelectElement>('path-shape');
   private readonly name = element<HTMLInputElement>('path-name');
   private readonly trial: TrialView;
-  private readonly allowed = this.part('path', 'allowed');
-  private readonly base = this.part('path', 'base');
-  private readonly line = this.part('path', 'line');
-  private readonly rounded = this.part('path', 'rounded');
-  private readonly neutral = this.part('circle', 'neutral');
+  private readonly allowed = this.makePart('path', 'allowed');
+  private readonly base = this.makePart('path', 'base');
+  private readonly line = this.makePart('path', 'line');
+  private readonly rounded = this.makePart('path', 'rounded');
+  private readonly neutral = this.makePart('circle', 'neutral');
   private drawn: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
   private room: ReachArea | null = null;
   private toml = '';
@@ -59,8 +59,8 @@ export class PathView {
     ask: (line: string) => Promise<unknown>,
     writer: Writer,
   ) {
-    const made = () => (this.drawn.points.length === 0 ? null : this.drawn);
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made, change: (what, value) => what !== 'amplitude' && this.change({ [what]: value }) });
+    const gaitToTry = () => (this.drawn.points.length === 0 ? null : this.drawn);
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made: gaitToTry, change: (key, value) => key !== 'amplitude' && this.change({ [key]: value }) });
     this.panel.addEventListener('toggle', () => this.showRobot());
     this.end.addEventListener('change', () => {
       this.drawn = { ...this.drawn, end: this.end.value as End };
@@ -68,10 +68,10 @@ export class PathView {
     });
     this.shape.addEventListener('change', () => this.begin());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
-    for (const plain of Object.keys(NUMBERS) as Plain[]) {
-      numberInput(element(`path-${plain}`), NUMBERS[plain], (value) => {
+    for (const key of Object.keys(NUMBERS) as Plain[]) {
+      numberInput(element(`path-${key}`), NUMBERS[key], (value) => {
         if (value === null) return;
-        this.change({ [plain]: plain === 'size' ? value / 100 : plain === 'terms' ? Math.round(value) : value });
+        this.change({ [key]: key === 'size' ? value / 100 : key === 'terms' ? Math.round(value) : value });
       });
     }
     this.recordLines();
@@ -96,34 +96,34 @@ export class PathView {
       const [x, y] = this.room.neutral;
       const tenth = Math.hypot(x, y) / 10;
       const points = Array.from({ length: POINTS }, (_, n): Point => {
-        const [across, out] = shape((2 * Math.PI * n) / POINTS);
-        return [x + tenth * across, y + tenth * out];
+        const [right, outward] = shape((2 * Math.PI * n) / POINTS);
+        return [x + tenth * right, y + tenth * outward];
       });
       this.change({ points, size: 1 });
     } else if (!isKept) this.change({ points: [], size: 1 });
     else this.change({});
   }
 
-  private change(part: Partial<DrawnGait>): void {
-    this.drawn = { ...this.drawn, ...part };
+  private change(changes: Partial<DrawnGait>): void {
+    this.drawn = { ...this.drawn, ...changes };
     this.show();
     this.trial.predict();
   }
 
   /** Makes an element of the picture. */
-  private part<K extends 'path' | 'circle'>(kind: K, name: string): SVGElementTagNameMap[K] {
-    const part = this.plane.appendChild(document.createElementNS(SVG, kind));
-    part.classList.add(name);
-    return part;
+  private makePart<K extends 'path' | 'circle'>(tag: K, name: string): SVGElementTagNameMap[K] {
+    const node = this.plane.appendChild(document.createElementNS(SVG, tag));
+    node.classList.add(name);
+    return node;
   }
 
   /** Converts a point to the picture: outward is up for the head and down for the tail. */
-  private at([x, y]: Point): Point {
+  private pictureOf([x, y]: Point): Point {
     return [x, this.drawn.end === 'head' ? -y : y];
   }
 
-  private path(points: Point[], end = 'Z'): string {
-    return points.length === 0 ? '' : `M ${points.map((point) => this.at(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
+  private pathText(points: Point[], end = 'Z'): string {
+    return points.length === 0 ? '' : `M ${points.map((point) => this.pictureOf(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
   }
 
   /** Draws the background: the reachable area, the base and the neutral point. */
@@ -134,22 +134,22 @@ export class PathView {
     for (let row = 0; row < rows; row++) {
       for (let column = 0; column < columns; column++) {
         if (!allowed[row * columns + column]) continue;
-        let end = column;
-        while (end < columns && allowed[row * columns + end]) end += 1;
-        cells.push(this.path([corner(column, row), corner(end, row), corner(end, row + 1), corner(column, row + 1)]));
-        column = end;
+        let endColumn = column;
+        while (endColumn < columns && allowed[row * columns + endColumn]) endColumn += 1;
+        cells.push(this.pathText([corner(column, row), corner(endColumn, row), corner(endColumn, row + 1), corner(column, row + 1)]));
+        column = endColumn;
       }
     }
     this.allowed.setAttribute('d', cells.join(' '));
-    this.base.setAttribute('d', this.path(shafts, ''));
-    const [x, y] = this.at(neutral);
+    this.base.setAttribute('d', this.pathText(shafts, ''));
+    const [x, y] = this.pictureOf(neutral);
     this.neutral.setAttribute('cx', String(x));
     this.neutral.setAttribute('cy', String(y));
     this.neutral.setAttribute('r', '1.5');
-    const far = from[1] + rows * step;
-    const [left, wide] = [Math.min(from[0], shafts[0][0]) - MARGIN, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN];
-    const high = far + 2 * MARGIN;
-    this.plane.setAttribute('viewBox', `${left} ${this.drawn.end === 'head' ? -far - MARGIN : -MARGIN} ${wide} ${high}`);
+    const farY = from[1] + rows * step;
+    const [left, width] = [Math.min(from[0], shafts[0][0]) - MARGIN, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN];
+    const height = farY + 2 * MARGIN;
+    this.plane.setAttribute('viewBox', `${left} ${this.drawn.end === 'head' ? -farY - MARGIN : -MARGIN} ${width} ${height}`);
   }
 
   private show(): void {
@@ -160,36 +160,36 @@ export class PathView {
     put('terms', drawn.terms);
     if (document.activeElement !== this.name) this.name.value = drawn.name;
     this.end.value = drawn.end;
-    this.line.setAttribute('d', this.path(drawn.points));
-    this.rounded.setAttribute('d', this.path((drawn.points.length > 0 && this.session().robot.path(drawn)) || []));
+    this.line.setAttribute('d', this.pathText(drawn.points));
+    this.rounded.setAttribute('d', this.pathText((drawn.points.length > 0 && this.session().robot.path(drawn)) || []));
   }
 
   /** Records lines that the user draws with a finger or a mouse. */
   private recordLines(): void {
     let points: Point[] | null = null;
     const pointOf = ({ clientX, clientY }: PointerEvent): Point | null => {
-      const place = this.plane.getScreenCTM();
-      if (!place) return null;
-      const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
-      return this.at([x, y]);
+      const matrix = this.plane.getScreenCTM();
+      if (!matrix) return null;
+      const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
+      return this.pictureOf([x, y]);
     };
-    const add = (event: PointerEvent) => {
-      const next = pointOf(event);
-      const last = points?.at(-1);
-      if (!points || !next || (last && Math.hypot(next[0] - last[0], next[1] - last[1]) < LEAST_DISTANCE)) return;
-      points.push(next);
-      this.line.setAttribute('d', this.path(points, ''));
+    const addPoint = (event: PointerEvent) => {
+      const nextPoint = pointOf(event);
+      const lastPoint = points?.at(-1);
+      if (!points || !nextPoint || (lastPoint && Math.hypot(nextPoint[0] - lastPoint[0], nextPoint[1] - lastPoint[1]) < LEAST_DISTANCE)) return;
+      points.push(nextPoint);
+      this.line.setAttribute('d', this.pathText(points, ''));
     };
     this.plane.addEventListener('pointerdown', (event) => {
       if (!this.room) return;
       this.plane.setPointerCapture(event.pointerId);
       points = [];
       this.rounded.setAttribute('d', '');
-      add(event);
+      addPoint(event);
     });
-    this.plane.addEventListener('pointermove', add);
+    this.plane.addEventListener('pointermove', addPoint);
     this.plane.addEventListener('pointerup', (event) => {
-      add(event);
+      addPoint(event);
       const line = points;
       points = null;
       if (!line) return;

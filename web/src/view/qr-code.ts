@@ -12,8 +12,8 @@ export function qrCode(text: string): SVGSVGElement {
   svg.setAttribute('viewBox', `0 0 ${size} ${size}`);
   svg.setAttribute('role', 'img');
   svg.setAttribute('aria-label', 'QR code of the link to this robot');
-  const dark = document.createElementNS(namespace, 'path');
-  dark.setAttribute('d', data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join(''));
-  svg.append(dark);
+  const darkModules = document.createElementNS(namespace, 'path');
+  darkModules.setAttribute('d', data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join(''));
+  svg.append(darkModules);
   return svg;
 }

@@ -1,9 +1,9 @@
-// The phone as a remote control: the whole screen in landscape, with the stick under one thumb and `stop` under the other. The
-// screen is kept on, since the page stops the robot when the screen goes dark.
+// The phone as a remote control: the whole screen in landscape, with the stick under one thumb and `stop` under the
+// other. The screen is kept on, since the page stops the robot when the screen goes dark.
 import { element } from './canvas';
 
 /** Duration of a buzz, ms. */
-const BUZZ = 200;
+const BUZZ_MS = 200;
 
 export class Remote {
   private readonly button = element('remote');
@@ -23,7 +23,7 @@ export class Remote {
 
   /** Buzzes because the robot has stopped by itself. */
   buzz(): void {
-    if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(BUZZ);
+    if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(BUZZ_MS);
   }
 
   private async enter(): Promise<void> {

@@ -9,7 +9,7 @@ import { reveal } from './rooms';
 import { NO_BOARD, type Writer } from './writer';
 
 /** Largest number of robots that undo can restore. */
-const STEPS = 50;
+const MAX_UNDO_STEPS = 50;
 
 export class RobotText {
   private readonly box = element<HTMLTextAreaElement>('robot-text');
@@ -65,7 +65,7 @@ export class RobotText {
     const { toml, file } = this.session();
     // While a file of the list is being read it has no name; then there is nothing to undo.
     if (file === '') this.before = [];
-    else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - STEPS), this.shown];
+    else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - MAX_UNDO_STEPS), this.shown];
     if (this.shown !== toml) this.undone = [];
     this.shown = toml;
     this.box.value = toml;
@@ -85,8 +85,8 @@ export class RobotText {
   /** Loads the robot in the page's address, if there is one; returns false if it is invalid. */
   async fromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const part = partsOf(hash).get('robot');
-      const toml = part === null ? this.session().toml : await unpack(part);
+      const encoded = partsOf(hash).get('robot');
+      const toml = encoded === null ? this.session().toml : await unpack(encoded);
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.box);
@@ -105,10 +105,10 @@ export class RobotText {
 
   /** Loads a text as the robot, or shows it with its mistake; returns true if it was accepted. */
   async loadText(toml: string): Promise<boolean> {
-    const refused = await this.session().change(toml);
-    if (!refused) return true;
+    const refusal = await this.session().change(toml);
+    if (!refusal) return true;
     this.box.value = toml;
-    this.showRefusal(refused);
+    this.showRefusal(refusal);
     return false;
   }
 
@@ -137,26 +137,26 @@ export class RobotText {
   async undoLast(): Promise<void> {
     if (this.refused) return this.showRobot();
     const { before, undone, shown } = this;
-    const last = before.at(-1);
-    if (last !== undefined) await this.restore(last, before.slice(0, -1), [...undone, shown]);
+    const lastToml = before.at(-1);
+    if (lastToml !== undefined) await this.restore(lastToml, before.slice(0, -1), [...undone, shown]);
   }
 
   /** Restores the robot that was undone last. */
   private async redoLast(): Promise<void> {
     const { before, undone, shown } = this;
-    const next = undone.at(-1);
-    if (next !== undefined) await this.restore(next, [...before, shown], undone.slice(0, -1));
+    const nextToml = undone.at(-1);
+    if (nextToml !== undefined) await this.restore(nextToml, [...before, shown], undone.slice(0, -1));
   }
 
   /** Loads an earlier robot into the session, with the lists of robots for undo and redo that belong to it. */
   private async restore(toml: string, before: string[], undone: string[]): Promise<void> {
-    const now = { before: this.before, undone: this.undone, shown: this.shown };
+    const current = { before: this.before, undone: this.undone, shown: this.shown };
     // A restored robot is not recorded as a step.
     Object.assign(this, { before, undone, shown: toml });
-    const refused = await this.session().change(toml);
-    if (!refused) return;
-    Object.assign(this, now);
-    this.showRefusal(refused);
+    const refusal = await this.session().change(toml);
+    if (!refusal) return;
+    Object.assign(this, current);
+    this.showRefusal(refusal);
   }
 
   private async copyLink(): Promise<void> {
@@ -170,16 +170,16 @@ export class RobotText {
 
   /** Shows the link to the robot as a QR code, or hides it. */
   private async showCode(): Promise<void> {
-    const drawn = element('robot-drawn');
-    const isShown = drawn.childElementCount === 0;
+    const codeBox = element('robot-drawn');
+    const isShown = codeBox.childElementCount === 0;
     element('robot-code').setAttribute('aria-pressed', String(isShown));
-    drawn.replaceChildren();
+    codeBox.replaceChildren();
     if (!isShown) return this.showMessage('');
     try {
       const { qrCode } = await import('./qr-code');
-      drawn.replaceChildren(qrCode(await linkTo(this.session().toml)));
-      const isHere = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
-      this.showMessage(isHere ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+      codeBox.replaceChildren(qrCode(await linkTo(this.session().toml)));
+      const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
+      this.showMessage(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {
       this.showMessage(`No code can be drawn: ${messageOf(error)}`);
     }
@@ -199,18 +199,18 @@ export class RobotText {
     this.box.scrollTop = ((line - 4) / lines.length) * this.box.scrollHeight;
   }
 
-  private showRefusal(refused: Refused | null): void {
-    this.refused = refused;
-    element('robot-refusal').hidden = refused === null;
-    element('robot-refusal').textContent = refused?.refused ?? '';
+  private showRefusal(refusal: Refused | null): void {
+    this.refused = refusal;
+    element('robot-refusal').hidden = refusal === null;
+    element('robot-refusal').textContent = refusal?.refused ?? '';
     const button = element('robot-line');
-    button.hidden = refused?.line == null;
-    button.textContent = `Go to line ${refused?.line}`;
+    button.hidden = refusal?.line == null;
+    button.textContent = `Go to line ${refusal?.line}`;
     this.showMessage('');
     // The code that was shown belongs to another robot.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');
-    this.box.setAttribute('aria-invalid', String(refused !== null));
+    this.box.setAttribute('aria-invalid', String(refusal !== null));
     this.undo.disabled = !this.canUndo;
     this.redo.disabled = this.undone.length === 0;
     this.onText();

@@ -5,25 +5,25 @@ import { partsOf } from '../address';
 /** The name of the document's event after another room was opened. */
 export const OPENED = 'room';
 
-const FIRST = 'start';
-const NAME = document.title;
+const FIRST_ROOM = 'start';
+const PAGE_NAME = document.title;
 
 const idOf = (room: string) => `room-${room}`;
 const rooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
 
 /** Opens the room that an address names, or the first one. */
 export function openRoom(hash: string): void {
-  const asked = idOf(partsOf(hash).get('room') ?? FIRST);
-  const room = rooms().find(({ id }) => id === asked) ?? rooms()[0];
+  const requestedId = idOf(partsOf(hash).get('room') ?? FIRST_ROOM);
+  const room = rooms().find(({ id }) => id === requestedId) ?? rooms()[0];
   if (!room || room.id === document.body.dataset.at) return;
-  for (const each of rooms()) each.hidden = each !== room;
+  for (const candidate of rooms()) candidate.hidden = candidate !== room;
   for (const link of document.querySelectorAll<HTMLAnchorElement>('nav a')) {
-    const isHere = idOf(partsOf(link.hash).get('room') ?? '') === room.id;
-    if (isHere) link.setAttribute('aria-current', 'page');
+    const isOpenRoom = idOf(partsOf(link.hash).get('room') ?? '') === room.id;
+    if (isOpenRoom) link.setAttribute('aria-current', 'page');
     else link.removeAttribute('aria-current');
   }
   document.body.dataset.at = room.id;
-  document.title = `${room.querySelector('h2')?.textContent}, ${NAME}`;
+  document.title = `${room.querySelector('h2')?.textContent}, ${PAGE_NAME}`;
   scrollTo(0, 0);
   document.dispatchEvent(new Event(OPENED));
   // Its panels show what they have missed.
@@ -34,9 +34,9 @@ export function openRoom(hash: string): void {
 export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
 
 /** Opens the room of an element, and its panel. */
-export function reveal(inside: HTMLElement): void {
-  const room = inside.closest('.room');
-  const panel = inside.closest('details');
+export function reveal(target: HTMLElement): void {
+  const room = target.closest('.room');
+  const panel = target.closest('details');
   if (panel) panel.open = true;
   if (!room || room.id === document.body.dataset.at) return;
   location.hash = `room=${room.id.slice(idOf('').length)}`;

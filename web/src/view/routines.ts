@@ -11,15 +11,15 @@ import type { RobotText } from './robot-text';
 import { NO_BOARD, type Writer } from './writer';
 
 /** The first step of a new routine. */
-const FIRST = 'stand 1 s';
+const FIRST_STEP = 'stand 1 s';
 /** Least width and height of the path's picture without its margin, and the margin around the path, mm. */
-const LEAST = 160;
-const RIM = 20;
+const LEAST_SIZE = 160;
+const PICTURE_MARGIN = 20;
 
-const round = (value: number) => (Math.round(value) + 0).toFixed(0);
+const formatRounded = (value: number) => (Math.round(value) + 0).toFixed(0);
 
 /** Returns the list with the item at the index `from` moved to the index `to`. */
-function moved<T>(list: T[], from: number, to: number): T[] {
+function moveItem<T>(list: T[], from: number, to: number): T[] {
   const rest = list.toSpliced(from, 1);
   return rest.toSpliced(to, 0, list[from] as T);
 }
@@ -48,16 +48,16 @@ export class RoutinesView {
     private readonly ask: (line: string) => Promise<void>,
     private readonly writer: Writer,
   ) {
-    const on = (id: string, act: () => void) => element(`routine-${id}`).addEventListener('click', act);
+    const onClick = (id: string, act: () => void) => element(`routine-${id}`).addEventListener('click', act);
     this.panel.addEventListener('toggle', () => this.show());
     this.choice.addEventListener('change', () => this.show());
-    on('record', () => this.record());
-    on('keep', () => void this.keep());
-    on('drop', () => this.offer([]));
-    on('add', () => void this.add());
-    on('undo', () => void this.text.undoLast());
-    on('start', () => void this.start());
-    on('write', () => void this.write());
+    onClick('record', () => this.record());
+    onClick('keep', () => void this.keep());
+    onClick('drop', () => this.offer([]));
+    onClick('add', () => void this.add());
+    onClick('undo', () => void this.text.undoLast());
+    onClick('start', () => void this.start());
+    onClick('write', () => void this.write());
   }
 
   /** Takes another robot, which ends a recording. */
@@ -68,7 +68,7 @@ export class RoutinesView {
   /** Takes the robot's activity. */
   doing(gait: string): void {
     this.recorder?.setGait(gait, this.session().clock);
-    this.tell();
+    this.showRecording();
   }
 
   /** Takes the robot's pace, percent. */
@@ -117,7 +117,7 @@ export class RoutinesView {
   private get shown(): Routine | null {
     const chosen = this.routines.find(({ name }) => name === this.choice.value);
     if (!chosen || !this.dragged) return chosen ?? null;
-    return { ...chosen, steps: moved(chosen.steps, this.dragged.from, this.dragged.to) };
+    return { ...chosen, steps: moveItem(chosen.steps, this.dragged.from, this.dragged.to) };
   }
 
   private record(): void {
@@ -129,11 +129,11 @@ export class RoutinesView {
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
     this.offer(steps ?? []);
     if (steps?.length === 0) this.say('Nothing is recorded: the robot has not walked.');
-    this.tell();
+    this.showRecording();
   }
 
   /** Shows the steps recorded so far. */
-  private tell(): void {
+  private showRecording(): void {
     if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session().clock).join(', ') || 'drive now'}`);
   }
 
@@ -143,9 +143,9 @@ export class RoutinesView {
     element('routine-recorded').hidden = steps.length === 0;
     this.say(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
     if (steps.length === 0) return;
-    const taken = new Set(Robot.routines(this.text.draft).map(({ name }) => name));
-    const names = ['patrol', ...Array.from(taken, (_, n) => `patrol-${n + 2}`)];
-    this.name.value = names.find((name) => !taken.has(name)) ?? '';
+    const takenNames = new Set(Robot.routines(this.text.draft).map(({ name }) => name));
+    const names = ['patrol', ...Array.from(takenNames, (_, n) => `patrol-${n + 2}`)];
+    this.name.value = names.find((name) => !takenNames.has(name)) ?? '';
     this.name.select();
   }
 
@@ -164,8 +164,8 @@ export class RoutinesView {
 
   private async add(): Promise<void> {
     const { steps, name } = this.shown ?? { steps: [], name: 'patrol' };
-    await this.change([...steps, steps.at(-1) ?? FIRST], name);
-    this.input(steps.length)?.select();
+    await this.change([...steps, steps.at(-1) ?? FIRST_STEP], name);
+    this.inputAt(steps.length)?.select();
   }
 
   /** Replaces the steps of the chosen routine. */
@@ -177,7 +177,7 @@ export class RoutinesView {
   private async move(from: number, to: number): Promise<void> {
     const { shown } = this;
     if (!shown || to < 0 || to >= shown.steps.length) return;
-    await this.change(moved(shown.steps, from, to));
+    await this.change(moveItem(shown.steps, from, to));
   }
 
   private async start(): Promise<void> {
@@ -193,8 +193,8 @@ export class RoutinesView {
     else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('routine-progress') });
   }
 
-  private input(at: number): HTMLInputElement | null {
-    return this.list.children[at]?.querySelector('input') ?? null;
+  private inputAt(index: number): HTMLInputElement | null {
+    return this.list.children[index]?.querySelector('input') ?? null;
   }
 
   private showSteps(): void {
@@ -202,20 +202,20 @@ export class RoutinesView {
     const { refused, canUndo } = this.text;
     const steps = shown?.steps ?? [];
     while (list.children.length > steps.length) list.lastElementChild?.remove();
-    while (list.children.length < steps.length) list.append(this.block(list.children.length));
-    const wrong = shown && refused?.key === `routine.${shown.name}.steps` ? mistakenStep(refused) : null;
-    steps.forEach((step, at) => {
-      const [block, input] = [list.children[at], this.input(at)];
+    while (list.children.length < steps.length) list.append(this.makeBlock(list.children.length));
+    const mistakenIndex = shown && refused?.key === `routine.${shown.name}.steps` ? mistakenStepOf(refused) : null;
+    steps.forEach((step, index) => {
+      const [block, input] = [list.children[index], this.inputAt(index)];
       if (!block || !input) return;
       if (input.value !== step) input.value = step;
-      block.classList.toggle('held', this.dragged?.to === at);
-      input.setAttribute('aria-invalid', String(wrong === at));
-      if (wrong === at) input.setAttribute('aria-describedby', this.refusal.id);
+      block.classList.toggle('held', this.dragged?.to === index);
+      input.setAttribute('aria-invalid', String(mistakenIndex === index));
+      if (mistakenIndex === index) input.setAttribute('aria-describedby', this.refusal.id);
       else input.removeAttribute('aria-describedby');
     });
     this.refusal.hidden = refused === null;
     this.refusal.textContent = refused?.refused ?? '';
-    if (wrong !== null) list.children[wrong]?.append(this.refusal);
+    if (mistakenIndex !== null) list.children[mistakenIndex]?.append(this.refusal);
     else list.after(this.refusal);
     element<HTMLButtonElement>('routine-undo').disabled = !canUndo;
     for (const name of ['start', 'write']) element<HTMLButtonElement>(`routine-${name}`).disabled = !shown || refused !== null;
@@ -223,87 +223,87 @@ export class RoutinesView {
   }
 
   /** Makes the block of the step at an index. */
-  private block(at: number): HTMLLIElement {
+  private makeBlock(index: number): HTMLLIElement {
     const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
-    this.drag(grip, at);
-    const input = make('input', { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63, ariaLabel: `Step ${at + 1}` });
+    this.drag(grip, index);
+    const input = make('input', { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63, ariaLabel: `Step ${index + 1}` });
     const block = make('li', {}, grip, input);
-    input.addEventListener('change', () => void this.change(this.shown?.steps.with(at, input.value.trim()) ?? []));
-    const button = (text: string, name: string, act: () => Promise<void>, next: () => number) => {
-      const made = make('button', { type: 'button', ariaLabel: `${name} ${at + 1}` }, text);
-      block.append(made);
+    input.addEventListener('change', () => void this.change(this.shown?.steps.with(index, input.value.trim()) ?? []));
+    const addButton = (text: string, label: string, act: () => Promise<void>, nextIndex: () => number) => {
+      const buttonElement = make('button', { type: 'button', ariaLabel: `${label} ${index + 1}` }, text);
+      block.append(buttonElement);
       // The focus follows the step to its new index.
-      made.addEventListener('click', () => void act().then(() => this.button(next(), name)?.focus()));
+      buttonElement.addEventListener('click', () => void act().then(() => this.findButton(nextIndex(), label)?.focus()));
     };
-    button('↑', 'Move up step', () => this.move(at, at - 1), () => Math.max(0, at - 1));
-    button('↓', 'Move down step', () => this.move(at, at + 1), () => Math.min(at + 1, this.list.children.length - 1));
-    button('Copy', 'Copy step', () => this.change(this.shown?.steps.toSpliced(at, 0, this.shown.steps[at] ?? '') ?? []), () => at + 1);
-    button('×', 'Delete step', () => this.change(this.shown?.steps.toSpliced(at, 1) ?? []), () => Math.min(at, this.list.children.length - 1));
+    addButton('↑', 'Move up step', () => this.move(index, index - 1), () => Math.max(0, index - 1));
+    addButton('↓', 'Move down step', () => this.move(index, index + 1), () => Math.min(index + 1, this.list.children.length - 1));
+    addButton('Copy', 'Copy step', () => this.change(this.shown?.steps.toSpliced(index, 0, this.shown.steps[index] ?? '') ?? []), () => index + 1);
+    addButton('×', 'Delete step', () => this.change(this.shown?.steps.toSpliced(index, 1) ?? []), () => Math.min(index, this.list.children.length - 1));
     return block;
   }
 
-  private button(at: number, name: string): HTMLButtonElement | null {
-    return this.list.children[at]?.querySelector(`[aria-label^="${name}"]`) ?? null;
+  private findButton(index: number, label: string): HTMLButtonElement | null {
+    return this.list.children[index]?.querySelector(`[aria-label^="${label}"]`) ?? null;
   }
 
   /** Lets a pointer drag a step by its grip to another index; the predicted path follows. */
-  private drag(grip: HTMLElement, at: number): void {
-    const place = (y: number) => [...this.list.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
-    const to = (to: number) => {
+  private drag(grip: HTMLElement, index: number): void {
+    const indexAt = (y: number) => [...this.list.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
+    const dragTo = (to: number) => {
       if (!this.dragged || this.dragged.to === to) return;
-      this.dragged = { from: at, to };
+      this.dragged = { from: index, to };
       this.showSteps();
       this.predict();
     };
     grip.addEventListener('pointerdown', (event) => {
       event.preventDefault();
       grip.setPointerCapture(event.pointerId);
-      this.dragged = { from: at, to: at };
+      this.dragged = { from: index, to: index };
       this.showSteps();
     });
-    grip.addEventListener('pointermove', ({ clientY }) => to(Math.max(0, place(clientY))));
+    grip.addEventListener('pointermove', ({ clientY }) => dragTo(Math.max(0, indexAt(clientY))));
     grip.addEventListener('pointerup', () => {
       const { dragged } = this;
       this.dragged = null;
-      if (dragged && dragged.to !== at) void this.move(at, dragged.to);
+      if (dragged && dragged.to !== index) void this.move(index, dragged.to);
       else this.showSteps();
     });
     grip.addEventListener('pointercancel', () => {
-      to(at);
+      dragTo(index);
       this.dragged = null;
       this.showSteps();
     });
   }
 
   private draw(path: RoundPath | null): void {
-    const end = path?.places.at(-1) ?? null;
-    this.path.toggleAttribute('hidden', end === null);
-    element('routine-round').textContent = path && end ? describeRound(path, end) : '';
-    if (!path || !end) return;
+    const endPlace = path?.places.at(-1) ?? null;
+    this.path.toggleAttribute('hidden', endPlace === null);
+    element('routine-round').textContent = path && endPlace ? describeRound(path, endPlace) : '';
+    if (!path || !endPlace) return;
     const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
-    const side = (values: number[]) => {
+    const rangeOf = (values: number[]) => {
       const [smallest, largest] = [Math.min(...values), Math.max(...values)];
-      const size = Math.max(LEAST, largest - smallest) + 2 * RIM;
+      const size = Math.max(LEAST_SIZE, largest - smallest) + 2 * PICTURE_MARGIN;
       return { from: (smallest + largest - size) / 2, size };
     };
-    const [across, down] = [side(xs), side(ys)];
-    this.path.setAttribute('viewBox', `${across.from} ${down.from} ${across.size} ${down.size}`);
-    const part = (name: string) => this.path.querySelector(`.${name}`);
-    part('track')?.setAttribute('d', `M ${xs.map((x, n) => `${x.toFixed(1)} ${ys[n]?.toFixed(1)}`).join(' L ')}`);
-    const size = Math.max(across.size, down.size) / 20;
-    part('start')?.setAttribute('r', String(size / 3));
-    part('end')?.setAttribute('transform', `translate(${end.x} ${-end.y}) rotate(${-end.heading}) scale(${size})`);
+    const [horizontal, vertical] = [rangeOf(xs), rangeOf(ys)];
+    this.path.setAttribute('viewBox', `${horizontal.from} ${vertical.from} ${horizontal.size} ${vertical.size}`);
+    const findPart = (name: string) => this.path.querySelector(`.${name}`);
+    findPart('track')?.setAttribute('d', `M ${xs.map((x, n) => `${x.toFixed(1)} ${ys[n]?.toFixed(1)}`).join(' L ')}`);
+    const size = Math.max(horizontal.size, vertical.size) / 20;
+    findPart('start')?.setAttribute('r', String(size / 3));
+    findPart('end')?.setAttribute('transform', `translate(${endPlace.x} ${-endPlace.y}) rotate(${-endPlace.heading}) scale(${size})`);
   }
 }
 
 /** Returns the index of the step that a refusal names; null if it names none. */
-function mistakenStep({ refused }: Refused): number | null {
-  const number = /: step (\d+), /.exec(refused)?.[1];
-  return number === undefined ? null : Number(number) - 1;
+function mistakenStepOf({ refused }: Refused): number | null {
+  const stepText = /: step (\d+), /.exec(refused)?.[1];
+  return stepText === undefined ? null : Number(stepText) - 1;
 }
 
 function describeRound({ seconds, is_cut }: RoundPath, { x, y, heading }: Place): string {
-  const what = is_cut ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
-  const aside = `${round(Math.abs(x))} mm to the ${x > 0 ? 'right' : 'left'}`;
-  return `${what} ${is_cut ? 'end' : 'ends'} ${round(y)} mm ahead and ${aside} of its start, turned by ${round(heading)}°.`;
+  const subject = is_cut ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
+  const sideText = `${formatRounded(Math.abs(x))} mm to the ${x > 0 ? 'right' : 'left'}`;
+  return `${subject} ${is_cut ? 'end' : 'ends'} ${formatRounded(y)} mm ahead and ${sideText} of its start, turned by ${formatRounded(heading)}°.`;
 }

@@ -7,7 +7,7 @@ import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
 
 /** Time span of the scope, cycles: three frames. */
-const SPAN = 0.06 * FREQUENCY;
+const SPAN_CYCLES = 0.06 * FREQUENCY;
 const CYCLES_PER_US = FREQUENCY / 1e6;
 
 interface Pulse {
@@ -48,9 +48,9 @@ export class ScopeView {
   }
 
   /** Switches to a simulated or a real board. */
-  link(real: boolean): void {
-    this.hasPulses = !real;
-    this.note.hidden = !real;
+  link(isReal: boolean): void {
+    this.hasPulses = !isReal;
+    this.note.hidden = !isReal;
     this.pulses = [];
     this.widths = [0, 0, 0, 0];
   }
@@ -80,32 +80,32 @@ export class ScopeView {
     });
   }
 
-  draw(now: number): void {
+  draw(currentCycle: number): void {
     const area = surface(this.canvas);
     if (!area) return;
     const { pen, width, height } = area;
-    const row = height / 4;
-    const x = (cycle: number) => width * (1 - (now - cycle) / SPAN);
+    const rowHeight = height / 4;
+    const xOf = (cycle: number) => width * (1 - (currentCycle - cycle) / SPAN_CYCLES);
     for (let servo = 0; servo < 4; servo++) {
-      const low = (servo + 1) * row - 3;
-      const high = servo * row + 5;
+      const lowY = (servo + 1) * rowHeight - 3;
+      const highY = servo * rowHeight + 5;
       pen.strokeStyle = palette().grid;
       pen.lineWidth = 1;
-      pen.strokeRect(-1, servo * row, width + 2, row);
+      pen.strokeRect(-1, servo * rowHeight, width + 2, rowHeight);
       if (!this.hasPulses) continue;
       pen.strokeStyle = servoColour(servo);
       pen.lineWidth = 2;
       pen.beginPath();
-      pen.moveTo(0, low);
+      pen.moveTo(0, lowY);
       for (const pulse of this.pulses) {
-        if (pulse.servo !== servo || x(pulse.rise + pulse.width) < 0) continue;
-        const [from, to] = [x(pulse.rise), x(pulse.rise + pulse.width)];
-        pen.lineTo(from, low);
-        pen.lineTo(from, high);
-        pen.lineTo(to, high);
-        pen.lineTo(to, low);
+        if (pulse.servo !== servo || xOf(pulse.rise + pulse.width) < 0) continue;
+        const [from, to] = [xOf(pulse.rise), xOf(pulse.rise + pulse.width)];
+        pen.lineTo(from, lowY);
+        pen.lineTo(from, highY);
+        pen.lineTo(to, highY);
+        pen.lineTo(to, lowY);
       }
-      pen.lineTo(width, low);
+      pen.lineTo(width, lowY);
       pen.stroke();
     }
   }

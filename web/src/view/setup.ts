@@ -177,9 +177,9 @@ export class Setup implements Tools {
     opener.setAttribute('aria-expanded', 'false');
     opener.focus();
     this.drop(message !== '');
-    const left = element('setup-left');
-    left.textContent = message;
-    left.hidden = message === '';
+    const leaveMessage = element('setup-left');
+    leaveMessage.textContent = message;
+    leaveMessage.hidden = message === '';
   }
 
   readonly done = (step: string): void => {
@@ -194,20 +194,20 @@ export class Setup implements Tools {
     void this.connectBoard();
   };
 
-  readonly write = (what: WriteContent): void => {
+  readonly write = (content: WriteContent): void => {
     this.guide = null;
     this.act(async () => {
       const { message, progress } = this;
-      if (await this.writer.write(what, { message, progress })) this.done('Firmware');
+      if (await this.writer.write(content, { message, progress })) this.done('Firmware');
       return message.textContent ?? '';
     });
   };
 
   readonly setCalibration = (text: string, name: string): void => {
     this.act(async () => {
-      const set = parseCalibration(text, name);
+      const calibration = parseCalibration(text, name);
       const guide = await this.requireGuide();
-      await guide.setCalibration(set);
+      await guide.setCalibration(calibration);
       return `The robot has the calibration of ${name}. It is not saved yet.`;
     });
   };
@@ -231,13 +231,13 @@ export class Setup implements Tools {
       return;
     }
     this.isOwn = isOwn;
-    const number = ++this.actionCount;
+    const actionNumber = ++this.actionCount;
     this.hold(true);
     this.say('');
     this.runningAction = work()
       .catch(messageOf)
       .then((message) => {
-        if (number !== this.actionCount) return;
+        if (actionNumber !== this.actionCount) return;
         this.hold(false);
         this.say(message);
         this.update();
@@ -257,7 +257,7 @@ export class Setup implements Tools {
   }
 
   readonly go = (name: string): void => {
-    const step = STEPS.find((each) => each.name === name);
+    const step = STEPS.find((candidate) => candidate.name === name);
     if (step) this.enter(step);
   };
 
@@ -285,44 +285,44 @@ export class Setup implements Tools {
   readonly show = (): void => {
     const { step, session } = this;
     if (!session?.link) return;
-    const at = STEPS.indexOf(step);
-    this.steps.querySelectorAll('button').forEach((each, n) => {
-      each.toggleAttribute('aria-current', n === at);
-      if (n === at) {
-        each.setAttribute('aria-current', 'step');
-        this.steps.scrollLeft = each.offsetLeft - this.steps.offsetLeft - (this.steps.clientWidth - each.offsetWidth) / 2;
+    const index = STEPS.indexOf(step);
+    this.steps.querySelectorAll('button').forEach((stepButton, n) => {
+      stepButton.toggleAttribute('aria-current', n === index);
+      if (n === index) {
+        stepButton.setAttribute('aria-current', 'step');
+        this.steps.scrollLeft = stepButton.offsetLeft - this.steps.offsetLeft - (this.steps.clientWidth - stepButton.offsetWidth) / 2;
       }
-      each.classList.toggle('done', this.isDone(STEPS[n].name));
+      stepButton.classList.toggle('done', this.isDone(STEPS[n].name));
     });
-    this.title.textContent = `${at + 1} of ${STEPS.length}: ${step.title}`;
-    element<HTMLButtonElement>('setup-back').disabled = at === 0;
-    element<HTMLButtonElement>('setup-next').disabled = at === STEPS.length - 1;
+    this.title.textContent = `${index + 1} of ${STEPS.length}: ${step.title}`;
+    element<HTMLButtonElement>('setup-back').disabled = index === 0;
+    element<HTMLButtonElement>('setup-next').disabled = index === STEPS.length - 1;
     const isLost = this.isLost && step !== board;
-    const can = !isLost && (!step.needsRobot || session.answers);
-    this.servos.hidden = !can || !step.isByServo;
-    this.servos.querySelectorAll('button').forEach((each, servo) => each.setAttribute('aria-pressed', String(servo === this.servo)));
+    const isUsable = !isLost && (!step.needsRobot || session.answers);
+    this.servos.hidden = !isUsable || !step.isByServo;
+    this.servos.querySelectorAll('button').forEach((servoButton, servo) => servoButton.setAttribute('aria-pressed', String(servo === this.servo)));
     const scene = session.last?.scene ?? null;
-    const shown = can && step.drawing && scene ? drawing(session.description, scene, step.drawing(this)) : null;
-    this.picture.replaceChildren(...(shown ? [shown] : []));
-    this.picture.hidden = !shown;
-    const elsewhere = () => {
+    const drawingElement = isUsable && step.drawing && scene ? drawing(session.description, scene, step.drawing(this)) : null;
+    this.picture.replaceChildren(...(drawingElement ? [drawingElement] : []));
+    this.picture.hidden = !drawingElement;
+    const tryOnSimulation = () => {
       this.isLost = false;
       this.enter(step);
     };
-    const parts = can
+    const parts = isUsable
       ? step.parts(this)
       : [
           words(isLost ? LOST : NO_ROBOT),
           row(
             button(isLost ? 'Connect it again…' : 'To the board', isLost ? this.connect : () => this.go(board.name), true),
-            ...(isLost ? [button('Try this step on the simulated UNO', elsewhere)] : []),
+            ...(isLost ? [button('Try this step on the simulated UNO', tryOnSimulation)] : []),
           ),
         ];
     // The keyboard's focus stays on the same button, or goes to the next one.
-    const focused = this.what.contains(document.activeElement) ? document.activeElement?.textContent : null;
+    const focusedText = this.what.contains(document.activeElement) ? document.activeElement?.textContent : null;
     this.what.replaceChildren(...parts);
-    if (focused === null) return;
+    if (focusedText === null) return;
     const buttons = [...this.what.querySelectorAll('button')];
-    (buttons.find(({ textContent }) => textContent === focused) ?? this.what.querySelector<HTMLElement>('button.main') ?? this.title).focus();
+    (buttons.find(({ textContent }) => textContent === focusedText) ?? this.what.querySelector<HTMLElement>('button.main') ?? this.title).focus();
   };
 }

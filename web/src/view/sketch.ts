@@ -1,4 +1,5 @@
-// A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused during the drag.
+// A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused during
+// the drag.
 import { LatestQuestion } from '../latest';
 import type { Edits, Length, Scene, Point } from '../robot';
 import { robotHelper } from '../robot-helper';
@@ -16,9 +17,9 @@ type Answer = ReturnType<RobotFunctions['lengths']>;
 
 const SVG = 'http://www.w3.org/2000/svg';
 /** Movement of the pointer beyond which a press is a drag, CSS pixels. */
-const STILL = 3;
+const DRAG_THRESHOLD = 3;
 /** Margin around the robot, mm. */
-const RIM = 14;
+const MARGIN = 14;
 
 export class Sketch {
   private readonly panel = element<HTMLDetailsElement>('lengths-panel');
@@ -57,7 +58,7 @@ export class Sketch {
 
   private start(): NonNullable<typeof this.sketches> {
     const helper = robotHelper(this.module);
-    return new LatestQuestion((question) => helper.ask((robot) => robot.lengths(question)), (answer) => this.answered(answer));
+    return new LatestQuestion((question) => helper.ask((robot) => robot.lengths(question)), (answer) => this.handleAnswer(answer));
   }
 
   /** Requests a drawing of the robot as it is, and the range of the slider's length. */
@@ -80,16 +81,16 @@ export class Sketch {
     return new Map(this.session().description.lengths.map((length) => [length.key, length]));
   }
 
-  private answered({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
+  private handleAnswer({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
     if (scene) this.draw(scene, edits.length === 0);
-    if (range) this.ranged(range);
+    if (range) this.handleRange(range);
     if (edits.length === 0) return;
     // The answer to `offer`: the user typed a number that was refused.
     if (isLast && !this.isEnding) return showOffers({ nearest, without }, this.session());
     if (!isLast) this.fit.follow(refusal ? null : text);
     const { lengths } = this.session().description;
-    const stays = !isLast ? '' : nearest ? ` It is ${words(nearest.lengths, lengths)}, the nearest that does.` : ' It stays as it was.';
-    this.message.textContent = refusal ? `${refusalOf(words(edits, lengths), edits, refusal, lengths)}${stays}` : `${words(edits, lengths)}.`;
+    const stayText = !isLast ? '' : nearest ? ` It is ${words(nearest.lengths, lengths)}, the nearest that does.` : ' It stays as it was.';
+    this.message.textContent = refusal ? `${refusalOf(words(edits, lengths), edits, refusal, lengths)}${stayText}` : `${words(edits, lengths)}.`;
     this.message.classList.toggle('refusal', refusal !== null);
     if (isLast) void this.end(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session()));
   }
@@ -111,43 +112,43 @@ export class Sketch {
     this.askRobot();
   }
 
-  private ranged(range: [number, number]): void {
+  private handleRange(range: [number, number]): void {
     this.slider.setRange(range);
-    if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (found, message) => this.slider.mark(found, message));
+    if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.mark(printable, message));
   }
 
   /**
    * Draws the robot; if `isWhole`, also fits the view to it. During a drag the view and the joints' elements stay.
    */
   private draw(scene: Scene, isWhole: boolean): void {
-    const at = ([x, y]: Point): Point => [x, -y];
+    const pictureOf = ([x, y]: Point): Point => [x, -y];
     const lengths = this.lengths();
     this.drawnBars.replaceChildren(
       ...bars(scene).map(({ key, from, to }) => {
         const line = document.createElementNS(SVG, 'line');
-        const [[x1, y1], [x2, y2]] = [at(from), at(to)];
+        const [[x1, y1], [x2, y2]] = [pictureOf(from), pictureOf(to)];
         for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) line.setAttribute(name, String(value));
         line.dataset.key = key;
         const length = lengths.get(key);
         const title = line.appendChild(document.createElementNS(SVG, 'title'));
         title.textContent = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
-        line.addEventListener('click', () => this.point(key));
+        line.addEventListener('click', () => this.selectInput(key));
         return line;
       }),
     );
-    const spots = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(at);
+    const points = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(pictureOf);
     if (isWhole && !this.dragged) {
-      const [xs, ys] = [spots.map(([x]) => x), spots.map(([, y]) => y)];
-      const [left, top] = [Math.min(...xs) - RIM, Math.min(...ys) - RIM];
-      this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + RIM - left} ${Math.max(...ys) + RIM - top}`);
+      const [xs, ys] = [points.map(([x]) => x), points.map(([, y]) => y)];
+      const [left, top] = [Math.min(...xs) - MARGIN, Math.min(...ys) - MARGIN];
+      this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + MARGIN - left} ${Math.max(...ys) + MARGIN - top}`);
     }
     if (this.dragged) {
       // Joints are drawn where their lengths put them, so the dragged joint may be away from the pointer.
-      joints(scene, () => 0).forEach(({ at: spot }, n) => this.place(this.drawnJoints.children[n], at(spot)));
+      joints(scene, () => 0).forEach(({ at: point }, n) => this.place(this.drawnJoints.children[n], pictureOf(point)));
       return;
     }
-    const value = (key: string) => lengths.get(key)?.value ?? 0;
-    this.drawnJoints.replaceChildren(...joints(scene, value).map((joint) => this.joint(joint, at(joint.at))));
+    const lengthOf = (key: string) => lengths.get(key)?.value ?? 0;
+    this.drawnJoints.replaceChildren(...joints(scene, lengthOf).map((joint) => this.makeJoint(joint, pictureOf(joint.at))));
   }
 
   private place(mark: Element | undefined, [x, y]: Point): void {
@@ -155,16 +156,16 @@ export class Sketch {
     mark?.setAttribute('cy', String(y));
   }
 
-  private joint(joint: Joint, at: Point): SVGCircleElement {
+  private makeJoint(joint: Joint, position: Point): SVGCircleElement {
     let start: [number, number] | null = null;
     const isDragged = ({ clientX, clientY }: PointerEvent) => {
-      if (start && Math.hypot(clientX - start[0], clientY - start[1]) > STILL) start = null;
+      if (start && Math.hypot(clientX - start[0], clientY - start[1]) > DRAG_THRESHOLD) start = null;
       return this.dragged === joint && start === null;
     };
     const mark = document.createElementNS(SVG, 'circle');
     mark.setAttribute('r', '3.6');
     mark.dataset.joint = joint.name;
-    this.place(mark, at);
+    this.place(mark, position);
     mark.appendChild(document.createElementNS(SVG, 'title')).textContent = joint.name;
     mark.addEventListener('pointerdown', (event) => {
       if (this.isEnding) return;
@@ -187,14 +188,14 @@ export class Sketch {
   }
 
   private drag(joint: Joint, { clientX, clientY }: PointerEvent, isLast = false): void {
-    const place = this.picture.getScreenCTM();
-    if (!place) return;
-    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
+    const matrix = this.picture.getScreenCTM();
+    if (!matrix) return;
+    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
     this.tryOut(joint.lengthsAt([x, -y], this.symmetric.checked), isLast);
   }
 
   /** Selects the number input for the length of a clicked bar. */
-  private point(key: string): void {
+  private selectInput(key: string): void {
     const input = document.querySelector<HTMLInputElement>(`#lengths input[name="${key}"]`);
     input?.focus();
     input?.select();

@@ -58,20 +58,20 @@ const KEYS: Record<string, Direction> = {
 export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string | null {
   const size = Math.hypot(ahead, left);
   if (size < DEAD_ZONE) return null;
-  const largest = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
-  const [farthest, widest] = [largest(({ forward }) => forward), largest(({ turn }) => turn)];
+  const largestOf = (componentOf: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(componentOf(displacement) ?? 0)), 0);
+  const [largestForward, largestTurn] = [largestOf(({ forward }) => forward), largestOf(({ turn }) => turn)];
   // A drift counts as zero, even if no gait that turns is predicted yet and the drift would be the largest turn.
-  const share = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
+  const shareOf = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
   let best: { command: string; value: number } | null = null;
   for (const { command, displacement } of choices) {
-    const x = share(displacement.forward, MIN_DISPLACEMENT.ahead, farthest);
-    const y = share(displacement.turn, MIN_DISPLACEMENT.turn, widest);
+    const x = shareOf(displacement.forward, MIN_DISPLACEMENT.ahead, largestForward);
+    const y = shareOf(displacement.turn, MIN_DISPLACEMENT.turn, largestTurn);
     if (x === 0 && y === 0) continue;
-    const long = Math.hypot(x, y);
-    const cosine = (x * ahead + y * left) / (long * size);
+    const length = Math.hypot(x, y);
+    const cosine = (x * ahead + y * left) / (length * size);
     if (cosine < MIN_COSINE) continue;
     // Direction counts more than distance, so that no arc is taken for straight ahead.
-    const value = cosine ** 4 * Math.min(1, long) ** 0.25;
+    const value = cosine ** 4 * Math.min(1, length) ** 0.25;
     if (!best || value > best.value) best = { command, value };
   }
   return best?.command ?? null;
@@ -116,14 +116,14 @@ export class Steer {
       this.isAway = true;
       this.release();
     });
-    for (const back of ['focus', 'pointerdown', 'keydown']) addEventListener(back, () => (this.isAway = false), true);
+    for (const eventName of ['focus', 'pointerdown', 'keydown']) addEventListener(eventName, () => (this.isAway = false), true);
     document.addEventListener('visibilitychange', () => document.hidden && this.release());
     this.stick.addEventListener('pointerdown', (event) => {
       this.stick.setPointerCapture(event.pointerId);
       this.drag(event);
     });
     this.stick.addEventListener('pointermove', (event) => this.stick.hasPointerCapture(event.pointerId) && this.drag(event));
-    for (const end of ['pointerup', 'pointercancel'] as const) this.stick.addEventListener(end, () => this.drag(null));
+    for (const eventName of ['pointerup', 'pointercancel'] as const) this.stick.addEventListener(eventName, () => this.drag(null));
   }
 
   /** Reads the gamepads; called for every frame of the page. */
@@ -153,12 +153,12 @@ export class Steer {
     this.follow();
   }
 
-  /** Releases everything that is held; if `stops`, also stops a robot that walks because of it. */
-  release(stops = true): void {
+  /** Releases everything that is held; if `stopsRobot`, also stops a robot that walks because of it. */
+  release(stopsRobot = true): void {
     this.held.clear();
     this.atPad = { ahead: 0, left: 0 };
     this.isPadActive = false;
-    if (!stops) this.walking = null;
+    if (!stopsRobot) this.walking = null;
     this.drag(null);
   }
 
@@ -183,12 +183,12 @@ export class Steer {
 
   private drag(event: PointerEvent | null): void {
     const { left, top, width, height } = this.stick.getBoundingClientRect();
-    const half = Math.min(width, height) / 2 || 1;
-    let [x, y] = event ? [(event.clientX - left - width / 2) / half, (event.clientY - top - height / 2) / half] : [0, 0];
-    const beyond = Math.max(1, Math.hypot(x, y));
-    [x, y] = [x / beyond, y / beyond];
+    const radius = Math.min(width, height) / 2 || 1;
+    let [x, y] = event ? [(event.clientX - left - width / 2) / radius, (event.clientY - top - height / 2) / radius] : [0, 0];
+    const divisor = Math.max(1, Math.hypot(x, y));
+    [x, y] = [x / divisor, y / divisor];
     this.atStick = { ahead: -y, left: -x };
-    this.knob.style.translate = `${x * half * 0.6}px ${y * half * 0.6}px`;
+    this.knob.style.translate = `${x * radius * 0.6}px ${y * radius * 0.6}px`;
     this.follow();
   }
 
@@ -199,19 +199,19 @@ export class Steer {
       direction.left += KEYS[code]?.left ?? 0;
     }
     const size = Math.hypot(direction.ahead, direction.left);
-    const nothing = this.isBarred() || size < DEAD_ZONE;
-    const isHalf = !nothing && size < (this.fullPace === null ? HALF_PACE : FULL_PACE);
-    if (isHalf && this.fullPace === null) {
+    const isIdle = this.isBarred() || size < DEAD_ZONE;
+    const isHalfPace = !isIdle && size < (this.fullPace === null ? HALF_PACE : FULL_PACE);
+    if (isHalfPace && this.fullPace === null) {
       this.fullPace = this.pace();
       this.send(`${WORDS.speed} ${Math.max(MIN_PACE, Math.round(this.fullPace / 2))}`);
     }
-    const gait = nothing ? null : gaitFor(direction, this.choices());
+    const gait = isIdle ? null : gaitFor(direction, this.choices());
     // Without a gait for this direction the current one goes on.
-    if (gait !== this.walking && (nothing || gait !== null)) {
+    if (gait !== this.walking && (isIdle || gait !== null)) {
       this.walking = gait;
       this.send(gait ?? WORDS.stop);
     }
-    if (!isHalf && this.fullPace !== null) {
+    if (!isHalfPace && this.fullPace !== null) {
       this.send(`${WORDS.speed} ${this.fullPace}`);
       this.fullPace = null;
     }

@@ -15,18 +15,18 @@ export interface GaitEditor {
   /** The edited gait; null if there is none. */
   made(): EditedGait | null;
   /** Sets one of the valid values that a refusal offers. */
-  change(what: Alternative, value: number): void;
+  change(key: Alternative, value: number): void;
 }
 
-const number = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
+const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
 /** Formats the figures of a trial; the speed is in deg/s for a turn on the spot. */
 export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
-  const [displacement, sign] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
+  const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
-    way: number(forward, ' mm'),
-    speed: displacement === null ? '–' : number(displacement / period, sign),
-    turn: number(turn, '°'),
+    way: formatNumber(forward, ' mm'),
+    speed: displacement === null ? '–' : formatNumber(displacement / period, speedUnit),
+    turn: formatNumber(turn, '°'),
     least: `${least.toFixed(3)} of ${limit} (${margin.replaceAll('_', ' ')})`,
     fastest: `${servo}, ${speed.toFixed(0)} °/s`,
     cycle: `${period} s`,
@@ -50,7 +50,7 @@ export class TrialView {
     private readonly writer: Writer,
     private readonly editor: GaitEditor,
   ) {
-    this.element('try').addEventListener('click', () => void this.tryIt());
+    this.element('try').addEventListener('click', () => void this.tryEditedGait());
     this.element('write').addEventListener('click', () => void this.write());
     this.element('copy').addEventListener('click', () => void this.copy());
   }
@@ -58,15 +58,15 @@ export class TrialView {
   /** Requests a trial of the edited gait. */
   predict(): void {
     const { toml, floor, servos } = this.session();
-    const made = this.editor.made();
-    if (!made || toml === '') return;
+    const gait = this.editor.made();
+    if (!gait || toml === '') return;
     this.trials ??= this.start();
-    this.trials.ask({ toml, floor, servos, made });
+    this.trials.ask({ toml, floor, servos, made: gait });
   }
 
   private start(): NonNullable<typeof this.trials> {
     const helper = robotHelper(this.module);
-    return new LatestQuestion((question) => helper.ask<Trial | NoTrial | null>((robot) => robot.trial(question)), (trial) => this.answered(trial));
+    return new LatestQuestion((question) => helper.ask<Trial | NoTrial | null>((robot) => robot.trial(question)), (trial) => this.handleAnswer(trial));
   }
 
   say(text: string): void {
@@ -77,41 +77,41 @@ export class TrialView {
     return element<E>(`${this.editor.prefix}-${name}`);
   }
 
-  private answered(trial: Trial | NoTrial | null): void {
-    const refused = trial && isRefused(trial) ? trial : null;
-    const well = trial && !isRefused(trial) ? trial : null;
-    this.trial = well;
-    for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !well;
-    const put = (name: string, text: string) => (this.element(name).textContent = text);
-    const known = well && figures(well);
-    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) put(name, known?.[name] ?? '–');
-    put('table', well?.table ?? '');
-    this.element('no').hidden = refused === null;
-    put('refusal', refused?.refused ?? '');
+  private handleAnswer(trial: Trial | NoTrial | null): void {
+    const refusal = trial && isRefused(trial) ? trial : null;
+    const validTrial = trial && !isRefused(trial) ? trial : null;
+    this.trial = validTrial;
+    for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !validTrial;
+    const setText = (name: string, text: string) => (this.element(name).textContent = text);
+    const shownFigures = validTrial && figures(validTrial);
+    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) setText(name, shownFigures?.[name] ?? '–');
+    setText('table', validTrial?.table ?? '');
+    this.element('no').hidden = refusal === null;
+    setText('refusal', refusal?.refused ?? '');
     this.element('instead').replaceChildren(
-      ...(refused?.instead ?? []).map(({ what, value }) => button(OFFERS[what](value), () => this.editor.change(what, value))),
+      ...(refusal?.instead ?? []).map(({ what, value }) => button(OFFERS[what](value), () => this.editor.change(what, value))),
     );
     this.say('');
   }
 
-  private async tryIt(): Promise<void> {
-    const made = this.editor.made();
-    if (!made) return;
+  private async tryEditedGait(): Promise<void> {
+    const gait = this.editor.made();
+    if (!gait) return;
     this.say('The robot restarts with this gait…');
-    const refused = await tryGait(this.session(), made, this.ask);
-    this.say(refused?.refused ?? `It does ${made.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
+    const refusal = await tryGait(this.session(), gait, this.ask);
+    this.say(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
   }
 
   private async write(): Promise<void> {
-    const made = this.editor.made();
-    if (!made) return;
+    const gait = this.editor.made();
+    if (!gait) return;
     const session = this.session();
     if (!session.isReal) return this.say(NO_BOARD);
-    const refused = await takeGait(session, made);
-    if (refused) return this.say(refused.refused);
+    const refusal = await takeGait(session, gait);
+    if (refusal) return this.say(refusal.refused);
     const message = this.element('said');
     if (!(await this.writer.write('robot', { message, progress: this.element<HTMLProgressElement>('progress') }))) return;
-    this.say(`${message.textContent}. The board has restarted; ${made.name.replaceAll('-', ' ')} is a button of Drive.`);
+    this.say(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 
   private async copy(): Promise<void> {

@@ -7,34 +7,37 @@ import { button } from './make';
 /** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin. */
 export function withTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
   const twin = lengths.find((length) => length.key === key)?.twin ?? key;
-  return [...new Set(isSymmetric ? [key, twin] : [key])].map((each) => [each, value]);
+  return [...new Set(isSymmetric ? [key, twin] : [key])].map((editedKey) => [editedKey, value]);
 }
 
 /** Lists lengths as a text, grouped by value, such as `l1 = l4 = 30 mm`. */
 export function words(edits: Edits, lengths: Length[]): string {
-  const by = new Map<number, string[]>();
-  for (const [key, value] of edits) by.set(value, [...(by.get(value) ?? []), key]);
-  const unit = (key = '') => lengths.find((length) => length.key === key)?.unit ?? 'mm';
-  return [...by].map(([value, keys]) => `${keys.map((key) => key.replace('links.', '')).join(' = ')} = ${value} ${unit(keys[0])}`).join(', ');
+  const keysByValue = new Map<number, string[]>();
+  for (const [key, value] of edits) keysByValue.set(value, [...(keysByValue.get(value) ?? []), key]);
+  const unitOf = (key = '') => lengths.find((length) => length.key === key)?.unit ?? 'mm';
+  return [...keysByValue].map(([value, keys]) => `${keys.map((key) => key.replace('links.', '')).join(' = ')} = ${value} ${unitOf(keys[0])}`).join(', ');
 }
 
-/** Describes why lengths are refused, beginning with the consequence for the robot; `named` are the user's lengths in words. */
-export function refusalOf(named: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
-  const known = new Map(lengths.map((length) => [length.key, length]));
-  const ways = edits.map(([each, value]) => value - (known.get(each)?.value ?? value));
-  const [more, less] = edits.every(([each]) => known.get(each)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
-  const how = ways.every((way) => way >= 0) ? `too ${more}` : ways.every((way) => way <= 0) ? `too ${less}` : 'not possible';
+/**
+ * Describes why lengths are refused, beginning with the consequence for the robot; `lengthsText` names the user's
+ * lengths.
+ */
+export function refusalOf(lengthsText: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
+  const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
+  const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
+  const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
+  const judgement = changes.every((change) => change >= 0) ? `too ${more}` : changes.every((change) => change <= 0) ? `too ${less}` : 'not possible';
   // Without a meaning the message has the key as its subject.
-  const why = meaning ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, known.get(key)?.label ?? key);
-  return `${named} is ${how}: ${why}.`;
+  const reason = meaning ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
+  return `${lengthsText} is ${judgement}: ${reason}.`;
 }
 
 /** Shows a button for each valid alternative to refused lengths; removes the buttons for null. */
-export function showOffers(tried: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
-  const { nearest = null, without = null } = tried ?? {};
-  const change = (text: string) => () => void session.change(text);
+export function showOffers(alternatives: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
+  const { nearest = null, without = null } = alternatives ?? {};
+  const changeTo = (text: string) => () => void session.change(text);
   element('lengths-instead').replaceChildren(
-    ...(nearest ? [button(`Try ${words(nearest.lengths, session.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, change(nearest.text))] : []),
-    ...(without ? [button(`Drop “${without.gait.replaceAll('-', ' ')}”`, change(without.text))] : []),
+    ...(nearest ? [button(`Try ${words(nearest.lengths, session.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, changeTo(nearest.text))] : []),
+    ...(without ? [button(`Drop “${without.gait.replaceAll('-', ' ')}”`, changeTo(without.text))] : []),
   );
 }

@@ -15,15 +15,15 @@ export class Troubles {
 
   /** Shows the message for a cause, replacing the last one; null removes it. */
   say(cause: Cause, message: string | null, remedy: Remedy | null = null): void {
-    const before = this.lines.get(cause);
-    if (message !== null && before?.firstChild?.textContent === message) return;
-    before?.remove();
+    const previousLine = this.lines.get(cause);
+    if (message !== null && previousLine?.firstChild?.textContent === message) return;
+    previousLine?.remove();
     this.lines.delete(cause);
-    if (message !== null) this.lines.set(cause, this.line(cause, message, remedy));
+    if (message !== null) this.lines.set(cause, this.addLine(cause, message, remedy));
     this.box.hidden = this.lines.size === 0;
   }
 
-  private line(cause: Cause, message: string, remedy: Remedy | null): HTMLElement {
+  private addLine(cause: Cause, message: string, remedy: Remedy | null): HTMLElement {
     const buttons = [...(remedy ? [button(remedy.label, remedy.act)] : []), button('Dismiss', () => this.say(cause, null))];
     const line = words(make('span', {}, message), ...buttons);
     this.box.append(line);

@@ -4,7 +4,7 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { make } from './make';
 
-const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
+const formatRounded = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
 
 /** The number format of each slider; the unit is in its label. */
 const FORMATS = {
@@ -14,7 +14,7 @@ const FORMATS = {
   twist: (value: number) => value.toFixed(1),
   friction: (value: number) => value.toFixed(2),
   ratio: (value: number) => value.toFixed(2),
-  mass: (value: number) => round(value, 0),
+  mass: (value: number) => formatRounded(value, 0),
 };
 type SliderName = keyof typeof FORMATS;
 const SLIDERS = Object.keys(FORMATS) as SliderName[];
@@ -114,9 +114,9 @@ export class World {
 
   /** Enables the sliders that have an effect, and disables the others. */
   private enableSliders(floor: Floor): void {
-    const springs = floor.kind !== 'rigid';
-    const isElastic = springs || this.session().servos !== 'ideal';
-    this.input('force').disabled = !springs;
+    const hasSprings = floor.kind !== 'rigid';
+    const isElastic = hasSprings || this.session().servos !== 'ideal';
+    this.input('force').disabled = !hasSprings;
     // If neither springs nor servos yield, friction has no effect, nor has mass if no foot is too long.
     this.input('friction').disabled = !isElastic;
     this.input('mass').disabled = !isElastic && floor.twist === 0;
@@ -131,21 +131,21 @@ export class World {
 
   private applyFloor(): void {
     // A slider that was not moved keeps its exact value.
-    const own = this.session().floor;
-    const number = (name: SliderName) => {
+    const currentFloor = this.session().floor;
+    const sliderValue = (name: SliderName) => {
       const input = this.input(name);
-      return FORMATS[name](own[name]) === FORMATS[name](input.valueAsNumber) ? own[name] : input.valueAsNumber;
+      return FORMATS[name](currentFloor[name]) === FORMATS[name](input.valueAsNumber) ? currentFloor[name] : input.valueAsNumber;
     };
     const floor: Floor = {
-      friction: number('friction'),
-      ratio: number('ratio'),
-      mass: number('mass'),
+      friction: sliderValue('friction'),
+      ratio: sliderValue('ratio'),
+      mass: sliderValue('mass'),
       kind: this.drive.value as Kind,
-      force: number('force'),
-      rate: own.rate,
-      play: number('play'),
-      leaf: number('leaf'),
-      twist: number('twist'),
+      force: sliderValue('force'),
+      rate: currentFloor.rate,
+      play: sliderValue('play'),
+      leaf: sliderValue('leaf'),
+      twist: sliderValue('twist'),
     };
     this.enableSliders(floor);
     this.session().setFloor(floor);

@@ -28,7 +28,7 @@ export class Writer {
   /** `busy` is called with true when the boot loader takes the link, and with false when the link is free again. */
   constructor(
     private readonly session: () => Session,
-    private readonly busy: (busy: boolean) => void,
+    private readonly busy: (isBusy: boolean) => void,
   ) {}
 
   /** True while the boot loader uses the link. */
@@ -37,31 +37,31 @@ export class Writer {
   }
 
   /** Writes and verifies, then waits for the board's banner; returns true if all of it succeeded. */
-  async write(what: WriteContent, { progress, message }: Display): Promise<boolean> {
+  async write(content: WriteContent, { progress, message }: Display): Promise<boolean> {
     if (this.isWriting) return false;
     const session = this.session();
     const { isReal } = session;
     const { name } = session.link;
     const start = performance.now();
-    const hash = typeof what === 'string' ? session.description.hash : null;
+    const hash = typeof content === 'string' ? session.description.hash : null;
     this.isWriting = true;
     this.busy(true);
     progress.hidden = false;
     progress.value = 0;
     message.textContent = 'calling the boot loader…';
     let isWritten = false;
-    const show: Progress = (step, done, of) => {
+    const show: Progress = (step, done, total) => {
       const [text, from, to] = STEPS[step];
       // The page with which the program starts is written after all others were verified.
-      progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / of);
+      progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
       if (message.textContent !== text) message.textContent = text;
     };
     try {
-      await (what === 'robot' ? session.flash(session.section, true, show) : session.flash(what === 'all' ? session.image : what, false, show));
+      await (content === 'robot' ? session.flash(session.section, true, show) : session.flash(content === 'all' ? session.image : content, false, show));
       isWritten = true;
       // The simulation must not be mistaken for a board.
-      const where = isReal ? '' : ` to the ${name}`;
-      message.textContent = `written${where} and verified in ${formatSeconds(performance.now() - start)}`;
+      const targetText = isReal ? '' : ` to the ${name}`;
+      message.textContent = `written${targetText} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
       message.textContent = `not written: ${messageOf(error)}`;
     }
@@ -69,9 +69,9 @@ export class Writer {
     this.isWriting = false;
     this.busy(false);
     if (!isWritten) return false;
-    const wrong = await session.waitForBanner(hash);
-    if (wrong === null) return true;
-    message.textContent = `written and verified; ${wrong}`;
+    const problem = await session.waitForBanner(hash);
+    if (problem === null) return true;
+    message.textContent = `written and verified; ${problem}`;
     return false;
   }
 }

@@ -89,13 +89,13 @@ impl Camera {
     pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<Vec<TagEntry>, Refused> {
         self.watched = None;
         let tags = self.film.add(seconds, picture).map_err(Refused::of)?;
-        let entry = |(id, corners): (usize, &Option<_>)| {
+        let entry_of = |(id, corners): (usize, &Option<_>)| {
             Some(TagEntry {
                 id,
                 corners: (*corners)?,
             })
         };
-        Ok(tags.iter().enumerate().filter_map(entry).collect())
+        Ok(tags.iter().enumerate().filter_map(entry_of).collect())
     }
 
     /// Measures gaits in the film.
@@ -103,20 +103,24 @@ impl Camera {
     /// # Errors
     /// Fails if the robot.toml is invalid, the robot has no such gait, the film does not show what is needed, or a
     /// walk without a given gait does not clearly resemble one.
-    pub fn measure(&mut self, asked: &Asked) -> Result<Results, Refused> {
-        let robot = Robot::parse(&asked.toml).map_err(Refused::of)?;
-        let gait = |walk: &AskedWalk| {
+    pub fn measure(&mut self, request: &Asked) -> Result<Results, Refused> {
+        let robot = Robot::parse(&request.toml).map_err(Refused::of)?;
+        let gait_of = |walk: &AskedWalk| {
             let gait = robot.gait(&walk.gait).filter(|gait| gait.moves());
             gait.ok_or_else(|| Refused::of(format!("no gait `{}` moves this robot", walk.gait)))
         };
-        let named: Vec<_> = asked.walks.iter().map(gait).collect::<Result<_, _>>()?;
+        let named_gaits: Vec<_> = request
+            .walks
+            .iter()
+            .map(gait_of)
+            .collect::<Result<_, _>>()?;
         let setup = Setup {
-            scale: asked.ruler / sheet::RULER,
-            height: asked.height.unwrap_or_else(|| height_of_board(&robot)),
+            scale: request.ruler / sheet::RULER,
+            height: request.height.unwrap_or_else(|| height_of_board(&robot)),
         };
-        let gaits = Gaits::new(&robot, &named, f64::from(asked.speed) / 100.0);
+        let gaits = Gaits::new(&robot, &named_gaits, f64::from(request.speed) / 100.0);
         let film = match self.watched.take() {
-            Some((with, film)) if with == setup => film,
+            Some((watched_setup, film)) if watched_setup == setup => film,
             _ => WatchedFilm {
                 name: "the film".to_owned(),
                 watched: self.film.watch(setup).map_err(Refused::of)?,
@@ -125,19 +129,26 @@ impl Camera {
         let (_, film) = self.watched.insert((setup, film));
         let films = std::slice::from_ref(&*film);
         let mut troubles = Vec::new();
-        let walks = match asked.walks.is_empty() {
+        let walks = match request.walks.is_empty() {
             true => gaits.walks(films).map_err(Refused::of)?,
             false => {
-                let measured = asked.walks.iter().enumerate().filter_map(|(i, asked)| {
-                    let walk = gaits.walk(i, &films[0], asked.during);
-                    walk.map_err(|why| troubles.push(format!("{}: {why}", asked.gait)))
-                        .ok()
-                });
-                measured.collect()
+                let measured_walks =
+                    request
+                        .walks
+                        .iter()
+                        .enumerate()
+                        .filter_map(|(i, asked_walk)| {
+                            let walk = gaits.walk(i, &films[0], asked_walk.during);
+                            walk.map_err(|reason| {
+                                troubles.push(format!("{}: {reason}", asked_walk.gait))
+                            })
+                            .ok()
+                        });
+                measured_walks.collect()
             }
         };
-        let report = Report::new(&robot, asked.speed, setup, films, &gaits, &walks);
-        let report = report.with_ranges(&robot).with_mujoco(&asked.toml);
+        let report = Report::new(&robot, request.speed, setup, films, &gaits, &walks);
+        let report = report.with_ranges(&robot).with_mujoco(&request.toml);
         Ok(Results {
             gaits: serde_json::to_value(&report.gaits).map_err(Refused::of)?,
             troubles,

@@ -50,8 +50,8 @@ export interface Range {
 ";
 
 impl From<Refused> for JsError {
-    fn from(refused: Refused) -> Self {
-        Self::new(&refused.refused)
+    fn from(refusal: Refused) -> Self {
+        Self::new(&refusal.refused)
     }
 }
 
@@ -108,9 +108,9 @@ impl PageCamera {
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Asked")] asked: &JsValue,
     ) -> Result<JsValue, JsError> {
-        let asked = JSON::stringify(asked).map_err(|_| JsError::new("this is no JSON"))?;
-        let asked = serde_json::from_str(&String::from(asked))?;
-        Ok(js(self.0.measure(&asked)?))
+        let json = JSON::stringify(asked).map_err(|_| JsError::new("this is no JSON"))?;
+        let request = serde_json::from_str(&String::from(json))?;
+        Ok(js(self.0.measure(&request)?))
     }
 
     /// Returns the sheet of tags as PDF, for paper of 11 x 8.5 inches if `is_letter`, else for A4.

@@ -95,11 +95,11 @@ impl Parts {
         #[wasm_bindgen(unchecked_param_type = "(done: number, all: number) => void")]
         progress: &Function,
     ) -> Result<Option<f64>, Refused> {
-        let proved = self.0.prove(|done, all| {
+        let proof = self.0.prove(|done, all| {
             // An error of the callback is ignored: a page that is no longer interested terminates the worker.
             let _ = progress.call2(&JsValue::NULL, &done.into(), &all.into());
         })?;
-        Ok(proved.least)
+        Ok(proof.least)
     }
 
     /// Makes a group of the files; `number` is the group's index, below `ModelEntry.files`.

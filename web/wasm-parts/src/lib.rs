@@ -1,4 +1,4 @@
-//! The robot's parts for the page: the very solids that `lizard parts` writes.
+//! The robot's parts for the page: the same solids that `lizard parts` writes.
 //!
 //! A browser that shows the robot in 3D needs the triangles once and then, for each picture, the
 //! place of every body. Bodies that move together share a mount, so a pose is one turn and one

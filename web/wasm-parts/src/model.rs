@@ -30,10 +30,10 @@ impl Refused {
 }
 
 impl From<BuildProblem> for Refused {
-    fn from(unfit: BuildProblem) -> Self {
+    fn from(problem: BuildProblem) -> Self {
         Self {
-            meeting: unfit.meeting(),
-            ..Self::of(unfit)
+            meeting: problem.meeting(),
+            ..Self::of(problem)
         }
     }
 }
@@ -132,17 +132,17 @@ impl Model {
     /// Describes the model for the page, without triangles.
     #[must_use]
     pub fn entry(&self) -> ModelEntry {
-        let mut soles: f64 = 0.0;
-        let mut bought = self.needed().count();
+        let mut sole_z: f64 = 0.0;
+        let mut next_bought = self.needed().count();
         let bodies = self.assembly.bodies().iter().map(|body| {
-            soles = soles.min(body.z()[0]);
-            let of_body = |part: &Part| part.bodies.contains(&body.name);
-            let part = self.needed().position(of_body);
+            sole_z = sole_z.min(body.z()[0]);
+            let has_body = |part: &Part| part.bodies.contains(&body.name);
+            let part = self.needed().position(has_body);
             let motion = part.map(|part| self.parts[part].print_to_body(body));
             let step = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
-                bought += 1;
-                bought - 1
+                next_bought += 1;
+                next_bought - 1
             });
             BodyEntry {
                 name: body.name.clone(),
@@ -152,27 +152,27 @@ impl Model {
                 step: step.map_or(0, |step| step + 1),
                 lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
                 part,
-                place: matrix(motion),
+                place: matrix_of(motion),
                 solid,
             }
         });
         let bodies = bodies.collect();
-        let part = |part: &Part| PartEntry {
+        let part_entry = |part: &Part| PartEntry {
             name: part.name.clone(),
             file: part.file(),
             count: part.count(),
         };
-        let step = |step: &Step| StepEntry {
+        let step_entry = |step: &Step| StepEntry {
             title: step.title,
             words: step.words.clone(),
         };
         ModelEntry {
             bodies,
-            parts: self.needed().map(part).collect(),
-            steps: self.steps.iter().map(step).collect(),
+            parts: self.needed().map(part_entry).collect(),
+            steps: self.steps.iter().map(step_entry).collect(),
             mounts: self.mounts.len(),
-            floor: -soles,
-            files: self.ordered().count() + 1,
+            floor: -sole_z,
+            files: self.ordered_parts().count() + 1,
         }
     }
 
@@ -188,11 +188,11 @@ impl Model {
     }
 
     fn mount(&self, mount: Mount) -> usize {
-        let known = self.mounts.iter().position(|known| *known == mount);
-        known.expect("a body's own")
+        let index = self.mounts.iter().position(|candidate| *candidate == mount);
+        index.expect("a body's own")
     }
 
-    /// The place of every mount at angles of the servos (deg, chassis frame) and lags of the
+    /// Returns the place of every mount at angles of the servos (deg, chassis frame) and lags of the
     /// legs behind them (deg, foot forward positive): x and y in mm, and the direction of the x
     /// axis. `None` if a loop does not close.
     #[must_use]
@@ -200,40 +200,37 @@ impl Model {
         let pose = self.assembly.robot().lizard().solve(&angles.into()).ok()?;
         let plans = &self.assembly.layout().legs;
         let places = self.mounts.iter().map(|&mount| {
-            let as_led = self.assembly.place(mount, &pose);
-            let leg = |servo: usize| {
+            let driven_place = self.assembly.place(mount, &pose);
+            let leg_at = |servo: usize| {
                 let angle = angles[servo] - FORWARD[servo] * lag[servo];
                 (angle, plans[servo].at(angles[servo], angle))
             };
-            let Placement {
-                origin: at,
-                x_axis: turn,
-            } = match mount {
+            let Placement { origin, x_axis } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
-                    x_axis: Vector::direction(leg(servo).0),
-                    ..as_led
+                    x_axis: Vector::direction(leg_at(servo).0),
+                    ..driven_place
                 },
                 Mount::Foot(servo) => Placement {
-                    origin: leg(servo).1.joints[0],
-                    ..as_led
+                    origin: leg_at(servo).1.joints[0],
+                    ..driven_place
                 },
                 Mount::Strut(servo) => {
-                    let [from, to] = leg(servo).1.strut;
-                    let along = to - from;
+                    let [from, to] = leg_at(servo).1.strut;
+                    let direction = to - from;
                     Placement {
                         origin: from,
-                        x_axis: along * (1.0 / along.length()),
+                        x_axis: direction * (1.0 / direction.length()),
                     }
                 }
-                _ => as_led,
+                _ => driven_place,
             };
-            [at.x, at.y, turn.x, turn.y]
+            [origin.x, origin.y, x_axis.x, x_axis.y]
         });
         Some(places.collect())
     }
 
     /// All parts in the order in which `lizard parts` makes them: the coupon, if any, then also the alternatives.
-    fn ordered(&self) -> impl Iterator<Item = Part> {
+    fn ordered_parts(&self) -> impl Iterator<Item = Part> {
         let coupon = coupon(self.assembly.robot().parts());
         coupon.into_iter().chain(self.parts.iter().cloned())
     }
@@ -245,8 +242,8 @@ impl Model {
     /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
-        let count = self.ordered().count();
-        if let Some(part) = self.ordered().nth(number) {
+        let count = self.ordered_parts().count();
+        if let Some(part) = self.ordered_parts().nth(number) {
             return Ok(part_files(&part, robot.parts().kerf)?);
         }
         if number > count {
@@ -268,7 +265,7 @@ impl Model {
         let proof = self.assembly.prove(progress);
         proof.judge().map_err(BuildProblem::from)?;
         Ok(Proved {
-            least: proof.nearest().map(|near| near.proved),
+            least: proof.nearest().map(|pair| pair.proved),
         })
     }
 }
@@ -281,8 +278,8 @@ pub struct Proved {
 }
 
 /// Returns the homogeneous matrix, by columns, of a solid's pose in its mount's frame; the identity for `None`.
-fn matrix(motion: Option<PrintToBody>) -> [f64; 16] {
-    let as_it_lies = PrintToBody {
+fn matrix_of(motion: Option<PrintToBody>) -> [f64; 16] {
+    let unmoved = PrintToBody {
         flipped: false,
         lift: 0.0,
         frame: Placement::CHASSIS,
@@ -291,16 +288,13 @@ fn matrix(motion: Option<PrintToBody>) -> [f64; 16] {
         flipped,
         lift,
         frame,
-    } = motion.unwrap_or(as_it_lies);
-    let Placement {
-        origin: at,
-        x_axis: turn,
-    } = frame;
-    let over = if flipped { -1.0 } else { 1.0 };
-    let across = turn.rotated_left() * over;
+    } = motion.unwrap_or(unmoved);
+    let Placement { origin, x_axis } = frame;
+    let z_sign = if flipped { -1.0 } else { 1.0 };
+    let y_axis = x_axis.rotated_left() * z_sign;
     [
-        turn.x, turn.y, 0.0, 0.0, across.x, across.y, 0.0, 0.0, 0.0, 0.0, over, 0.0, at.x, at.y,
-        lift, 1.0,
+        x_axis.x, x_axis.y, 0.0, 0.0, y_axis.x, y_axis.y, 0.0, 0.0, 0.0, 0.0, z_sign, 0.0,
+        origin.x, origin.y, lift, 1.0,
     ]
 }
 

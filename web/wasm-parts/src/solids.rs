@@ -24,10 +24,10 @@ impl Model {
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         let printed = self
             .needed()
-            .map(|part| mesh(&part.name, &part.printed_layers().0));
+            .map(|part| triangles_of(&part.name, &part.printed_layers().0));
         let bought = self
             .bought_bodies()
-            .map(|body| mesh(&body.name, &body.prisms));
+            .map(|body| triangles_of(&body.name, &body.prisms));
         printed.chain(bought).collect()
     }
 
@@ -37,7 +37,7 @@ impl Model {
     }
 }
 
-fn mesh(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
+fn triangles_of(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
     let mesh = Mesh::of(&Solid::of(prisms));
     if !mesh.is_closed() {
         return Err(lizard_parts::BuildProblem::Surface(name.to_owned()).into());

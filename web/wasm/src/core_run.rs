@@ -12,7 +12,7 @@ use tsify::Tsify;
 
 /// Number of steps of the analogue converter, and the voltage of the chip's internal reference, V.
 const FULL_SCALE: f64 = 1024.0;
-const REFERENCE: f64 = 1.1;
+const REFERENCE_VOLTS: f64 = 1.1;
 
 /// The output of a frame.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
@@ -48,10 +48,12 @@ impl CoreRun {
 
     /// Runs one frame of 20 ms at a supply in V; the core first receives the bytes from the serial line.
     pub fn frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
-        let parts = |volts: f64, of: f64| (FULL_SCALE * volts / of).clamp(0.0, FULL_SCALE - 1.0);
+        let converter_steps = |volts: f64, full_volts: f64| {
+            (FULL_SCALE * volts / full_volts).clamp(0.0, FULL_SCALE - 1.0)
+        };
         self.running.board.converter.set(Reading {
-            reference: parts(REFERENCE, volts).round() as u16,
-            rail: parts(self.rail_mv / 1000.0, volts) as u16,
+            reference: converter_steps(REFERENCE_VOLTS, volts).round() as u16,
+            rail: converter_steps(self.rail_mv / 1000.0, volts) as u16,
         });
         // The bytes arrive one by one, as on a serial line.
         for byte in bytes {
@@ -71,13 +73,13 @@ mod tests {
     use super::*;
     use lizard_robot::Robot;
 
-    fn run(printed: &mut String, core: &mut CoreRun, line: &str, frames: usize) -> [u16; 4] {
+    fn run_line(output: &mut String, core: &mut CoreRun, line: &str, frames: usize) -> [u16; 4] {
         let mut bytes = line.as_bytes();
         let mut widths = [0; 4];
         for _ in 0..frames {
             let frame = core.frame(bytes, 5.0);
             bytes = &[];
-            *printed += &frame.text;
+            *output += &frame.text;
             widths = frame.widths;
         }
         widths
@@ -87,29 +89,38 @@ mod tests {
     fn the_core_prints_its_banner_walks_and_keeps_saved_settings() {
         let robot = Robot::parse(include_str!("../../../robots/large.toml")).expect("right");
         let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
-        let mut printed = String::new();
-        let stands = run(&mut printed, &mut core, "", 200);
-        assert!(printed.starts_with("# lizard "), "{printed}");
-        assert!(stands.iter().all(|width| *width == 24_000), "{stands:?}");
-        let trimmed = run(&mut printed, &mut core, "trim 1 3\nsave\n", 500);
+        let mut output = String::new();
+        let standing_widths = run_line(&mut output, &mut core, "", 200);
+        assert!(output.starts_with("# lizard "), "{output}");
         assert!(
-            printed.contains("ok trim 1 3") && printed.contains("ok save"),
-            "{printed}"
+            standing_widths.iter().all(|width| *width == 24_000),
+            "{standing_widths:?}"
         );
-        let mut again = CoreRun::begin(*robot.firmware(), core.into_memory());
-        assert_eq!(run(&mut printed, &mut again, "", 200), trimmed);
-        assert_ne!(run(&mut printed, &mut again, "walk\n", 60), trimmed);
+        let trimmed_widths = run_line(&mut output, &mut core, "trim 1 3\nsave\n", 500);
+        assert!(
+            output.contains("ok trim 1 3") && output.contains("ok save"),
+            "{output}"
+        );
+        let mut restarted = CoreRun::begin(*robot.firmware(), core.into_memory());
+        assert_eq!(
+            run_line(&mut output, &mut restarted, "", 200),
+            trimmed_widths
+        );
+        assert_ne!(
+            run_line(&mut output, &mut restarted, "walk\n", 60),
+            trimmed_widths
+        );
     }
 
     #[test]
     fn a_low_supply_stops_the_core() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
-        let mut printed = String::new();
-        run(&mut printed, &mut core, "", 200);
+        let mut output = String::new();
+        run_line(&mut output, &mut core, "", 200);
         for _ in 0..200 {
-            printed += &core.frame(&[], 3.9).text;
+            output += &core.frame(&[], 3.9).text;
         }
-        assert!(printed.contains("# supply:"), "{printed}");
+        assert!(output.contains("# supply:"), "{output}");
     }
 }

@@ -85,7 +85,7 @@ pub struct ModelEntry {
 impl ModelEntry {
     /// Returns the models that the page offers for a robot; the first is the default.
     fn all(robot: &Robot) -> Vec<Self> {
-        let entry = |name, servo: &ServoType| Self {
+        let entry_of = |name, servo: &ServoType| Self {
             name,
             figures: Some([
                 servo.stall_kg_cm,
@@ -94,13 +94,17 @@ impl ModelEntry {
                 servo.volts,
             ]),
         };
-        let mut all = vec![entry(OWN, robot.servo_type())];
-        all.extend(ServoType::ALL.iter().map(|servo| entry(servo.model, servo)));
-        all.push(Self {
+        let mut models = vec![entry_of(OWN, robot.servo_type())];
+        models.extend(
+            ServoType::ALL
+                .iter()
+                .map(|servo| entry_of(servo.model, servo)),
+        );
+        models.push(Self {
             name: IDEAL,
             figures: None,
         });
-        all
+        models
     }
 }
 
@@ -222,12 +226,12 @@ impl Description {
         });
         let routines = robot.routines().iter();
         let limits = robot.limits();
-        let of = |checks: &[Check], limit: f64| {
-            let entry = |check: &Check| MarginEntry {
+        let margins_of = |checks: &[Check], limit: f64| {
+            let entry_of = |check: &Check| MarginEntry {
                 name: check.name(),
                 limit,
             };
-            checks.iter().map(entry).collect::<Vec<_>>()
+            checks.iter().map(entry_of).collect::<Vec<_>>()
         };
         let core = robot.core();
         let board = core.supplies().board;
@@ -241,12 +245,12 @@ impl Description {
             routines: routines
                 .map(|routine| routine.name().replace('-', " "))
                 .collect(),
-            lengths: lengths(robot),
+            lengths: lengths_of(robot),
             plate: robot.plate().into(),
             margins: [
-                of(&Check::TYPE2, limits.type2),
-                of(&Check::TYPE1, limits.type1),
-                of(&Check::LEG, limits.leg),
+                margins_of(&Check::TYPE2, limits.type2),
+                margins_of(&Check::TYPE1, limits.type1),
+                margins_of(&Check::LEG, limits.leg),
             ]
             .concat(),
             stroke: (limits.stroke_min, limits.stroke_max),
@@ -259,7 +263,7 @@ impl Description {
             floor: Floor::of(robot),
             models: ModelEntry::all(robot),
             still: STILL_FRAMES,
-            words: words(),
+            words: reserved_words(),
         }
     }
 }
@@ -272,9 +276,9 @@ fn version() -> String {
 }
 
 /// Returns the reserved words of the console, which no gait may have as its name.
-fn words() -> Vec<&'static str> {
-    let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
-    reserved.map(|word| word.text()).collect()
+fn reserved_words() -> Vec<&'static str> {
+    let words = Word::ALL.iter().filter(|word| word.is_reserved());
+    words.map(|word| word.text()).collect()
 }
 
 /// The label of each link, l0 to l19, and the number of the mirrored link.
@@ -301,7 +305,7 @@ const LINKS: [(&str, usize); 20] = [
     ("front arm, right", 14),
 ];
 
-fn lengths(robot: &Robot) -> Vec<LinkEntry> {
+fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
     let values = robot.lizard().links.to_array();
     let links = LINKS.iter().zip(values).enumerate();
     let links = links.map(|(i, ((label, twin), value))| LinkEntry {
@@ -312,31 +316,41 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
         value,
     });
     let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
-    let entry = |key: &str, label, twin: &str, value| LinkEntry {
+    let entry_of = |key: &str, label, twin: &str, value| LinkEntry {
         key: key.to_string(),
         label,
         twin: twin.to_string(),
         unit: if key == "leg.mount" { "deg" } else { "mm" },
         value,
     };
-    let [ahead, aside] = HIPS;
-    let [front, hind] = feet.hip_side;
+    let [forward_key, side_key] = HIPS;
+    let [front_side, hind_side] = feet.hip_side;
     let legs = [
-        entry("leg.ground", "leg ground link", "leg.coupler", leg.ground),
-        entry("leg.crank", "leg crank", "leg.follower", leg.crank),
-        entry("leg.coupler", "leg coupler", "leg.ground", leg.coupler),
-        entry("leg.follower", "leg follower", "leg.crank", leg.follower),
-        entry(ahead, "hip, fore and aft", ahead, feet.hip_forward),
+        entry_of("leg.ground", "leg ground link", "leg.coupler", leg.ground),
+        entry_of("leg.crank", "leg crank", "leg.follower", leg.crank),
+        entry_of("leg.coupler", "leg coupler", "leg.ground", leg.coupler),
+        entry_of("leg.follower", "leg follower", "leg.crank", leg.follower),
+        entry_of(
+            forward_key,
+            "hip, fore and aft",
+            forward_key,
+            feet.hip_forward,
+        ),
     ];
-    // If front and hind hips differ, as derived hips may, one number cannot describe both, so it is not offered.
-    let aside = (front == hind).then(|| entry(aside, "hip, sideways", aside, front));
-    let mount = entry(
+    // If the front and hind hips differ, as derived hips may, one number cannot describe both, so it is not offered.
+    let side_entry = (front_side == hind_side)
+        .then(|| entry_of(side_key, "hip, sideways", side_key, front_side));
+    let mount_entry = entry_of(
         "leg.mount",
         "outward sweep of the legs",
         "leg.mount",
         feet.mount,
     );
-    links.chain(legs).chain(aside).chain([mount]).collect()
+    links
+        .chain(legs)
+        .chain(side_entry)
+        .chain([mount_entry])
+        .collect()
 }
 
 #[cfg(test)]
@@ -348,7 +362,9 @@ mod tests {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let lengths = Description::of(&robot).lengths;
         for length in &lengths {
-            let twin = lengths.iter().find(|other| other.key == length.twin);
+            let twin = lengths
+                .iter()
+                .find(|candidate| candidate.key == length.twin);
             let twin = twin.expect("it is there");
             assert_eq!((&twin.twin, twin.value), (&length.key, length.value));
         }

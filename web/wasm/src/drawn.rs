@@ -16,7 +16,7 @@ use crate::room::neutral;
 /// Number of points at which a line is sampled.
 const SAMPLES: usize = 256;
 /// Number of points of the path that is shown.
-const SHOWN: usize = 128;
+const SHOWN_POINTS: usize = 128;
 /// Smallest amplitude of a harmonic that is written to robot.toml, mm.
 const MIN_AMPLITUDE: f64 = 0.05;
 /// Largest number of harmonics in a robot.toml.
@@ -46,19 +46,19 @@ impl DrawnGait {
     }
 
     /// Returns the path that the end point follows; `None` for an unknown `end`, or if the line has no length.
-    fn smoothed(&self, robot: &Robot) -> Option<Path> {
+    fn smoothed_path(&self, robot: &Robot) -> Option<Path> {
         let neutral = neutral(robot, self.end()?);
-        let scaled = |[x, y]: &[f64; 2]| {
+        let scale_point = |[x, y]: &[f64; 2]| {
             let scale_about_neutral =
-                |of: usize, value: f64| neutral[of] + self.size * (value - neutral[of]);
+                |axis: usize, value: f64| neutral[axis] + self.size * (value - neutral[axis]);
             [scale_about_neutral(0, *x), scale_about_neutral(1, *y)]
         };
-        let points: Vec<[f64; 2]> = self.points.iter().map(scaled).collect();
-        let even = evenly(&points)?;
+        let points: Vec<[f64; 2]> = self.points.iter().map(scale_point).collect();
+        let even_points = sample_evenly(&points)?;
         let terms = self.terms.clamp(1, MAX_TERMS);
-        let [(cx, x), (cy, y)] = [0, 1].map(|of| {
-            let values: Vec<f64> = even.iter().map(|point| point[of]).collect();
-            harmonics(&values, terms)
+        let [(cx, x), (cy, y)] = [0, 1].map(|axis| {
+            let values: Vec<f64> = even_points.iter().map(|point| point[axis]).collect();
+            harmonics_of(&values, terms)
         });
         let centre = [cx, cy];
         Some(Path { centre, x, y })
@@ -67,24 +67,25 @@ impl DrawnGait {
     /// Formats the gait as tables of robot.toml; `None` for an unknown `end`, or if the line has no length.
     #[must_use]
     pub fn table(&self, robot: &Robot) -> Option<String> {
-        let path = self.smoothed(robot)?;
-        let series = |terms: &[Harmonic]| {
-            let kept = terms.iter().filter(|term| term.amplitude >= MIN_AMPLITUDE);
-            let text = |Harmonic {
-                            k,
-                            amplitude,
-                            shift,
-                        }: &Harmonic| {
+        let path = self.smoothed_path(robot)?;
+        let series_text = |terms: &[Harmonic]| {
+            let kept_terms = terms.iter().filter(|term| term.amplitude >= MIN_AMPLITUDE);
+            let term_text = |Harmonic {
+                                 k,
+                                 amplitude,
+                                 shift,
+                             }: &Harmonic| {
                 format!("{{ k = {k}, amplitude = {amplitude:.2}, shift = {shift:.4} }}")
             };
-            kept.map(text).collect::<Vec<_>>().join(", ")
+            kept_terms.map(term_text).collect::<Vec<_>>().join(", ")
         };
-        let ([across, outward], x, y) = (path.centre, series(&path.x), series(&path.y));
+        let ([centre_x, centre_y], x, y) =
+            (path.centre, series_text(&path.x), series_text(&path.y));
         let (name, end) = (&self.name, &self.end);
         let period = (self.period * 1000.0).round() / 1000.0;
         Some(format!(
             "[gait.{name}]\nperiod = {period:?}\n[gait.{name}.{end}]\n\
-             centre = [{across:.2}, {outward:.2}]\nx = [{x}]\ny = [{y}]\n"
+             centre = [{centre_x:.2}, {centre_y:.2}]\nx = [{x}]\ny = [{y}]\n"
         ))
     }
 
@@ -92,28 +93,28 @@ impl DrawnGait {
     /// unknown `end`, or if the line has no length.
     #[must_use]
     pub fn path(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
-        let path = self.smoothed(robot)?;
-        let point = |i: usize| {
-            let Vector { x, y } = path.at(i as f64 / SHOWN as f64);
+        let path = self.smoothed_path(robot)?;
+        let point_at = |i: usize| {
+            let Vector { x, y } = path.at(i as f64 / SHOWN_POINTS as f64);
             [x, y]
         };
-        Some((0..SHOWN).map(point).collect())
+        Some((0..SHOWN_POINTS).map(point_at).collect())
     }
 }
 
 /// Returns the mean of values that are evenly spaced over a cycle, and their first harmonics.
-fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
-    let mean = |of: &dyn Fn(f64, f64) -> f64| {
-        let each = values.iter().enumerate();
-        let sum: f64 = each
-            .map(|(i, value)| of(*value, i as f64 / values.len() as f64))
+fn harmonics_of(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
+    let mean_of = |value_of: &dyn Fn(f64, f64) -> f64| {
+        let indexed = values.iter().enumerate();
+        let sum: f64 = indexed
+            .map(|(i, value)| value_of(*value, i as f64 / values.len() as f64))
             .sum();
         sum / values.len() as f64
     };
-    let term = |k: usize| {
+    let term_of = |k: usize| {
         let k = k as f64;
-        let cosine = 2.0 * mean(&|value, phase| value * (TAU * k * phase).cos());
-        let sine = 2.0 * mean(&|value, phase| value * (TAU * k * phase).sin());
+        let cosine = 2.0 * mean_of(&|value, phase| value * (TAU * k * phase).cos());
+        let sine = 2.0 * mean_of(&|value, phase| value * (TAU * k * phase).sin());
         Harmonic {
             k,
             amplitude: cosine.hypot(sine),
@@ -121,35 +122,39 @@ fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
             shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
         }
     };
-    (mean(&|value, _| value), (1..=terms).map(term).collect())
+    (
+        mean_of(&|value, _| value),
+        (1..=terms).map(term_of).collect(),
+    )
 }
 
 /// Samples a closed line at even distances along it; `None` if the line has no length.
-fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
-    let next = |i: usize| points[(i + 1) % points.len()];
-    let length = |i: usize| (next(i)[0] - points[i][0]).hypot(next(i)[1] - points[i][1]);
-    let lengths: Vec<f64> = (0..points.len()).map(length).collect();
-    let all: f64 = lengths.iter().sum();
-    if !(all > 1e-6 && all.is_finite()) {
+fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    let next_point = |i: usize| points[(i + 1) % points.len()];
+    let length_from =
+        |i: usize| (next_point(i)[0] - points[i][0]).hypot(next_point(i)[1] - points[i][1]);
+    let lengths: Vec<f64> = (0..points.len()).map(length_from).collect();
+    let total_length: f64 = lengths.iter().sum();
+    if !(total_length > 1e-6 && total_length.is_finite()) {
         return None;
     }
-    let mut even = Vec::with_capacity(SAMPLES);
-    let (mut part, mut before) = (0, 0.0);
+    let mut even_points = Vec::with_capacity(SAMPLES);
+    let (mut segment, mut passed) = (0, 0.0);
     for i in 0..SAMPLES {
-        let at = all * i as f64 / SAMPLES as f64;
-        while part + 1 < lengths.len() && before + lengths[part] < at {
-            before += lengths[part];
-            part += 1;
+        let distance = total_length * i as f64 / SAMPLES as f64;
+        while segment + 1 < lengths.len() && passed + lengths[segment] < distance {
+            passed += lengths[segment];
+            segment += 1;
         }
-        let share = if lengths[part] > 0.0 {
-            (at - before) / lengths[part]
+        let share = if lengths[segment] > 0.0 {
+            (distance - passed) / lengths[segment]
         } else {
             0.0
         };
-        let (from, to) = (points[part], next(part));
-        even.push([0, 1].map(|of| from[of] + share.min(1.0) * (to[of] - from[of])));
+        let (from, to) = (points[segment], next_point(segment));
+        even_points.push([0, 1].map(|axis| from[axis] + share.min(1.0) * (to[axis] - from[axis])));
     }
-    Some(even)
+    Some(even_points)
 }
 
 #[cfg(test)]
@@ -161,7 +166,7 @@ mod tests {
     /// Makes a gait along a circle about the neutral point of head or tail.
     fn circle(robot: &Robot, end: End, radius: f64) -> DrawnGait {
         let [x, y] = neutral(robot, end);
-        let point = |i: usize| {
+        let point_at = |i: usize| {
             let angle = TAU * i as f64 / 90.0;
             [x + radius * angle.cos(), y + radius * angle.sin()]
         };
@@ -171,7 +176,7 @@ mod tests {
             period: 4.0,
             size: 1.0,
             terms: 3,
-            points: (0..90).map(point).collect(),
+            points: (0..90).map(point_at).collect(),
         }
     }
 
@@ -179,15 +184,15 @@ mod tests {
     fn the_point_of_a_robot_with_the_gait_follows_the_drawn_circle() {
         let (robot, twin) = with_twin();
         for end in End::ALL {
-            let drawn = circle(&robot, end, 6.0);
-            let made = EditedGait::DrawnGait(drawn);
-            let known = made.trial(&twin).expect("a line").expect("it goes");
+            let drawn_gait = circle(&robot, end, 6.0);
+            let edited_gait = EditedGait::DrawnGait(drawn_gait);
+            let trial = edited_gait.trial(&twin).expect("a line").expect("it goes");
             assert!(
-                known.table.contains(&format!("[gait.mine.{end}]")),
+                trial.table.contains(&format!("[gait.mine.{end}]")),
                 "{}",
-                known.table
+                trial.table
             );
-            let text = made.put_into(TEXT, &robot).expect("a line");
+            let text = edited_gait.put_into(TEXT, &robot).expect("a line");
             let robot = Robot::parse(&text).expect("right");
             let gait = robot.gait("mine").expect("there");
             let [x, y] = neutral(&robot, end);
@@ -208,14 +213,14 @@ mod tests {
     #[test]
     fn a_circle_is_one_harmonic_and_its_line_is_the_circle() {
         let robot = paper();
-        let drawn = circle(&robot, End::Head, 6.0);
-        let table = drawn.table(&robot).expect("a line");
+        let drawn_gait = circle(&robot, End::Head, 6.0);
+        let table = drawn_gait.table(&robot).expect("a line");
         assert!(
             table.contains("k = 1") && !table.contains("k = 2"),
             "{table}"
         );
         let [x, y] = neutral(&robot, End::Head);
-        for [px, py] in drawn.path(&robot).expect("a line") {
+        for [px, py] in drawn_gait.path(&robot).expect("a line") {
             assert!(((px - x).hypot(py - y) - 6.0).abs() < 0.02);
         }
     }
@@ -223,47 +228,57 @@ mod tests {
     #[test]
     fn a_refusal_offers_the_nearest_size_and_the_nearest_time_that_are_possible() {
         let (robot, twin) = with_twin();
-        let drawn = circle(&robot, End::Head, 40.0);
-        let trial = |drawn: &DrawnGait| {
-            EditedGait::DrawnGait(drawn.clone())
+        let drawn_gait = circle(&robot, End::Head, 40.0);
+        let try_gait = |drawn_gait: &DrawnGait| {
+            EditedGait::DrawnGait(drawn_gait.clone())
                 .trial(&twin)
                 .expect("a line")
         };
-        let no = trial(&drawn).expect_err("it is too large");
-        let [size] = no.instead.as_slice() else {
-            panic!("no time would do: {:?}", no.instead);
+        let refusal = try_gait(&drawn_gait).expect_err("it is too large");
+        let [size] = refusal.instead.as_slice() else {
+            panic!("no time would do: {:?}", refusal.instead);
         };
         assert_eq!(size.what, "size");
-        let with = |size: f64| DrawnGait {
+        let with_size = |size: f64| DrawnGait {
             size,
-            ..drawn.clone()
+            ..drawn_gait.clone()
         };
-        let does = |drawn: DrawnGait| trial(&drawn).is_ok();
+        let is_possible = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
         assert!(
-            does(with(size.value)) && !does(with(size.value + 0.01)),
+            is_possible(with_size(size.value)) && !is_possible(with_size(size.value + 0.01)),
             "{}",
             size.value
         );
-        let fast = DrawnGait {
+        let fast_gait = DrawnGait {
             period: 0.2,
             ..circle(&robot, End::Head, 8.0)
         };
-        let no = trial(&fast).expect_err("it is too fast");
-        let slow = no.instead.iter().find(|instead| instead.what == "period");
-        let slow = slow.expect("a longer time does").value;
-        let with = |period: f64| DrawnGait {
+        let refusal = try_gait(&fast_gait).expect_err("it is too fast");
+        let offer = refusal
+            .instead
+            .iter()
+            .find(|instead| instead.what == "period");
+        let slow_period = offer.expect("a longer time does").value;
+        let with_period = |period: f64| DrawnGait {
             period,
-            ..fast.clone()
+            ..fast_gait.clone()
         };
-        assert!(does(with(slow)) && !does(with(slow - 0.01)), "{slow}");
+        assert!(
+            is_possible(with_period(slow_period)) && !is_possible(with_period(slow_period - 0.01)),
+            "{slow_period}"
+        );
     }
 
     #[test]
     fn a_point_is_no_line() {
         let (robot, twin) = with_twin();
-        let mut drawn = circle(&robot, End::Tail, 0.0);
-        assert!(EditedGait::DrawnGait(drawn.clone()).trial(&twin).is_none());
-        drawn.points.clear();
-        assert!(drawn.path(&robot).is_none() && drawn.table(&robot).is_none());
+        let mut drawn_gait = circle(&robot, End::Tail, 0.0);
+        assert!(
+            EditedGait::DrawnGait(drawn_gait.clone())
+                .trial(&twin)
+                .is_none()
+        );
+        drawn_gait.points.clear();
+        assert!(drawn_gait.path(&robot).is_none() && drawn_gait.table(&robot).is_none());
     }
 }

@@ -77,20 +77,20 @@ impl Faster {
     ///
     /// # Errors
     /// Returns the limit that the given gait breaks, or the reason why it cannot be made faster.
-    pub fn begin(twin: &Twin, wish: &SearchTask) -> Result<Self, Refused> {
-        let refusal = |key: &str, refused: String| Refused {
-            refused,
+    pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refused> {
+        let refusal_of = |key: &str, reason: String| Refused {
+            refused: reason,
             meaning: None,
             line: None,
             key: key.to_string(),
         };
-        let robot = twin.robot().with_gait(&wish.bars.table());
+        let robot = twin.robot().with_gait(&task.bars.table());
         let robot = robot.map_err(Refused::of_gait)?;
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
-        let tuning = Tuning::new(&robot, ground, gait, wish.rate, &wish.bars.name, wish.seed);
-        let tuning = tuning.map_err(|no| match no {
-            TuningError::Goal(_) => refusal("", no.to_string()),
-            TuningError::Rate { .. } => refusal("rate", format!("servos of at most {no}")),
+        let tuning = Tuning::new(&robot, ground, gait, task.rate, &task.bars.name, task.seed);
+        let tuning = tuning.map_err(|error| match error {
+            TuningError::Goal(_) => refusal_of("", error.to_string()),
+            TuningError::Rate { .. } => refusal_of("rate", format!("servos of at most {error}")),
         })?;
         Ok(Self {
             searches: Kind::ALL.map(|kind| tuning.search(kind)),
@@ -101,7 +101,7 @@ impl Faster {
                 done: 0,
                 best: None,
             },
-            all: Kind::ALL.len() * trials(wish.rounds),
+            all: Kind::ALL.len() * trials(task.rounds),
         })
     }
 
@@ -117,8 +117,8 @@ impl Faster {
     pub fn step(&mut self) -> Progress {
         if self.progress.done < self.all {
             let search = &mut self.searches[self.turn];
-            let tried = &search.trials()[self.scores.len()];
-            let score = self.tuning.score(Kind::ALL[self.turn], tried);
+            let parameters = &search.trials()[self.scores.len()];
+            let score = self.tuning.score(Kind::ALL[self.turn], parameters);
             self.scores.push(score);
             self.progress.done += 1;
             if score > self.progress.best {
@@ -141,17 +141,17 @@ impl Faster {
         }
         let kinds = Kind::ALL.into_iter().zip(&searches);
         let scored = kinds.flat_map(|(kind, search)| {
-            let each = search.found().into_iter();
-            each.map(move |(score, parameters)| ScoredParameters {
+            let found = search.found().into_iter();
+            found.map(move |(score, parameters)| ScoredParameters {
                 kind,
                 score,
                 parameters,
             })
         });
-        let built = self.tuning.best(scored.collect())?;
-        let comparison = self.tuning.compare(&built, robots);
+        let best = self.tuning.best(scored.collect())?;
+        let comparison = self.tuning.compare(&best, robots);
         Some(Found {
-            bars: built.gait().bars()?,
+            bars: best.gait().bars()?,
             better: comparison.is_better(),
             gain: comparison.gain(),
             comparison,
@@ -165,7 +165,7 @@ mod tests {
     use crate::paper::{paper, with_twin};
     use crate::trial::EditedGait;
 
-    fn wish(name: &str) -> SearchTask {
+    fn task_of(name: &str) -> SearchTask {
         let gait = paper().gait(name).cloned().expect(name);
         SearchTask {
             bars: gait.bars().expect("bars"),
@@ -175,8 +175,8 @@ mod tests {
         }
     }
 
-    fn refused(wish: &SearchTask) -> String {
-        Faster::begin(&with_twin().1, wish)
+    fn refusal_of(task: &SearchTask) -> String {
+        Faster::begin(&with_twin().1, task)
             .expect_err("refused")
             .refused
     }
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn a_stopped_search_has_the_best_gait_so_far() {
         let (robot, twin) = with_twin();
-        let mut faster = Faster::begin(&twin, &wish("walk")).expect("it begins");
+        let mut faster = Faster::begin(&twin, &task_of("walk")).expect("it begins");
         assert_eq!(faster.begun().all, 40);
         assert_eq!(faster.found(20), None, "nothing is tried yet");
         let best = (0..3).map(|_| faster.step()).last().expect("three").best;
@@ -203,35 +203,35 @@ mod tests {
             })
         });
         let scored: Vec<_> = scored.collect();
-        let scores = scored.iter().map(|one| one.score);
+        let scores = scored.iter().map(|entry| entry.score);
         assert_eq!(best, Some(scores.fold(f64::NEG_INFINITY, f64::max)));
-        let alone = tuning.best(scored).expect("it walks");
-        assert_eq!(found.comparison, tuning.compare(&alone, 20));
+        let best_tuned = tuning.best(scored).expect("it walks");
+        assert_eq!(found.comparison, tuning.compare(&best_tuned, 20));
         // The page takes over exactly the gait that was found.
-        assert_eq!(found.bars.table(), alone.table());
-        let tried = EditedGait::Bars(found.bars).trial(&twin).expect("bars");
-        let tried = tried.expect("it walks");
-        assert_eq!(tried.speed, found.comparison.tuned.rate);
+        assert_eq!(found.bars.table(), best_tuned.table());
+        let trial = EditedGait::Bars(found.bars).trial(&twin).expect("bars");
+        let trial = trial.expect("it walks");
+        assert_eq!(trial.speed, found.comparison.tuned.rate);
         assert_eq!(faster.step().done, 4, "it can go on");
     }
 
     #[test]
     fn a_gait_that_cannot_be_made_faster_is_refused_with_the_reason() {
-        assert!(refused(&wish("arc-left")).contains("goes ahead and turns"));
+        assert!(refusal_of(&task_of("arc-left")).contains("goes ahead and turns"));
         let rate = Some(900.0);
         assert_eq!(
-            refused(&SearchTask {
+            refusal_of(&SearchTask {
                 rate,
-                ..wish("walk")
+                ..task_of("walk")
             }),
             "servos of at most 900: from 10 to 310 deg/s, which is limits.gait_slew in robot.toml"
         );
-        let mut wide = wish("walk");
-        wide.bars.amplitude = 60.0;
+        let mut wide_task = task_of("walk");
+        wide_task.bars.amplitude = 60.0;
         assert!(
-            refused(&wide).starts_with("in \"walk\" "),
+            refusal_of(&wide_task).starts_with("in \"walk\" "),
             "{}",
-            refused(&wide)
+            refusal_of(&wide_task)
         );
     }
 }

@@ -60,8 +60,8 @@ impl Floor {
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
-        let own = robot.strut_of(&robot.parts().spring);
-        let strut = ground.drive.strut().unwrap_or(&own);
+        let own_strut = robot.strut_of(&robot.parts().spring);
+        let strut = ground.drive.strut().unwrap_or(&own_strut);
         Self {
             friction: ground.friction,
             ratio: ground.ratio,
@@ -78,27 +78,28 @@ impl Floor {
     /// Replaces every value that is out of range by the robot's own.
     #[must_use]
     pub fn within(self, robot: &Robot) -> Self {
-        let own = Self::of(robot);
-        let pick = |value: f64, own: f64| match value > 0.0 && value.is_finite() {
+        let own_floor = Self::of(robot);
+        let positive_or_own = |value: f64, own_value: f64| match value > 0.0 && value.is_finite() {
             true => value,
-            false => own,
+            false => own_value,
         };
-        let least = |value: f64, own: f64| match value >= 0.0 && value.is_finite() {
-            true => value,
-            false => own,
-        };
+        let non_negative_or_own =
+            |value: f64, own_value: f64| match value >= 0.0 && value.is_finite() {
+                true => value,
+                false => own_value,
+            };
         Self {
-            friction: pick(self.friction, own.friction),
-            ratio: pick(self.ratio, own.ratio),
-            mass: pick(self.mass, own.mass),
+            friction: positive_or_own(self.friction, own_floor.friction),
+            ratio: positive_or_own(self.ratio, own_floor.ratio),
+            mass: positive_or_own(self.mass, own_floor.mass),
             kind: self.kind,
-            force: pick(self.force, own.force),
-            rate: least(self.rate, own.rate),
-            play: least(self.play, own.play),
-            leaf: pick(self.leaf, own.leaf),
+            force: positive_or_own(self.force, own_floor.force),
+            rate: non_negative_or_own(self.rate, own_floor.rate),
+            play: non_negative_or_own(self.play, own_floor.play),
+            leaf: positive_or_own(self.leaf, own_floor.leaf),
             twist: match self.twist.is_finite() {
                 true => self.twist,
-                false => own.twist,
+                false => own_floor.twist,
             },
         }
     }
@@ -137,15 +138,15 @@ mod tests {
 
     const PAPER: &str = include_str!("../../../robots/paper.toml");
 
-    fn robot(more: &str) -> Robot {
-        Robot::parse(&format!("{PAPER}\n{more}")).expect("right")
+    fn robot_with(extra_toml: &str) -> Robot {
+        Robot::parse(&format!("{PAPER}\n{extra_toml}")).expect("right")
     }
 
     #[test]
     fn a_value_out_of_range_is_the_robots_own() {
-        for more in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
-            let robot = robot(more);
-            let nonsense = Floor {
+        for extra_toml in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
+            let robot = robot_with(extra_toml);
+            let invalid_floor = Floor {
                 friction: 0.0,
                 ratio: -1.0,
                 mass: f64::NAN,
@@ -156,19 +157,23 @@ mod tests {
                 twist: f64::INFINITY,
                 ..Floor::of(&robot)
             };
-            assert_eq!(nonsense.over(&robot), *robot.ground());
+            assert_eq!(invalid_floor.over(&robot), *robot.ground());
         }
     }
 
     #[test]
     fn the_floor_of_a_robot_is_its_ground() {
-        for more in [
+        for extra_toml in [
             "",
             "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",
             "[feet]\nstiffness = 2.0\ntwist = -0.6",
         ] {
-            let robot = robot(more);
-            assert_eq!(Floor::of(&robot).over(&robot), *robot.ground(), "{more}");
+            let robot = robot_with(extra_toml);
+            assert_eq!(
+                Floor::of(&robot).over(&robot),
+                *robot.ground(),
+                "{extra_toml}"
+            );
             assert_eq!(Floor::of(&robot).kind.word(), robot.drive().word());
         }
     }

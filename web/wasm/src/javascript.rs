@@ -46,7 +46,7 @@ pub(crate) fn js(answer: impl Serialize) -> JsValue {
 }
 
 /// Converts an answer or a refusal to JavaScript, where their keys tell them apart.
-fn either(result: Result<impl Serialize, impl Serialize>) -> JsValue {
+fn result_to_js(result: Result<impl Serialize, impl Serialize>) -> JsValue {
     result.map_or_else(js, js)
 }
 
@@ -73,7 +73,7 @@ impl Robot {
     /// Loads the robot of a robot.toml. If it is refused, the previous robot stays.
     #[wasm_bindgen(unchecked_return_type = "Description | Refused")]
     pub fn read(&mut self, toml: &str) -> JsValue {
-        either(self.0.read(toml))
+        result_to_js(self.0.read(toml))
     }
 
     /// Tries other lengths in a robot.toml; if `searches`, also looks for valid alternatives to refused lengths.
@@ -101,7 +101,7 @@ impl Robot {
         toml: &str,
         #[wasm_bindgen(unchecked_param_type = "Floor")] floor: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(either(Page::edit_floor(toml, rust(floor)?)))
+        Ok(result_to_js(Page::edit_floor(toml, rust(floor)?)))
     }
 
     /// Makes the robot's section of flash, with the certified cells of its guard; empty without a robot. Takes some
@@ -198,7 +198,10 @@ impl Robot {
         &self,
         #[wasm_bindgen(unchecked_param_type = "EditedGait")] made: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(self.0.trial(&rust(made)?).map_or(JsValue::NULL, either))
+        Ok(self
+            .0
+            .trial(&rust(made)?)
+            .map_or(JsValue::NULL, result_to_js))
     }
 
     /// Returns the robot.toml with a gait in place of the gait of the same name, else added; unchanged for a drawn
@@ -276,7 +279,7 @@ impl Robot {
         #[wasm_bindgen(unchecked_param_type = "SearchTask")] task: &JsValue,
     ) -> Result<JsValue, JsError> {
         let search = self.0.make_faster(&rust(task)?);
-        Ok(search.map_or(JsValue::NULL, either))
+        Ok(search.map_or(JsValue::NULL, result_to_js))
     }
 
     /// Tries one more gait; returns the progress, with the score of the best gait so far.

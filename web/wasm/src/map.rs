@@ -57,7 +57,7 @@ impl Map {
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
         let size = ((TO - FROM) / STEP) as usize + 1;
-        let angle = |i: usize| FROM + STEP * i as f64;
+        let angle_at = |i: usize| FROM + STEP * i as f64;
         let points = (0..size).flat_map(|left| (0..size).map(move |right| (left, right)));
         let (margins, safe) = points
             .map(|(left, right)| {
@@ -65,8 +65,8 @@ impl Map {
                     robot.lizard(),
                     robot.limits(),
                     end,
-                    angle(left),
-                    angle(right),
+                    angle_at(left),
+                    angle_at(right),
                 )
             })
             .unzip();
@@ -77,7 +77,7 @@ impl Map {
             size,
             margins,
             safe,
-            curves: curves(robot, end),
+            curves: curves_of(robot, end),
         }
     }
 }
@@ -98,19 +98,19 @@ fn evaluate(
     let smallest = margins
         .filter(|(check, _)| !Check::UNCROSSED.contains(check))
         .fold(1.0f64, |smallest, (_, value)| smallest.min(value));
-    let safe = limits.end_violations(end, &bars).next().is_none();
-    (Some((smallest * 100.0).round() as i8), safe)
+    let is_safe = limits.end_violations(end, &bars).next().is_none();
+    (Some((smallest * 100.0).round() as i8), is_safe)
 }
 
-fn curves(robot: &Robot, end: End) -> Vec<Curve> {
+fn curves_of(robot: &Robot, end: End) -> Vec<Curve> {
     let bars = robot.lizard().end(end);
     let steps = ((TO - FROM) / CURVE_STEP) as usize;
     let poses: Vec<SingularPose> = (0..=steps)
         .flat_map(|i| bars.singular_with(FROM + CURVE_STEP * i as f64))
         .chain(bars.coinciding_tips())
         .filter(|pose| {
-            let inside = |theta: f64| (FROM..=TO).contains(&theta);
-            inside(pose.theta_left) && inside(pose.theta_right)
+            let is_inside = |theta: f64| (FROM..=TO).contains(&theta);
+            is_inside(pose.theta_left) && is_inside(pose.theta_right)
         })
         .collect();
     [
@@ -130,7 +130,7 @@ fn curves(robot: &Robot, end: End) -> Vec<Curve> {
     .collect()
 }
 
-/// The point of a pose on the map of an end: left and right crank, deg, 0 to 360.
+/// Returns the point of a pose on the map of an end: left and right crank, deg, 0 to 360.
 #[must_use]
 pub fn place(end: End, pose: &Pose) -> MapPoint {
     let angles: [f64; 4] = (*pose).into();
@@ -149,20 +149,20 @@ mod tests {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         for end in End::ALL {
             let map = Map::of(&robot, end);
-            let cell = |MapPoint(left, right): MapPoint| {
-                let index = |theta: f64| ((theta - map.from) / STEP).round() as usize;
-                index(left) * map.size + index(right)
+            let cell_of = |MapPoint(left, right): MapPoint| {
+                let index_of = |theta: f64| ((theta - map.from) / STEP).round() as usize;
+                index_of(left) * map.size + index_of(right)
             };
             let home = place(end, &robot.neutral());
             assert!(
                 (home.0 - 138.59).abs() < 0.01 && (home.1 - 41.41).abs() < 0.01,
                 "{home:?}"
             );
-            assert!(map.safe[cell(home)] && map.margins[cell(home)] > Some(60));
-            assert!(!map.safe[cell(MapPoint(70.5, 109.5))]);
+            assert!(map.safe[cell_of(home)] && map.margins[cell_of(home)] > Some(60));
+            assert!(!map.safe[cell_of(MapPoint(70.5, 109.5))]);
             let couplers = &map.curves[0].points;
             assert!(
-                couplers.iter().any(|p| (p.0 - 70.529).abs() < 0.01),
+                couplers.iter().any(|point| (point.0 - 70.529).abs() < 0.01),
                 "{couplers:?}"
             );
             assert!(map.curves[1].points.len() > 50 && map.curves[2].points.len() > 50);

@@ -88,8 +88,8 @@ impl Page {
         {
             self.faster = None;
         }
-        let named = self.model.as_deref();
-        let model = named.and_then(|name| servo_model(&robot, name));
+        let model_name = self.model.as_deref();
+        let model = model_name.and_then(|name| servo_model(&robot, name));
         self.twin = Some(Twin::new(
             &robot,
             model.unwrap_or_else(|| ServoModel::of(&robot)),
@@ -115,36 +115,40 @@ impl Page {
     /// Fails if the text is no valid robot, or if one of the numbers cannot be added to it.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
-        let own = Floor::of(&robot);
+        let own_floor = Floor::of(&robot);
         // Values out of range are replaced by the robot's own.
-        let wanted = floor.within(&robot);
+        let new_floor = floor.within(&robot);
         let mut text = text.to_string();
-        let kind = wanted.kind.word();
-        if wanted.kind != own.kind {
+        let kind = new_floor.kind.word();
+        if new_floor.kind != own_floor.kind {
             text = with_word(&text, "leg.drive.kind", kind)?;
         }
-        for (key, own, wanted) in [
-            ("leg.drive.force", own.force, wanted.force),
-            ("leg.drive.rate", own.rate, wanted.rate),
+        for (key, own_value, new_value) in [
+            ("leg.drive.force", own_floor.force, new_floor.force),
+            ("leg.drive.rate", own_floor.rate, new_floor.rate),
         ] {
             text = match floor.kind {
                 Legs::Rigid => without_key(&text, key)?,
-                Legs::Strut if kind != robot.drive().word() || own != wanted => {
-                    with_number(&text, key, wanted)?
+                Legs::Strut if kind != robot.drive().word() || own_value != new_value => {
+                    with_number(&text, key, new_value)?
                 }
                 Legs::Strut => text,
             };
         }
-        for (key, own, wanted) in [
-            ("leg.drive.play", own.play, wanted.play),
-            ("feet.stiffness", own.leaf, wanted.leaf),
-            ("feet.twist", own.twist, wanted.twist),
-            ("ground.friction", own.friction, wanted.friction),
-            ("ground.friction_back_over_forward", own.ratio, wanted.ratio),
-            ("body.mass", own.mass, wanted.mass),
+        for (key, own_value, new_value) in [
+            ("leg.drive.play", own_floor.play, new_floor.play),
+            ("feet.stiffness", own_floor.leaf, new_floor.leaf),
+            ("feet.twist", own_floor.twist, new_floor.twist),
+            ("ground.friction", own_floor.friction, new_floor.friction),
+            (
+                "ground.friction_back_over_forward",
+                own_floor.ratio,
+                new_floor.ratio,
+            ),
+            ("body.mass", own_floor.mass, new_floor.mass),
         ] {
-            if own != wanted {
-                text = with_number(&text, key, wanted)?;
+            if own_value != new_value {
+                text = with_number(&text, key, new_value)?;
             }
         }
         Ok(Edited::of(text))
@@ -154,10 +158,10 @@ impl Page {
     /// servo where it is. `None` without a robot.
     pub fn pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
-        let us = |width: u32| f64::from(width) / CYCLES_PER_US;
-        let state = twin.push(widths.map(|width| (width > 0).then(|| us(width))));
+        let to_us = |width: u32| f64::from(width) / CYCLES_PER_US;
+        let state = twin.push(widths.map(|width| (width > 0).then(|| to_us(width))));
         self.targets = std::array::from_fn(|i| state.angles[i] + state.errors[i]);
-        Some(frame(twin, &state, state.slip))
+        Some(frame_of(twin, &state, state.slip))
     }
 
     /// Follows a pose that a robot reports: angles in deg, chassis frame, `frames` frames after the
@@ -173,19 +177,21 @@ impl Page {
         let neutral: [f64; 4] = twin.robot().neutral().into();
         let frames = frames.clamp(1, MAX_FRAMES);
         let mut slides = [0.0; 4];
-        let mut part = |n: u32| {
+        let mut advance = |n: u32| {
             let share = f64::from(n) / f64::from(frames);
-            let at = |i: usize| from[i] + share * (to[i] - from[i]);
-            let state = twin.push_angles(std::array::from_fn(|i| neutral[i] + FORWARD[i] * at(i)));
+            let sweep_at = |i: usize| from[i] + share * (to[i] - from[i]);
+            let state = twin.push_angles(std::array::from_fn(|i| {
+                neutral[i] + FORWARD[i] * sweep_at(i)
+            }));
             slides = std::array::from_fn(|i| slides[i] + state.slip[i]);
             state
         };
         (1..frames).for_each(|n| {
-            part(n);
+            advance(n);
         });
-        let state = part(frames);
+        let state = advance(frames);
         self.targets = angles;
-        Some(frame(twin, &state, slides))
+        Some(frame_of(twin, &state, slides))
     }
 
     /// Puts the robot back to its start on the floor.
@@ -233,14 +239,14 @@ impl Page {
     ///
     /// # Errors
     /// Returns the first limit that the gait breaks, with possible values.
-    pub fn trial(&self, made: &EditedGait) -> Option<Result<Trial, NoTrial>> {
-        made.trial(self.twin.as_ref()?)
+    pub fn trial(&self, edited_gait: &EditedGait) -> Option<Result<Trial, NoTrial>> {
+        edited_gait.trial(self.twin.as_ref()?)
     }
 
     /// Returns the text of a robot.toml with a gait, in place of the gait of the same name or at the
     /// end; `None` if no robot was read, or the drawn line has no length.
-    pub fn put_gait(&self, text: &str, made: &EditedGait) -> Option<String> {
-        made.put_into(text, self.robot()?)
+    pub fn put_gait(&self, text: &str, edited_gait: &EditedGait) -> Option<String> {
+        edited_gait.put_into(text, self.robot()?)
     }
 
     /// Sets the steps of a routine in the text of a robot.toml, or adds the routine. The page's robot does not
@@ -261,8 +267,8 @@ impl Page {
     /// # Errors
     /// Returns the reason why there is nothing to search.
     #[cfg(feature = "tune")]
-    pub fn make_faster(&mut self, wish: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
-        let search = Faster::begin(self.twin.as_ref()?, wish);
+    pub fn make_faster(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
+        let search = Faster::begin(self.twin.as_ref()?, task);
         Some(search.map(|faster| self.faster.insert(faster).begun()))
     }
 
@@ -274,8 +280,8 @@ impl Page {
 
     /// Returns the path that the end point of head or tail follows in a drawn gait; `None` without a robot, or if the
     /// drawn line has no length.
-    pub fn path(&self, drawn: &DrawnGait) -> Option<Vec<[f64; 2]>> {
-        drawn.path(self.robot()?)
+    pub fn path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
+        drawn_gait.path(self.robot()?)
     }
 
     /// Returns the area that the end point of the head (0) or the tail (1) may reach; `None` without a robot.
@@ -309,7 +315,7 @@ impl Page {
 /// Largest number of interpolated frames between two poses; after a longer pause the motion is unknown anyway.
 const MAX_FRAMES: u32 = 50;
 
-fn frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
+fn frame_of(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
     let scene = Scene::of(twin);
     let fault = scene.as_ref().err().cloned();
     Frame {

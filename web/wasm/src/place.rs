@@ -49,15 +49,16 @@ mod tests {
 
     #[test]
     fn a_body_that_faces_left_and_goes_ahead_moves_to_the_left() {
-        let place = |x, y, heading| Place { x, y, heading };
-        let movement = place(0.0, 0.0, 90.0).movement_to(place(-10.0, -2.0, 95.0));
+        let place_at = |x, y, heading| Place { x, y, heading };
+        let movement = place_at(0.0, 0.0, 90.0).movement_to(place_at(-10.0, -2.0, 95.0));
         let error = (movement.forward - 10.0)
             .hypot(movement.left - 2.0)
             .hypot(movement.turn - 5.0);
         assert!(error < 1e-12, "{movement:?}");
-        let there = place(3.0, -4.0, 170.0);
-        let again = Place::from(Walked::from(there));
-        let error = (again.x - 3.0).hypot(again.y + 4.0) + (again.heading - 170.0).abs();
-        assert!(error < 1e-12, "{again:?}");
+        let place = place_at(3.0, -4.0, 170.0);
+        let converted = Place::from(Walked::from(place));
+        let error =
+            (converted.x - 3.0).hypot(converted.y + 4.0) + (converted.heading - 170.0).abs();
+        assert!(error < 1e-12, "{converted:?}");
     }
 }

@@ -78,16 +78,16 @@ impl GaitPrediction {
             return prediction;
         };
         let movement = prediction.movement;
-        let went = twin.cycle(gait).travel();
+        let travel = twin.cycle(gait).travel();
         let effort = Effort::of(gait, twin.ground(), &motors);
-        let line = |step: usize| effort.line_share((step + 1) as f64 / PACES as f64, 1.0);
+        let line_share = |step: usize| effort.line_share((step + 1) as f64 / PACES as f64, 1.0);
         Self {
             movement: Movement {
-                forward: movement.forward.and(Some(went.forward)),
-                left: movement.left.and(Some(went.left)),
-                turn: movement.turn.and(Some(went.turn)),
+                forward: movement.forward.and(Some(travel.forward)),
+                left: movement.left.and(Some(travel.left)),
+                turn: movement.turn.and(Some(travel.turn)),
             },
-            lines: Some(std::array::from_fn(line)),
+            lines: Some(std::array::from_fn(line_share)),
             ..prediction
         }
     }

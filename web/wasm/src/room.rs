@@ -42,55 +42,62 @@ impl ReachArea {
             + bars.crank_left.max(bars.crank_right)
             + bars.coupler_left.max(bars.coupler_right);
         let step = 2.0 * reach / f64::from(STEPS_ACROSS);
-        let at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
-        let half = STEPS_ACROSS / 2;
-        let row = |row: i32| -> Vec<bool> {
-            let columns = -half..=half;
+        let point_at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
+        let half_steps = STEPS_ACROSS / 2;
+        let row_of = |row: i32| -> Vec<bool> {
+            let columns = -half_steps..=half_steps;
             columns
-                .map(|column| allows(robot, end, at(column, row)))
+                .map(|column| is_reachable(robot, end, point_at(column, row)))
                 .collect()
         };
-        let plane: Vec<Vec<bool>> = (-half..=half).map(row).collect();
+        let plane: Vec<Vec<bool>> = (-half_steps..=half_steps).map(row_of).collect();
         let is_allowed = |column: i32, row: i32| {
-            let row = usize::try_from(row + half)
+            let row = usize::try_from(row + half_steps)
                 .ok()
                 .and_then(|row| plane.get(row));
-            let column = usize::try_from(column + half).ok();
+            let column = usize::try_from(column + half_steps).ok();
             row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
         };
         // The range of columns or rows with allowed points, and a rim around it.
-        let span = |has: &dyn Fn(i32) -> bool| {
-            let smallest = (-half..=half).find(|at| has(*at)).unwrap_or(0);
-            let largest = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
+        let range_with_rim = |is_used: &dyn Fn(i32) -> bool| {
+            let smallest = (-half_steps..=half_steps)
+                .find(|index| is_used(*index))
+                .unwrap_or(0);
+            let largest = (-half_steps..=half_steps)
+                .rev()
+                .find(|index| is_used(*index))
+                .unwrap_or(0);
             (smallest - RIM)..=(largest + RIM)
         };
-        let columns = span(&|column| (-half..=half).any(|row| is_allowed(column, row)));
-        let rows = span(&|row| (-half..=half).any(|column| is_allowed(column, row)));
-        let row = |row| columns.clone().map(move |column| (column, row));
+        let columns =
+            range_with_rim(&|column| (-half_steps..=half_steps).any(|row| is_allowed(column, row)));
+        let rows =
+            range_with_rim(&|row| (-half_steps..=half_steps).any(|column| is_allowed(column, row)));
+        let cells_of_row = |row| columns.clone().map(move |column| (column, row));
         let allowed = rows
             .clone()
-            .flat_map(row)
+            .flat_map(cells_of_row)
             .map(|(column, row)| is_allowed(column, row));
-        let half = bars.base / 2.0;
+        let half_base = bars.base / 2.0;
         Self {
-            from: at(*columns.start(), *rows.start()),
+            from: point_at(*columns.start(), *rows.start()),
             step,
             columns: columns.clone().count(),
             allowed: allowed.collect(),
             neutral: neutral(robot, end),
-            shafts: [[-half, 0.0], [half, 0.0]],
+            shafts: [[-half_base, 0.0], [half_base, 0.0]],
         }
     }
 }
 
-/// The end point of head or tail in the neutral pose, mm, in the end's own frame.
+/// Returns the end point of head or tail in the neutral pose, mm, in the end's own frame.
 pub fn neutral(robot: &Robot, end: End) -> [f64; 2] {
     let solution = robot.lizard().solve(&robot.neutral());
     let point = solution.map(|solution| solution.end(end).end_point);
     point.map_or([0.0; 2], |point| [point.x, point.y])
 }
 
-fn allows(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
+fn is_reachable(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     let Ok(pair) = robot.lizard().point_angles(end, Vector::new(x, y)) else {
         return false;
     };
@@ -100,8 +107,8 @@ fn allows(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     }
     // With these crank angles, the robot's assembly mode may put the end point elsewhere.
     robot.accepted(angles).is_some_and(|solution| {
-        let there = solution.end(end).end_point;
-        (there.x - x).hypot(there.y - y) < SAME_POINT_MM
+        let end_point = solution.end(end).end_point;
+        (end_point.x - x).hypot(end_point.y - y) < SAME_POINT_MM
     })
 }
 
@@ -113,21 +120,21 @@ mod tests {
     fn the_neutral_point_is_allowed_and_points_out_of_reach_are_not() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         for end in End::ALL {
-            let room = ReachArea::of(&robot, end);
-            let place = |[x, y]: [f64; 2]| {
+            let area = ReachArea::of(&robot, end);
+            let is_allowed_at = |[x, y]: [f64; 2]| {
                 let [column, row] = [
-                    (x - room.from[0]) / room.step,
-                    (y - room.from[1]) / room.step,
+                    (x - area.from[0]) / area.step,
+                    (y - area.from[1]) / area.step,
                 ];
-                room.allowed[row.round() as usize * room.columns + column.round() as usize]
+                area.allowed[row.round() as usize * area.columns + column.round() as usize]
             };
-            assert!(place(room.neutral), "{end}");
-            assert_eq!(room.allowed.len() % room.columns, 0);
+            assert!(is_allowed_at(area.neutral), "{end}");
+            assert_eq!(area.allowed.len() % area.columns, 0);
             // The first row belongs to the rim of points that are not allowed, so that the area's edge is visible.
-            assert!(room.allowed[..room.columns].iter().all(|allowed| !allowed));
+            assert!(area.allowed[..area.columns].iter().all(|allowed| !allowed));
             // The gesture `look` stays in the area: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {
-                assert!(place([x, 54.0]), "{end} {x}");
+                assert!(is_allowed_at([x, 54.0]), "{end} {x}");
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::place::Place;
 const MAX_FRAMES: usize = 6_000;
 
 /// Number of frames from one place of the path to the next: a tenth of a second.
-const FRAMES: usize = 5;
+const FRAMES_PER_PLACE: usize = 5;
 
 /// The path of a round that begins with the robot standing.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
@@ -38,7 +38,7 @@ impl RoundPath {
         let mut sweeps = lizard_robot::Round::sweeps(robot, robot.routine(name)?);
         let (mut places, mut frames, mut place) = (Vec::new(), 0, Walked::START);
         for sweeps in sweeps.by_ref().take(MAX_FRAMES) {
-            if frames % FRAMES == 0 {
+            if frames % FRAMES_PER_PLACE == 0 {
                 places.push(place.into());
             }
             frames += 1;
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
     use crate::paper::TEXT;
 
-    fn path(steps: &str) -> RoundPath {
+    fn path_of(steps: &str) -> RoundPath {
         let text = format!("{TEXT}\n[routine.one]\nsteps = [{steps}]\n");
         let robot = Robot::parse(&text).expect("right");
         RoundPath::of(&Twin::new(&robot, ServoModel::Ideal), "one").expect("there")
@@ -69,27 +69,27 @@ mod tests {
 
     #[test]
     fn a_path_leads_as_far_as_its_gaits() {
-        let square = path("\"walk 3\", \"left 6\", \"walk 3\"");
+        let square = path_of("\"walk 3\", \"left 6\", \"walk 3\"");
         let Some(Place { x, y, heading }) = square.places.last() else {
             panic!("no end")
         };
         // 34.17 mm and 15.34 deg per cycle; the transitions between the gaits move the robot by some mm, too.
-        let turned = (6.0_f64 * 15.34).to_radians();
-        let ahead = 3.0 * 34.17;
+        let turned_rad = (6.0_f64 * 15.34).to_radians();
+        let walk_mm = 3.0 * 34.17;
         assert!((heading - 6.0 * 15.34).abs() < 3.0, "{heading}");
-        assert!((y - ahead * (1.0 + turned.cos())).abs() < 8.0, "{y}");
-        assert!((x + ahead * turned.sin()).abs() < 8.0, "{x}");
+        assert!((y - walk_mm * (1.0 + turned_rad.cos())).abs() < 8.0, "{y}");
+        assert!((x + walk_mm * turned_rad.sin()).abs() < 8.0, "{x}");
         assert!((12.0..14.0).contains(&square.seconds), "{}", square.seconds);
         assert!(!square.is_cut);
     }
 
     #[test]
     fn a_path_without_an_end_is_cut() {
-        let long = path("\"walk 2\", \"stand 999 s\"");
-        assert!(long.is_cut);
-        assert_eq!(long.seconds, 120.0);
-        let walked = path("\"walk 2\", \"stand 1 s\"");
-        let end = |path: &RoundPath| path.places.last().expect("an end").y;
-        assert!((end(&long) - end(&walked)).abs() < 0.1);
+        let long_path = path_of("\"walk 2\", \"stand 999 s\"");
+        assert!(long_path.is_cut);
+        assert_eq!(long_path.seconds, 120.0);
+        let short_path = path_of("\"walk 2\", \"stand 1 s\"");
+        let end_y = |path: &RoundPath| path.places.last().expect("an end").y;
+        assert!((end_y(&long_path) - end_y(&short_path)).abs() < 0.1);
     }
 }

@@ -101,7 +101,7 @@ impl Scene {
             .map_err(|fault| fault.to_string())?;
         let shape = Shape::at_solution(robot, &solution, twin.legs());
         let sprung = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
-        let named = |(check, value): (Check, f64)| Margin {
+        let margin_of = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
         };
@@ -111,22 +111,22 @@ impl Scene {
             tips: shape.tips.map(Spot::from),
             points: shape.ends.map(Spot::from),
             sliders: Side::ALL
-                .map(|side| slider(robot, &shape, &solution, side))
+                .map(|side| slider_scene(robot, &shape, &solution, side))
                 .into(),
             legs: shape.legs.map(|leg| LegScene::of(leg, sprung)).into(),
-            margins: solution.margins.iter().map(named).collect(),
-            smallest: named(solution.margins.min()),
-            refusal: refusal(robot.limits(), &solution),
+            margins: solution.margins.iter().map(margin_of).collect(),
+            smallest: margin_of(solution.margins.min()),
+            refusal: refusal_of(robot.limits(), &solution),
             map: End::ALL.map(|end| map::place(end, &pose)),
         })
     }
 }
 
-fn refusal(limits: &Limits, solution: &Solution) -> Option<String> {
+fn refusal_of(limits: &Limits, solution: &Solution) -> Option<String> {
     limits
         .violations(solution)
         .next()
-        .map(|broken| broken.to_string())
+        .map(|violation| violation.to_string())
 }
 
 impl LegScene {
@@ -141,11 +141,11 @@ impl LegScene {
     }
 }
 
-fn slider(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -> SliderScene {
+fn slider_scene(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -> SliderScene {
     let servos = side.servos();
     let pose = solution.side(side);
     let links = robot.lizard().links;
-    let half = match side {
+    let rear_half = match side {
         Side::Left => links.l12,
         Side::Right => links.l17,
     };
@@ -153,7 +153,7 @@ fn slider(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -> Slid
     SliderScene {
         shafts: servos.map(|servo| shape.shafts[servo].into()),
         tips: servos.map(|servo| shape.arms[servo].into()),
-        tube: (rear_tip + pose.span * (half / pose.d)).into(),
+        tube: (rear_tip + pose.span * (rear_half / pose.d)).into(),
         travel: pose.s,
     }
 }
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
     use crate::paper::{TEXT, paper};
 
-    fn at(robot: &Robot, angles: [f64; 4]) -> Scene {
+    fn scene_at(robot: &Robot, angles: [f64; 4]) -> Scene {
         let mut twin = Twin::new(robot, ServoModel::Ideal);
         twin.push_angles(angles);
         Scene::of(&twin).expect("closes")
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn the_neutral_pose_is_the_papers() {
         let robot = paper();
-        let scene = at(&robot, robot.neutral().into());
+        let scene = scene_at(&robot, robot.neutral().into());
         assert!(
             (scene.points[0].1 - (67.5 + 57.840)).abs() < 1e-3,
             "{:?}",
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn a_pose_near_a_singularity_says_why_not() {
-        let scene = at(&paper(), [75.0, 105.0, 318.59, 221.41]);
+        let scene = scene_at(&paper(), [75.0, 105.0, 318.59, 221.41]);
         let refusal = scene.refusal.expect("refused");
         assert!(refusal.contains("type2_head"), "{refusal}");
     }
@@ -201,12 +201,12 @@ mod tests {
     #[test]
     fn a_loop_that_does_not_close_is_named() {
         // Couplers that barely reach each other in the neutral pose.
-        let short = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
+        let short_toml = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
             text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
         });
-        let gaits = short.find("[gait.walk]").expect("walk");
-        let limits = short[..gaits].replace("type2 = 0.3", "type2 = 0.1");
-        let robot = Robot::parse(&limits).expect("it stands");
+        let gaits_start = short_toml.find("[gait.walk]").expect("walk");
+        let loose_toml = short_toml[..gaits_start].replace("type2 = 0.3", "type2 = 0.1");
+        let robot = Robot::parse(&loose_toml).expect("it stands");
         let mut twin = Twin::new(&robot, ServoModel::Ideal);
         twin.push_angles([170.0, 10.0, 318.59, 221.41]);
         let fault = Scene::of(&twin).expect_err("out of reach");

@@ -73,7 +73,7 @@ pub struct NoTrial {
 impl EditedGait {
     fn table(&self, robot: &Robot) -> Option<String> {
         match self {
-            Self::DrawnGait(drawn) => drawn.table(robot),
+            Self::DrawnGait(drawn_gait) => drawn_gait.table(robot),
             Self::Bars(bars) => Some(bars.table()),
         }
     }
@@ -96,45 +96,53 @@ impl EditedGait {
         let table = self.table(twin.robot())?;
         Some(try_table(table, twin).map_err(|refused| NoTrial {
             refused,
-            instead: self.instead(twin.robot()),
+            instead: self.alternatives(twin.robot()),
         }))
     }
 
     /// Finds the nearest smaller gait and the nearest longer period that are valid.
-    fn instead(&self, robot: &Robot) -> Vec<Alternative> {
+    fn alternatives(&self, robot: &Robot) -> Vec<Alternative> {
         let is_possible = |change: &dyn Fn(&mut Self)| {
-            let mut other = self.clone();
-            change(&mut other);
-            let table = other.table(robot);
+            let mut changed_gait = self.clone();
+            change(&mut changed_gait);
+            let table = changed_gait.table(robot);
             table.is_some_and(|table| robot.with_gait(&table).is_ok())
         };
-        let (what, size, steps, period) = match self {
-            Self::DrawnGait(drawn) => ("size", drawn.size, 100.0, drawn.period),
+        let (what, size, steps_per_unit, period) = match self {
+            Self::DrawnGait(drawn_gait) => ("size", drawn_gait.size, 100.0, drawn_gait.period),
             Self::Bars(bars) => ("amplitude", bars.amplitude, 10.0, bars.period),
         };
-        let resized = |step: i64| {
-            is_possible(&|made| match made {
-                Self::DrawnGait(drawn) => drawn.size = step as f64 / steps,
-                Self::Bars(bars) => bars.amplitude = step as f64 / steps,
+        let is_size_possible = |step: i64| {
+            is_possible(&|gait| match gait {
+                Self::DrawnGait(drawn_gait) => drawn_gait.size = step as f64 / steps_per_unit,
+                Self::Bars(bars) => bars.amplitude = step as f64 / steps_per_unit,
             })
         };
-        let slower = |hundredths: i64| {
-            is_possible(&|made| match made {
+        let is_period_possible = |hundredths: i64| {
+            is_possible(&|gait| match gait {
                 Self::DrawnGait(DrawnGait { period, .. }) | Self::Bars(Bars { period, .. }) => {
                     *period = hundredths as f64 / 100.0;
                 }
             })
         };
-        let size = nearest((size * steps).ceil() as i64 - 1, MIN_SIZE, resized);
-        let period = nearest((period * 100.0).floor() as i64 + 1, MAX_PERIOD, slower);
-        let instead = |what, value: Option<i64>, steps: f64| {
+        let size = nearest_possible(
+            (size * steps_per_unit).ceil() as i64 - 1,
+            MIN_SIZE,
+            is_size_possible,
+        );
+        let period = nearest_possible(
+            (period * 100.0).floor() as i64 + 1,
+            MAX_PERIOD,
+            is_period_possible,
+        );
+        let alternative = |what, value: Option<i64>, steps_per_unit: f64| {
             value.map(|value| Alternative {
                 what,
-                value: value as f64 / steps,
+                value: value as f64 / steps_per_unit,
             })
         };
-        let size = instead(what, size, steps);
-        let period = instead("period", period, 100.0);
+        let size = alternative(what, size, steps_per_unit);
+        let period = alternative("period", period, 100.0);
         size.into_iter().chain(period).collect()
     }
 }
@@ -142,8 +150,8 @@ impl EditedGait {
 /// Tries the gait of a table in the format of robot.toml.
 fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
-    let mut other = Twin::new(&robot, twin.servos());
-    other.set_ground(*twin.ground());
+    let mut trial_twin = Twin::new(&robot, twin.servos());
+    trial_twin.set_ground(*twin.ground());
     let gait = &robot.gaits()[1];
     let (audit, limits) = (gait.audit(), robot.limits());
     let margins = [
@@ -151,15 +159,15 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
         (audit.type1, limits.type1),
         (audit.leg, limits.leg),
     ];
-    let (least, limit) = margins
+    let (nearest_margin, limit) = margins
         .into_iter()
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
         .expect("three margins");
     Ok(Trial {
-        outlook: GaitPrediction::of(&other, gait),
+        outlook: GaitPrediction::of(&trial_twin, gait),
         table,
-        margin: least.what.name(),
-        least: least.value,
+        margin: nearest_margin.what.name(),
+        least: nearest_margin.value,
         limit,
         servo: NAMES[audit.peak.servo],
         speed: audit.peak.speed,
@@ -169,21 +177,21 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
 
 /// Finds the possible number nearest to `from`, by bisection from `from` to `to`: if a number is possible, so must be
 /// all numbers nearer to `to`. `None` if `to` is not possible, or equals `from`.
-fn nearest(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
-    let way = (to - from).signum();
-    if way == 0 || !is_possible(to) {
+fn nearest_possible(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
+    let step = (to - from).signum();
+    if step == 0 || !is_possible(to) {
         return None;
     }
-    let (mut not, mut done) = (from - way, to);
-    while (done - not).abs() > 1 {
-        let middle = i64::midpoint(not, done);
+    let (mut impossible, mut possible) = (from - step, to);
+    while (possible - impossible).abs() > 1 {
+        let middle = i64::midpoint(impossible, possible);
         if is_possible(middle) {
-            done = middle
+            possible = middle
         } else {
-            not = middle
+            impossible = middle
         }
     }
-    Some(done)
+    Some(possible)
 }
 
 #[cfg(test)]

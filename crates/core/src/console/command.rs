@@ -160,7 +160,7 @@ fn parse_among<const FIRST_YIELDING: usize>(
         None => Arguments::NONE,
     };
     let [number, second, ..] = numbers;
-    let order_setting = |setting| Order::Set(servo, setting);
+    let order_of = |setting| Order::Set(servo, setting);
     Ok(Command::Order(match word {
         Word::Help | Word::QuestionMark => return Ok(Command::Help),
         Word::Status => return Ok(Command::Status),
@@ -171,10 +171,10 @@ fn parse_among<const FIRST_YIELDING: usize>(
         Word::Pose => Order::Pose(numbers.map(Angle)),
         Word::Center => Order::Center,
         Word::Speed => Order::Speed(number as u8),
-        Word::Trim => order_setting(Setting::Trim(Sweep(number as i16))),
-        Word::Limit => order_setting(Setting::Limit(Angle(number), Angle(second))),
-        Word::Dir => order_setting(Setting::Direction(number != 0)),
-        Word::Scale => order_setting(Setting::Scale(number)),
+        Word::Trim => order_of(Setting::Trim(Sweep(number as i16))),
+        Word::Limit => order_of(Setting::Limit(Angle(number), Angle(second))),
+        Word::Dir => order_of(Setting::Direction(number != 0)),
+        Word::Scale => order_of(Setting::Scale(number)),
         Word::Save => Order::Save,
         Word::Load => Order::Load,
         Word::Factory => Order::Factory,
@@ -232,7 +232,7 @@ impl Arguments {
                 _ => return usage_error,
             };
         }
-        let mut wrong = None;
+        let mut wrong_index = None;
         for (index, number) in (0..form.count).zip(&mut arguments.numbers) {
             let Some((magnitude, is_negative)) = parse_number(words.next(), form.syntax) else {
                 return usage_error;
@@ -246,10 +246,10 @@ impl Arguments {
                 is_in_range &= !is_negative;
             }
             if !is_in_range {
-                wrong = wrong.or(Some(index));
+                wrong_index = wrong_index.or(Some(index));
             }
         }
-        match wrong {
+        match wrong_index {
             _ if !words.is_done() => usage_error,
             Some(index) if word == Word::Pose => {
                 Err(Misread::AngleOutOfRange(Servo::at(usize::from(index))))
@@ -293,7 +293,7 @@ fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
         match match_gait_name(line, robot.name(id)) {
             Err(Misread::UnknownCommand) => {}
             Ok(0) => return Ok((id, 0)),
-            other if parsed.is_err() => parsed = other.map(|cycles| (id, cycles)),
+            result if parsed.is_err() => parsed = result.map(|cycles| (id, cycles)),
             _ => {}
         }
     }
@@ -311,7 +311,7 @@ fn match_gait_name(line: &[u8], name: Name) -> Result<u16, Misread> {
             [first, ..] if byte == b' ' && first.is_ascii_whitespace() => {
                 rest = rest.trim_ascii_start();
             }
-            [first, others @ ..] if *first == byte => rest = others,
+            [first, tail @ ..] if *first == byte => rest = tail,
             _ => return Err(Misread::UnknownCommand),
         }
     }

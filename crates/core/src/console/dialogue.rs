@@ -110,10 +110,10 @@ impl Console {
         control.note_byte();
         self.silence = 0;
         self.rate_finder.note_byte(byte);
-        let Some(ended) = self.line.push(byte) else {
+        let Some(line_end) = self.line.push(byte) else {
             return;
         };
-        let answer = match ended {
+        let answer = match line_end {
             LineEnd::Line => self.execute_line(control),
             LineEnd::TooLong => Err(Answer::Misread(Misread::TooLong)),
             LineEnd::Garbled => Err(Answer::Misread(Misread::Garbled)),
@@ -131,11 +131,11 @@ impl Console {
         if command.is_ok() && !self.rate_finder.note_command(text.len()) {
             command = Err(Misread::Garbled);
         }
-        let reads = matches!(
+        let needs_no_robot = matches!(
             command,
             Ok(Command::Help | Command::Status | Command::Watch(_))
         );
-        if robot.is_none() && !reads {
+        if robot.is_none() && !needs_no_robot {
             return Err(Answer::Refused(Refusal::NoRobot));
         }
         let command = command.map_err(Answer::Misread)?;

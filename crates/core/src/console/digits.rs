@@ -29,21 +29,21 @@ pub fn print_angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
 
 /// Prints a number, the last `decimals` of its digits after a point.
 pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
-    let mut rest = value;
+    let mut remainder = value;
     let mut has_begun = false;
-    let mut place = DECADES.as_slice().len();
-    while place > 0 {
-        place -= 1;
-        let unit = DECADES.at(place).load();
+    let mut position = DECADES.as_slice().len();
+    while position > 0 {
+        position -= 1;
+        let unit = DECADES.at(position).load();
         let mut digit = b'0';
-        while rest >= unit {
-            rest -= unit;
+        while remainder >= unit {
+            remainder -= unit;
             digit += 1;
         }
-        has_begun |= digit != b'0' || place <= decimals;
+        has_begun |= digit != b'0' || position <= decimals;
         if has_begun {
             out.byte(digit);
-            if place == decimals && place > 0 {
+            if position == decimals && position > 0 {
                 out.byte(b'.');
             }
         }
@@ -95,20 +95,20 @@ mod tests {
     use crate::numbers::units::Angle;
     use crate::sample::Sample;
 
-    fn printed(value: u32, decimals: usize) -> String {
+    fn print_to_string(value: u32, decimals: usize) -> String {
         let mut text = String::new();
         print_number(&mut text, value, decimals);
         text
     }
 
     /// The number as the standard library prints it.
-    fn expected(value: u32, decimals: usize) -> String {
+    fn standard_text_of(value: u32, decimals: usize) -> String {
         let digits = format!("{value:0>width$}", width = decimals + 1);
-        let (whole, rest) = digits.split_at(digits.len() - decimals);
+        let (whole, fraction) = digits.split_at(digits.len() - decimals);
         if decimals == 0 {
             whole.to_string()
         } else {
-            format!("{whole}.{rest}")
+            format!("{whole}.{fraction}")
         }
     }
 
@@ -120,7 +120,10 @@ mod tests {
         });
         for value in edges.chain([u32::MAX - 1, u32::MAX]) {
             for decimals in 0..=3 {
-                assert_eq!(printed(value, decimals), expected(value, decimals));
+                assert_eq!(
+                    print_to_string(value, decimals),
+                    standard_text_of(value, decimals)
+                );
             }
         }
     }
@@ -131,7 +134,10 @@ mod tests {
             let mut text = String::new();
             print_signed(&mut text, value, 3);
             let sign = if value < 0 { "-" } else { "" };
-            assert_eq!(text, format!("{sign}{}", expected(value.unsigned_abs(), 3)));
+            assert_eq!(
+                text,
+                format!("{sign}{}", standard_text_of(value.unsigned_abs(), 3))
+            );
         }
     }
 
@@ -148,7 +154,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_number_is_printed_as_the_standard_library_would(value: u32, decimals in 0usize..=3) {
-            prop_assert_eq!(printed(value, decimals), expected(value, decimals));
+            prop_assert_eq!(print_to_string(value, decimals), standard_text_of(value, decimals));
         }
     }
 }

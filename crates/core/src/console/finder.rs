@@ -14,7 +14,7 @@ const WRONG_BYTES: i8 = 4;
 
 /// Additional wrong bytes that a rate may have once it has carried a command: noise, or another
 /// sender, must not cut off a robot that is being driven.
-const MORE_AFTER_COMMAND: i8 = 28;
+const EXTRA_WRONG_BYTES: i8 = 28;
 
 /// Length of the shortest command, in bytes, that is obeyed at a rate other than USB's that has not
 /// carried a command yet. A shorter one may be misread: some `pose` lines sent at 57 600 baud read as
@@ -25,7 +25,7 @@ const MIN_COMMAND_BYTES: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub struct RateFinder {
     rate: Rate,
-    /// Number of wrong bytes; it counts up from `-MORE_AFTER_COMMAND` after a command, and from 0
+    /// Number of wrong bytes; it counts up from `-EXTRA_WRONG_BYTES` after a command, and from 0
     /// after a change of rate.
     wrong_bytes: i8,
     /// True if a byte came since the last frame, or may have come.
@@ -65,7 +65,7 @@ impl RateFinder {
             return false;
         }
         self.is_guess = false;
-        self.wrong_bytes = -MORE_AFTER_COMMAND;
+        self.wrong_bytes = -EXTRA_WRONG_BYTES;
         true
     }
 

@@ -103,38 +103,40 @@ mod tests {
     use super::*;
 
     /// Every line that the bytes complete: its text, or `None` if it was too long or garbled.
-    fn ended(bytes: &[u8]) -> Vec<Option<String>> {
+    fn completed_lines_of(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
-        let mut ended = Vec::new();
+        let mut lines = Vec::new();
         for byte in bytes {
             match line.push(*byte) {
                 None => {}
-                Some(LineEnd::TooLong | LineEnd::Garbled) => ended.push(None),
+                Some(LineEnd::TooLong | LineEnd::Garbled) => lines.push(None),
                 Some(LineEnd::Line) => {
-                    ended.push(Some(line.text().iter().copied().map(char::from).collect()));
+                    lines.push(Some(line.text().iter().copied().map(char::from).collect()));
                 }
             }
         }
-        ended
+        lines
     }
 
     /// Every line that the bytes complete, split by a simpler second implementation.
-    fn expected(bytes: &[u8]) -> Vec<Option<String>> {
+    fn split_simply(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
-            let mut typed = String::new();
-            // True for a garbled line, too.
-            let mut too_long = false;
+            let mut typed_text = String::new();
+            // True for a line that is too long or garbled.
+            let mut is_dropped = false;
             for byte in line {
                 match byte {
-                    0x08 | 0x7f => drop(typed.pop()),
-                    0x80.. => too_long = true,
-                    _ if typed.chars().count() == 63 => too_long = true,
-                    _ => typed.push(char::from(*byte)),
+                    0x08 | 0x7f => drop(typed_text.pop()),
+                    0x80.. => is_dropped = true,
+                    _ if typed_text.chars().count() == 63 => is_dropped = true,
+                    _ => typed_text.push(char::from(*byte)),
                 }
             }
-            let text = typed.trim_matches([' ', '\t', '\x0c']).to_ascii_lowercase();
-            lines.push((!too_long).then_some(text));
+            let text = typed_text
+                .trim_matches([' ', '\t', '\x0c'])
+                .to_ascii_lowercase();
+            lines.push((!is_dropped).then_some(text));
         }
         lines.pop(); // has not ended yet
         lines.retain(|line| line.as_deref() != Some(""));
@@ -143,10 +145,14 @@ mod tests {
 
     #[test]
     fn cr_lf_and_both_end_a_line_once_and_empty_lines_are_ignored() {
-        for end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
-            let bytes = std::format!("{end}one{end}two{end}");
-            let both = ["one", "two"].map(|text| Some(text.to_string()));
-            assert_eq!(ended(bytes.as_bytes()), both, "{end:?}");
+        for line_end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
+            let bytes = std::format!("{line_end}one{line_end}two{line_end}");
+            let both_lines = ["one", "two"].map(|text| Some(text.to_string()));
+            assert_eq!(
+                completed_lines_of(bytes.as_bytes()),
+                both_lines,
+                "{line_end:?}"
+            );
         }
     }
 
@@ -155,28 +161,43 @@ mod tests {
         for length in [62, 63, 64, 65, 200, 5000] {
             let text = "x".repeat(length);
             let bytes = std::format!("{text}\rstand\r");
-            let first = (length <= 63).then_some(text);
-            assert_eq!(ended(bytes.as_bytes()), [first, Some("stand".to_string())]);
+            let first_line = (length <= 63).then_some(text);
+            assert_eq!(
+                completed_lines_of(bytes.as_bytes()),
+                [first_line, Some("stand".to_string())]
+            );
         }
         // Leading blanks count towards the 63 characters.
-        assert_eq!(ended(std::format!("{:>64}\r", "stand").as_bytes()), [None]);
+        assert_eq!(
+            completed_lines_of(std::format!("{:>64}\r", "stand").as_bytes()),
+            [None]
+        );
     }
 
     #[test]
     fn backspace_deletes_typed_bytes_and_does_nothing_on_an_empty_line() {
-        for back in ["\x08", "\x7f"] {
-            let five = back.repeat(5);
-            for line in [std::format!("walt{back}k\r"), std::format!("{five}walk\r")] {
-                assert_eq!(ended(line.as_bytes()), [Some("walk".to_string())]);
+        for delete_byte in ["\x08", "\x7f"] {
+            let five_deletions = delete_byte.repeat(5);
+            for line in [
+                std::format!("walt{delete_byte}k\r"),
+                std::format!("{five_deletions}walk\r"),
+            ] {
+                assert_eq!(
+                    completed_lines_of(line.as_bytes()),
+                    [Some("walk".to_string())]
+                );
             }
-            assert_eq!(ended(std::format!("stand{five}\r").as_bytes()), []);
+            assert_eq!(
+                completed_lines_of(std::format!("stand{five_deletions}\r").as_bytes()),
+                []
+            );
         }
     }
 
     #[test]
     fn a_line_is_read_in_lower_case_without_the_blanks_around_it() {
         assert_eq!(
-            ended(b"  Arc \t LEFT\t \n"),
+            completed_lines_of(b"  Arc \t LEFT\t \n"),
             [Some("arc \t left".to_string())]
         );
     }
@@ -186,10 +207,13 @@ mod tests {
         for index in 0..8 {
             let mut bytes = b"speed 90".to_vec();
             bytes[index] = GARBLED;
-            for back in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
+            for deletion in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
-                let sent = [&bytes, back.as_bytes(), b"\rstop\r"].concat();
-                let ends: Vec<LineEnd> = sent.iter().filter_map(|byte| line.push(*byte)).collect();
+                let sent_bytes = [&bytes, deletion.as_bytes(), b"\rstop\r"].concat();
+                let ends: Vec<LineEnd> = sent_bytes
+                    .iter()
+                    .filter_map(|byte| line.push(*byte))
+                    .collect();
                 assert_eq!(ends, [LineEnd::Garbled, LineEnd::Line]);
                 assert_eq!(line.text(), b"stop");
             }
@@ -210,7 +234,7 @@ mod tests {
             ),
         ) {
             let bytes = pieces.concat();
-            prop_assert_eq!(ended(&bytes), expected(&bytes));
+            prop_assert_eq!(completed_lines_of(&bytes), split_simply(&bytes));
         }
     }
 }

@@ -48,9 +48,9 @@ pub(super) fn answer(
             Text::Err.print(out);
             refusal.print(control.motion(), out);
         }
-        Answer::HelpGaits(first) => {
-            let rest = gaits(out, first, control.motion().robot());
-            return Some(rest.map_or(Answer::HelpWords, Answer::HelpGaits));
+        Answer::HelpGaits(first_gait) => {
+            let next_gait = print_gaits(out, first_gait, control.motion().robot());
+            return Some(next_gait.map_or(Answer::HelpWords, Answer::HelpGaits));
         }
         Answer::HelpWords => {
             Text::HelpWords.print(out);
@@ -67,17 +67,17 @@ pub(super) fn answer(
             digits::print_ascii(out, line.text().iter().copied());
         }
         Answer::Status => {
-            status(out, control);
+            print_status(out, control);
             return Some(Answer::StatusMargin);
         }
         Answer::StatusMargin => {
-            margin(out, control.motion());
+            print_margin(out, control.motion());
             return Some(Answer::StatusHealth);
         }
-        Answer::StatusHealth => health(out, control, counters),
-        Answer::Settings(line) => {
-            if settings(out, line, control) {
-                return Some(Answer::Settings(line + 1));
+        Answer::StatusHealth => print_health(out, control, counters),
+        Answer::Settings(number) => {
+            if print_settings_line(out, number, control) {
+                return Some(Answer::Settings(number + 1));
             }
         }
     }
@@ -86,21 +86,21 @@ pub(super) fn answer(
 
 /// Prints `# gaits: stand|walk|...`, as many names as fit in a line; returns the first
 /// gait that did not fit.
-fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> {
+fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Option<GaitId> {
     Text::HelpGaits.print(out);
     // Without a robot, the bytes in the flash are not a name.
     if robot.is_none() {
         return None;
     }
     let mut length = Text::HelpGaits.length();
-    let mut gait = first;
+    let mut gait = first_gait;
     loop {
         let name = robot.name(gait);
         if name.remaining() >= LONGEST_NAMES - length {
             return Some(gait);
         }
         length += 1 + name.remaining();
-        out.byte(if gait == first { b' ' } else { b'|' });
+        out.byte(if gait == first_gait { b' ' } else { b'|' });
         digits::print_ascii(out, name);
         match gait.next(robot.gait_count()) {
             Some(next) => gait = next,
@@ -110,7 +110,7 @@ fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> 
 }
 
 #[inline(never)]
-fn status(out: &mut impl Output, control: &Control) {
+fn print_status(out: &mut impl Output, control: &Control) {
     let motion = control.motion();
     let robot = motion.robot();
     Text::OkGait.print(out);
@@ -137,7 +137,7 @@ fn status(out: &mut impl Output, control: &Control) {
 }
 
 /// Prints ` margin=0.661 speed=100 frames=321`.
-fn margin(out: &mut impl Output, motion: &Motion) {
+fn print_margin(out: &mut impl Output, motion: &Motion) {
     let robot = motion.robot();
     if robot.is_none() {
         return;
@@ -151,7 +151,7 @@ fn margin(out: &mut impl Output, motion: &Motion) {
 /// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
 /// without voltages before the first reading, and without `rail` if the rail is not measured.
 #[inline(never)]
-fn health(out: &mut impl Output, control: &Control, counters: Counters) {
+fn print_health(out: &mut impl Output, control: &Control, counters: Counters) {
     digits::print_count(out, Text::StatusLate, counters.late_edges.into());
     digits::print_count(out, Text::StatusRxLost, counters.rx_lost.into());
     Text::StatusGuard.print(out);
@@ -175,22 +175,22 @@ fn health(out: &mut impl Output, control: &Control, counters: Counters) {
         return;
     }
     let supplies = robot.supplies();
-    let board = Voltage::of_board(reading, &supplies);
-    digits::print_hundredths(out, Text::StatusVcc, board.hundredths());
+    let board_voltage = Voltage::of_board(reading, &supplies);
+    digits::print_hundredths(out, Text::StatusVcc, board_voltage.hundredths());
     if supplies.rail_reference != 0 {
-        let rail = Voltage::of_rail(reading, &supplies);
-        digits::print_hundredths(out, Text::StatusRail, rail.hundredths());
+        let rail_voltage = Voltage::of_rail(reading, &supplies);
+        digits::print_hundredths(out, Text::StatusRail, rail_voltage.hundredths());
     }
 }
 
 /// Prints a line of `cal`; returns false after the last one, which is `ok cal`.
 #[inline(never)]
-fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
+fn print_settings_line(out: &mut impl Output, line: u8, control: &Control) -> bool {
     let settings = control.settings();
     match line {
         CAL_BOOT => {
             Text::CalBoot.print(out);
-            boot(out, control);
+            print_boot(out, control);
         }
         CAL_DEADMAN => {
             digits::print_count(out, Text::CalDeadman, settings.deadman().into());
@@ -208,7 +208,7 @@ fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
             out.byte(b'A');
             out.byte(b'1' + line);
             Text::CalTrim.print(out);
-            sweep(out, adjustment.trim);
+            print_sweep(out, adjustment.trim);
             digits::print_hundredths(
                 out,
                 Text::CalLimit,
@@ -223,7 +223,7 @@ fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
     true
 }
 
-fn boot(out: &mut impl Output, control: &Control) {
+fn print_boot(out: &mut impl Output, control: &Control) {
     let robot = control.motion().robot();
     match control.settings().boot(robot) {
         Boot::Rest => Text::Rest.print(out),
@@ -269,7 +269,7 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
         }
         Notice::Boot => {
             Text::NoticeBoot.print(out);
-            boot(out, control)
+            print_boot(out, control)
         }
         Notice::Done => Text::NoticeDone.print(out),
         Notice::Waiting => {
@@ -290,9 +290,9 @@ pub(super) fn pose(out: &mut impl Output, motion: &Motion) {
 }
 
 /// Prints a sweep in degrees with two decimals.
-fn sweep(out: &mut impl Output, sweep: Sweep) {
-    let size = Angle(sweep.0.unsigned_abs()).centideg();
-    let centideg = i32::from(size);
+fn print_sweep(out: &mut impl Output, sweep: Sweep) {
+    let magnitude = Angle(sweep.0.unsigned_abs()).centideg();
+    let centideg = i32::from(magnitude);
     digits::print_signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
@@ -310,12 +310,12 @@ pub(super) fn banner(out: &mut impl Output, robot: &Robot) {
     let hash = robot.hash();
     for digit in 0..8 {
         let nibble = (hash >> (28 - 4 * digit)) as u8 & 0xf;
-        let digit = if nibble < 10 {
+        let character = if nibble < 10 {
             b'0' + nibble
         } else {
             b'a' - 10 + nibble
         };
-        out.byte(digit);
+        out.byte(character);
     }
     Text::BannerEnd.print(out)
 }

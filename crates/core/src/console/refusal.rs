@@ -61,8 +61,8 @@ impl Refusal {
             Self::TravelTooNarrow(servo) => {
                 print_servo(servo, out);
                 Text::Needed.print(out);
-                let needed = motion.robot().reach(servo);
-                print_range(servo, &needed, motion, out)
+                let needed_reach = motion.robot().reach(servo);
+                print_range(servo, &needed_reach, motion, out)
             }
             Self::PoseOutsideTravel(servo) => {
                 print_servo(servo, out);
@@ -170,14 +170,14 @@ mod tests {
     use crate::sample::Sample;
 
     /// Returns the text that a function prints for the odd robot.
-    fn printed(print: impl FnOnce(&Motion, &mut String)) -> String {
+    fn print_to_string(print: impl FnOnce(&Motion, &mut String)) -> String {
         let mut text = String::new();
         print(&Motion::new(*Sample::odd()), &mut text);
         text
     }
 
     fn refusal_text(refusal: Refusal) -> String {
-        printed(|motion, out| refusal.print(motion, out))
+        print_to_string(|motion, out| refusal.print(motion, out))
     }
 
     #[test]
@@ -214,7 +214,10 @@ mod tests {
             (AngleOutOfRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
             (Misread::TooLong, "6 a line has at most 63 characters"),
         ] {
-            assert_eq!(printed(|motion, out| misread.print(motion, out)), message);
+            assert_eq!(
+                print_to_string(|motion, out| misread.print(motion, out)),
+                message
+            );
         }
         assert_eq!(
             refusal_text(Refusal::Resting),

@@ -198,7 +198,7 @@ const SHORT_CODES: u8 = 12;
 const MESSAGE_COUNT: usize = MESSAGES.len();
 
 /// The number of packed strings: the messages first, then the phrases.
-const STRINGS: usize = MESSAGE_COUNT + PHRASES.len();
+const STRING_COUNT: usize = MESSAGE_COUNT + PHRASES.len();
 
 /// Number of strings in a block. Only the start of each block and the length of each string are stored.
 const BLOCK_STRINGS: usize = 16;
@@ -207,8 +207,8 @@ const PACKED: Packed = pack();
 
 flash! {
     const NIBBLES: [u8; PACKED.count.div_ceil(2)] = *PACKED.nibbles.first_chunk().unwrap();
-    const LENGTHS: [u8; STRINGS] = PACKED.lengths;
-    const BLOCKS: [u16; STRINGS.div_ceil(BLOCK_STRINGS)] = PACKED.blocks;
+    const LENGTHS: [u8; STRING_COUNT] = PACKED.lengths;
+    const BLOCKS: [u16; STRING_COUNT.div_ceil(BLOCK_STRINGS)] = PACKED.blocks;
     const CHARACTERS: [u8; ALPHABET.len()] = *ALPHABET;
 }
 
@@ -216,20 +216,20 @@ impl Text {
     /// Prints the message.
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
-        let mut part = PackedString::of(self as u8);
+        let mut current = PackedString::of(self as u8);
         // The rest of the message, after the phrase that is being printed.
-        let mut rest = PackedString::NONE;
+        let mut message_rest = PackedString::NONE;
         loop {
-            if part.nibbles_left == 0 {
-                part = rest;
-                rest.nibbles_left = 0;
+            if current.nibbles_left == 0 {
+                current = message_rest;
+                message_rest.nibbles_left = 0;
             }
-            if part.nibbles_left == 0 {
+            if current.nibbles_left == 0 {
                 return;
             }
-            let mut code = part.next();
+            let mut code = current.next();
             if code >= SHORT_CODES {
-                code = SHORT_CODES + (code - SHORT_CODES) * 16 + part.next();
+                code = SHORT_CODES + (code - SHORT_CODES) * 16 + current.next();
             }
             match code.checked_sub(ALPHABET.len() as u8) {
                 None => {
@@ -237,8 +237,8 @@ impl Text {
                     out.byte(character);
                 }
                 Some(phrase) => {
-                    rest = part;
-                    part = PackedString::of(MESSAGE_COUNT as u8 + phrase);
+                    message_rest = current;
+                    current = PackedString::of(MESSAGE_COUNT as u8 + phrase);
                 }
             }
         }
@@ -265,16 +265,16 @@ impl PackedString {
 
     /// All nibbles of a message or a phrase.
     #[inline(never)]
-    fn of(string: u8) -> Self {
-        let string = usize::from(string);
-        let length = |string| LENGTHS.at(string).load();
-        let mut at = BLOCKS.at(string / BLOCK_STRINGS).load();
-        for before in string / BLOCK_STRINGS * BLOCK_STRINGS..string {
-            at += u16::from(length(before));
+    fn of(string_index: u8) -> Self {
+        let string_index = usize::from(string_index);
+        let length_of = |string_index| LENGTHS.at(string_index).load();
+        let mut nibble_index = BLOCKS.at(string_index / BLOCK_STRINGS).load();
+        for earlier_index in string_index / BLOCK_STRINGS * BLOCK_STRINGS..string_index {
+            nibble_index += u16::from(length_of(earlier_index));
         }
         Self {
-            at,
-            nibbles_left: length(string),
+            at: nibble_index,
+            nibbles_left: length_of(string_index),
         }
     }
 
@@ -297,8 +297,8 @@ impl PackedString {
 struct Packed {
     nibbles: [u8; BUFFER_BYTES],
     count: usize,
-    lengths: [u8; STRINGS],
-    blocks: [u16; STRINGS.div_ceil(BLOCK_STRINGS)],
+    lengths: [u8; STRING_COUNT],
+    blocks: [u16; STRING_COUNT.div_ceil(BLOCK_STRINGS)],
 }
 
 /// The size of the buffer used at compile time, in bytes: more than the strings need.
@@ -329,37 +329,37 @@ const fn pack() -> Packed {
     let mut packed = Packed {
         nibbles: [0; BUFFER_BYTES],
         count: 0,
-        lengths: [0; STRINGS],
+        lengths: [0; STRING_COUNT],
         blocks: [0; _],
     };
-    let mut string = 0;
-    while string < STRINGS {
+    let mut string_index = 0;
+    while string_index < STRING_COUNT {
         let start = packed.count;
-        if string % BLOCK_STRINGS == 0 {
-            packed.blocks[string / BLOCK_STRINGS] = start as u16;
+        if string_index % BLOCK_STRINGS == 0 {
+            packed.blocks[string_index / BLOCK_STRINGS] = start as u16;
         }
-        let is_phrase = string >= MESSAGE_COUNT;
+        let is_phrase = string_index >= MESSAGE_COUNT;
         let text = if is_phrase {
-            PHRASES[string - MESSAGE_COUNT].as_bytes()
+            PHRASES[string_index - MESSAGE_COUNT].as_bytes()
         } else {
-            MESSAGES[string].as_bytes()
+            MESSAGES[string_index].as_bytes()
         };
-        let mut rest = text;
-        while let [first, after @ ..] = rest {
-            match phrase_of(rest) {
-                Some((phrase, after)) if !is_phrase => {
+        let mut remaining_text = text;
+        while let [first, after_first @ ..] = remaining_text {
+            match phrase_of(remaining_text) {
+                Some((phrase, after_phrase)) if !is_phrase => {
                     packed.append(ALPHABET.len() + phrase);
-                    rest = after;
+                    remaining_text = after_phrase;
                 }
                 _ => {
                     packed.append(character_code(*first));
-                    rest = after;
+                    remaining_text = after_first;
                 }
             }
         }
         assert!(packed.count - start <= 255);
-        packed.lengths[string] = (packed.count - start) as u8;
-        string += 1;
+        packed.lengths[string_index] = (packed.count - start) as u8;
+        string_index += 1;
     }
     packed
 }
@@ -369,14 +369,15 @@ const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
     let mut phrase = 0;
     while phrase < PHRASES.len() {
         let mut pattern = PHRASES[phrase].as_bytes();
-        let mut rest = text;
-        while let ([wanted, pattern_after @ ..], [byte, after @ ..]) = (pattern, rest)
-            && *wanted == *byte
+        let mut remaining_text = text;
+        while let ([expected_byte, pattern_rest @ ..], [byte, text_rest @ ..]) =
+            (pattern, remaining_text)
+            && *expected_byte == *byte
         {
-            (pattern, rest) = (pattern_after, after);
+            (pattern, remaining_text) = (pattern_rest, text_rest);
         }
         if pattern.is_empty() {
-            return Some((phrase, rest));
+            return Some((phrase, remaining_text));
         }
         phrase += 1;
     }
@@ -407,9 +408,9 @@ mod tests {
             (Text::Unknown, "unknown command, send help for the list"),
             (Text::Resting, "servos are resting, send stand first"),
         ] {
-            let mut printed = String::new();
-            text.print(&mut printed);
-            assert_eq!(printed, expected);
+            let mut printed_text = String::new();
+            text.print(&mut printed_text);
+            assert_eq!(printed_text, expected);
             assert_eq!(usize::from(text.length()), expected.len());
         }
     }

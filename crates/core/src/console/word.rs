@@ -114,10 +114,10 @@ impl Word {
     pub fn find(written: &[u8]) -> Option<Self> {
         let mut number = 0;
         // The part of `written` not matched yet; `None` once it differs from the current word.
-        let mut left = Some(written);
+        let mut unmatched = Some(written);
         for index in 0..LIST.len() {
             let character = CHARACTERS.at(index).load();
-            left = match left {
+            unmatched = match unmatched {
                 Some([]) if character == BAR => return Some(WORDS.at(number).load()),
                 _ if character == BAR => {
                     number += 1;
@@ -135,17 +135,17 @@ impl Word {
         (self as usize) < RESERVED
     }
 
-    /// Prints all words, with bars in between. Leaves out a word if its number is `YIELDING` or more and
+    /// Prints all words, with bars in between. Leaves out a word if its number is `FIRST_YIELDING` or more and
     /// the robot has a gait of the same name.
-    pub(crate) fn print_all<const YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
+    pub(crate) fn print_all<const FIRST_YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
         let mut number = 0;
         let mut is_printed = true;
         for index in 0..LIST.len() - 1 {
             let character = CHARACTERS.at(index).load();
             // Compiles to nothing while no word yields.
-            if YIELDING < Self::ALL.len() && character == BAR {
+            if FIRST_YIELDING < Self::ALL.len() && character == BAR {
                 number += 1;
-                is_printed = number < YIELDING || !is_gait(index + 1, robot);
+                is_printed = number < FIRST_YIELDING || !is_gait(index + 1, robot);
             }
             if is_printed {
                 out.byte(character);
@@ -188,22 +188,24 @@ mod tests {
         for word in Word::ALL {
             let text = word.text();
             assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");
-            let longer = std::format!("{text}s");
-            for other in [&text[1..], &text[..text.len() - 1], &longer] {
-                assert_eq!(Word::find(other.as_bytes()), None, "{other}");
+            let longer_word = std::format!("{text}s");
+            for misspelling in [&text[1..], &text[..text.len() - 1], &longer_word] {
+                assert_eq!(Word::find(misspelling.as_bytes()), None, "{misspelling}");
             }
         }
-        for other in ["", "|", "help|", "help|?", "sway", "sto", "stoq"] {
-            assert_eq!(Word::find(other.as_bytes()), None, "{other}");
+        for non_word in ["", "|", "help|", "help|?", "sway", "sto", "stoq"] {
+            assert_eq!(Word::find(non_word.as_bytes()), None, "{non_word}");
         }
     }
 
     /// Checks that the list has all words except those left out.
-    fn assert_lists_all_but<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
-        let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
+    fn assert_lists_all_but<const FIRST_YIELDING: usize>(robot: &Robot, omitted_words: &[Word]) {
+        let words = Word::ALL
+            .iter()
+            .filter(|word| !omitted_words.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
-        Word::print_all::<YIELDING>(&mut list, robot);
+        Word::print_all::<FIRST_YIELDING>(&mut list, robot);
         assert_eq!(list, words.join("|"));
     }
 
@@ -216,10 +218,10 @@ mod tests {
         for name in ["stop", "trim", "deadman", "sav", "loads", "boot on"] {
             robot = robot.with_gait(name);
         }
-        let all = [Word::Stop, Word::Trim, Word::Deadman];
+        let yielding_words = [Word::Stop, Word::Trim, Word::Deadman];
         assert_lists_all_but::<RESERVED>(&robot, &[]);
-        assert_lists_all_but::<1>(&robot, &all);
-        assert_lists_all_but::<3>(&robot, &all[1..]);
-        assert_lists_all_but::<9>(&robot, &all[2..]);
+        assert_lists_all_but::<1>(&robot, &yielding_words);
+        assert_lists_all_but::<3>(&robot, &yielding_words[1..]);
+        assert_lists_all_but::<9>(&robot, &yielding_words[2..]);
     }
 }

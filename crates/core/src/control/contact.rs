@@ -63,30 +63,33 @@ mod tests {
     use super::*;
 
     /// The frames in which a contact counts as closed; in `levels`, `#` is a frame with a closed contact.
-    fn closes(mut contact: Contact, levels: &str) -> Vec<usize> {
-        let frames = levels.bytes().enumerate();
-        let closed = frames.filter(|(_, level)| contact.count_frame(*level == b'#'));
-        closed.map(|(frame, _)| frame).collect()
+    fn closing_frames_of(mut contact: Contact, levels: &str) -> Vec<usize> {
+        let level_frames = levels.bytes().enumerate();
+        let closed_frames = level_frames.filter(|(_, level)| contact.count_frame(*level == b'#'));
+        closed_frames.map(|(frame, _)| frame).collect()
     }
 
     #[test]
     fn a_contact_closes_in_the_third_frame_in_a_row() {
         let input = Input::button(15);
         for contact in [Contact::await_closing(input), Contact::await_closed(input)] {
-            assert_eq!(closes(contact, "....###"), [6]);
-            assert_eq!(closes(contact, "....##.##.#.#.##.###."), [19]);
-            assert!(closes(contact, "...##..##..#..##.##.#").is_empty());
+            assert_eq!(closing_frames_of(contact, "....###"), [6]);
+            assert_eq!(closing_frames_of(contact, "....##.##.#.#.##.###."), [19]);
+            assert!(closing_frames_of(contact, "...##..##..#..##.##.#").is_empty());
         }
     }
 
     #[test]
     fn a_contact_closed_from_the_start_ends_a_walk_but_no_wait_until_it_was_open() {
         let input = Input::nose(16);
-        assert_eq!(closes(Contact::await_closed(input), "###"), [2]);
-        let stuck: String = "#".repeat(1000);
-        assert!(closes(Contact::await_closing(input), &stuck).is_empty());
-        assert_eq!(closes(Contact::await_closing(input), "####...###"), [9]);
+        assert_eq!(closing_frames_of(Contact::await_closed(input), "###"), [2]);
+        let stuck_levels: String = "#".repeat(1000);
+        assert!(closing_frames_of(Contact::await_closing(input), &stuck_levels).is_empty());
+        assert_eq!(
+            closing_frames_of(Contact::await_closing(input), "####...###"),
+            [9]
+        );
         // Too short to have been open.
-        assert!(closes(Contact::await_closing(input), "####..####.##").is_empty());
+        assert!(closing_frames_of(Contact::await_closing(input), "####..####.##").is_empty());
     }
 }

@@ -122,7 +122,7 @@ impl Control {
             self.safety.notify(Notice::Memory);
         }
         self.apply_calibration();
-        let before = match &restart.stance_before {
+        let servos_before = match &restart.stance_before {
             None => ServosBefore::Unknown,
             Some(stance) if stance.is_resting => ServosBefore::Rested,
             Some(_) => ServosBefore::Held,
@@ -133,16 +133,16 @@ impl Control {
             false => restart.brown_outs.min(BROWN_OUTS_TO_REST),
         };
         let (first_action, fault) =
-            supervisor::first_action(restart.cause, self.brown_outs, before);
+            supervisor::first_action(restart.cause, self.brown_outs, servos_before);
         if let Some(fault) = fault {
             self.safety.note_byte();
             self.safety.record_fault(fault);
         }
-        let rested = copies::last_rest_pose(self.motion.robot(), memory);
+        let rest_pose = copies::last_rest_pose(self.motion.robot(), memory);
         let stance = restart.stance_before.as_ref();
         let is_awake = match (first_action, stance) {
             (FirstAction::Wake, _) => {
-                self.motion.wake(rested.as_ref());
+                self.motion.wake(rest_pose.as_ref());
                 true
             }
             (FirstAction::WakeInPlace, Some(stance)) => self.motion.resume(stance, true),
@@ -154,14 +154,14 @@ impl Control {
             return;
         }
         // A program that hung before its first frame has moved nothing since the rest.
-        let at_rest = rested.map(|pose| Stance {
+        let rest_stance = rest_pose.map(|pose| Stance {
             pose,
             ..Stance::RESTING
         });
-        self.motion.resume_rest(stance.or(at_rest.as_ref()));
+        self.motion.resume_rest(stance.or(rest_stance.as_ref()));
         // The pose may not have reached the memory yet.
-        let is_saved =
-            before == ServosBefore::Unknown || rested.as_ref() == Some(self.motion.pose());
+        let is_saved = servos_before == ServosBefore::Unknown
+            || rest_pose.as_ref() == Some(self.motion.pose());
         self.rest_record = (!is_saved).then(|| REST_POSE.start_write());
     }
 
@@ -272,12 +272,15 @@ impl Control {
         let state = self.state();
         let supplies = self.motion.robot().supplies();
         // A routine that `boot` began needs no sender of commands, so silence is no fault.
-        let deadman = if self.is_unattended && self.routine.is_under_way() {
+        let deadman_ms = if self.is_unattended && self.routine.is_under_way() {
             0
         } else {
             self.settings.deadman()
         };
-        match self.safety.check_frame(health, &supplies, state, deadman) {
+        match self
+            .safety
+            .check_frame(health, &supplies, state, deadman_ms)
+        {
             Reaction::None => {}
             Reaction::Freeze => self.stop(),
             Reaction::EndPulses => {
@@ -349,8 +352,8 @@ impl Control {
             Order::Boot(boot) => self.settings.set_boot(*boot, self.motion.robot()),
             Order::Deadman(ms) => self.settings.set_deadman(*ms),
             Order::Factory => {
-                let factory = Settings::of(self.motion.robot());
-                self.replace_settings(&factory)?;
+                let factory_settings = Settings::of(self.motion.robot());
+                self.replace_settings(&factory_settings)?;
             }
             Order::Save => {
                 self.check_allowed(Event::Save)?;

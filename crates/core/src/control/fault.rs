@@ -86,7 +86,7 @@ mod tests {
 
     use super::*;
 
-    const ALL: [Fault; 8] = [
+    const ALL_FAULTS: [Fault; 8] = [
         Fault::Guard,
         Fault::Supply,
         Fault::Link,
@@ -98,20 +98,20 @@ mod tests {
     ];
 
     /// The LED's lit and dark runs over some frames: true for a lit one, and its length.
-    fn runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
+    fn record_runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {
-            let lit = led.advance(fault);
+            let is_lit_now = led.advance(fault);
             match runs.last_mut() {
-                Some((last, count)) if *last == lit => *count += 1,
-                _ => runs.push((lit, 1)),
+                Some((was_lit, count)) if *was_lit == is_lit_now => *count += 1,
+                _ => runs.push((is_lit_now, 1)),
             }
         }
         runs
     }
 
     /// The LED's state according to docs/faults.md, `frame` frames after a pattern began.
-    fn is_lit(fault: Option<Fault>, frame: usize) -> bool {
+    fn should_be_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;
         };
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn without_a_fault_it_beats_slowly() {
-        let runs = runs(&mut Led::default(), None, 1000);
+        let runs = record_runs(&mut Led::default(), None, 1000);
         assert!(runs[0].0, "lit first");
         assert!(
             runs[1..runs.len() - 1]
@@ -133,23 +133,23 @@ mod tests {
 
     #[test]
     fn a_fault_flashes_as_often_as_its_code_says_and_pauses() {
-        for (index, fault) in ALL.into_iter().enumerate() {
+        for (index, fault) in ALL_FAULTS.into_iter().enumerate() {
             assert_eq!(usize::from(fault.code()), index + 1);
             let mut led = Led::default();
-            runs(&mut led, None, 13 * (index + 1));
-            let runs = runs(&mut led, Some(fault), 1000);
+            record_runs(&mut led, None, 13 * (index + 1));
+            let runs = record_runs(&mut led, Some(fault), 1000);
             // The pauses separate the patterns.
             let mut flashes = 0;
             let mut patterns = Vec::new();
-            for (lit, frames) in &runs[..runs.len() - 1] {
-                match (lit, frames) {
+            for (is_lit, frames) in &runs[..runs.len() - 1] {
+                match (is_lit, frames) {
                     (true, 8) => flashes += 1,
                     (false, 8) => {}
                     (false, 56) => {
                         patterns.push(flashes);
                         flashes = 0;
                     }
-                    other => panic!("{fault:?}: {other:?}"),
+                    run => panic!("{fault:?}: {run:?}"),
                 }
             }
             assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
@@ -160,15 +160,23 @@ mod tests {
     /// A pattern may be interrupted at any frame.
     #[test]
     fn any_pattern_begins_at_once_at_any_frame_of_any_other_and_goes_on() {
-        let shown: Vec<Option<Fault>> = ALL.into_iter().map(Some).chain([None]).collect();
-        for before in &shown {
-            for after in shown.iter().filter(|after| *after != before) {
+        let shown_faults: Vec<Option<Fault>> =
+            ALL_FAULTS.into_iter().map(Some).chain([None]).collect();
+        for first_fault in &shown_faults {
+            for second_fault in shown_faults
+                .iter()
+                .filter(|second_fault| *second_fault != first_fault)
+            {
                 for frames in 1..300 {
                     let mut led = Led::default();
-                    runs(&mut led, *before, frames);
+                    record_runs(&mut led, *first_fault, frames);
                     for frame in 0..400 {
-                        let lit = led.advance(*after);
-                        assert_eq!(lit, is_lit(*after, frame), "{before:?} {after:?} {frames}");
+                        let is_lit = led.advance(*second_fault);
+                        assert_eq!(
+                            is_lit,
+                            should_be_lit(*second_fault, frame),
+                            "{first_fault:?} {second_fault:?} {frames}"
+                        );
                     }
                 }
             }
@@ -178,11 +186,11 @@ mod tests {
     #[test]
     fn another_fault_begins_its_pattern_at_once() {
         let mut led = Led::default();
-        runs(&mut led, Some(Fault::Stack), 100);
+        record_runs(&mut led, Some(Fault::Stack), 100);
         assert_eq!(
-            runs(&mut led, Some(Fault::Guard), 10),
+            record_runs(&mut led, Some(Fault::Guard), 10),
             [(true, 8), (false, 2)]
         );
-        assert_eq!(runs(&mut led, None, 40), [(true, 32), (false, 8)]);
+        assert_eq!(record_runs(&mut led, None, 40), [(true, 32), (false, 8)]);
     }
 }

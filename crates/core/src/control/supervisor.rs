@@ -95,20 +95,20 @@ impl Event {
 pub const fn response(event: Event, supply: Option<Level>, state: State) -> Response {
     use Event::{Boot, Empty, LateEdge, Move, Rest, Save, Silence, Stack, Stand, Stop, TooLow, Unsafe};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
-    let enough_to_move = matches!(supply, None | Some(Level::Good | Level::Slow));
+    let can_move = matches!(supply, None | Some(Level::Good | Level::Slow));
     // Before the first measurement an order to write is accepted; the write waits for the measurement.
-    let enough_to_write = matches!(supply, None | Some(Level::Good));
+    let can_write = matches!(supply, None | Some(Level::Good));
     let [resting, still, walking] = match event {
         // what happens              resting                  still                    walking
-        Stand if enough_to_move  => [Obey,                    Obey,                    Obey],
+        Stand if can_move        => [Obey,                    Obey,                    Obey],
         Stand                    => [RefuseSupply,            RefuseSupply,            RefuseSupply],
-        Move if enough_to_move   => [RefuseResting,           Obey,                    Obey],
+        Move if can_move         => [RefuseResting,           Obey,                    Obey],
         Move                     => [RefuseResting,           RefuseSupply,            RefuseSupply],
         Stop                     => [RefuseResting,           Obey,                    Obey],
         Rest                     => [Nothing,                 Obey,                    Obey],
-        Save if enough_to_write  => [Obey,                    Obey,                    Obey],
+        Save if can_write        => [Obey,                    Obey,                    Obey],
         Save                     => [RefuseSupply,            RefuseSupply,            RefuseSupply],
-        Boot if enough_to_move   => [Obey,                    Obey,                    Obey],
+        Boot if can_move         => [Obey,                    Obey,                    Obey],
         Boot                     => [Nothing,                 Nothing,                 Nothing],
         Silence                  => [Nothing,                 Nothing,                 Freeze(Fault::Link)],
         TooLow                   => [Freeze(Fault::Supply),   Freeze(Fault::Supply),   Freeze(Fault::Supply)],
@@ -161,7 +161,7 @@ impl ServosBefore {
 /// The table of resets: the first action and the fault that is shown, given the cause, the
 /// consecutive resets that a weak supply may have caused, and the servos' state before the reset.
 #[rustfmt::skip]
-pub const fn first_action(cause: Cause, brown_outs: u8, before: ServosBefore) -> (FirstAction, Option<Fault>) {
+pub const fn first_action(cause: Cause, brown_outs: u8, servos_before: ServosBefore) -> (FirstAction, Option<Fault>) {
     use FirstAction::{Hold, Rest, WakeInPlace, Wake};
     let too_many = brown_outs >= BROWN_OUTS_TO_REST;
     let ([nothing, rested, held], fault) = match cause {
@@ -172,12 +172,12 @@ pub const fn first_action(cause: Cause, brown_outs: u8, before: ServosBefore) ->
             if too_many                        => ([Rest,   Rest,   Rest],     Some(Fault::BrownOut)),
         Cause::External | Cause::BrownOut      => ([Wake,   Rest,   WakeInPlace], None),
     };
-    let beginning = match before {
+    let action = match servos_before {
         ServosBefore::Unknown => nothing,
         ServosBefore::Rested => rested,
         ServosBefore::Held => held,
     };
-    (beginning, fault)
+    (action, fault)
 }
 
 #[cfg(test)]

@@ -107,13 +107,13 @@ impl Voltage {
 const MAX_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
-    /// The level of a voltage, with the thresholds raised by `above`, mV.
-    fn level(&self, voltage: Voltage, above: u16) -> Level {
-        if !voltage.is_below(self.slow.wrapping_add(above)) {
+    /// The level of a voltage, with the thresholds raised by `raise_mv`, mV.
+    fn level(&self, voltage: Voltage, raise_mv: u16) -> Level {
+        if !voltage.is_below(self.slow.wrapping_add(raise_mv)) {
             Level::Good
-        } else if !voltage.is_below(self.stop.wrapping_add(above)) {
+        } else if !voltage.is_below(self.stop.wrapping_add(raise_mv)) {
             Level::Slow
-        } else if !voltage.is_below(self.rest.wrapping_add(above)) {
+        } else if !voltage.is_below(self.rest.wrapping_add(raise_mv)) {
             Level::Stop
         } else {
             Level::Rest
@@ -123,13 +123,13 @@ impl Thresholds {
 
 impl Supplies {
     /// The level of the chip's supply or of the rail, whichever is worse.
-    fn level(&self, reading: Reading, above: u16) -> Level {
-        let board = self.board.level(Voltage::of_board(reading, self), above);
+    fn level(&self, reading: Reading, raise_mv: u16) -> Level {
+        let board_level = self.board.level(Voltage::of_board(reading, self), raise_mv);
         if self.rail_reference == 0 {
-            return board;
+            return board_level;
         }
-        let rail = Voltage::of_rail(reading, self);
-        board.max(self.rail.level(rail, above))
+        let rail_voltage = Voltage::of_rail(reading, self);
+        board_level.max(self.rail.level(rail_voltage, raise_mv))
     }
 }
 
@@ -174,13 +174,14 @@ impl Supply {
 
     /// The voltage of the chip's supply or of the rail, whichever restricts the robot more.
     pub fn worst_voltage(&self, supplies: &Supplies) -> Voltage {
-        let board = Voltage::of_board(self.reading, supplies);
-        let rail = Voltage::of_rail(self.reading, supplies);
-        let is_worse = supplies.rail.level(rail, 0) > supplies.board.level(board, 0);
+        let board_voltage = Voltage::of_board(self.reading, supplies);
+        let rail_voltage = Voltage::of_rail(self.reading, supplies);
+        let is_worse =
+            supplies.rail.level(rail_voltage, 0) > supplies.board.level(board_voltage, 0);
         if supplies.rail_reference != 0 && is_worse {
-            rail
+            rail_voltage
         } else {
-            board
+            board_voltage
         }
     }
 
@@ -191,16 +192,16 @@ impl Supply {
         if reading.reference > 0 && self.readings < FRAMES_TO_WORSE {
             self.readings += 1;
         }
-        let worse = supplies.level(reading, 0);
-        let (level, frames) = if worse > self.level {
-            (worse, FRAMES_TO_WORSE)
+        let reading_level = supplies.level(reading, 0);
+        let (level, frames_needed) = if reading_level > self.level {
+            (reading_level, FRAMES_TO_WORSE)
         } else if self.level > Level::Good {
             (supplies.level(reading, HYSTERESIS_MV), FRAMES_TO_BETTER)
         } else {
             (self.level, 0)
         };
         // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
-        if level == self.level || (frames == FRAMES_TO_BETTER && level > self.level) {
+        if level == self.level || (frames_needed == FRAMES_TO_BETTER && level > self.level) {
             self.frames_at_other_level = 0;
             return false;
         }
@@ -216,12 +217,12 @@ impl Supply {
         } else {
             1
         };
-        let changed = self.frames_at_other_level >= frames;
-        if changed {
+        let has_changed = self.frames_at_other_level >= frames_needed;
+        if has_changed {
             self.frames_at_other_level = 0;
             self.level = self.nearest_other_level;
         }
-        changed
+        has_changed
     }
 }
 

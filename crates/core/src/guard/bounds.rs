@@ -84,10 +84,10 @@ pub const MIN_KNOWN_MARGIN: f64 = 0.08;
 /// t^2 f'' = f ((sum of e l)^2 - sum of e l^2)
 /// ```
 ///
-/// which `Product::bend` bounds over the step by the ends of each `l`. The function is constant below its peak,
-/// where it has no bend at all. The roundings add to that: those of the entries and of the values read, 1
-/// together (1.5 for the skew, whose entries are rounded to nearest and whose value down); a share of the step
-/// of 16 bits; and the quarter that `R` and `N` lose when they are rounded down to whole steps.
+/// which `Product::max_bend_and_value` bounds over the step by the ends of each `l`. The function is constant below
+/// its peak, where it has no bend at all. The roundings add to that: those of the entries and of the values read, 1
+/// together (1.5 for the skew, whose entries are rounded to nearest and whose value down); a share of the step of 16
+/// bits; and the quarter that `R` and `N` lose when they are rounded down to whole steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LeanError {
     /// The largest error of the rise, which has no unit.
@@ -102,43 +102,60 @@ impl LeanError {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
         let reach = (a + b).powi(2).floor();
         let min = (a - b).powi(2).floor();
-        let root = |p: f64, q: f64| Factor { power: 0.5, p, q };
-        let over = |p: f64, q: f64| Factor { power: -1.0, p, q };
+        let root_of = |p: f64, q: f64| Factor { power: 0.5, p, q };
+        let inverse_of = |p: f64, q: f64| Factor { power: -1.0, p, q };
         // A table starts with the octave that contains a 1024th of the largest argument.
         let octaves = 2048.0;
         let mut rise = 0.0f64;
-        // `ends` is a range of the table's argument, `within` the part in which the table is read, `first` the
-        // argument at which its function begins.
-        let mut add_reading_error =
-            |product: Product, ends: [f64; 2], within: [f64; 2], first: f64| {
-                let ends = [ends[0].max(within[0]), ends[1].min(within[1])];
-                if ends[0] <= ends[1] {
-                    let [bend, top] = product.max_bend_and_value(ends, first);
-                    let value = bend / 2048.0 + top / 65536.0 + Q10;
-                    // From rounding R and N down: a relative error, taken as twice its first-order term.
-                    let of_ends = [
-                        (reach - high).max(reach / 4.0 / octaves),
-                        (low - min).max(min / octaves).max(1.0),
-                    ];
-                    let rounded = 0.25 / of_ends[0] + 0.25 / of_ends[1];
-                    rise = rise.max(value + top * rounded);
-                }
-            };
+        // `argument_range` is a range of the table's argument, `table_range` the part in which the table is read,
+        // `first_argument` the argument at which its function begins.
+        let mut add_reading_error = |product: Product,
+                                     argument_range: [f64; 2],
+                                     table_range: [f64; 2],
+                                     first_argument: f64| {
+            let argument_range = [
+                argument_range[0].max(table_range[0]),
+                argument_range[1].min(table_range[1]),
+            ];
+            if argument_range[0] <= argument_range[1] {
+                let [bend, max_value] = product.max_bend_and_value(argument_range, first_argument);
+                let error = bend / 2048.0 + max_value / 65536.0 + Q10;
+                // From rounding R and N down: a relative error, taken as twice its first-order term.
+                let end_distances = [
+                    (reach - high).max(reach / 4.0 / octaves),
+                    (low - min).max(min / octaves).max(1.0),
+                ];
+                let relative_rounding = 0.25 / end_distances[0] + 0.25 / end_distances[1];
+                rise = rise.max(error + max_value * relative_rounding);
+            }
+        };
         let peak = 2.0 * reach * min / (reach + min);
         add_reading_error(
-            Product([root(reach, -1.0), root(-min, 1.0), over(0.0, 1.0)]),
+            Product([
+                root_of(reach, -1.0),
+                root_of(-min, 1.0),
+                inverse_of(0.0, 1.0),
+            ]),
             [low, high],
             [(2.0 * min).max(reach / octaves), 0.75 * reach],
             peak,
         );
         add_reading_error(
-            Product([root(0.0, 1.0), root(reach - min, -1.0), over(reach, -1.0)]),
+            Product([
+                root_of(0.0, 1.0),
+                root_of(reach - min, -1.0),
+                inverse_of(reach, -1.0),
+            ]),
             [reach - high, reach - low],
             [reach / 4.0 / octaves, reach / 4.0],
             0.0,
         );
         add_reading_error(
-            Product([root(0.0, 1.0), root(reach - min, -1.0), over(min, 1.0)]),
+            Product([
+                root_of(0.0, 1.0),
+                root_of(reach - min, -1.0),
+                inverse_of(min, 1.0),
+            ]),
             [low - min, high - min],
             [min / octaves, min],
             0.0,
@@ -168,10 +185,10 @@ struct Product([Factor; 3]);
 
 impl Product {
     /// The largest `|t^2 f''|` and the largest value, over a range of `t` that is extended by a
-    /// step on either side, but not below `first`.
-    fn max_bend_and_value(&self, [low, high]: [f64; 2], first: f64) -> [f64; 2] {
-        let ends = [(low * 16.0 / 17.0).max(first), high * 17.0 / 16.0];
-        let (mut sum, mut squares, mut top) = ([0.0; 2], [0.0; 2], 1.0f64);
+    /// step on either side, but not below `first_argument`.
+    fn max_bend_and_value(&self, [low, high]: [f64; 2], first_argument: f64) -> [f64; 2] {
+        let ends = [(low * 16.0 / 17.0).max(first_argument), high * 17.0 / 16.0];
+        let (mut sum, mut squares, mut max_value) = ([0.0; 2], [0.0; 2], 1.0f64);
         for Factor { power, p, q } in self.0 {
             // Keeps rounding from making the line 0 or negative at a limit of the range.
             let line = ends.map(|t| (p + q * t).max(1e-9));
@@ -179,15 +196,18 @@ impl Product {
             l.sort_by(f64::total_cmp);
             let mut square = l.map(|l| l * l);
             square.sort_by(f64::total_cmp);
-            let scaled = |ends: [f64; 2]| {
-                let mut scaled = ends.map(|end| power * end);
-                scaled.sort_by(f64::total_cmp);
-                scaled
+            let scale_by_power = |range: [f64; 2]| {
+                let mut products = range.map(|end| power * end);
+                products.sort_by(f64::total_cmp);
+                products
             };
-            for (sum, more) in [(&mut sum, scaled(l)), (&mut squares, scaled(square))] {
-                *sum = [sum[0] + more[0], sum[1] + more[1]];
+            for (sum, terms) in [
+                (&mut sum, scale_by_power(l)),
+                (&mut squares, scale_by_power(square)),
+            ] {
+                *sum = [sum[0] + terms[0], sum[1] + terms[1]];
             }
-            top *= line[0].powf(power).max(line[1].powf(power));
+            max_value *= line[0].powf(power).max(line[1].powf(power));
         }
         let max_sq = sum[0].abs().max(sum[1].abs()).powi(2);
         let min_sq = if sum[0] <= 0.0 && sum[1] >= 0.0 {
@@ -196,7 +216,7 @@ impl Product {
             sum[0].abs().min(sum[1].abs()).powi(2)
         };
         let bend = (max_sq - squares[0]).abs().max((min_sq - squares[1]).abs());
-        [bend * top, top]
+        [bend * max_value, max_value]
     }
 }
 
@@ -236,11 +256,15 @@ impl EndErrors {
         angles: [f64; 2],
     ) -> Self {
         let [left, right] = angles.map(Vector::direction);
-        let tip = |crank: f64, of: Vector| [crank * of.x, crank * of.y];
-        let (l, r) = (tip(bars.crank_left, left), tip(bars.crank_right, right));
-        let apart = (bars.base + r[0] - l[0]).hypot(r[1] - l[1]);
-        let sizes = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
-        Self::at(bars, integers.into(), sizes, [apart; 2])
+        let tip_of = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
+        let (left_tip, right_tip) = (
+            tip_of(bars.crank_left, left),
+            tip_of(bars.crank_right, right),
+        );
+        let distance_mm =
+            (bars.base + right_tip[0] - left_tip[0]).hypot(right_tip[1] - left_tip[1]);
+        let direction_sums = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
+        Self::at(bars, integers.into(), direction_sums, [distance_mm; 2])
     }
 
     /// The errors for all crank angles at which the distance of the crank tips is from `near` to `far`, mm.
@@ -257,72 +281,74 @@ impl EndErrors {
         bars: &kinematics::FiveBar,
         integers: RoundedBars,
         [cosines, sines]: [f64; 2],
-        apart: [f64; 2],
+        range_mm: [f64; 2],
     ) -> Self {
-        let to_u = per_mm(integers.scale) / 2.0;
-        let cranks = to_u * (bars.crank_left + bars.crank_right) + 0.5;
+        let u_per_mm = per_mm(integers.scale) / 2.0;
+        let cranks = u_per_mm * (bars.crank_left + bars.crank_right) + 0.5;
         let e_x = 1.25 + cosines / 4.0 + MAX_DIRECTION_ERROR * cranks;
         let e_y = 0.5 + sines / 4.0 + MAX_DIRECTION_ERROR * cranks;
         let e = e_x.hypot(e_y);
-        let [near, far] = apart.map(|mm| to_u * mm);
-        let [a, b] = [bars.coupler_left, bars.coupler_right].map(|mm| to_u * mm);
+        let [near, far] = range_mm.map(|mm| u_per_mm * mm);
+        let [a, b] = [bars.coupler_left, bars.coupler_right].map(|mm| u_per_mm * mm);
         let z = e * (2.0 * far + e);
         let tips_sq_range = [(near - e).max(0.0).powi(2), (far + e).powi(2)];
 
-        let cosine = |k: f64| (a * a + b * b - k * k) / (2.0 * a * b);
-        let (first, last) = (cosine(near), cosine(far));
-        let c = first.abs().max(last.abs());
-        let least_area = 2.0 * (a - 0.25) * (b - 0.25);
-        let c_off = (far + 0.25 + z) / least_area;
-        let closes = c <= 1.0;
-        let sine_sq = |c: f64| (1.0 - c * c).max(0.0);
-        let passes_right_angle = first > 0.0 && last < 0.0;
-        let top_sq = if passes_right_angle {
+        let cosine_at = |k: f64| (a * a + b * b - k * k) / (2.0 * a * b);
+        let (near_cosine, far_cosine) = (cosine_at(near), cosine_at(far));
+        let c = near_cosine.abs().max(far_cosine.abs());
+        let min_area = 2.0 * (a - 0.25) * (b - 0.25);
+        let c_error = (far + 0.25 + z) / min_area;
+        let can_close = c <= 1.0;
+        let sine_sq_of = |c: f64| (1.0 - c * c).max(0.0);
+        let contains_right_angle = near_cosine > 0.0 && far_cosine < 0.0;
+        let max_sine_sq = if contains_right_angle {
             1.0
         } else {
-            sine_sq(first.abs().min(last.abs()))
+            sine_sq_of(near_cosine.abs().min(far_cosine.abs()))
         };
-        let m_sq = sine_sq(c);
+        let m_sq = sine_sq_of(c);
         let m = m_sq.sqrt();
-        let q = if closes {
-            c_off * (2.0 * c + c_off)
+        let q = if can_close {
+            c_error * (2.0 * c + c_error)
         } else {
-            2.0 * c_off
+            2.0 * c_error
         };
-        let root = |square: f64| square.max(0.0).sqrt().min(1.0);
-        let low = root(m_sq - q);
-        let sine_off = (m - low).max(root(m_sq + q) - m);
-        let high = root(top_sq + q);
+        let root_of = |square: f64| square.max(0.0).sqrt().min(1.0);
+        let low_root = root_of(m_sq - q);
+        let sine_error = (m - low_root).max(root_of(m_sq + q) - m);
+        let high_root = root_of(max_sine_sq + q);
 
         let [left, right] = integers.couplers;
         let lean = LeanError::of(left, right, tips_sq_range);
         let [left, right] = [left, right].map(f64::from);
-        let half = (left + right) / 2.0;
-        let square = 2f64.powi((half * half).log2().floor() as i32 - 14);
-        let rise = 2.0 * left / 2.0 * right / 2.0 * high / tips_sq_range[0].max(1.0) + lean.rise;
+        let mean_coupler = (left + right) / 2.0;
+        let square = 2f64.powi((mean_coupler * mean_coupler).log2().floor() as i32 - 14);
+        let rise =
+            2.0 * left / 2.0 * right / 2.0 * high_root / tips_sq_range[0].max(1.0) + lean.rise;
         let product = (lean.rise * tips_sq_range[1] + rise * square / 2.0) / (left * right / 2.0);
         let area = left * right / square;
-        let of_area = (1.0 / (area - 1.0) + Q15) * (high + product);
-        let type2 = sine_off + product + 2.0 * Q15 + of_area + Q15;
+        let area_error = (1.0 / (area - 1.0) + Q15) * (high_root + product);
+        let type2 = sine_error + product + 2.0 * Q15 + area_error + Q15;
 
-        let turned = (e / near.max(e)).asin();
-        let type1 = |coupler: f64| {
+        let line_turn = (e / near.max(e)).asin();
+        let type1_of = |coupler: f64| {
             let a = coupler / 2.0;
-            let moved = (0.5 + e) / ((a - 0.25) * low.max(1e-9)) + turned;
+            let tip_turn = (0.5 + e) / ((a - 0.25) * low_root.max(1e-9)) + line_turn;
             let (near, far) = (tips_sq_range[0].sqrt().max(1.0), far + e);
-            let part = 0.5 + 2f64.sqrt() * MAX_DIRECTION_ERROR * far;
-            let opened = part * (2f64.sqrt() * 2.0 * a / near + lean.rise + lean.skew)
+            let component_error = 0.5 + 2f64.sqrt() * MAX_DIRECTION_ERROR * far;
+            let opening_error = component_error
+                * (2f64.sqrt() * 2.0 * a / near + lean.rise + lean.skew)
                 + far * lean.rise.hypot(lean.skew)
                 + 2.0;
-            moved + opened / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15
+            tip_turn + opening_error / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15
         };
         Self {
             type2,
-            type1_left: type1(left),
-            type1_right: type1(right),
-            along: e_x / to_u,
+            type1_left: type1_of(left),
+            type1_right: type1_of(right),
+            along: e_x / u_per_mm,
             min_type2: m,
-            is_known: closes && low >= MIN_KNOWN_MARGIN,
+            is_known: can_close && low_root >= MIN_KNOWN_MARGIN,
         }
     }
 
@@ -363,33 +389,33 @@ mod tests {
                 let pose = robot.pose();
                 (Just(robot), pose)
             }),
-            below in 0.0..1.0f64,
-            above in 0.0..1.0f64,
+            share_below in 0.0..1.0f64,
+            share_above in 0.0..1.0f64,
             // Decimal logarithm of the range's width in mm: from nearly nothing to more than the crank tips
             // move within a cell.
-            width in -4.0..0.7f64,
+            log_width in -4.0..0.7f64,
         ) {
             let [a1, a2, ..] = robot.degrees(&pose);
             let bars = robot.measures.lizard.end(kinematics::End::Head);
-            let Ok(truth) = bars.forward(a1, a2) else {
+            let Ok(exact_pose) = bars.forward(a1, a2) else {
                 return Ok(());
             };
-            let (apart, width) = (truth.gap.length(), 10f64.powf(width));
-            let range = [(apart - below * width).max(0.0), apart + above * width];
-            let here = EndErrors::of(&bars, &robot.ends[0], [a1, a2]);
-            let all = EndErrors::between(&bars, &robot.ends[0], range);
-            prop_assert!(all.min_type2 <= truth.type2 + 1e-12);
-            if !all.is_known {
+            let (distance_mm, width_mm) = (exact_pose.gap.length(), 10f64.powf(log_width));
+            let range = [(distance_mm - share_below * width_mm).max(0.0), distance_mm + share_above * width_mm];
+            let errors_at_angles = EndErrors::of(&bars, &robot.ends[0], [a1, a2]);
+            let errors_over_range = EndErrors::between(&bars, &robot.ends[0], range);
+            prop_assert!(errors_over_range.min_type2 <= exact_pose.type2 + 1e-12);
+            if !errors_over_range.is_known {
                 return Ok(());
             }
-            prop_assert!(here.is_known);
-            for (what, here, all) in [
-                ("type-2", here.type2, all.type2),
-                ("type-1 left", here.type1_left, all.type1_left),
-                ("type-1 right", here.type1_right, all.type1_right),
-                ("along", here.along, all.along),
+            prop_assert!(errors_at_angles.is_known);
+            for (name, error, bound) in [
+                ("type-2", errors_at_angles.type2, errors_over_range.type2),
+                ("type-1 left", errors_at_angles.type1_left, errors_over_range.type1_left),
+                ("type-1 right", errors_at_angles.type1_right, errors_over_range.type1_right),
+                ("along", errors_at_angles.along, errors_over_range.along),
             ] {
-                prop_assert!(here <= all + 1e-12, "{what}: {here} of {all}");
+                prop_assert!(error <= bound + 1e-12, "{name}: {error} of {bound}");
             }
         }
     }

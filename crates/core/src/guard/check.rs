@@ -68,13 +68,13 @@ impl<'a> Robot<'a> {
     #[inline(always)]
     fn has_valid_pins(&self) -> bool {
         let rail = self.read_word(offset!(rail)) as u8;
-        let mut servo = offset!(pins);
-        while servo < offset!(pins) + 4 {
-            let pin = self.read_word(servo) as u8;
+        let mut pin_offset = offset!(pins);
+        while pin_offset < offset!(pins) + 4 {
+            let pin = self.read_word(pin_offset) as u8;
             if !is_free(pin) || self.count_users(pin) != 1 {
                 return false;
             }
-            servo += 1;
+            pin_offset += 1;
         }
         rail == 0 || rail.wrapping_sub(14) < 6
     }
@@ -83,10 +83,10 @@ impl<'a> Robot<'a> {
     #[inline(never)]
     fn count_users(&self, pin: u8) -> u8 {
         let mut users = u8::from(self.read_word(offset!(rail)) as u8 == pin);
-        let mut servo = offset!(pins);
-        while servo < offset!(pins) + 4 {
-            users += u8::from(self.read_word(servo) as u8 == pin);
-            servo += 1;
+        let mut pin_offset = offset!(pins);
+        while pin_offset < offset!(pins) + 4 {
+            users += u8::from(self.read_word(pin_offset) as u8 == pin);
+            pin_offset += 1;
         }
         users
     }
@@ -105,20 +105,20 @@ impl<'a> Robot<'a> {
     /// only pulses that a servo tolerates.
     #[inline(always)]
     fn has_valid_servos(&self) -> bool {
-        let mut servo = 0;
-        while servo < 4 {
-            let name = Servo::at(servo);
-            let calibration: Calibration = self.calibration_of(name);
-            let [min, most] = PULSE_LIMITS;
-            let is_in_pulse_range = |pulse: u16| pulse.wrapping_sub(min) <= most - min;
+        let mut index = 0;
+        while index < 4 {
+            let servo = Servo::at(index);
+            let calibration: Calibration = self.calibration_of(servo);
+            let [min, max] = PULSE_LIMITS;
+            let is_in_pulse_range = |pulse: u16| pulse.wrapping_sub(min) <= max - min;
             if !calibration.reaches(Sweep(0))
                 || !is_in_pulse_range(calibration.pulse(calibration.min))
                 || !is_in_pulse_range(calibration.pulse(calibration.max))
-                || !self.reach(name).is_within(&calibration)
+                || !self.reach(servo).is_within(&calibration)
             {
                 return false;
             }
-            servo += 1;
+            index += 1;
         }
         true
     }

@@ -88,13 +88,13 @@ impl Clearance {
             clearance.measure_end(robot, end, &cranks);
         }
         for side in Side::ALL {
-            clearance.sliders_sq[side as usize] = length_sq(robot, side, &cranks);
+            clearance.sliders_sq[side as usize] = slider_length_sq(robot, side, &cranks);
         }
         clearance
     }
 
     /// Measures the margins of the five-bar of head or tail.
-    // Not inlined, like `length_sq`: the compiler would unroll a loop over two.
+    // Not inlined, like `slider_length_sq`: the compiler would unroll a loop over two.
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
         let [left, right] = end.servos();
@@ -106,11 +106,11 @@ impl Clearance {
 
     /// The smallest of the ten margins.
     pub fn smallest_margin(&self) -> Sine {
-        let mut smallest = Sine(i16::MAX);
+        let mut min_margin = Sine(i16::MAX);
         for margin in &self.margins {
-            smallest = smallest.min(*margin);
+            min_margin = min_margin.min(*margin);
         }
-        smallest
+        min_margin
     }
 
     /// The first limit that this pose breaks: margins first, then the strokes left and right. `None` if it breaks
@@ -144,7 +144,7 @@ impl Clearance {
 
 /// The squared length of a side's slider.
 #[inline(never)]
-fn length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
+fn slider_length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
     let [mut front, mut rear] = side.servos().map(|servo| *servo.of(cranks));
     let mut slider = robot.side(side);
     if matches!(side, Side::Right) {

@@ -85,9 +85,13 @@ impl<'a> FiveBar<'a> {
         let square = (tips_sq + (1 << (bars.square_shift - 1))) >> bars.square_shift;
         let square = square.min(0x7fff) as i16;
         let area = (mul(rise, square) >> bars.area_shift) as u16;
-        let size = saturate((mul_unsigned(area, bars.per_area) >> 15) as i32);
+        let magnitude = saturate((mul_unsigned(area, bars.per_area) >> 15) as i32);
         EndMargins {
-            type2: Sine(if tips.along > 0 { size } else { -size }),
+            type2: Sine(if tips.along > 0 {
+                magnitude
+            } else {
+                -magnitude
+            }),
             type1_left: tips.type1_margin(left, rise.wrapping_neg(), skew, bars.per_left),
             type1_right: tips.type1_margin(right, rise, skew.wrapping_neg(), bars.per_right),
         }
@@ -116,11 +120,11 @@ impl TipVector {
         let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);
         let dot = upper((mul(self.along, crank.cos) + mul(self.across, crank.sin)) << 1);
         // The sum is at most twice the coupler; an overflow of its parts beyond 16 bits cancels.
-        let mut opened = cross.wrapping_add((mul(rise, dot) >> 10) as i16);
+        let mut scaled_sine = cross.wrapping_add((mul(rise, dot) >> 10) as i16);
         if skew != 0 {
-            opened = opened.wrapping_add((mul(skew, cross) >> 10) as i16);
+            scaled_sine = scaled_sine.wrapping_add((mul(skew, cross) >> 10) as i16);
         }
-        Sine(saturate(mul(opened, per_coupler) >> 12))
+        Sine(saturate(mul(scaled_sine, per_coupler) >> 12))
     }
 }
 

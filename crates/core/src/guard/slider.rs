@@ -27,10 +27,10 @@ impl Slider {
     /// counter-clockwise; the right side has to be mirrored first.
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
-        let aside = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
-        let along = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
-        let x = self.offset.wrapping_add(aside).unsigned_abs();
-        let y = (i32::from(self.base) + i32::from(along)).unsigned_abs() as u16;
+        let arms_x = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
+        let arms_y = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
+        let x = self.offset.wrapping_add(arms_x).unsigned_abs();
+        let y = (i32::from(self.base) + i32::from(arms_y)).unsigned_abs() as u16;
         mul_unsigned(x, x).wrapping_add(mul_unsigned(y, y))
     }
 }
@@ -45,7 +45,7 @@ mod tests {
     use crate::sample::{bounds, degrees, per_mm, side_of};
 
     /// The slider of any robot that hobby servos move, mm.
-    fn sides() -> impl Strategy<Value = kinematics::Slider> {
+    fn any_side() -> impl Strategy<Value = kinematics::Slider> {
         (
             1.0..300.0f64,
             1.0..100.0f64,
@@ -67,7 +67,7 @@ mod tests {
 
         #[test]
         fn the_length_is_the_distance_of_the_arm_tips(
-            side in sides(),
+            side in any_side(),
             front: u16,
             rear: u16,
             is_mirrored: bool,
@@ -81,21 +81,21 @@ mod tests {
             } else {
                 integers.length_sq(&Direction::of(front), &Direction::of(rear))
             };
-            let (of, turn) = if is_mirrored {
+            let (expected_side, turn) = if is_mirrored {
                 (kinematics::Side::Right, -90.0)
             } else {
                 (kinematics::Side::Left, 90.0)
             };
-            prop_assert_eq!(of.sign() * 90.0, turn);
+            prop_assert_eq!(expected_side.sign() * 90.0, turn);
             let pose = side.forward(-degrees(rear) - turn, degrees(front) + turn).expect("a length");
-            let mm = f64::from(length).sqrt() / per_mm(integers.scale);
-            let max = bounds::slider_error(&side, &integers);
-            prop_assert!((mm - pose.d).abs() <= max, "{mm} for {} mm", pose.d);
+            let length_mm = f64::from(length).sqrt() / per_mm(integers.scale);
+            let max_error = bounds::slider_error(&side, &integers);
+            prop_assert!((length_mm - pose.d).abs() <= max_error, "{length_mm} for {} mm", pose.d);
         }
 
         #[test]
         fn the_travel_is_printed_from_nominal_in_hundredths_of_a_millimetre(
-            side in sides(),
+            side in any_side(),
             length: u16,
         ) {
             let side = side_of(&side, -10.0, 10.0);
@@ -106,17 +106,17 @@ mod tests {
         #[test]
         fn a_stroke_has_its_ends_and_not_a_step_more(
             min in 1u16..60_000,
-            more in 1u16..5_000,
+            stroke_length in 1u16..5_000,
         ) {
-            let max = min + more;
-            let side = Slider { min, max, ..side_of(&a_side(), -10.0, 10.0) };
-            let square = |length: u16| u32::from(length) * u32::from(length);
-            prop_assert!(side.allows(square(min)) && side.allows(square(max)));
-            prop_assert!(!side.allows(square(min) - 1) && !side.allows(square(max) + 1));
+            let max = min + stroke_length;
+            let side = Slider { min, max, ..side_of(&sample_side(), -10.0, 10.0) };
+            let square_of = |length: u16| u32::from(length) * u32::from(length);
+            prop_assert!(side.allows(square_of(min)) && side.allows(square_of(max)));
+            prop_assert!(!side.allows(square_of(min) - 1) && !side.allows(square_of(max) + 1));
         }
     }
 
-    fn a_side() -> kinematics::Slider {
+    fn sample_side() -> kinematics::Slider {
         kinematics::Slider {
             offset: 3.0,
             base: 141.0,
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_mirrored_side_is_itself_again_and_only_its_offset_changes_sign() {
-        let side = side_of(&a_side(), -10.0, 10.0);
+        let side = side_of(&sample_side(), -10.0, 10.0);
         assert_eq!(side.mirrored().offset, -side.offset);
         assert_eq!(side.mirrored().mirrored(), side);
     }

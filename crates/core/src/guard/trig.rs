@@ -21,9 +21,9 @@ impl Direction {
     /// Looks up the direction of an angle.
     pub fn of(angle: Angle) -> Self {
         let angle = angle.0;
-        let across = angle & 0x3fff;
-        let rising = quarter_sine(across);
-        let falling = quarter_sine(0x4000 - across);
+        let quarter_angle = angle & 0x3fff;
+        let rising = quarter_sine(quarter_angle);
+        let falling = quarter_sine(0x4000 - quarter_angle);
         let (sin, cos) = match angle >> 14 {
             0 => (rising, falling),
             1 => (falling, -rising),
@@ -56,14 +56,14 @@ impl Direction {
 const STEPS: usize = 128;
 
 /// The sine of an angle in the first quarter turn, 0..=0x4000.
-fn quarter_sine(across: u16) -> i16 {
-    let index = usize::from(across >> 7);
+fn quarter_sine(quarter_angle: u16) -> i16 {
+    let index = usize::from(quarter_angle >> 7);
     let entry = QUARTER.at(index).load();
     let next_entry = QUARTER.at(index + 1).load();
     // A step is at most 402 high, more than a byte holds, so its two bytes are multiplied separately.
     let step = (next_entry - entry) as u16;
-    let part = (across << 1) & 0xff;
-    let rise = (step >> 8) * part + (((step & 0xff) * part + 0x80) >> 8);
+    let fraction = (quarter_angle << 1) & 0xff;
+    let rise = (step >> 8) * fraction + (((step & 0xff) * fraction + 0x80) >> 8);
     entry + rise as i16
 }
 
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn sine_and_cosine_are_within_4_5e_5_at_every_angle() {
-        let (mut max_error, mut length) = (0.0f64, 0.0f64);
+        let (mut max_error, mut max_length_error) = (0.0f64, 0.0f64);
         for angle in (0..=u16::MAX).map(Angle) {
             let direction = Direction::of(angle);
             let computed = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
@@ -109,20 +109,20 @@ mod tests {
             max_error = max_error
                 .max((computed[0] - sin).abs())
                 .max((computed[1] - cos).abs());
-            length = length.max((computed[0].hypot(computed[1]) - 1.0).abs());
+            max_length_error = max_length_error.max((computed[0].hypot(computed[1]) - 1.0).abs());
         }
         assert!(max_error <= 4.5e-5, "{max_error}");
-        assert!(length <= 6e-5, "{length}");
+        assert!(max_length_error <= 6e-5, "{max_length_error}");
     }
 
     #[test]
     fn the_four_right_angles_are_exact() {
-        let one = i16::MAX;
+        let unit = i16::MAX;
         for (angle, sin, cos) in [
-            (0, 0, one),
-            (0x4000, one, 0),
-            (0x8000, 0, -one),
-            (0xc000, -one, 0),
+            (0, 0, unit),
+            (0x4000, unit, 0),
+            (0x8000, 0, -unit),
+            (0xc000, -unit, 0),
         ] {
             assert_eq!(Direction::of(Angle(angle)), Direction { sin, cos });
         }
@@ -131,13 +131,13 @@ mod tests {
     #[test]
     fn quadrants_and_mirror_images_agree_to_the_bit() {
         for angle in 0..=u16::MAX {
-            let here = Direction::of(Angle(angle));
-            let quarter_on = Direction::of(Angle(angle.wrapping_add(0x4000)));
-            assert_eq!((quarter_on.cos, quarter_on.sin), (-here.sin, here.cos));
+            let direction = Direction::of(Angle(angle));
+            let rotated = Direction::of(Angle(angle.wrapping_add(0x4000)));
+            assert_eq!((rotated.cos, rotated.sin), (-direction.sin, direction.cos));
             let mirrored = Direction::of(Angle(0x8000u16.wrapping_sub(angle)));
-            assert_eq!(here.mirrored(), mirrored);
-            let below = Direction::of(Angle(angle.wrapping_neg()));
-            assert_eq!(here.in_tail_frame(), below);
+            assert_eq!(direction.mirrored(), mirrored);
+            let tail_direction = Direction::of(Angle(angle.wrapping_neg()));
+            assert_eq!(direction.in_tail_frame(), tail_direction);
         }
     }
 }

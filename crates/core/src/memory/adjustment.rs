@@ -38,8 +38,11 @@ impl Adjustment {
     /// The servo of robot.toml, `factory`, with this adjustment. Its travel is limited to the pulses that
     /// `factory` allows.
     pub fn apply(&self, factory: &Calibration) -> Calibration {
-        let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
-        let pulses = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let end_pulses = [factory.pulse(factory.min), factory.pulse(factory.max)];
+        let pulse_limits = [
+            end_pulses[0].min(end_pulses[1]),
+            end_pulses[0].max(end_pulses[1]),
+        ];
         let mut servo = Calibration {
             neutral: factory.neutral,
             gain: self.gain,
@@ -49,9 +52,9 @@ impl Adjustment {
         };
         let neutral = servo.pulse(self.trim);
         servo.neutral = Width(neutral);
-        if pulses[0] <= neutral && neutral <= pulses[1] {
-            servo.min = limit_to_pulses(&servo, self.min, pulses);
-            servo.max = limit_to_pulses(&servo, self.max, pulses);
+        if pulse_limits[0] <= neutral && neutral <= pulse_limits[1] {
+            servo.min = limit_to_pulses(&servo, self.min, pulse_limits);
+            servo.max = limit_to_pulses(&servo, self.max, pulse_limits);
         }
         servo
     }
@@ -89,21 +92,21 @@ impl Adjustment {
 /// Limits a sweep to the pulses between the shortest and the longest: returns the sweep itself, or the last one on
 /// the path to it from neutral whose pulse is allowed. The neutral pulse must be allowed.
 #[inline(never)]
-fn limit_to_pulses(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
+fn limit_to_pulses(servo: &Calibration, sweep: Sweep, [min_pulse, max_pulse]: [u16; 2]) -> Sweep {
     let neutral = servo.neutral.0;
     // A pulse is the neutral one plus n times the gain, rounded to a cycle. As long as n times the gain is at
     // most this number, the pulse is within both limits.
-    let max_pulse_steps = if (servo.gain < 0) == (end.0 < 0) {
-        mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
+    let max_pulse_steps = if (servo.gain < 0) == (sweep.0 < 0) {
+        mul_unsigned(max_pulse - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
     } else {
-        mul_unsigned(neutral - shortest, ONE_Q14 as u16) + HALF_Q14
+        mul_unsigned(neutral - min_pulse, ONE_Q14 as u16) + HALF_Q14
     };
     let steps = quotient(max_pulse_steps, servo.gain.unsigned_abs());
-    let within = end.0.unsigned_abs().min(steps) as i16;
-    Sweep(if end.0 < 0 {
-        within.wrapping_neg()
+    let magnitude = sweep.0.unsigned_abs().min(steps) as i16;
+    Sweep(if sweep.0 < 0 {
+        magnitude.wrapping_neg()
     } else {
-        within
+        magnitude
     })
 }
 
@@ -118,7 +121,7 @@ mod tests {
     use crate::sample::{STEPS_PER_DEGREE, Sample};
 
     /// Any adjustment that the console accepts.
-    fn adjusted() -> impl Strategy<Value = Adjustment> {
+    fn any_adjustment() -> impl Strategy<Value = Adjustment> {
         let sweep = -3641i16..=3641;
         (
             sweep,
@@ -127,7 +130,7 @@ mod tests {
             -30_000i16..0,
             0i16..30_000,
         )
-            .prop_map(|(trim, scale, direct, min, max)| {
+            .prop_map(|(trim, scale, is_direct, min, max)| {
                 let mut adjustment = Adjustment {
                     trim: Sweep(trim),
                     gain: 1,
@@ -135,7 +138,7 @@ mod tests {
                     max: Sweep(max),
                 };
                 adjustment.set_scale(scale);
-                adjustment.set_direct(direct);
+                adjustment.set_direct(is_direct);
                 adjustment
             })
     }
@@ -153,15 +156,15 @@ mod tests {
         #[test]
         fn no_sweep_within_the_travel_leaves_the_pulses_of_robot_toml(
             robot in Sample::random(),
-            adjustment in adjusted(),
+            adjustment in any_adjustment(),
         ) {
-            for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
+            for (factory, exact_servo) in robot.calibration().iter().zip(robot.measures.servos) {
                 let servo = adjustment.apply(factory);
                 for sweep in servo.min.0..=servo.max.0 {
                     let us = f64::from(servo.width(Sweep(sweep)).0) / 16.0;
                     // Two cycles of rounding: the ends of the travel, and this width.
-                    let slack = 2.0 / 16.0;
-                    prop_assert!(us >= float.min_us - slack && us <= float.max_us + slack);
+                    let slack_us = 2.0 / 16.0;
+                    prop_assert!(us >= exact_servo.min_us - slack_us && us <= exact_servo.max_us + slack_us);
                 }
             }
         }
@@ -169,22 +172,22 @@ mod tests {
         #[test]
         fn a_travel_ends_at_its_limit_or_where_the_next_step_would_leave_the_pulses(
             robot in Sample::random(),
-            adjustment in adjusted(),
+            adjustment in any_adjustment(),
         ) {
             for factory in &robot.calibration() {
                 let servo = adjustment.apply(factory);
-                let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
-                let pulses = ends[0].min(ends[1])..=ends[0].max(ends[1]);
-                if !pulses.contains(&servo.pulse(Sweep(0))) {
+                let end_pulses = [factory.pulse(factory.min), factory.pulse(factory.max)];
+                let pulse_limits = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
+                if !pulse_limits.contains(&servo.pulse(Sweep(0))) {
                     prop_assert!(servo.min > Sweep(0) && servo.max < Sweep(0), "empty");
                     continue;
                 }
                 prop_assert!(adjustment.min <= servo.min && servo.max <= adjustment.max);
                 if servo.max < adjustment.max {
-                    prop_assert!(!pulses.contains(&servo.pulse(Sweep(servo.max.0 + 1))));
+                    prop_assert!(!pulse_limits.contains(&servo.pulse(Sweep(servo.max.0 + 1))));
                 }
                 if servo.min > adjustment.min {
-                    prop_assert!(!pulses.contains(&servo.pulse(Sweep(servo.min.0 - 1))));
+                    prop_assert!(!pulse_limits.contains(&servo.pulse(Sweep(servo.min.0 - 1))));
                 }
             }
         }
@@ -192,17 +195,17 @@ mod tests {
         #[test]
         fn a_servo_turns_by_its_trim_and_its_scale(
             robot in Sample::random(),
-            adjustment in adjusted(),
+            adjustment in any_adjustment(),
             scale in 500u16..=2000,
             sweep in -8000i16..8000,
         ) {
             let mut adjustment = adjustment;
             adjustment.set_scale(scale);
-            for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
+            for (factory, exact_servo) in robot.calibration().iter().zip(robot.measures.servos) {
                 let servo = adjustment.apply(factory);
                 let degrees = (f64::from(adjustment.trim.0) + f64::from(sweep)) / STEPS_PER_DEGREE;
                 let sense = if adjustment.is_direct() { 1.0 } else { -1.0 };
-                let us = float.neutral_us + sense * f64::from(scale) / 100.0 * degrees;
+                let us = exact_servo.neutral_us + sense * f64::from(scale) / 100.0 * degrees;
                 let error = f64::from(servo.pulse(Sweep(sweep))) - 16.0 * us;
                 // Half a cycle each of the neutral width, the trim, the sweep; and the
                 // gain's rounding over a sixth of a turn.

@@ -54,10 +54,11 @@ impl Copies {
     #[inline(never)]
     fn check<M: Memory>(memory: &M) -> Self {
         let states = [copy_address(0).check(memory), copy_address(1).check(memory)];
-        let save_number = |copy: usize| self::copy_address(copy).byte(memory, SAVE_NUMBER as u16);
+        let save_number_of =
+            |copy: usize| self::copy_address(copy).byte(memory, SAVE_NUMBER as u16);
         let latest = match states {
             [RecordState::Valid, RecordState::Valid] => {
-                usize::from(save_number(1).wrapping_sub(save_number(0)) < 0x80)
+                usize::from(save_number_of(1).wrapping_sub(save_number_of(0)) < 0x80)
             }
             [RecordState::Valid, _] => 0,
             _ => 1,
@@ -117,10 +118,10 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
         settings.set_save_number(1);
         return Some(copy_address(0).start_write());
     }
-    let latest = copies.address();
-    let save_number = latest.byte(memory, SAVE_NUMBER as u16);
+    let latest_address = copies.address();
+    let save_number = latest_address.byte(memory, SAVE_NUMBER as u16);
     settings.set_save_number(save_number);
-    let is_saved = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;
+    let is_saved = |(index, byte): (usize, &u8)| latest_address.byte(memory, index as u16) == *byte;
     if settings.bytes().iter().enumerate().all(is_saved) {
         return None;
     }
@@ -133,8 +134,9 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT_BYTES];
     REST_POSE.fetch(memory, &mut bytes);
-    let saved = Settings::from_bytes(bytes);
-    (REST_POSE.check(memory) == RecordState::Valid && saved.is_for(robot)).then(|| saved.pose())
+    let saved_settings = Settings::from_bytes(bytes);
+    (REST_POSE.check(memory) == RecordState::Valid && saved_settings.is_for(robot))
+        .then(|| saved_settings.pose())
 }
 
 #[cfg(test)]

@@ -59,19 +59,19 @@ const RESTING_FLAG: u8 = 0x80;
 const EMPTY_STATE: u8 = 0x7f;
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
-/// running. `reported` is the cause that the chip reports, or `None` if a boot loader has
+/// running. `reported_cause` is the cause that the chip reports, or `None` if a boot loader has
 /// cleared it. To be called once, before the watchdog starts.
 #[inline(never)]
-pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
+pub fn begin<C: Cells>(cells: &C, reported_cause: Option<Cause>) -> Restart {
     let (state, count) = (cells.get(STATE_CELL), cells.get(COUNT_CELL));
     let survived = cells.get(MARK_CELL) == POWERED_MARK && matches!(state, RUNNING | HUNG);
-    let cause = match reported {
+    let cause = match reported_cause {
         Some(cause) => cause,
         None if !survived => Cause::Power,
         None if state == HUNG => Cause::Watchdog,
         None => Cause::External,
     };
-    let is_hidden = reported.is_none();
+    let is_hidden = reported_cause.is_none();
     let mut restart = Restart {
         cause,
         count: 0,

@@ -117,8 +117,8 @@ impl Address {
     }
 
     /// Reads a byte of the content.
-    pub fn byte<M: Memory>(self, memory: &M, n: u16) -> u8 {
-        memory.read(self.0 + 1 + n)
+    pub fn byte<M: Memory>(self, memory: &M, index: u16) -> u8 {
+        memory.read(self.0 + 1 + index)
     }
 
     /// Begins to write a record.
@@ -154,9 +154,9 @@ impl Writing {
         } else if step == RECORD_BYTES {
             (0, VALID_MARK)
         } else {
-            let crc = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
+            let crc_byte = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
             let byte = content.get(usize::from(self.step - 1));
-            (step, byte.copied().unwrap_or_else(crc))
+            (step, byte.copied().unwrap_or_else(crc_byte))
         };
         let address = self.address.0 + offset;
         if memory.read(address) != byte {
@@ -186,7 +186,7 @@ mod tests {
 
     const ADDRESS: Address = Address(64);
 
-    fn content() -> impl Strategy<Value = Content> {
+    fn any_content() -> impl Strategy<Value = Content> {
         any::<u64>().prop_map(|seed| {
             let mut state = seed;
             core::array::from_fn(|_| {
@@ -204,7 +204,7 @@ mod tests {
         for _ in 0..10_000 {
             match writing.step(content, eeprom) {
                 Progress::InProgress => {}
-                ended => return ended,
+                result => return result,
             }
         }
         panic!("it never ends");
@@ -221,8 +221,8 @@ mod tests {
 
         #[test]
         fn a_record_reads_back_as_written_and_no_other_byte_changes(
-            first in content(),
-            second in content(),
+            first in any_content(),
+            second in any_content(),
             slowness in 0u16..4,
         ) {
             let mut eeprom = Eeprom::blank();
@@ -234,12 +234,12 @@ mod tests {
                 let eeprom = Eeprom::with(*eeprom.bytes());
                 prop_assert_eq!(read(&eeprom), (RecordState::Valid, content));
             }
-            let beside = |address: &usize| !(64..64 + usize::from(RECORD_BYTES)).contains(address);
-            prop_assert!((0..1024).filter(beside).all(|address| eeprom.bytes()[address] == ERASED));
+            let is_outside = |address: &usize| !(64..64 + usize::from(RECORD_BYTES)).contains(address);
+            prop_assert!((0..1024).filter(is_outside).all(|address| eeprom.bytes()[address] == ERASED));
         }
 
         #[test]
-        fn the_crc_is_that_of_the_catalogue(content in content()) {
+        fn the_crc_is_that_of_the_catalogue(content in any_content()) {
             let mut eeprom = Eeprom::blank();
             write(&mut eeprom, &content);
             // CRC-16/IBM-3740, bit by bit.
@@ -289,11 +289,11 @@ mod tests {
     fn a_removed_record_is_not_read_and_its_bytes_stay() {
         let mut eeprom = Eeprom::blank();
         write(&mut eeprom, &[3; CONTENT_BYTES]);
-        let before = *eeprom.bytes();
+        let bytes_before = *eeprom.bytes();
         let mut writing = ADDRESS.start_invalidation();
         while writing.step(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
         assert_eq!(read(&eeprom).0, RecordState::Damaged);
         assert_eq!(eeprom.bytes()[64], ERASED);
-        assert_eq!(eeprom.bytes()[65..], before[65..]);
+        assert_eq!(eeprom.bytes()[65..], bytes_before[65..]);
     }
 }

@@ -76,14 +76,14 @@ impl Settings {
     /// A record that keeps a pose instead of settings: each servo's sweep takes the place of its trim.
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
-        let mut saved = Self::NONE;
-        saved.set_header(robot);
+        let mut record = Self::NONE;
+        record.set_header(robot);
         let mut offset = SERVOS;
         for sweep in &pose.0 {
-            saved.put(offset, sweep.0 as u16);
+            record.put(offset, sweep.0 as u16);
             offset += 8;
         }
-        saved
+        record
     }
 
     /// The trims as the sweeps of a pose; for a record of [`Settings::of_pose`], the pose that it keeps.
@@ -127,18 +127,18 @@ impl Settings {
     }
 
     /// Sets the number of this save.
-    pub const fn set_save_number(&mut self, turn: u8) {
-        self.bytes[SAVE_NUMBER] = turn;
+    pub const fn set_save_number(&mut self, number: u8) {
+        self.bytes[SAVE_NUMBER] = number;
     }
 
     /// The adjustment of a servo.
     pub fn servo(&self, servo: Servo) -> Adjustment {
-        let number = |n: usize| self.get(SERVOS + 8 * servo.index() + 2 * n) as i16;
+        let number_at = |n: usize| self.get(SERVOS + 8 * servo.index() + 2 * n) as i16;
         Adjustment {
-            trim: Sweep(number(0)),
-            gain: number(1),
-            min: Sweep(number(2)),
-            max: Sweep(number(3)),
+            trim: Sweep(number_at(0)),
+            gain: number_at(1),
+            min: Sweep(number_at(2)),
+            max: Sweep(number_at(3)),
         }
     }
 

@@ -416,7 +416,7 @@ impl Motion {
     // Out of line: most frames do not need it.
     #[inline(never)]
     fn move_to(&mut self, target: Target) {
-        let (to, gait) = match target {
+        let (target_pose, gait) = match target {
             Target::Pose(pose) => (pose, None),
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
             Target::End => {
@@ -425,7 +425,7 @@ impl Motion {
             }
         };
         self.state = State::Moving {
-            path: PointToPoint::new(&self.stance.pose, &to, self.robot.slew()),
+            path: PointToPoint::new(&self.stance.pose, &target_pose, self.robot.slew()),
             pace: pace::FULL_PACE,
             gait,
         };

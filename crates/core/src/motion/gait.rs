@@ -56,14 +56,14 @@ mod tests {
     use crate::numbers::gaits::SAMPLES;
     use crate::sample::Sample;
 
-    const FULL: u16 = 1024;
+    const FULL_PACE: u16 = 1024;
 
-    fn wave(samples: impl Fn(usize) -> i16) -> Wave {
+    fn make_wave(samples: impl Fn(usize) -> i16) -> Wave {
         core::array::from_fn(samples)
     }
 
     /// A channel that reads a waveform unchanged.
-    const PLAIN: Channel = Channel {
+    const PLAIN_CHANNEL: Channel = Channel {
         wave: 0,
         offset: 0,
         gain: 1 << 14,
@@ -78,30 +78,30 @@ mod tests {
         ) {
             let (offset, gain) = channel;
             let channel = Channel { wave: 0, offset, gain };
-            let table = wave(|n| samples[n]);
+            let table = make_wave(|n| samples[n]);
             let actual = f64::from(channel.sweep(Flash::from(&table), phase).0);
-            let at = f64::from(phase.wrapping_add(offset)) / 1024.0;
-            let (here, next) = (samples[at as usize], samples[(at as usize + 1) % SAMPLES]);
-            let rise = f64::from(next) - f64::from(here);
+            let position = f64::from(phase.wrapping_add(offset)) / 1024.0;
+            let (sample, next_sample) = (samples[position as usize], samples[(position as usize + 1) % SAMPLES]);
+            let rise = f64::from(next_sample) - f64::from(sample);
             let factor = f64::from(gain) / 16384.0;
-            let exact = factor * (f64::from(here) + rise * at.fract());
+            let exact = factor * (f64::from(sample) + rise * position.fract());
             // Half a step before the gain, half a step after it, and the phase's lowest two bits.
-            let max = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
+            let max_error = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
             prop_assume!(exact.abs() < 32_000.0);
-            prop_assert!((actual - exact).abs() <= max, "{actual} for {exact}");
+            prop_assert!((actual - exact).abs() <= max_error, "{actual} for {exact}");
         }
 
         #[test]
         fn a_cycle_at_any_pace_is_one_way_and_within_the_cycle(
             increment in -400_000i32..400_000,
-            pace in 0..=FULL,
+            pace in 0..=FULL_PACE,
             phase in 0..CYCLE,
         ) {
             let gait = Gait { increment, ..Gait::STILL };
-            let next = gait.advance(phase, pace);
-            prop_assert!(next < CYCLE);
+            let next_phase = gait.advance(phase, pace);
+            prop_assert!(next_phase < CYCLE);
             let exact = f64::from(increment) * f64::from(pace) / 1024.0;
-            let advance = (i64::from(next) - i64::from(phase)).rem_euclid(CYCLE.into());
+            let advance = (i64::from(next_phase) - i64::from(phase)).rem_euclid(CYCLE.into());
             let error = (advance as f64 - exact).rem_euclid(f64::from(CYCLE));
             prop_assert!(error < 1e-6 || error > f64::from(CYCLE) - 1.0, "{error}");
         }
@@ -109,27 +109,36 @@ mod tests {
 
     #[test]
     fn every_sample_is_met_in_its_turn_and_the_first_follows_the_last() {
-        let table = wave(|n| 100 * n as i16 - 3000);
+        let table = make_wave(|n| 100 * n as i16 - 3000);
         for n in 0..SAMPLES {
-            let sweep = PLAIN.sweep(Flash::from(&table), (n << 10) as u16);
+            let sweep = PLAIN_CHANNEL.sweep(Flash::from(&table), (n << 10) as u16);
             assert_eq!(sweep, Sweep(table[n]));
         }
-        let half_past_the_last = PLAIN.sweep(Flash::from(&table), 0xfe00);
-        assert_eq!(half_past_the_last.0, (table[63] + table[0]) / 2);
+        let wrapped_sweep = PLAIN_CHANNEL.sweep(Flash::from(&table), 0xfe00);
+        assert_eq!(wrapped_sweep.0, (table[63] + table[0]) / 2);
     }
 
     #[test]
     fn halves_round_up_between_samples_and_in_the_gain() {
-        let table = wave(|n| [0, 1, 0, -1][n % 4]);
-        let sweep = |phase, gain| {
-            Channel { gain, ..PLAIN }
-                .sweep(Flash::from(&table), phase)
-                .0
+        let table = make_wave(|n| [0, 1, 0, -1][n % 4]);
+        let sweep_at = |phase, gain| {
+            Channel {
+                gain,
+                ..PLAIN_CHANNEL
+            }
+            .sweep(Flash::from(&table), phase)
+            .0
         };
-        assert_eq!([sweep(0x01fc, 1 << 14), sweep(0x0200, 1 << 14)], [0, 1]);
-        assert_eq!([sweep(0x0a00, 1 << 14), sweep(0x0a04, 1 << 14)], [0, -1]);
-        assert_eq!([sweep(0x0400, 8191), sweep(0x0400, 8192)], [0, 1]);
-        assert_eq!([sweep(0x0c00, 8192), sweep(0x0c00, 8193)], [0, -1]);
+        assert_eq!(
+            [sweep_at(0x01fc, 1 << 14), sweep_at(0x0200, 1 << 14)],
+            [0, 1]
+        );
+        assert_eq!(
+            [sweep_at(0x0a00, 1 << 14), sweep_at(0x0a04, 1 << 14)],
+            [0, -1]
+        );
+        assert_eq!([sweep_at(0x0400, 8191), sweep_at(0x0400, 8192)], [0, 1]);
+        assert_eq!([sweep_at(0x0c00, 8192), sweep_at(0x0c00, 8193)], [0, -1]);
     }
 
     #[test]
@@ -137,22 +146,22 @@ mod tests {
         let robot = Sample::odd();
         let table = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
-            let with_offset = Channel {
+            let offset_channel = Channel {
                 offset: 0x1800,
-                ..PLAIN
+                ..PLAIN_CHANNEL
             };
-            let plain = PLAIN.sweep(table, phase.wrapping_add(0x1800));
-            assert_eq!(with_offset.sweep(table, phase), plain);
-            let other = Channel {
+            let plain_sweep = PLAIN_CHANNEL.sweep(table, phase.wrapping_add(0x1800));
+            assert_eq!(offset_channel.sweep(table, phase), plain_sweep);
+            let reversed_channel = Channel {
                 gain: -(1 << 14),
-                ..with_offset
+                ..offset_channel
             };
-            assert_eq!(other.sweep(table, phase), Sweep(-plain.0));
-            let still = Channel {
+            assert_eq!(reversed_channel.sweep(table, phase), Sweep(-plain_sweep.0));
+            let still_channel = Channel {
                 gain: 0,
-                ..with_offset
+                ..offset_channel
             };
-            assert_eq!(still.sweep(table, phase), Sweep(0));
+            assert_eq!(still_channel.sweep(table, phase), Sweep(0));
         }
     }
 
@@ -173,16 +182,19 @@ mod tests {
     #[test]
     fn a_gait_with_a_negative_increment_is_read_backwards() {
         let robot = Sample::odd();
-        let [there, back] = ["sway", "back"].map(|name| robot.gait(robot.id(name)));
+        let [forward_gait, backward_gait] = ["sway", "back"].map(|name| robot.gait(robot.id(name)));
         let mut phases = Vec::from([0]);
         for frame in 0..50 {
-            phases.push(there.advance(phases[frame], FULL));
+            phases.push(forward_gait.advance(phases[frame], FULL_PACE));
         }
         let mut phase = phases[50];
-        for before in phases.iter().rev() {
-            assert_eq!(phase, *before);
-            phase = back.advance(phase, FULL);
+        for forward_phase in phases.iter().rev() {
+            assert_eq!(phase, *forward_phase);
+            phase = backward_gait.advance(phase, FULL_PACE);
         }
-        assert_eq!(back.advance(0, FULL), CYCLE - there.advance(0, FULL));
+        assert_eq!(
+            backward_gait.advance(0, FULL_PACE),
+            CYCLE - forward_gait.advance(0, FULL_PACE)
+        );
     }
 }

@@ -63,10 +63,10 @@ impl PointToPoint {
         }
         let share = smoothstep(self.elapsed) as i16;
         let mut pose = self.from;
-        for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
+        for (sweep, target) in pose.0.iter_mut().zip(&self.to.0) {
             // Half the turn is multiplied, then doubled, because a turn of more than half a turn would overflow.
-            let half = (to.0 >> 1) - (sweep.0 >> 1);
-            let distance = (mul(half, share) + (1 << 13)) >> 14;
+            let half_turn = (target.0 >> 1) - (sweep.0 >> 1);
+            let distance = (mul(half_turn, share) + (1 << 13)) >> 14;
             sweep.0 = sweep.0.wrapping_add(distance as i16);
         }
         pose
@@ -88,18 +88,18 @@ mod tests {
     use super::*;
     use crate::numbers::units::Sweep;
 
-    const FULL: u16 = 1024;
+    const FULL_PACE: u16 = 1024;
 
-    fn pose(sweeps: [i16; 4]) -> Pose {
+    fn pose_of(sweeps: [i16; 4]) -> Pose {
         Pose(sweeps.map(Sweep))
     }
 
     /// The poses of a move at full pace, its start first.
-    fn course(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
+    fn poses_of_move(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
         let mut path = PointToPoint::new(from, to, slew);
         let mut poses = Vec::from([*from]);
         while !path.has_arrived() {
-            path.advance(FULL);
+            path.advance(FULL_PACE);
             poses.push(path.pose());
             assert!(poses.len() < 4000, "{from:?} to {to:?} never ends");
         }
@@ -108,13 +108,13 @@ mod tests {
 
     /// The sweeps of one servo in a move, frame by frame.
     fn sweeps_of_move(from: i16, to: i16, slew: Slew) -> Vec<i16> {
-        let [from, to] = [from, to].map(|sweep| pose([0, 0, sweep, 0]));
-        let course = course(&from, &to, slew);
-        course.iter().map(|pose| pose.0[2].0).collect()
+        let [from, to] = [from, to].map(|sweep| pose_of([0, 0, sweep, 0]));
+        let poses = poses_of_move(&from, &to, slew);
+        poses.iter().map(|pose| pose.0[2].0).collect()
     }
 
     /// Any limit between 10 and 1000 deg/s.
-    fn slews() -> impl Strategy<Value = Slew> {
+    fn any_slew() -> impl Strategy<Value = Slew> {
         (Slew::SLOWEST..=3640).prop_map(Slew::new)
     }
 
@@ -125,29 +125,29 @@ mod tests {
         fn a_move_keeps_the_slew_limit_wastes_no_time_and_arrives(
             from: i16,
             to: i16,
-            slew in slews(),
+            slew in any_slew(),
         ) {
             let sweeps = sweeps_of_move(from, to, slew);
             prop_assert_eq!(sweeps.last(), Some(&to));
-            let max = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
-            prop_assert!(max <= Some(slew.per_frame), "{max:?} of {slew:?}");
+            let max_change = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
+            prop_assert!(max_change <= Some(slew.per_frame), "{max_change:?} of {slew:?}");
             // A smoothstep needs one and a half times the time of a steady move, and each frame is a whole number of
             // 1/32768 of that time.
             let frames = 1.5 * f64::from(from.abs_diff(to)) / f64::from(slew.per_frame - 6);
-            let min = frames.ceil().max(8.0) + 1.0;
-            let max = 32_768.0 / (32_768.0 / min).floor() + 1.0;
-            prop_assert!((sweeps.len() - 1) as f64 <= max, "{} of {max}", sweeps.len() - 1);
+            let min_frames = frames.ceil().max(8.0) + 1.0;
+            let max_frames = 32_768.0 / (32_768.0 / min_frames).floor() + 1.0;
+            prop_assert!((sweeps.len() - 1) as f64 <= max_frames, "{} of {max_frames}", sweeps.len() - 1);
             prop_assert!(sweeps.len() > 8, "a jerk");
         }
 
         #[test]
-        fn a_move_goes_straight_there_along_a_smoothstep(from: i16, to: i16, slew in slews()) {
-            let mut path = PointToPoint::new(&pose([from; 4]), &pose([to; 4]), slew);
+        fn a_move_goes_straight_there_along_a_smoothstep(from: i16, to: i16, slew in any_slew()) {
+            let mut path = PointToPoint::new(&pose_of([from; 4]), &pose_of([to; 4]), slew);
             let mut frame = 0.0;
             let distance = f64::from(to) - f64::from(from);
-            let mut before = f64::from(from);
+            let mut previous_sweep = f64::from(from);
             while !path.has_arrived() {
-                path.advance(FULL);
+                path.advance(FULL_PACE);
                 frame += f64::from(path.step) / 32_768.0;
                 let u = f64::min(frame, 1.0);
                 let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
@@ -155,8 +155,8 @@ mod tests {
                 // Q15 rounding of the distance, twice, and the halving of odd sweeps.
                 let rounding = 2.0 + distance.abs() / 8000.0;
                 prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, {exact}");
-                prop_assert!((sweep - before) * distance.signum() >= -rounding, "{sweep} after {before}");
-                before = sweep;
+                prop_assert!((sweep - previous_sweep) * distance.signum() >= -rounding, "{sweep} after {previous_sweep}");
+                previous_sweep = sweep;
             }
         }
 
@@ -164,19 +164,19 @@ mod tests {
         fn all_servos_have_covered_the_same_share_of_their_way(
             from: [i16; 4],
             to: [i16; 4],
-            slew in slews(),
+            slew in any_slew(),
         ) {
-            let ways: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
-            let [from, to] = [from, to].map(pose);
+            let distances: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
+            let [from, to] = [from, to].map(pose_of);
             let mut path = PointToPoint::new(&from, &to, slew);
             while !path.has_arrived() {
-                path.advance(FULL);
-                let here = path.pose();
+                path.advance(FULL_PACE);
+                let current_pose = path.pose();
                 let share = f64::from(path.elapsed) / 32_768.0;
                 let share = share * share * (3.0 - 2.0 * share);
-                for (n, distance) in ways.iter().enumerate() {
-                    let elapsed = f64::from(here.0[n].0) - f64::from(from.0[n].0);
-                    let error = elapsed - share * distance;
+                for (n, distance) in distances.iter().enumerate() {
+                    let turn = f64::from(current_pose.0[n].0) - f64::from(from.0[n].0);
+                    let error = turn - share * distance;
                     prop_assert!(error.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {error}", n + 1);
                 }
             }
@@ -187,22 +187,22 @@ mod tests {
         fn a_move_at_any_pace_keeps_the_limit_and_stays_on_its_line(
             from: [i16; 4],
             to: [i16; 4],
-            slew in slews(),
-            paces in prop::collection::vec(0..=FULL, 1..60),
+            slew in any_slew(),
+            paces in prop::collection::vec(0..=FULL_PACE, 1..60),
         ) {
-            let (start, end) = (pose(from), pose(to));
+            let (start, end) = (pose_of(from), pose_of(to));
             let mut path = PointToPoint::new(&start, &end, slew);
-            let mut last = start;
+            let mut last_pose = start;
             for pace in paces {
                 path.advance(pace);
-                let here = path.pose();
-                prop_assert!(last.largest_turn_to(&here) <= slew.per_frame);
+                let current_pose = path.pose();
+                prop_assert!(last_pose.largest_turn_to(&current_pose) <= slew.per_frame);
                 for n in 0..4 {
                     let (low, high) = (from[n].min(to[n]), from[n].max(to[n]));
-                    let within = i32::from(low) - 1..=i32::from(high) + 1;
-                    prop_assert!(within.contains(&i32::from(here.0[n].0)));
+                    let allowed_range = i32::from(low) - 1..=i32::from(high) + 1;
+                    prop_assert!(allowed_range.contains(&i32::from(current_pose.0[n].0)));
                 }
-                last = here;
+                last_pose = current_pose;
             }
         }
     }
@@ -229,17 +229,17 @@ mod tests {
     fn a_move_to_where_the_robot_is_stays_there_for_eight_frames() {
         let sweeps = sweeps_of_move(77, 77, Slew::new(1000));
         assert_eq!(sweeps, [77; 9]);
-        let path = PointToPoint::new(&pose([0; 4]), &pose([9; 4]), Slew::new(1000));
+        let path = PointToPoint::new(&pose_of([0; 4]), &pose_of([9; 4]), Slew::new(1000));
         assert_eq!(path.step, 32_768 / 8, "an equal share in each");
     }
 
     #[test]
     fn a_standing_pace_holds_a_move() {
-        let mut path = PointToPoint::new(&pose([0; 4]), &pose([900; 4]), Slew::new(1000));
-        path.advance(FULL);
-        let here = path.pose();
+        let mut path = PointToPoint::new(&pose_of([0; 4]), &pose_of([900; 4]), Slew::new(1000));
+        path.advance(FULL_PACE);
+        let held_pose = path.pose();
         path.advance(0);
-        assert_eq!(path.pose(), here);
+        assert_eq!(path.pose(), held_pose);
         assert!(!path.has_arrived());
     }
 }

@@ -92,14 +92,14 @@ mod tests {
 
         #[test]
         fn a_pulse_is_within_a_cycle_of_the_line_in_all_of_the_travel(robot in Sample::random()) {
-            for (servo, float) in robot.calibration().iter().zip(robot.measures.servos) {
+            for (servo, exact_servo) in robot.calibration().iter().zip(robot.measures.servos) {
                 for sweep in servo.min.0..=servo.max.0 {
-                    let turned = f64::from(sweep) / STEPS_PER_DEGREE;
-                    let us = float.neutral_us + float.us_per_degree * turned;
+                    let turn_deg = f64::from(sweep) / STEPS_PER_DEGREE;
+                    let us = exact_servo.neutral_us + exact_servo.us_per_degree * turn_deg;
                     let width = f64::from(servo.width(Sweep(sweep)).0);
                     // Half a cycle for the rounding of the neutral width, half for that of this width, and the gain's
                     // rounding over half a turn.
-                    prop_assert!((width - 16.0 * us).abs() <= 2.0, "{float:?} at {sweep}: {width}");
+                    prop_assert!((width - 16.0 * us).abs() <= 2.0, "{exact_servo:?} at {sweep}: {width}");
                 }
                 prop_assert_eq!(servo.width(Sweep(0)), servo.neutral);
             }
@@ -109,8 +109,8 @@ mod tests {
         fn a_servo_reaches_both_ends_of_its_travel_and_not_a_step_more(robot in Sample::random()) {
             for servo in &robot.calibration() {
                 for sweep in i16::MIN..=i16::MAX {
-                    let within = (servo.min.0..=servo.max.0).contains(&sweep);
-                    prop_assert_eq!(servo.reaches(Sweep(sweep)), within);
+                    let is_within = (servo.min.0..=servo.max.0).contains(&sweep);
+                    prop_assert_eq!(servo.reaches(Sweep(sweep)), is_within);
                 }
             }
         }
@@ -118,16 +118,16 @@ mod tests {
 
     #[test]
     fn half_a_cycle_rounds_up_for_either_sense_of_a_servo() {
-        let servo = |gain| Calibration {
+        let servo_with = |gain| Calibration {
             neutral: Width(20_000),
             gain,
             min: Sweep(-9000),
             max: Sweep(9000),
         };
         // Gains of half a cycle and of one and a half cycles a step.
-        assert_eq!(servo(8192).width(Sweep(3)), Width(20_002));
-        assert_eq!(servo(8192).width(Sweep(-3)), Width(19_999));
-        assert_eq!(servo(-24_576).width(Sweep(1)), Width(19_999));
-        assert_eq!(servo(-24_576).width(Sweep(-1)), Width(20_002));
+        assert_eq!(servo_with(8192).width(Sweep(3)), Width(20_002));
+        assert_eq!(servo_with(8192).width(Sweep(-3)), Width(19_999));
+        assert_eq!(servo_with(-24_576).width(Sweep(1)), Width(19_999));
+        assert_eq!(servo_with(-24_576).width(Sweep(-1)), Width(20_002));
     }
 }

@@ -127,7 +127,7 @@ mod tests {
     ];
 
     /// Checks that [`Cells::contains`] agrees with its reference at every row and at all [`COLUMNS`].
-    fn agrees(first: i8, rows: &[[i8; 2]]) {
+    fn assert_agrees(first: i8, rows: &[[i8; 2]]) {
         let cells = Cells::new(first, Flash::from(rows));
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
@@ -152,10 +152,10 @@ mod tests {
         ];
         // Maps about neutral, at either end of the turn, and with rows that wrap around its end.
         for first in [-3, 0, -128, 122, 125] {
-            agrees(first, &rows);
+            assert_agrees(first, &rows);
         }
-        let max: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
-        agrees(-32, &max);
+        let max_rows: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
+        assert_agrees(-32, &max_rows);
     }
 
     #[test]
@@ -165,25 +165,25 @@ mod tests {
                 assert!(!Cells::NONE.contains(Sweep(row), Sweep(column)));
             }
         }
-        agrees(-5, &[]);
+        assert_agrees(-5, &[]);
     }
 
     proptest! {
         #[test]
         fn maps_whose_rows_are_together_have_their_own_each(
-            firsts: [i8; 2],
+            first_rows: [i8; 2],
             maps in prop::array::uniform2(prop::collection::vec(any::<[i8; 2]>(), 0..100)),
             pairs in prop::collection::vec(any::<[i16; 2]>(), 300),
         ) {
             let rows = maps.concat();
             let rows = Flash::from(rows.as_slice());
-            let begins = [0, maps[0].len() as u16];
+            let starts = [0, maps[0].len() as u16];
             for map in 0..2 {
-                let cells = Cells::from_rows(firsts[map], begins[map], maps[map].len() as u8, rows);
+                let cells = Cells::from_rows(first_rows[map], starts[map], maps[map].len() as u8, rows);
                 for [row, column] in &pairs {
                     prop_assert_eq!(
                         cells.contains(Sweep(*row), Sweep(*column)),
-                        contains_by_division(firsts[map], &maps[map], *row, *column)
+                        contains_by_division(first_rows[map], &maps[map], *row, *column)
                     );
                 }
             }

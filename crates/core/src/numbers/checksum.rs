@@ -18,9 +18,9 @@ impl Checksum {
     pub const fn with_byte(self, byte: u8) -> Self {
         // All eight bits in one step: the byte is XORed with the high half of the sum, and the bits shifted out are
         // fed back at the powers of the polynomial.
-        let out = (self.0 >> 8) as u8 ^ byte;
-        let out = (out ^ (out >> 4)) as u16;
-        Self((self.0 << 8) ^ (out << 12) ^ (out << 5) ^ out)
+        let feedback = (self.0 >> 8) as u8 ^ byte;
+        let feedback = (feedback ^ (feedback >> 4)) as u16;
+        Self((self.0 << 8) ^ (feedback << 12) ^ (feedback << 5) ^ feedback)
     }
 
     /// Computes the checksum of `bytes`.

@@ -157,11 +157,12 @@ impl<'a> Couplers<'a> {
         };
         let skew = match tables.skew {
             Some(skew) => {
-                let size = Curve::of_octave(skew, lengths.reach_zeros).at_rounded_up(tips_sq)?;
+                let magnitude =
+                    Curve::of_octave(skew, lengths.reach_zeros).at_rounded_up(tips_sq)?;
                 if lengths.left < lengths.right {
-                    size.wrapping_neg()
+                    magnitude.wrapping_neg()
                 } else {
-                    size
+                    magnitude
                 }
             }
             None => 0,
@@ -190,8 +191,8 @@ pub fn rise(left: i16, right: i16) -> Table {
 pub fn stretched(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), folded_sq(left, right));
     core::array::from_fn(|index| {
-        let short = argument(reach_sq / 4, index);
-        let tips_sq = u64::from(reach_sq).saturating_sub(short);
+        let shortfall_sq = argument(reach_sq / 4, index);
+        let tips_sq = u64::from(reach_sq).saturating_sub(shortfall_sq);
         rise_q10(reach_sq, least_sq, tips_sq, 1)
     })
 }
@@ -225,8 +226,8 @@ fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
     }
     let product = (reach_sq - tips_sq) as u128 * (tips_sq - least_sq) as u128;
     // One bit more than Q10 for the rounding.
-    let twice = ((product << 22) / (tips_sq as u128 * tips_sq as u128)).isqrt();
-    let rise = (twice + round) >> 1;
+    let twice_rise = ((product << 22) / (tips_sq as u128 * tips_sq as u128)).isqrt();
+    let rise = (twice_rise + round) >> 1;
     rise.min(0x7fff) as i16
 }
 

@@ -28,9 +28,9 @@ pub struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
-    /// The function in `table`, whose arguments go up to `largest`.
-    pub const fn new(table: Flash<'a, Table>, largest: u32) -> Self {
-        Self::of_octave(table, largest.leading_zeros() as u16)
+    /// The function in `table`, whose arguments go up to `max_argument`.
+    pub const fn new(table: Flash<'a, Table>, max_argument: u32) -> Self {
+        Self::of_octave(table, max_argument.leading_zeros() as u16)
     }
 
     /// The function in `table`, whose largest argument has this many leading zeros.
@@ -65,11 +65,11 @@ impl<'a> Curve<'a> {
         }
         // Bits below the leading one: four for the step, then sixteen for the position within it.
         let step = (mantissa >> 24) as u8 >> 3 & (STEPS as u8 - 1);
-        let part = ((mantissa << 5) >> 16) as u16;
+        let fraction = ((mantissa << 5) >> 16) as u16;
         let index = usize::from(octave) * STEPS + usize::from(step);
         let entry = self.table.at(index).load();
         let next_entry = self.table.at(index + 1).load();
-        let change = (mul_unsigned(next_entry.abs_diff(entry), part) + u32::from(round)) >> 16;
+        let change = (mul_unsigned(next_entry.abs_diff(entry), fraction) + u32::from(round)) >> 16;
         Some(if next_entry < entry {
             entry.wrapping_sub(change as i16)
         } else {
@@ -78,19 +78,22 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The argument of a table's entry if the largest argument is `largest`, rounded down; only a `largest` below 16384
-/// needs the rounding.
-pub const fn argument(largest: u32, index: usize) -> u64 {
-    let (lowest, place) = (lowest(largest) as usize, 31 + index / STEPS);
-    if place < lowest {
+/// The argument of a table's entry if the largest argument is `max_argument`, rounded down; only a `max_argument`
+/// below 16384 needs the rounding.
+pub const fn argument(max_argument: u32, index: usize) -> u64 {
+    let (first_zeros, position_zeros) = (
+        first_octave_zeros(max_argument) as usize,
+        31 + index / STEPS,
+    );
+    if position_zeros < first_zeros {
         return 0;
     }
-    ((STEPS + index % STEPS) as u64) << (place - lowest) >> 4
+    ((STEPS + index % STEPS) as u64) << (position_zeros - first_zeros) >> 4
 }
 
 /// The number of leading zeros of an argument in the first octave.
-const fn lowest(largest: u32) -> u8 {
-    (largest.leading_zeros() + OCTAVES) as u8
+const fn first_octave_zeros(max_argument: u32) -> u8 {
+    (max_argument.leading_zeros() + OCTAVES) as u8
 }
 
 #[cfg(test)]
@@ -100,9 +103,9 @@ mod tests {
     use proptest::prelude::*;
 
     /// Makes the table of `function`, whose argument is a share of the largest one.
-    fn table(largest: u32, function: impl Fn(f64) -> f64) -> Table {
+    fn make_table(max_argument: u32, function: impl Fn(f64) -> f64) -> Table {
         core::array::from_fn(|index| {
-            let share = argument(largest, index) as f64 / f64::from(largest);
+            let share = argument(max_argument, index) as f64 / f64::from(max_argument);
             function(share).round().clamp(-32767.0, 32767.0) as i16
         })
     }
@@ -120,37 +123,37 @@ mod tests {
 
         #[test]
         fn a_curve_follows_its_function_in_every_octave(
-            largest in (10u32..32, any::<u32>())
+            max_argument in (10u32..32, any::<u32>())
                 .prop_map(|(bits, low)| (1 << bits) | (low & ((1 << bits) - 1))),
             octave in 0u32..=OCTAVES,
-            part in 0.5..=1.0f64,
-            which in 0usize..3,
+            octave_share in 0.5..=1.0f64,
+            function_index in 0usize..3,
         ) {
-            let function = FUNCTIONS[which];
-            let table = table(largest, function);
-            let curve = Curve::new(Flash::from(&table), largest);
-            let argument = (f64::from(largest >> octave) * part) as u32;
-            if argument < (largest >> OCTAVES).max(1) {
+            let function = FUNCTIONS[function_index];
+            let table = make_table(max_argument, function);
+            let curve = Curve::new(Flash::from(&table), max_argument);
+            let argument = (f64::from(max_argument >> octave) * octave_share) as u32;
+            if argument < (max_argument >> OCTAVES).max(1) {
                 return Ok(());
             }
-            let exact = function(f64::from(argument) / f64::from(largest));
+            let exact = function(f64::from(argument) / f64::from(max_argument));
             let actual = f64::from(curve.at(argument).expect("within its octaves"));
             // Within a step of 1/16 octave, the logarithm and the root deviate from a straight line by up to 1.9 and
             // 2.3; two roundings come on top.
-            prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {largest}: {actual}, {exact}");
+            prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {max_argument}: {actual}, {exact}");
         }
 
         #[test]
         fn an_entry_is_met_exactly_at_its_argument(
-            // For a smaller `largest`, the sixteen steps of the first octaves are not all whole numbers.
-            largest in 1u32 << 14..,
+            // For a smaller `max_argument`, the sixteen steps of the first octaves are not all whole numbers.
+            max_argument in 1u32 << 14..,
             index in 0..ENTRIES,
         ) {
             let table: Table = core::array::from_fn(|index| 5000 - 50 * index as i16);
-            let curve = Curve::new(Flash::from(&table), largest);
-            let at = argument(largest, index);
-            if (u64::from(largest >> OCTAVES)..=largest.into()).contains(&at) {
-                prop_assert_eq!(curve.at(at as u32), Some(table[index]));
+            let curve = Curve::new(Flash::from(&table), max_argument);
+            let entry_argument = argument(max_argument, index);
+            if (u64::from(max_argument >> OCTAVES)..=max_argument.into()).contains(&entry_argument) {
+                prop_assert_eq!(curve.at(entry_argument as u32), Some(table[index]));
             }
         }
     }
@@ -176,10 +179,10 @@ mod tests {
     #[test]
     fn below_its_first_octave_and_at_nothing_a_curve_has_no_value() {
         let table = [7; ENTRIES];
-        for largest in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
-            let curve = Curve::new(Flash::from(&table), largest);
+        for max_argument in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
+            let curve = Curve::new(Flash::from(&table), max_argument);
             // The table covers the entire octave of its smallest argument.
-            let min: u32 = (largest >> OCTAVES)
+            let min: u32 = (max_argument >> OCTAVES)
                 .checked_ilog2()
                 .map_or(0, |octave| 1 << octave);
             assert_eq!(curve.at(0), None);
@@ -190,10 +193,13 @@ mod tests {
 
     #[test]
     fn a_table_of_the_smallest_functions_can_be_made() {
-        for largest in [0, 1, 100, 1023, 1024] {
+        for max_argument in [0, 1, 100, 1023, 1024] {
             for index in 1..ENTRIES {
-                let (before, here) = (argument(largest, index - 1), argument(largest, index));
-                assert!(before <= here && before <= 2 * u64::from(largest));
+                let (previous, current) = (
+                    argument(max_argument, index - 1),
+                    argument(max_argument, index),
+                );
+                assert!(previous <= current && previous <= 2 * u64::from(max_argument));
             }
         }
     }

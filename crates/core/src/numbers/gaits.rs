@@ -192,9 +192,9 @@ impl GaitId {
 impl Gait {
     /// A routine without a name.
     #[cfg(any(test, feature = "host"))]
-    pub const fn routine(first: u16, steps: u16, rounds: u16) -> Self {
+    pub const fn routine(first_address: u16, steps: u16, rounds: u16) -> Self {
         let mut routine = Self::STILL;
-        routine.channels[0].offset = first;
+        routine.channels[0].offset = first_address;
         routine.channels[1].offset = steps;
         routine.channels[2].offset = rounds;
         routine

@@ -37,9 +37,9 @@ impl Mark {
     pub const OWN: Self = Self {
         format: FORMAT,
         version: [
-            number(env!("CARGO_PKG_VERSION_MAJOR")),
-            number(env!("CARGO_PKG_VERSION_MINOR")),
-            number(env!("CARGO_PKG_VERSION_PATCH")),
+            parse_number(env!("CARGO_PKG_VERSION_MAJOR")),
+            parse_number(env!("CARGO_PKG_VERSION_MINOR")),
+            parse_number(env!("CARGO_PKG_VERSION_PATCH")),
         ],
     };
 
@@ -54,8 +54,8 @@ impl Mark {
     /// Reads the mark of a flash that begins with this project's firmware; `None` for any other.
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(ADDRESS..ADDRESS + LENGTH)?;
-        let (magic, rest) = bytes.split_first_chunk()?;
-        let &[low, high, major, minor, patch, 0] = rest else {
+        let (magic, fields) = bytes.split_first_chunk()?;
+        let &[low, high, major, minor, patch, 0] = fields else {
             return None;
         };
         (u32::from_le_bytes(*magic) == MAGIC).then_some(Self {
@@ -66,7 +66,7 @@ impl Mark {
 }
 
 /// Parses a part of the version.
-const fn number(text: &str) -> u8 {
+const fn parse_number(text: &str) -> u8 {
     match u8::from_str_radix(text, 10) {
         Ok(number) => number,
         Err(_) => panic!("a part of the version is above 255"),

@@ -62,13 +62,13 @@ impl Servo {
     }
 
     /// The element that belongs to this servo in an array in servo order.
-    pub const fn of<T>(self, four: &[T; 4]) -> &T {
-        &four[self as usize]
+    pub const fn of<T>(self, items: &[T; 4]) -> &T {
+        &items[self as usize]
     }
 
     /// The element that belongs to this servo in an array in servo order, mutable.
-    pub const fn of_mut<T>(self, four: &mut [T; 4]) -> &mut T {
-        &mut four[self as usize]
+    pub const fn of_mut<T>(self, items: &mut [T; 4]) -> &mut T {
+        &mut items[self as usize]
     }
 }
 

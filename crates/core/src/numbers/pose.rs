@@ -60,11 +60,11 @@ impl Pose {
 
     /// The largest turn of any servo between this pose and `other`, in 1/65536 turn.
     pub fn largest_turn_to(&self, other: &Self) -> u16 {
-        let mut largest = 0;
+        let mut max_turn = 0;
         for (from, to) in self.0.iter().zip(&other.0) {
-            largest = largest.max(from.0.abs_diff(to.0));
+            max_turn = max_turn.max(from.0.abs_diff(to.0));
         }
-        largest
+        max_turn
     }
 }
 
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
     use crate::sample::Sample;
 
-    fn posed() -> impl Strategy<Value = (Sample, Pose)> {
+    fn any_robot_and_pose() -> impl Strategy<Value = (Sample, Pose)> {
         Sample::random().prop_flat_map(|robot| {
             let pose = robot.pose();
             (Just(robot), pose)
@@ -84,7 +84,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in posed()) {
+        fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in any_robot_and_pose()) {
             let angles = pose.angles(&robot.neutral());
             prop_assert_eq!(Pose::at(&angles, &robot.neutral()), pose);
             prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), None);
@@ -92,20 +92,20 @@ mod tests {
 
         #[test]
         fn the_first_servo_that_does_not_reach_its_angle_is_named(
-            (robot, mut pose) in posed(),
-            beyond: [bool; 4],
+            (robot, mut pose) in any_robot_and_pose(),
+            are_beyond: [bool; 4],
         ) {
-            for (index, beyond) in beyond.into_iter().enumerate() {
-                if beyond {
+            for (index, is_beyond) in are_beyond.into_iter().enumerate() {
+                if is_beyond {
                     pose.0[index] = Sweep(robot.calibration()[index].max.0 + 1);
                 }
             }
-            let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
-            prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), first);
+            let first_servo = are_beyond.iter().position(|is_beyond| *is_beyond).map(Servo::at);
+            prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), first_servo);
         }
 
         #[test]
-        fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in posed()) {
+        fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in any_robot_and_pose()) {
             let pulses = pose.pulses(&robot.calibration());
             for index in 0..4 {
                 let width = robot.calibration()[index].width(pose.0[index]);
@@ -118,9 +118,9 @@ mod tests {
             from: [i16; 4],
             to: [i16; 4],
         ) {
-            let ways = (0..4).map(|index| from[index].abs_diff(to[index]));
+            let turns = (0..4).map(|index| from[index].abs_diff(to[index]));
             let [from, to] = [from, to].map(|sweeps| Pose(sweeps.map(Sweep)));
-            prop_assert_eq!(Some(from.largest_turn_to(&to)), ways.max());
+            prop_assert_eq!(Some(from.largest_turn_to(&to)), turns.max());
             prop_assert_eq!(from.largest_turn_to(&to), to.largest_turn_to(&from));
         }
     }

@@ -81,8 +81,8 @@ impl<'a> Robot<'a> {
     /// The robot's name, byte by byte.
     pub fn robot_name(&self) -> impl Iterator<Item = u8> + use<'a> {
         let section = self.section;
-        let name = offset_of!(Header, name) as u16;
-        (name..name + section::MAX_NAME_BYTES as u16)
+        let name_offset = offset_of!(Header, name) as u16;
+        (name_offset..name_offset + section::MAX_NAME_BYTES as u16)
             .map(move |offset| section.read(offset))
             .take_while(|byte| *byte != 0)
     }
@@ -122,16 +122,16 @@ impl<'a> Robot<'a> {
 
     /// The tables of the couplers of head or tail.
     pub(crate) fn tables(&self, end: End) -> Tables<'a> {
-        let curves = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
-        let table = |curve: usize| match self.number(curves + curve * size_of::<u16>()) {
+        let curves_offset = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
+        let table_of = |curve: usize| match self.number(curves_offset + curve * size_of::<u16>()) {
             0 => None,
-            at => self.section.values(at, 1).get(0),
+            address => self.section.values(address, 1).get(0),
         };
         Tables {
-            rise: table(0),
-            stretched: table(1),
-            folded: table(2),
-            skew: table(3),
+            rise: table_of(0),
+            stretched: table_of(1),
+            folded: table_of(2),
+            skew: table_of(3),
         }
     }
 
@@ -199,8 +199,8 @@ impl<'a> Robot<'a> {
     /// All elements of a part.
     #[inline(always)]
     fn part<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
-        let PartRange { at, count } = self.part_range(part);
-        self.section.values(at, count)
+        let PartRange { at: address, count } = self.part_range(part);
+        self.section.values(address, count)
     }
 
     /// The waveforms that gaits share.
@@ -218,19 +218,20 @@ impl<'a> Robot<'a> {
 
     /// Reads a step of a routine.
     pub fn step(&self, routine: &Gait, number: u16) -> Step {
-        let first = routine.channels[0].offset;
+        let first_offset = routine.channels[0].offset;
         self.section
-            .read(first.wrapping_add(number * size_of::<Step>() as u16))
+            .read(first_offset.wrapping_add(number * size_of::<Step>() as u16))
     }
 
     /// The name of a gait or a routine.
     #[inline(never)]
     pub fn name(&self, id: GaitId) -> Name<'a> {
         // Reads only these fields, not the entire gait: a line may be compared with every name.
-        let gait = self.part_range(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
-        let number = |field: usize| self.section.read(gait + field as u16);
-        let start = number(offset_of!(Gait, name_start));
-        let length = number(offset_of!(Gait, name_length));
+        let gait_address =
+            self.part_range(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
+        let read_field = |field: usize| self.section.read(gait_address + field as u16);
+        let start = read_field(offset_of!(Gait, name_start));
+        let length = read_field(offset_of!(Gait, name_length));
         Name::of(start, length, self.part(Part::Names))
     }
 

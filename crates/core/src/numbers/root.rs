@@ -31,9 +31,9 @@ pub fn quotient(dividend: u32, divisor: u16) -> u16 {
     let (mut rest, mut quotient) = (dividend, 0);
     let mut bit = 1u16 << 15;
     while bit > 0 {
-        let part = mul_unsigned(divisor, bit);
-        if rest >= part {
-            rest -= part;
+        let product = mul_unsigned(divisor, bit);
+        if rest >= product {
+            rest -= product;
             quotient |= bit;
         }
         bit >>= 1;

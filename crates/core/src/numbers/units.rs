@@ -163,12 +163,12 @@ mod tests {
     use super::*;
 
     /// The smaller angle between two directions, deg.
-    fn apart(a: f64, b: f64) -> f64 {
+    fn angle_between(a: f64, b: f64) -> f64 {
         let difference = (a - b).rem_euclid(360.0);
         difference.min(360.0 - difference)
     }
 
-    fn degrees(angle: Angle) -> f64 {
+    fn degrees_of(angle: Angle) -> f64 {
         f64::from(angle.0) * 360.0 / 65536.0
     }
 
@@ -176,7 +176,7 @@ mod tests {
     fn an_angle_of_the_console_is_within_seven_tenths_of_a_step() {
         for centideg in -36_000..=36_000 {
             let angle = Angle::from_centideg(centideg);
-            let error = apart(degrees(angle), f64::from(centideg) / 100.0);
+            let error = angle_between(degrees_of(angle), f64::from(centideg) / 100.0);
             // Half a step is 0.0027 deg.
             assert!(error <= 0.004, "{centideg}: {error} deg");
         }
@@ -195,16 +195,16 @@ mod tests {
         for angle in (0..=u16::MAX).map(Angle) {
             let centideg = angle.centideg();
             assert!(centideg < 36_000);
-            let error = apart(f64::from(centideg) / 100.0, degrees(angle));
+            let error = angle_between(f64::from(centideg) / 100.0, degrees_of(angle));
             assert!(error <= 0.005 + 1e-9, "{angle:?}: {error}");
         }
     }
 
     #[test]
     fn a_sweep_leads_from_one_angle_to_the_other_and_counts_counter_clockwise() {
-        for from in (0..=u16::MAX).step_by(771).map(Angle) {
+        for start in (0..=u16::MAX).step_by(771).map(Angle) {
             for sweep in (i16::MIN..=i16::MAX).map(Sweep) {
-                assert_eq!(from.sweep_to(from.swept(sweep)), sweep);
+                assert_eq!(start.sweep_to(start.swept(sweep)), sweep);
             }
         }
         assert_eq!(Angle(0xffff).swept(Sweep(2)), Angle(1));
@@ -244,8 +244,11 @@ mod tests {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
             let printed = thousandths_from_phase(phase);
             // Tables and the console use only the highest sixteen bits.
-            let below = exact - f64::from(printed);
-            assert!((0.0..1.0 + 1000.0 / 65536.0).contains(&below), "{phase}");
+            let rounded_off = exact - f64::from(printed);
+            assert!(
+                (0.0..1.0 + 1000.0 / 65536.0).contains(&rounded_off),
+                "{phase}"
+            );
             assert!(printed < 1000);
             assert_eq!(u32::from(phase16(phase)), phase / 256);
         }

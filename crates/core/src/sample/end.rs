@@ -32,14 +32,14 @@ pub struct SampleCouplers {
 
 impl SampleCouplers {
     pub fn new(left: i16, right: i16) -> Self {
-        let unequal = left != right;
+        let are_unequal = left != right;
         Self {
             left,
             right,
             rise: couplers::rise(left, right),
             stretched: couplers::stretched(left, right),
             folded: Couplers::differ_much(left, right).then(|| couplers::folded(left, right)),
-            skew: unequal.then(|| couplers::skew(left, right)),
+            skew: are_unequal.then(|| couplers::skew(left, right)),
         }
     }
 
@@ -64,19 +64,19 @@ impl SampleFiveBar {
     pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
         let couplers = [bars.coupler_left, bars.coupler_right];
-        let longest = couplers.iter().copied().fold(base + left + right, f64::max);
+        let longest_mm = couplers.iter().copied().fold(base + left + right, f64::max);
         let scale = (0..=14)
             .rev()
             .map(|bits| Scale { bits })
-            .find(|scale| longest * per_mm(*scale) < bars::MAX_STEPS)?;
-        let [a, b] = couplers.map(|mm| steps(mm, scale) as i16);
-        if a.min(b) < bars::MIN_COUPLER {
+            .find(|scale| longest_mm * per_mm(*scale) < bars::MAX_STEPS)?;
+        let [left_steps, right_steps] = couplers.map(|mm| steps(mm, scale) as i16);
+        if left_steps.min(right_steps) < bars::MIN_COUPLER {
             return None;
         }
         Some(Self {
             bars: [base, left, right].map(|mm| steps(mm, scale) as i16),
             scale,
-            couplers: SampleCouplers::new(a, b),
+            couplers: SampleCouplers::new(left_steps, right_steps),
         })
     }
 

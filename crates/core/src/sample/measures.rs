@@ -58,12 +58,12 @@ impl Measures {
 
     /// A robot without symmetry: its head and tail, its sides and its servos all differ.
     pub fn odd() -> Self {
-        let servo = |neutral, neutral_us, us_per_degree: f64, back: f64, on: f64| Servo {
+        let servo = |neutral, neutral_us, us_per_degree: f64, back_deg: f64, on_deg: f64| Servo {
             neutral,
             neutral_us,
             us_per_degree,
-            min_us: neutral_us - us_per_degree.abs() * back,
-            max_us: neutral_us + us_per_degree.abs() * on,
+            min_us: neutral_us - us_per_degree.abs() * back_deg,
+            max_us: neutral_us + us_per_degree.abs() * on_deg,
         };
         Self {
             lizard: lizard(
@@ -91,8 +91,8 @@ impl Measures {
 
     /// Random robots without symmetry.
     pub fn random() -> impl Strategy<Value = Self> {
-        let end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
-        let side = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
+        let any_end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
+        let any_side = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
         let limits = (
             0.12..0.4,
             0.0..0.35,
@@ -101,7 +101,7 @@ impl Measures {
             5.0..60.0,
             20.0..600.0,
         );
-        let servo = || {
+        let any_servo = || {
             (
                 -15.0..15.0f64,
                 1300.0..1700.0f64,
@@ -111,25 +111,38 @@ impl Measures {
                 40.0..110.0f64,
             )
         };
-        let servos = [servo(), servo(), servo(), servo()];
-        let all = (end(), end(), 90.0..200.0, side(), side(), limits, servos);
-        all.prop_map(|(head, tail, base, left, right, limits, servos)| {
+        let servos = [any_servo(), any_servo(), any_servo(), any_servo()];
+        let strategies = (
+            any_end(),
+            any_end(),
+            90.0..200.0,
+            any_side(),
+            any_side(),
+            limits,
+            servos,
+        );
+        strategies.prop_map(|(head, tail, base, left, right, limits, servos)| {
             let neutral = [130.0, 50.0, 310.0, 230.0];
             let servos = core::array::from_fn(|n| {
-                let (aside, neutral_us, gain, reversed, back, on) = servos[n];
+                let (offset_deg, neutral_us, gain, is_reversed, back_deg, on_deg) = servos[n];
                 Servo {
-                    neutral: neutral[n] + aside,
+                    neutral: neutral[n] + offset_deg,
                     neutral_us,
-                    us_per_degree: if reversed { -gain } else { gain },
-                    min_us: (neutral_us - gain * back).max(500.0),
-                    max_us: (neutral_us + gain * on).min(2500.0),
+                    us_per_degree: if is_reversed { -gain } else { gain },
+                    min_us: (neutral_us - gain * back_deg).max(500.0),
+                    max_us: (neutral_us + gain * on_deg).min(2500.0),
                 }
             });
-            let end = |(l0, l1, l2, l3, l4)| [l0, l1, l2, l3, l4];
-            let side = |(l11, l12, l13, l14)| [base, l11, l12, l13, l14];
+            let links_of_end = |(l0, l1, l2, l3, l4)| [l0, l1, l2, l3, l4];
+            let links_of_side = |(l11, l12, l13, l14)| [base, l11, l12, l13, l14];
             let (type2, type1, leg, stroke_min, stroke_max, slew) = limits;
             Self {
-                lizard: lizard(end(head), end(tail), side(left), side(right)),
+                lizard: lizard(
+                    links_of_end(head),
+                    links_of_end(tail),
+                    links_of_side(left),
+                    links_of_side(right),
+                ),
                 limits: kinematics::Limits {
                     type2,
                     type1,
@@ -146,13 +159,13 @@ impl Measures {
 
 impl Servo {
     pub fn calibration(&self) -> Calibration {
-        let sweep = |us: f64| (us - self.neutral_us) / self.us_per_degree * STEPS_PER_DEGREE;
-        let ends = [sweep(self.min_us), sweep(self.max_us)];
+        let sweep_at = |us: f64| (us - self.neutral_us) / self.us_per_degree * STEPS_PER_DEGREE;
+        let limits = [sweep_at(self.min_us), sweep_at(self.max_us)];
         Calibration {
             neutral: Width((self.neutral_us * 16.0).round() as u16),
             gain: (self.us_per_degree * 16.0 / STEPS_PER_DEGREE * 16384.0).round() as i16,
-            min: Sweep(ends[0].min(ends[1]).ceil() as i16),
-            max: Sweep(ends[0].max(ends[1]).floor() as i16),
+            min: Sweep(limits[0].min(limits[1]).ceil() as i16),
+            max: Sweep(limits[0].max(limits[1]).floor() as i16),
         }
     }
 }
@@ -161,8 +174,8 @@ impl Servo {
 /// both sides (chassis, rear arm, rear and front half of the slider, front arm).
 fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
-    for (index, part) in [head, tail, left, right].iter().enumerate() {
-        links[5 * index..][..5].copy_from_slice(part);
+    for (index, bars) in [head, tail, left, right].iter().enumerate() {
+        links[5 * index..][..5].copy_from_slice(bars);
     }
     Lizard {
         links: Links::from(links),

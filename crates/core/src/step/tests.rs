@@ -9,7 +9,7 @@ use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
 /// A robot whose program starts at this tick, with these bytes already received.
-fn begun(ticks: u8, received: &str) -> RunningRobot {
+fn start_robot(ticks: u8, received: &str) -> RunningRobot {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
     RunningRobot::with_flash(Sample::odd().section(), board)
@@ -21,7 +21,7 @@ fn run_step(running: &mut RunningRobot) -> bool {
 }
 
 /// A robot that stands and has received a line of garbled bytes, as from a sender at another rate.
-fn hearing_another_rate() -> RunningRobot {
+fn robot_after_garbled_line() -> RunningRobot {
     let mut running = RunningRobot::power_on(*Sample::odd());
     running.run_frames(10);
     running
@@ -31,21 +31,24 @@ fn hearing_another_rate() -> RunningRobot {
 }
 
 /// The lines written so far.
-fn written(running: &RunningRobot) -> usize {
+fn count_written_lines(running: &RunningRobot) -> usize {
     running.board.transmitter.text.lines().count()
 }
 
 #[test]
 fn a_tick_comes_before_output_and_output_before_input() {
-    let mut running = begun(7, "speed 50\r");
+    let mut running = start_robot(7, "speed 50\r");
     running.board.tick();
     assert!(run_step(&mut running));
     assert!(running.board.is_frame_pending());
-    assert_eq!((written(&running), running.board.unread()), (0, 9));
+    assert_eq!(
+        (count_written_lines(&running), running.board.unread()),
+        (0, 9)
+    );
     assert!(run_step(&mut running));
     assert!(running.board.transmitter.text.starts_with("# lizard "));
-    assert_eq!(written(&running), 1, "one line at a time");
-    while written(&running) < 2 || running.main.control().is_writing() {
+    assert_eq!(count_written_lines(&running), 1, "one line at a time");
+    while count_written_lines(&running) < 2 || running.main.control().is_writing() {
         assert!(run_step(&mut running));
     }
     assert_eq!(running.board.unread(), 9);
@@ -59,16 +62,22 @@ fn a_tick_comes_before_output_and_output_before_input() {
 
 #[test]
 fn nothing_is_written_without_room_for_the_longest_line_but_frames_go_on() {
-    let mut running = begun(0, "speed 50\r");
+    let mut running = start_robot(0, "speed 50\r");
     running.board.transmitter = Transmitter::new(16_000, 255);
-    let full = 255 - u64::from(LONGEST_LINE) + 1;
-    running.board.transmitter.fill(full);
+    let queued_bytes = 255 - u64::from(LONGEST_LINE) + 1;
+    running.board.transmitter.fill(queued_bytes);
     assert_eq!(running.main.step(&mut running.board), Step::Idle(0));
-    assert_eq!((written(&running), running.board.unread()), (0, 9));
+    assert_eq!(
+        (count_written_lines(&running), running.board.unread()),
+        (0, 9)
+    );
     running.board.tick();
     assert!(run_step(&mut running));
     assert_eq!(running.main.step(&mut running.board), Step::Idle(1));
-    assert_eq!((written(&running), running.board.unread()), (0, 9));
+    assert_eq!(
+        (count_written_lines(&running), running.board.unread()),
+        (0, 9)
+    );
     running.board.transmitter = Transmitter::default();
     running.settle();
     let text = &running.board.transmitter.text;
@@ -78,7 +87,7 @@ fn nothing_is_written_without_room_for_the_longest_line_but_frames_go_on() {
 
 #[test]
 fn of_several_ticks_at_once_one_gets_a_frame_even_if_the_count_wraps() {
-    let mut running = begun(250, "");
+    let mut running = start_robot(250, "");
     running.settle();
     for frames in 1..=300 {
         for _ in 0..frames % 11 + 1 {
@@ -92,41 +101,45 @@ fn of_several_ticks_at_once_one_gets_a_frame_even_if_the_count_wraps() {
 
 #[test]
 fn only_the_end_of_the_pulses_replaces_a_frame_that_waits_to_be_played() {
-    for rests in [false, true] {
-        let mut running = begun(0, "");
+    for is_resting in [false, true] {
+        let mut running = start_robot(0, "");
         running.run_frames(100);
         // The main loop is late for a tick, so its frame waits until after the next tick.
         running.board.pass_time(1 + 5);
         running.settle();
-        let late = running.board.submitted();
-        if rests {
+        let late_frame = running.board.submitted();
+        if is_resting {
             running.board.send(b"rest\r");
             running.settle();
         }
         running.board.pass_time(15);
         running.settle();
-        assert_eq!(running.motion().frames(), 101 + u32::from(rests));
+        assert_eq!(running.motion().frames(), 101 + u32::from(is_resting));
         assert!(
             running.board.ms_since_fed() >= 15,
             "nor is the watchdog fed"
         );
         running.board.pass_time(19);
-        let played = if rests { Pulses::default() } else { late };
-        assert_eq!(running.board.started_pulses(), played);
+        let expected = if is_resting {
+            Pulses::default()
+        } else {
+            late_frame
+        };
+        assert_eq!(running.board.started_pulses(), expected);
         running.board.pass_time(1);
         running.settle();
-        assert_eq!(running.motion().frames(), 102 + u32::from(rests));
+        assert_eq!(running.motion().frames(), 102 + u32::from(is_resting));
         assert_eq!(running.board.ms_since_fed(), 0);
     }
 }
 
 #[test]
 fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
-    let mut running = begun(0, "");
-    let mut alone = Motion::new(*Sample::odd());
+    let mut running = start_robot(0, "");
+    let mut lone_motion = Motion::new(*Sample::odd());
     for _ in 0..30 {
         running.frame();
-        assert_eq!(running.board.submitted(), alone.tick());
+        assert_eq!(running.board.submitted(), lone_motion.tick());
     }
     running.board.count_lost(34);
     let status = running.send_line("status");
@@ -134,31 +147,35 @@ fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
 }
 
 /// The numbers of frames between the changes of the LED.
-fn beats(leds: &[bool]) -> Vec<usize> {
-    let changes: Vec<usize> = (1..leds.len())
-        .filter(|n| leds[*n] != leds[n - 1])
+fn frames_between_changes(led_states: &[bool]) -> Vec<usize> {
+    let changes: Vec<usize> = (1..led_states.len())
+        .filter(|n| led_states[*n] != led_states[n - 1])
         .collect();
     changes.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
 #[test]
 fn the_led_beats_slowly_and_flashes_while_the_guard_holds_the_robot() {
-    let mut running = begun(0, "stray\r");
-    let (mut leds, mut held_since) = (Vec::new(), 0);
+    let mut running = start_robot(0, "stray\r");
+    let (mut led_states, mut held_since) = (Vec::new(), 0);
     for frame in 1..400 {
         running.frame();
-        leds.push(running.board.is_lit());
+        led_states.push(running.board.is_lit());
         if held_since == 0 && running.motion().hazard().is_some() {
             held_since = frame;
         }
     }
     assert_eq!(running.motion().activity(), Activity::Stop);
     assert!(held_since > 40);
-    let (slow, fast) = leds.split_at(held_since - 1);
+    let (slow, fast) = led_states.split_at(held_since - 1);
     // Lit for the first 31 frames from power-on, then dark for 32, and so on.
     assert!(slow[..31].iter().all(|led| *led) && !slow[31]);
-    assert!(beats(slow).iter().all(|frames| *frames == 32));
-    let fast = beats(fast);
+    assert!(
+        frames_between_changes(slow)
+            .iter()
+            .all(|frames| *frames == 32)
+    );
+    let fast = frames_between_changes(fast);
     assert!(
         fast.len() > 6 && fast.iter().all(|frames| matches!(frames, 8 | 56)),
         "{fast:?}"
@@ -167,7 +184,7 @@ fn the_led_beats_slowly_and_flashes_while_the_guard_holds_the_robot() {
 
 #[test]
 fn the_servos_state_is_kept_in_every_frame_even_at_rest() {
-    let mut running = begun(0, "sway\r");
+    let mut running = start_robot(0, "sway\r");
     for _ in 0..100 {
         let pulses = running.frame();
         let stored = running.board.stored_stance().expect("a stance");
@@ -209,7 +226,7 @@ fn a_slow_memory_holds_up_the_input_and_no_frame() {
 
 #[test]
 fn the_rest_of_a_line_begun_at_another_rate_is_not_obeyed_but_the_next_is() {
-    let mut running = hearing_another_rate();
+    let mut running = robot_after_garbled_line();
     running.board.send(b"bo");
     assert_eq!(running.board.rate, Rate::Fastest);
     running.run_frames(3);
@@ -229,7 +246,7 @@ fn the_rest_of_a_line_begun_at_another_rate_is_not_obeyed_but_the_next_is() {
 
 #[test]
 fn the_rate_does_not_change_while_bytes_wait_behind_an_answer() {
-    let mut running = hearing_another_rate();
+    let mut running = robot_after_garbled_line();
     running.run_without_reader(10);
     assert_eq!(running.board.rate, Rate::Fastest);
     running.run_frames(3);
@@ -238,7 +255,7 @@ fn the_rate_does_not_change_while_bytes_wait_behind_an_answer() {
 
 #[test]
 fn a_late_edge_and_a_stack_in_the_data_reach_the_robot() {
-    let mut running = begun(0, "");
+    let mut running = start_robot(0, "");
     running.run_frames(1);
     running.board.late_edges = 1;
     let printed = running.run_frames(1);

@@ -73,13 +73,13 @@ impl Converter {
 /// through its divider.
 pub fn compute_reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);
-    let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
+    let reading_of = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
     let reference = u64::from(supplies.reference);
     Reading {
-        reference: parts(reference),
+        reference: reading_of(reference),
         rail: match supplies.rail_reference {
             0 => 0,
-            divided => parts(u64::from(rail) * reference / u64::from(divided)),
+            rail_reference => reading_of(u64::from(rail) * reference / u64::from(rail_reference)),
         },
     }
 }

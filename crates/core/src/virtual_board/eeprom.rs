@@ -84,12 +84,12 @@ impl Eeprom {
 
     /// Lets a millisecond pass.
     pub(super) fn pass_time(&mut self) {
-        let busy = self
+        let remaining = self
             .remaining_delay
             .get()
             .saturating_sub(u16::from(self.is_timed));
-        self.remaining_delay.set(busy);
-        if busy == 0 {
+        self.remaining_delay.set(remaining);
+        if remaining == 0 {
             self.address_in_write.set(None);
         }
     }
@@ -111,16 +111,16 @@ impl Eeprom {
 
 impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
-        let busy = self.remaining_delay.get();
+        let remaining = self.remaining_delay.get();
         if self.is_timed {
-            self.was_polled_busy.set(busy > 0);
+            self.was_polled_busy.set(remaining > 0);
         } else {
-            self.remaining_delay.set(busy.saturating_sub(1));
+            self.remaining_delay.set(remaining.saturating_sub(1));
         }
-        if busy == 0 {
+        if remaining == 0 {
             self.address_in_write.set(None);
         }
-        busy == 0
+        remaining == 0
     }
 
     fn read(&self, address: u16) -> u8 {
@@ -138,9 +138,9 @@ impl Memory for Eeprom {
             0,
             "written while it is being written"
         );
-        let before = self.bytes[usize::from(address)];
-        assert_ne!(before, byte, "written for nothing");
-        self.log.push((address, before, byte));
+        let old_byte = self.bytes[usize::from(address)];
+        assert_ne!(old_byte, byte, "written for nothing");
+        self.log.push((address, old_byte, byte));
         if !self.is_worn {
             self.bytes_mut()[usize::from(address)] = byte;
         }

@@ -35,9 +35,9 @@ impl RunningRobot {
         let supplies = robot.supplies();
         // A rail voltage well above its thresholds.
         let rail = u32::from(supplies.rail.slow) + 1_000;
-        let truth = compute_reading(&supplies, 5_000, rail.max(6_000));
+        let reading = compute_reading(&supplies, 5_000, rail.max(6_000));
         let board = VirtualBoard {
-            converter: Converter::new(truth, supplies.rail_reference != 0),
+            converter: Converter::new(reading, supplies.rail_reference != 0),
             ..VirtualBoard::new(memory).restarted(restart)
         };
         Self::with_flash(robot.section(), board)
@@ -126,8 +126,8 @@ impl RunningRobot {
         for line in text.split_inclusive("\r\n") {
             assert!(line.len() <= usize::from(LONGEST_LINE), "{line}");
             let line = line.strip_suffix("\r\n").expect("a whole line");
-            let plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
-            assert!(line.bytes().all(plain), "{line:?}");
+            let is_plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
+            assert!(line.bytes().all(is_plain), "{line:?}");
             assert!(line.starts_with("# ") || is_final(line), "{line:?}");
             lines.push(line.to_string());
         }
@@ -152,16 +152,19 @@ impl RunningRobot {
         self.read_lines();
         let mut printed = self.send(line.as_bytes());
         printed.extend(self.send(b"\r"));
-        let last = printed.iter().position(|line| is_final(line));
-        let rest = printed.split_off(last.expect("an answer") + 1);
-        self.board.transmitter.text = rest.iter().map(|line| std::format!("{line}\r\n")).collect();
-        let last = printed.pop().expect("an answer");
-        let mut others = printed.iter().chain(&rest);
+        let final_index = printed.iter().position(|line| is_final(line));
+        let later_lines = printed.split_off(final_index.expect("an answer") + 1);
+        self.board.transmitter.text = later_lines
+            .iter()
+            .map(|line| std::format!("{line}\r\n"))
+            .collect();
+        let answer = printed.pop().expect("an answer");
+        let mut other_lines = printed.iter().chain(&later_lines);
         assert!(
-            others.all(|line| line.starts_with("# ")),
-            "{printed:?} {rest:?}"
+            other_lines.all(|line| line.starts_with("# ")),
+            "{printed:?} {later_lines:?}"
         );
-        last
+        answer
     }
 
     /// Sends a line, which must be accepted.
@@ -180,10 +183,10 @@ impl RunningRobot {
     #[track_caller]
     pub fn expect_refused(&mut self, line: &str, reason: &str) {
         let answer = self.send_line(line);
-        let refused = answer
+        let is_refused = answer
             .strip_prefix("err ")
             .is_some_and(|text| text.starts_with(reason));
-        assert!(refused, "{line}: {answer}, not {reason}");
+        assert!(is_refused, "{line}: {answer}, not {reason}");
     }
 
     /// Reads a value of the status line.
@@ -202,14 +205,14 @@ impl RunningRobot {
     /// Lets time pass in which the main loop hangs. Once the watchdog has ended the pulses, the loop stays stopped
     /// until the reset. Returns true if the reset comes.
     pub fn stall(&mut self, ms: u16) -> bool {
-        let mut bites = self.board.pass_time(ms);
-        while self.is_stopped_by_watchdog() && !bites {
-            bites = self.board.pass_time(1);
+        let mut is_reset = self.board.pass_time(ms);
+        while self.is_stopped_by_watchdog() && !is_reset {
+            is_reset = self.board.pass_time(1);
         }
-        if bites {
+        if is_reset {
             self.reset(Cause::Watchdog);
         }
-        bites
+        is_reset
     }
 
     /// Resets the processor with this cause.
@@ -219,8 +222,8 @@ impl RunningRobot {
     }
 
     /// Turns the power off and on; see [`VirtualBoard::lose_power`].
-    pub fn lose_power(&mut self, torn: Option<u8>) {
-        self.board.lose_power(torn);
+    pub fn lose_power(&mut self, torn_byte: Option<u8>) {
+        self.board.lose_power(torn_byte);
         self.restart_main();
     }
 
@@ -232,11 +235,11 @@ impl RunningRobot {
 
 /// True for a line that ends an answer.
 pub fn is_final(line: &str) -> bool {
-    let code = line
+    let code_and_reason = line
         .strip_prefix("err ")
         .and_then(|rest| rest.split_once(' '));
     line.starts_with("ok ")
-        || code.is_some_and(|(code, reason)| {
+        || code_and_reason.is_some_and(|(code, reason)| {
             matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9")
                 && !reason.is_empty()
         })

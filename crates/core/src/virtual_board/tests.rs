@@ -8,13 +8,13 @@ use crate::sample::Sample;
 use crate::step::{Main, Step};
 
 /// A robot that stands.
-fn standing() -> RunningRobot {
+fn standing_robot() -> RunningRobot {
     let mut running = RunningRobot::power_on(*Sample::odd());
     running.run_frames(30);
     running
 }
 
-const NONE: Pulses = Pulses([Width(0); 4]);
+const NO_PULSES: Pulses = Pulses([Width(0); 4]);
 
 #[test]
 fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
@@ -22,11 +22,11 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
     board.connect([9, 10, 5, 6], None);
     let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(Width));
     board.submit(pulses);
-    assert_eq!(board.started_pulses(), NONE);
+    assert_eq!(board.started_pulses(), NO_PULSES);
     board.pass_time(1 + 3);
     assert_eq!(
         board.started_pulses(),
-        NONE,
+        NO_PULSES,
         "the tick, and not yet the hand-over"
     );
     board.pass_time(1);
@@ -49,34 +49,34 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
 
 #[test]
 fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() {
-    let mut short = standing();
-    assert!(!short.stall(WATCHDOG_MS - 20));
-    assert!(!short.board.are_pulses_ended());
-    assert_ne!(short.frame(), NONE);
-    let mut long = standing();
-    assert!(!long.board.pass_time(WATCHDOG_MS + 20));
-    assert!(long.board.are_pulses_ended());
+    let mut running = standing_robot();
+    assert!(!running.stall(WATCHDOG_MS - 20));
+    assert!(!running.board.are_pulses_ended());
+    assert_ne!(running.frame(), NO_PULSES);
+    let mut hung = standing_robot();
+    assert!(!hung.board.pass_time(WATCHDOG_MS + 20));
+    assert!(hung.board.are_pulses_ended());
     assert_eq!(
-        long.board.started_pulses(),
-        NONE,
+        hung.board.started_pulses(),
+        NO_PULSES,
         "no pulse begins any more"
     );
-    let (pose, frames) = (*long.motion().pose(), long.motion().frames());
-    long.settle();
-    assert_eq!(long.motion().frames(), frames, "main does not go on");
-    assert!(long.stall(1), "and the reset comes");
-    assert!(!long.board.are_pulses_ended());
-    assert_eq!(long.board.restart().cause, Cause::Watchdog);
-    assert_eq!(long.board.restart().count, 1);
+    let (pose, frames) = (*hung.motion().pose(), hung.motion().frames());
+    hung.settle();
+    assert_eq!(hung.motion().frames(), frames, "main does not go on");
+    assert!(hung.stall(1), "and the reset comes");
+    assert!(!hung.board.are_pulses_ended());
+    assert_eq!(hung.board.restart().cause, Cause::Watchdog);
+    assert_eq!(hung.board.restart().count, 1);
     assert_eq!(
-        long.board.restart().stance_before.map(|stance| stance.pose),
+        hung.board.restart().stance_before.map(|stance| stance.pose),
         Some(pose)
     );
 }
 
 #[test]
 fn a_reset_leaves_the_pose_and_power_takes_it() {
-    let mut running = standing();
+    let mut running = standing_robot();
     running.send_line("sway");
     running.run_frames(60);
     let pose = *running.motion().pose();
@@ -100,15 +100,19 @@ fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
     let mut board = VirtualBoard::default();
     board.memory.write(17, 0x35);
     assert_eq!(board.memory.address_in_write(), Some(17));
-    let mut whole = board.clone();
+    let mut board_after_write = board.clone();
     board.lose_power(Some(0xb7));
     assert_eq!(board.memory.bytes()[17], 0xb7);
-    whole.pass_time(4);
-    whole.lose_power(Some(0xb7));
-    assert_eq!(whole.memory.bytes()[17], 0x35, "it had time to end");
-    let others = |at: &usize| *at != 17;
-    let erased = |at: usize| board.memory.bytes()[at] == ERASED;
-    assert!((0..1024).filter(others).all(erased));
+    board_after_write.pass_time(4);
+    board_after_write.lose_power(Some(0xb7));
+    assert_eq!(
+        board_after_write.memory.bytes()[17],
+        0x35,
+        "it had time to end"
+    );
+    let is_other = |address: &usize| *address != 17;
+    let is_erased = |address: usize| board.memory.bytes()[address] == ERASED;
+    assert!((0..1024).filter(is_other).all(is_erased));
 }
 
 #[test]
@@ -129,12 +133,20 @@ fn nothing_is_measured_before_a_whole_measurement_and_each_part_in_its_turn() {
         reference: 221,
         rail: 393,
     };
-    for (rail, first) in [(false, 2), (true, 4)] {
-        let mut converter = Converter::new(truth, rail);
+    for (has_rail, first_frame) in [(false, 2), (true, 4)] {
+        let mut converter = Converter::new(truth, has_rail);
         for frame in 1..40 {
-            let read = converter.next();
-            assert_eq!(read.reference == 221, frame >= first, "{rail} {frame}");
-            assert_eq!(read.rail == 393, rail && frame >= first, "{rail} {frame}");
+            let reading = converter.next();
+            assert_eq!(
+                reading.reference == 221,
+                frame >= first_frame,
+                "{has_rail} {frame}"
+            );
+            assert_eq!(
+                reading.rail == 393,
+                has_rail && frame >= first_frame,
+                "{has_rail} {frame}"
+            );
         }
     }
 }
@@ -161,37 +173,37 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     running.run_frames(200);
     running.send_line("sway");
     running.run_frames(60);
-    let before = running.board.started_pulses();
+    let started = running.board.started_pulses();
     running.board.pass_time(running.board.ms_until_tick());
     running.settle();
     running.reset(Cause::External);
-    let on_its_way = *running.motion().sent();
-    assert_ne!(before, on_its_way, "a frame was on its way");
+    let submitted = *running.motion().sent();
+    assert_ne!(started, submitted, "a frame was on its way");
     for servo in 1..=4 {
         running.send_line(&format!("scale {servo} 9.3"));
     }
-    let mut first = [None; 4];
-    while first.contains(&None) {
-        let begun = running.frame();
-        for (first, width) in first.iter_mut().zip(begun.0) {
+    let mut first_widths = [None; 4];
+    while first_widths.contains(&None) {
+        let pulses = running.frame();
+        for (first, width) in first_widths.iter_mut().zip(pulses.0) {
             if width.0 > 0 {
                 first.get_or_insert(width);
             }
         }
     }
-    assert_eq!(first, on_its_way.0.map(Some));
+    assert_eq!(first_widths, submitted.0.map(Some));
 }
 
 /// The largest change of each servo's pulse width from one frame to the next, cycles.
-fn leaps(running: &mut RunningRobot, frames: usize) -> [u16; 4] {
-    let mut last = *running.motion().sent();
+fn largest_leaps(running: &mut RunningRobot, frames: usize) -> [u16; 4] {
+    let mut last_widths = *running.motion().sent();
     let mut leaps = [0; 4];
     for _ in 0..frames {
-        let begun = running.frame();
-        for (servo, width) in begun.0.iter().enumerate() {
+        let pulses = running.frame();
+        for (servo, width) in pulses.0.iter().enumerate() {
             if width.0 > 0 {
-                leaps[servo] = leaps[servo].max(width.0.abs_diff(last.0[servo].0));
-                last.0[servo] = *width;
+                leaps[servo] = leaps[servo].max(width.0.abs_diff(last_widths.0[servo].0));
+                last_widths.0[servo] = *width;
             }
         }
     }
@@ -202,14 +214,14 @@ fn leaps(running: &mut RunningRobot, frames: usize) -> [u16; 4] {
 fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
     let robot = Sample::odd();
     let per_frame = robot.slew().per_frame;
-    let max = robot.calibration().map(|servo| servo.slew(per_frame));
-    for reset in [None, Some(Cause::External), Some(Cause::Watchdog)] {
-        let mut running = standing();
+    let max_leaps = robot.calibration().map(|servo| servo.slew(per_frame));
+    for reset_cause in [None, Some(Cause::External), Some(Cause::Watchdog)] {
+        let mut running = standing_robot();
         running.send_line("sway");
         running.run_frames(60);
         running.send_line("rest");
         running.run_frames(60);
-        let before = *running.motion().sent();
+        let sent_at_rest = *running.motion().sent();
         for servo in 1..=4 {
             assert!(
                 running
@@ -217,16 +229,16 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
                     .starts_with("ok")
             );
         }
-        if let Some(cause) = reset {
+        if let Some(cause) = reset_cause {
             running.reset(cause);
             running.run_frames(60);
         }
         running.send_line("stand");
-        let leaps = leaps(&mut running, 200);
+        let leaps = largest_leaps(&mut running, 200);
         for servo in 0..4 {
-            assert!(leaps[servo] <= max[servo], "{leaps:?}, {max:?}");
+            assert!(leaps[servo] <= max_leaps[servo], "{leaps:?}, {max_leaps:?}");
             assert!(leaps[servo] > 0, "it stands elsewhere than it rested");
         }
-        assert_ne!(*running.motion().sent(), before);
+        assert_ne!(*running.motion().sent(), sent_at_rest);
     }
 }

@@ -42,12 +42,12 @@ impl Hash for Transmitter {
 }
 
 impl Transmitter {
-    /// A line that takes `per_byte` cycles for a byte, with room for `capacity` bytes.
-    pub const fn new(per_byte: u64, capacity: u64) -> Self {
+    /// A line that takes `cycles_per_byte` cycles for a byte, with room for `capacity` bytes.
+    pub const fn new(cycles_per_byte: u64, capacity: u64) -> Self {
         Self {
             text: String::new(),
             is_held: false,
-            per_byte,
+            per_byte: cycles_per_byte,
             capacity,
             now: 0,
             idle_from: 0,

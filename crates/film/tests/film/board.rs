@@ -12,7 +12,7 @@ const GRAVITY: f64 = 9806.65;
 /// Time step of the simulation, s.
 const STEP: f64 = 0.0005;
 /// Distance downhill after which a hand stops the robot, mm.
-const STOPPED: f64 = 110.0;
+const STOP_DISTANCE: f64 = 110.0;
 
 /// A board that is lifted, with a robot on it.
 #[derive(Clone, Copy)]
@@ -53,9 +53,9 @@ impl Board {
     }
 
     /// The robot's distance downhill, mm, at every [`STEP`] up to a time in seconds.
-    fn ways(&self, seconds: f64) -> Vec<f64> {
-        let (mut way, mut speed) = (0.0, 0.0);
-        let step = |i: usize| {
+    fn distances(&self, seconds: f64) -> Vec<f64> {
+        let (mut distance, mut speed) = (0.0, 0.0);
+        let advance = |i: usize| {
             let (sin, cos) = self.tilt(i as f64 * STEP).to_radians().sin_cos();
             let friction = if speed > 0.0 {
                 self.sliding
@@ -63,29 +63,36 @@ impl Board {
                 self.resting
             };
             speed = f64::max(0.0, speed + GRAVITY * (sin - friction * cos) * STEP);
-            way = f64::min(STOPPED, way + speed * STEP);
-            way
+            distance = f64::min(STOP_DISTANCE, distance + speed * STEP);
+            distance
         };
-        (0..(seconds / STEP) as usize).map(step).collect()
+        (0..(seconds / STEP) as usize).map(advance).collect()
     }
 
     /// Takes pictures of the board, at the full rate only around the slide, and passes them on with their times.
     pub fn pictures(&self, studio: &Studio, rate: f64, mut take: impl FnMut(f64, &Picture)) {
         let mut rng = Rng::with_seed(11);
-        let length = self.from + (self.end.min(45.0) - self.begin) / self.lift + 0.5;
-        let ways = self.ways(length);
-        let way = |seconds: f64| ways[((seconds.max(0.0) / STEP) as usize).min(ways.len() - 1)];
+        let duration = self.from + (self.end.min(45.0) - self.begin) / self.lift + 0.5;
+        let distances = self.distances(duration);
+        let distance_at =
+            |seconds: f64| distances[((seconds.max(0.0) / STEP) as usize).min(distances.len() - 1)];
         let mut seconds = 0.0;
-        while seconds < length && way(seconds - 0.1) < STOPPED {
-            let mut here = studio.clone();
-            here.board = self.tilt(seconds);
+        while seconds < duration && distance_at(seconds - 0.1) < STOP_DISTANCE {
+            let mut tilted = studio.clone();
+            tilted.board = self.tilt(seconds);
             // Downhill is to the left in the scene.
             let heading = PI + self.head.to_radians();
             let (sin, cos) = (PI + self.aside.to_radians()).sin_cos();
-            let robot = |time: f64| [55.0 + way(time) * cos, 5.0 + way(time) * sin, heading];
-            let background = here.background(&mut rng);
+            let robot = |time: f64| {
+                [
+                    55.0 + distance_at(time) * cos,
+                    5.0 + distance_at(time) * sin,
+                    heading,
+                ]
+            };
+            let background = tilted.background(&mut rng);
             take(seconds, &background.picture(seconds, robot, &mut rng));
-            seconds += if way(seconds + 0.25) > 0.5 {
+            seconds += if distance_at(seconds + 0.25) > 0.5 {
                 1.0 / rate
             } else {
                 0.2

@@ -11,7 +11,7 @@ use crate::walk::{Variation, Walk, gait, truth};
 /// Cycles in a film.
 const CYCLES: usize = 6;
 /// Largest error of a mean cycle, and largest spread of single cycles: mm, mm, deg.
-const LARGEST: [f64; 3] = [0.2, 0.2, 0.5];
+const LARGEST_ERRORS: [f64; 3] = [0.2, 0.2, 0.5];
 
 /// A camera that a user may have.
 struct Camera {
@@ -24,7 +24,7 @@ struct Camera {
 }
 
 /// A good camera: 720p, 30 pictures per second, on a tripod.
-fn good() -> Studio {
+fn good_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
     (studio.focal, studio.height, studio.tilt) = (0.78, 780.0, 20.0);
     (studio.direction, studio.roll, studio.aim) = (90.0, 3.0, [0.0; 2]);
@@ -34,7 +34,7 @@ fn good() -> Studio {
 /// All cameras of the test.
 fn cameras() -> Vec<Camera> {
     let camera = |name, change: &dyn Fn(&mut Studio), rate, shake| {
-        let mut studio = good();
+        let mut studio = good_studio();
         change(&mut studio);
         Camera {
             name,
@@ -43,32 +43,32 @@ fn cameras() -> Vec<Camera> {
             shake,
         }
     };
-    let still = |name, change: &dyn Fn(&mut Studio)| camera(name, change, 30.0, 0.0);
+    let on_tripod = |name, change: &dyn Fn(&mut Studio)| camera(name, change, 30.0, 0.0);
     vec![
-        still("720p, 30 pictures in a second", &|_| {}),
-        still("640 x 360", &|studio| studio.size = [640, 360]),
-        still("1920 x 1080", &|studio| studio.size = [1920, 1080]),
+        on_tripod("720p, 30 pictures in a second", &|_| {}),
+        on_tripod("640 x 360", &|studio| studio.size = [640, 360]),
+        on_tripod("1920 x 1080", &|studio| studio.size = [1920, 1080]),
         camera("12 pictures in a second", &|_| {}, 12.0, 0.0),
         camera("60 pictures in a second", &|_| {}, 60.0, 0.0),
-        still("straight down", &|studio| studio.tilt = 2.0),
-        still("tilt 40 deg", &|studio| studio.tilt = 40.0),
-        still("600 mm above, wide lens", &|studio| {
+        on_tripod("straight down", &|studio| studio.tilt = 2.0),
+        on_tripod("tilt 40 deg", &|studio| studio.tilt = 40.0),
+        on_tripod("600 mm above, wide lens", &|studio| {
             (studio.height, studio.focal) = (600.0, 0.6);
         }),
-        still("1100 mm above", &|studio| {
+        on_tripod("1100 mm above", &|studio| {
             (studio.height, studio.focal) = (1100.0, 1.1);
         }),
-        still("rolling shutter of 30 ms", &|studio| studio.readout = 0.03),
-        still("rolling shutter upside down", &|studio| {
+        on_tripod("rolling shutter of 30 ms", &|studio| studio.readout = 0.03),
+        on_tripod("rolling shutter upside down", &|studio| {
             (studio.readout, studio.roll) = (0.03, 177.0);
         }),
-        still("shutter open for 1/30 s", &|studio| {
+        on_tripod("shutter open for 1/30 s", &|studio| {
             studio.shutter = 1.0 / 30.0;
         }),
-        still("evening: 40 % of the light, noise of 10", &|studio| {
+        on_tripod("evening: 40 % of the light, noise of 10", &|studio| {
             (studio.light, studio.noise) = (0.4, 10.0);
         }),
-        still("glare between the tags", &|studio| {
+        on_tripod("glare between the tags", &|studio| {
             studio.discs = vec![[0.0, 150.0, 40.0, 255.0]];
         }),
         camera("in the hand", &|_| {}, 12.0, 3.0),
@@ -93,13 +93,13 @@ fn film(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
     }
     let mut film = Film::default();
     for i in 0..(walk.seconds() * rate) as usize {
-        let mut here = studio.clone();
-        here.height += shake * normal(rng);
-        here.aim = here.aim.map(|at| at + shake * normal(rng));
-        here.tilt += shake / 10.0 * normal(rng);
-        here.roll += shake / 10.0 * normal(rng);
+        let mut shaken = studio.clone();
+        shaken.height += shake * normal(rng);
+        shaken.aim = shaken.aim.map(|value| value + shake * normal(rng));
+        shaken.tilt += shake / 10.0 * normal(rng);
+        shaken.roll += shake / 10.0 * normal(rng);
         let seconds = i as f64 / rate;
-        let picture = here
+        let picture = shaken
             .background(rng)
             .picture(seconds, |time| walk.at(time), rng);
         film.add(seconds, &picture).expect("a picture");
@@ -133,12 +133,12 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
             (measured.left, truth.left),
             (measured.turn, truth.turn),
         ];
-        let [ahead, left, turn] = parts.map(|(part, truth)| (part.mean - truth, part.spread));
+        let [ahead, left, turn] = parts.map(|(mean, truth)| (mean.mean - truth, mean.spread));
         println!(
             "{:<42} {:+.3} {:.3}   {:+.3} {:.3}   {:+.3} {:.3}",
             camera.name, ahead.0, ahead.1, left.0, left.1, turn.0, turn.1
         );
-        for ((error, spread), largest) in [ahead, left, turn].into_iter().zip(LARGEST) {
+        for ((error, spread), largest) in [ahead, left, turn].into_iter().zip(LARGEST_ERRORS) {
             assert!(error.abs() < largest && spread < largest, "{}", camera.name);
         }
     }

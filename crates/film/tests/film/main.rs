@@ -1,4 +1,4 @@
-//! Films whose truth is known, rendered with all that spoils a picture.
+//! Films whose true values are known, rendered with noise, blur and other faults of real pictures.
 
 mod accuracy;
 mod board;

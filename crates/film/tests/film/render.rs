@@ -21,15 +21,15 @@ const BODY_GREY: f64 = 70.0;
 /// Height of the robot's top, mm.
 const BODY_HEIGHT: f64 = 55.0;
 /// x coordinate of the edge about which the board is tilted, mm.
-const EDGE: f64 = -200.0;
+const TILT_EDGE: f64 = -200.0;
 /// Samples of a pixel in each direction.
-const SAMPLES: usize = 3;
+const PIXEL_SAMPLES: usize = 3;
 /// Samples of the time for which the shutter is open.
-const TIMES: usize = 3;
+const SHUTTER_SAMPLES: usize = 3;
 /// Number of random numbers for the noise.
-const NOISES: usize = 1 << 16;
+const NOISE_COUNT: usize = 1 << 16;
 /// Number of successive pixels that use these random numbers in sequence.
-const IN_A_ROW: usize = 64;
+const RUN_LENGTH: usize = 64;
 
 /// The scene: the floor, the sheet and the camera.
 #[derive(Clone)]
@@ -49,7 +49,7 @@ pub struct Studio {
     pub roll: f64,
     /// The point of the floor on the camera's axis, mm.
     pub aim: [f64; 2],
-    /// Tilt of the board with strips and robot about its edge at x = [`EDGE`], deg.
+    /// Tilt of the board with strips and robot about its edge at x = [`TILT_EDGE`], deg.
     pub board: f64,
     /// Places of the strips' middles.
     pub strips: [Spot; 2],
@@ -81,7 +81,7 @@ impl Studio {
     /// A studio with a random camera on a tripod that sees both strips entirely.
     pub fn random(rng: &mut Rng) -> Self {
         loop {
-            let studio = Self::any(rng);
+            let studio = Self::random_camera(rng);
             if studio.sees_strips() {
                 return studio;
             }
@@ -102,33 +102,33 @@ impl Studio {
             ]
             .into_iter()
             .map(|[u, v]| view.image([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
-            .all(|at| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&at[i])))
+            .all(|pixel| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&pixel[i])))
         })
     }
 
     /// A studio with a random camera, whether or not it sees the strips.
-    fn any(rng: &mut Rng) -> Self {
-        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+    fn random_camera(rng: &mut Rng) -> Self {
+        let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
             size: [1280, 720],
-            focal: between(0.72, 0.9),
-            lens: between(-0.006, 0.006),
-            height: between(700.0, 900.0),
-            tilt: between(10.0, 35.0),
-            direction: between(-180.0, 180.0),
-            roll: between(-20.0, 20.0),
-            aim: [between(-25.0, 25.0), between(-25.0, 25.0)],
+            focal: random_between(0.72, 0.9),
+            lens: random_between(-0.006, 0.006),
+            height: random_between(700.0, 900.0),
+            tilt: random_between(10.0, 35.0),
+            direction: random_between(-180.0, 180.0),
+            roll: random_between(-20.0, 20.0),
+            aim: [random_between(-25.0, 25.0), random_between(-25.0, 25.0)],
             board: 0.0,
             strips: [
                 [
-                    between(-10.0, 10.0),
-                    between(-165.0, -155.0),
-                    between(-0.06, 0.06),
+                    random_between(-10.0, 10.0),
+                    random_between(-165.0, -155.0),
+                    random_between(-0.06, 0.06),
                 ],
                 [
-                    between(-10.0, 10.0),
-                    between(155.0, 165.0),
-                    PI + between(-0.06, 0.06),
+                    random_between(-10.0, 10.0),
+                    random_between(155.0, 165.0),
+                    PI + random_between(-0.06, 0.06),
                 ],
             ],
             print: [1.0; 2],
@@ -140,8 +140,8 @@ impl Studio {
             readout: 0.0,
             light: 1.0,
             noise: 5.0,
-            floor: between(90.0, 160.0),
-            shade: between(0.0, 0.4),
+            floor: random_between(90.0, 160.0),
+            shade: random_between(0.0, 0.4),
         }
     }
 
@@ -150,10 +150,10 @@ impl Studio {
         let (tilt, direction) = (self.tilt.to_radians(), self.direction.to_radians());
         let lean = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
         let ahead = [lean[0], lean[1], -tilt.cos()];
-        let far = self.height / tilt.cos();
+        let distance = self.height / tilt.cos();
         let eye = [
-            self.aim[0] - far * ahead[0],
-            self.aim[1] - far * ahead[1],
+            self.aim[0] - distance * ahead[0],
+            self.aim[1] - distance * ahead[1],
             self.height,
         ];
         // Level, then rolled about the axis.
@@ -162,9 +162,9 @@ impl Studio {
         let (sin, cos) = self.roll.to_radians().sin_cos();
         let right = [0, 1, 2].map(|i| cos * level[i] + sin * down[i]);
         // The camera in the frame of the board.
-        let [x, y, z] = self.on_board([eye[0] - EDGE, eye[1], eye[2]]);
+        let [x, y, z] = self.on_board([eye[0] - TILT_EDGE, eye[1], eye[2]]);
         let axes = [right, cross(ahead, right), ahead].map(|axis| self.on_board(axis));
-        ([x + EDGE, y, z], axes)
+        ([x + TILT_EDGE, y, z], axes)
     }
 
     /// Converts a direction from the frame of the room to the frame of the tilted board.
@@ -198,7 +198,9 @@ impl Studio {
                 u.abs() < sheet::STRIP[0] && v.abs() < sheet::STRIP[1]
             });
             *light = match is_near {
-                true => mean(|dx, dy| self.floor_at(view.meet([x + dx, y + dy], 0.0))) as f32,
+                true => {
+                    mean_of_samples(|dx, dy| self.floor_at(view.meet([x + dx, y + dy], 0.0))) as f32
+                }
                 false => self.floor as f32,
             };
         }
@@ -206,27 +208,28 @@ impl Studio {
             studio: self.clone(),
             view,
             light,
-            noise: (0..NOISES)
+            noise: (0..NOISE_COUNT)
                 .map(|_| (self.noise * normal(rng)) as f32)
                 .collect(),
         }
     }
 
     /// The grey of a point of the floor.
-    fn floor_at(&self, at: [f64; 2]) -> f64 {
-        let is_in = |[x, y, radius, _]: &&[f64; 4]| (at[0] - x).hypot(at[1] - y) < *radius;
-        if let Some([.., grey]) = self.discs.iter().find(is_in) {
+    fn floor_at(&self, point: [f64; 2]) -> f64 {
+        let is_in_disc =
+            |[x, y, radius, _]: &&[f64; 4]| (point[0] - x).hypot(point[1] - y) < *radius;
+        if let Some([.., grey]) = self.discs.iter().find(is_in_disc) {
             return *grey;
         }
         for (strip, spot) in self.strips.iter().enumerate() {
-            let [u, v] = Turned::new(*spot).local_point(at);
+            let [u, v] = Turned::new(*spot).local_point(point);
             let [u, v] = [u / self.print[0], v / self.print[1]];
             if u.abs() > sheet::STRIP[0] / 2.0 || v.abs() > sheet::STRIP[1] / 2.0 {
                 continue;
             }
             for id in 2 * strip..2 * strip + 2 {
                 let [x, y] = sheet::middle_on_strip(id);
-                if let Some(grey) = tag(id, [u - self.cut * x, v - y]) {
+                if let Some(grey) = tag_grey(id, [u - self.cut * x, v - y]) {
                     return if self.hidden.contains(&id) {
                         BLACK
                     } else {
@@ -246,7 +249,7 @@ impl Studio {
         if x.abs() > sheet::CARD[0] / 2.0 || y < low || y > low + sheet::CARD[1] {
             return None;
         }
-        Some(match tag(sheet::DECK_TAG, [x, y]) {
+        Some(match tag_grey(sheet::DECK_TAG, [x, y]) {
             Some(_) if self.hidden.contains(&sheet::DECK_TAG) => PAPER,
             Some(grey) => grey,
             None => PAPER,
@@ -274,30 +277,36 @@ struct View {
 impl View {
     /// The point at a height that a pixel shows: the intersection of the pixel's ray with the plane at that height.
     fn meet(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
-        let bent = [
+        let distorted = [
             (x - self.middle[0]) / self.focal,
             (y - self.middle[1]) / self.focal,
         ];
         // Inverts the distortion of the lens by iteration, which converges fast since the distortion is small.
-        let [mut u, mut v] = bent;
+        let [mut u, mut v] = distorted;
         for _ in 0..3 {
             let factor = self.bend(u, v);
-            [u, v] = [bent[0] / factor, bent[1] / factor];
+            [u, v] = [distorted[0] / factor, distorted[1] / factor];
         }
         let [right, down, ahead] = &self.axes;
         let ray = [0, 1, 2].map(|i| ahead[i] + u * right[i] + v * down[i]);
-        let far = (height - self.eye[2]) / ray[2];
-        [self.eye[0] + far * ray[0], self.eye[1] + far * ray[1]]
+        let distance = (height - self.eye[2]) / ray[2];
+        [
+            self.eye[0] + distance * ray[0],
+            self.eye[1] + distance * ray[1],
+        ]
     }
 
     /// The pixel that shows a point at a height.
     fn image(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
-        let from = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
-        let along = |axis: &Vector| (0..3).map(|i| axis[i] * from[i]).sum::<f64>();
+        let offset = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
+        let component_along = |axis: &Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
         let [right, down, ahead] = &self.axes;
-        let [u, v] = [along(right) / along(ahead), along(down) / along(ahead)];
-        let far = self.focal * self.bend(u, v);
-        [self.middle[0] + far * u, self.middle[1] + far * v]
+        let [u, v] = [
+            component_along(right) / component_along(ahead),
+            component_along(down) / component_along(ahead),
+        ];
+        let distance = self.focal * self.bend(u, v);
+        [self.middle[0] + distance * u, self.middle[1] + distance * v]
     }
 
     /// The factor by which the lens moves a point away from the axis.
@@ -313,18 +322,19 @@ impl Background {
         let [width, height] = studio.size;
         let mut light = self.light.clone();
         // The places of the robot while the shutter is open for a row.
-        let spots = |row: usize| -> [Turned; TIMES] {
-            let late = (row as f64 / height as f64 - 0.5) * studio.readout;
+        let spots_in_row = |row: usize| -> [Turned; SHUTTER_SAMPLES] {
+            let row_delay = (row as f64 / height as f64 - 0.5) * studio.readout;
             std::array::from_fn(|i| {
-                let open = ((i as f64 + 0.5) / TIMES as f64 - 0.5) * studio.shutter;
-                Turned::new(robot(seconds + late + open))
+                let shutter_delay =
+                    ((i as f64 + 0.5) / SHUTTER_SAMPLES as f64 - 0.5) * studio.shutter;
+                Turned::new(robot(seconds + row_delay + shutter_delay))
             })
         };
-        let rows: Vec<_> = (0..height).map(spots).collect();
-        let near = rows[height / 2][TIMES / 2];
+        let rows: Vec<_> = (0..height).map(spots_in_row).collect();
+        let middle_spot = rows[height / 2][SHUTTER_SAMPLES / 2];
         let body = [(BODY[0] + 5.0), (BODY[1] + 5.0)];
-        self.each_pixel(near, body, BODY_HEIGHT, |i, [x, y]| {
-            let [u, v] = near.frame(self.view.meet([x, y], BODY_HEIGHT));
+        self.for_each_pixel(middle_spot, body, BODY_HEIGHT, |i, [x, y]| {
+            let [u, v] = middle_spot.robot_point(self.view.meet([x, y], BODY_HEIGHT));
             if u.abs() < BODY[0] && v.abs() < BODY[1] {
                 light[i] = BODY_GREY as f32;
             }
@@ -333,23 +343,23 @@ impl Background {
             sheet::CARD[0] / 2.0 + 2.0,
             sheet::CARD[1] - sheet::DECK_EDGE / 2.0 + 2.0,
         ];
-        self.each_pixel(near, card, studio.deck, |i, [x, y]| {
+        self.for_each_pixel(middle_spot, card, studio.deck, |i, [x, y]| {
             let spots = &rows[i / width];
-            let behind = f64::from(light[i]);
-            let at_time = |spot: &Turned| {
-                mean(|dx, dy| {
-                    let at = spot.frame(self.view.meet([x + dx, y + dy], studio.deck));
-                    studio.card_at(at).unwrap_or(behind)
+            let background_grey = f64::from(light[i]);
+            let grey_of = |spot: &Turned| {
+                mean_of_samples(|dx, dy| {
+                    let point = spot.robot_point(self.view.meet([x + dx, y + dy], studio.deck));
+                    studio.card_at(point).unwrap_or(background_grey)
                 })
             };
-            light[i] = (spots.iter().map(at_time).sum::<f64>() / TIMES as f64) as f32;
+            light[i] = (spots.iter().map(grey_of).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
         });
         let mut grey = Vec::with_capacity(light.len());
-        for (i, pixels) in light.chunks(IN_A_ROW).enumerate() {
-            let (row, column) = (i * IN_A_ROW / width, i * IN_A_ROW % width);
+        for (i, pixels) in light.chunks(RUN_LENGTH).enumerate() {
+            let (row, column) = (i * RUN_LENGTH / width, i * RUN_LENGTH % width);
             let share = (row as f64 / height as f64 + column as f64 / width as f64) / 2.0;
             let shade = (studio.light * (1.0 - studio.shade * share)) as f32;
-            let noise = &self.noise[rng.usize(..NOISES - IN_A_ROW)..];
+            let noise = &self.noise[rng.usize(..NOISE_COUNT - RUN_LENGTH)..];
             grey.extend(
                 pixels
                     .iter()
@@ -361,12 +371,12 @@ impl Background {
     }
 
     /// Calls a function for every pixel around a part of the robot, with the pixel's index and its column and row.
-    fn each_pixel(
+    fn for_each_pixel(
         &self,
         Turned([x, y], [cos, sin]): Turned,
         half: [f64; 2],
         height: f64,
-        mut each: impl FnMut(usize, [f64; 2]),
+        mut visit: impl FnMut(usize, [f64; 2]),
     ) {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]| {
             let (right, ahead) = (a * half[0], b * half[1]);
@@ -374,7 +384,7 @@ impl Background {
             self.view.image(floor, height)
         });
         let size = self.studio.size;
-        let range = |i: usize| {
+        let range_of = |i: usize| {
             let low = corners
                 .iter()
                 .map(|corner| corner[i])
@@ -382,28 +392,29 @@ impl Background {
             let high = corners.iter().map(|corner| corner[i]).fold(0.0, f64::max);
             (low.max(0.0) as usize)..((high + 1.0).max(0.0) as usize).min(size[i])
         };
-        for row in range(1) {
-            for column in range(0) {
-                each(row * size[0] + column, [column as f64, row as f64]);
+        for row in range_of(1) {
+            for column in range_of(0) {
+                visit(row * size[0] + column, [column as f64, row as f64]);
             }
         }
     }
 }
 
 /// The mean over the samples of a pixel.
-fn mean(sample: impl Fn(f64, f64) -> f64) -> f64 {
-    let place = |i: usize| (i as f64 + 0.5) / SAMPLES as f64 - 0.5;
-    let all = (0..SAMPLES * SAMPLES).map(|i| sample(place(i % SAMPLES), place(i / SAMPLES)));
-    all.sum::<f64>() / (SAMPLES * SAMPLES) as f64
+fn mean_of_samples(sample: impl Fn(f64, f64) -> f64) -> f64 {
+    let offset = |i: usize| (i as f64 + 0.5) / PIXEL_SAMPLES as f64 - 0.5;
+    let values = (0..PIXEL_SAMPLES * PIXEL_SAMPLES)
+        .map(|i| sample(offset(i % PIXEL_SAMPLES), offset(i / PIXEL_SAMPLES)));
+    values.sum::<f64>() / (PIXEL_SAMPLES * PIXEL_SAMPLES) as f64
 }
 
 /// The grey of a tag at a point relative to its middle; `None` outside of the tag.
-fn tag(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
+fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     let square = sheet::edge(id) / sheet::SQUARES as f64;
     let half = sheet::SQUARES as f64 / 2.0;
     let (column, row) = ((x / square + half).floor(), (half - y / square).floor());
-    let inside = 0.0..sheet::SQUARES as f64;
-    let is_inside = inside.contains(&column) && inside.contains(&row);
+    let tag_range = 0.0..sheet::SQUARES as f64;
+    let is_inside = tag_range.contains(&column) && tag_range.contains(&row);
     is_inside.then(
         || match sheet::is_white(id, row as usize, column as usize) {
             true => PAPER,
@@ -422,15 +433,15 @@ impl Turned {
     }
 
     /// Converts a point of the floor to this place's frame: along the heading, and to the left.
-    fn local_point(&self, at: [f64; 2]) -> [f64; 2] {
+    fn local_point(&self, point: [f64; 2]) -> [f64; 2] {
         let Self([x, y], [cos, sin]) = self;
-        let (dx, dy) = (at[0] - x, at[1] - y);
+        let (dx, dy) = (point[0] - x, point[1] - y);
         [dx * cos + dy * sin, dy * cos - dx * sin]
     }
 
     /// Converts a point of the floor to the robot's frame: right, ahead.
-    fn frame(&self, at: [f64; 2]) -> [f64; 2] {
-        let [ahead, left] = self.local_point(at);
+    fn robot_point(&self, point: [f64; 2]) -> [f64; 2] {
+        let [ahead, left] = self.local_point(point);
         [-left, ahead]
     }
 }

@@ -11,7 +11,7 @@ const FRAME: f64 = 0.02;
 /// Time step of the simulation, s.
 const STEP: f64 = 0.0005;
 /// Frames that a move to a pose takes.
-const MOVE: usize = 8;
+const MOVE_FRAMES: usize = 8;
 /// Error beyond the dead band from which the servo uses its full torque, deg.
 pub const FULL: f64 = 3.0;
 /// Dry friction of the gears, as a share of the stall torque.
@@ -68,25 +68,25 @@ impl Servo {
     }
 
     /// Simulates the card's angles, deg, at every [`STEP`] from time 0. The orders are counter-clockwise from
-    /// neutral if `way` is 1, clockwise if it is -1.
-    pub fn turns(&self, way: f64) -> Turning {
-        let orders = orders(way);
+    /// neutral if `side` is 1, clockwise if it is -1.
+    pub fn turns(&self, side: f64) -> Turning {
+        let orders = orders(side);
         let pulses = self.pulses(&orders);
-        let (mut at, mut rate, mut horn) = (0.0, 0.0, 0.0f64);
+        let (mut angle, mut rate, mut horn) = (0.0, 0.0, 0.0f64);
         let mut angles = Vec::new();
         for pulse in pulses {
             for _ in 0..(FRAME / STEP).round() as usize {
-                let error = pulse - at / self.gain;
-                let beyond = (error.abs() - self.dead_band / 2.0).max(0.0);
-                let drive = (beyond / FULL).min(1.0) * (error * self.gain).signum() - self.load;
+                let error = pulse - angle / self.gain;
+                let excess = (error.abs() - self.dead_band / 2.0).max(0.0);
+                let drive = (excess / FULL).min(1.0) * (error * self.gain).signum() - self.load;
                 // Friction slows a turning motor down to a stop, and holds a motor at rest.
                 let push = self.rate * drive - rate;
-                let held = self.rate * FRICTION;
-                let most = held * STEP / self.spin_up;
+                let friction_rate = self.rate * FRICTION;
+                let max_change = friction_rate * STEP / self.spin_up;
                 rate += push * STEP / self.spin_up;
-                rate -= rate.clamp(-most, most);
-                at += rate * STEP;
-                horn = horn.clamp(at - self.play / 2.0, at + self.play / 2.0);
+                rate -= rate.clamp(-max_change, max_change);
+                angle += rate * STEP;
+                horn = horn.clamp(angle - self.play / 2.0, angle + self.play / 2.0);
                 angles.push(self.neutral + horn);
             }
         }
@@ -98,21 +98,21 @@ impl Servo {
     pub fn pictures(
         &self,
         studio: &Studio,
-        way: f64,
+        side: f64,
         rate: f64,
         rng: &mut Rng,
         mut take: impl FnMut(f64, &Picture),
     ) {
-        let turning = self.turns(way);
+        let turning = self.turns(side);
         let background = studio.background(rng);
         let mut seconds = 0.0;
         while seconds < self.end() {
             // The axis is 8 mm beside the middle of the tag.
-            let at = |time: f64| {
+            let spot_at = |time: f64| {
                 let heading = turning.at(time).to_radians();
                 [8.0 * heading.cos(), 8.0 * heading.sin(), heading]
             };
-            take(seconds, &background.picture(seconds, at, rng));
+            take(seconds, &background.picture(seconds, spot_at, rng));
             let turn = turning.at(seconds + 0.25) - turning.at(seconds - 0.08);
             seconds += if turn.abs() > 30.0 { 1.0 / rate } else { 0.2 };
         }
@@ -121,27 +121,27 @@ impl Servo {
     /// The pulse in each frame, as an angle in deg.
     fn pulses(&self, orders: &[Order]) -> Vec<f64> {
         let frames = (self.end() / FRAME) as usize + 1;
-        let (mut from, mut pulse) = (0.0, 0.0);
-        let mut last = 0;
-        let one = |i: usize| {
+        let (mut start_pulse, mut pulse) = (0.0, 0.0);
+        let mut last_order = 0;
+        let pulse_at = |i: usize| {
             let seconds = i as f64 * FRAME - self.begin;
             let order = ((seconds / PAUSE).max(0.0) as usize).min(orders.len() - 1);
-            if order != last {
-                (last, from) = (order, pulse);
+            if order != last_order {
+                (last_order, start_pulse) = (order, pulse);
             }
-            let asked = orders[order].pulse_angle();
+            let ordered = orders[order].pulse_angle();
             let is_flip = order > 0 && orders[order].is_reversed != orders[order - 1].is_reversed;
             pulse = if is_flip {
-                let most = self.slew * FRAME;
-                pulse + (asked - pulse).clamp(-most, most)
+                let max_step = self.slew * FRAME;
+                pulse + (ordered - pulse).clamp(-max_step, max_step)
             } else {
                 let begin = PAUSE * order as f64;
-                let share = ((seconds - begin) / (MOVE as f64 * FRAME)).clamp(0.0, 1.0);
-                from + (asked - from) * share * share * (3.0 - 2.0 * share)
+                let share = ((seconds - begin) / (MOVE_FRAMES as f64 * FRAME)).clamp(0.0, 1.0);
+                start_pulse + (ordered - start_pulse) * share * share * (3.0 - 2.0 * share)
             };
             pulse
         };
-        (0..frames).map(one).collect()
+        (0..frames).map(pulse_at).collect()
     }
 }
 
@@ -151,7 +151,7 @@ pub struct Turning(Vec<f64>);
 impl Turning {
     /// The angle at a time, deg.
     pub fn at(&self, seconds: f64) -> f64 {
-        let at = (seconds / STEP).max(0.0) as usize;
-        self.0[at.min(self.0.len() - 1)]
+        let index = (seconds / STEP).max(0.0) as usize;
+        self.0[index.min(self.0.len() - 1)]
     }
 }

@@ -10,16 +10,16 @@ use crate::walk::{Show, Variation, gait, truth};
 /// Pictures per second.
 const RATE: f64 = 8.0;
 /// A small variation of the cycles, as real robots have it.
-const VARIES: Variation = Variation {
+const VARIATION: Variation = Variation {
     cycle: [0.2, 0.2, 0.004],
     clock: 0.0,
     ruler: 0.0,
 };
 
 /// Films walks with rests of `rest` seconds between them, and finds the camera and the path.
-fn watched(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, Show) {
+fn watch_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, Show) {
     let mut rng = Rng::with_seed(6);
-    let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIES, &mut rng);
+    let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIATION, &mut rng);
     let robot = |time: f64| show.at(time);
     let film = film_of(&studio(), show.seconds(), RATE, robot, &mut rng);
     (film.watch(TRUE_SIZE).expect("all tags are seen"), show)
@@ -37,11 +37,11 @@ fn check_result(measured: &Measured, gait: &Gait) {
         (measured.left, truth.left, 0.4),
         (measured.turn, truth.turn, 0.6),
     ];
-    for (part, truth, largest) in parts {
-        assert!((part.mean - truth).abs() < largest, "{part:?} {truth}");
+    for (mean, truth, largest) in parts {
+        assert!((mean.mean - truth).abs() < largest, "{mean:?} {truth}");
         assert!(
-            (part.mean - truth).abs() < 4.0 * part.error,
-            "{part:?} {truth}"
+            (mean.mean - truth).abs() < 4.0 * mean.error,
+            "{mean:?} {truth}"
         );
     }
 }
@@ -51,15 +51,15 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let names = ["walk", "left", "back", "trot"];
     let gaits = names.map(gait);
     let order = [0, 1, 2, 0];
-    let (watched, show) = watched(&order.map(|i| (&gaits[i], 4)), 1.6);
+    let (watched, show) = watch_walks(&order.map(|i| (&gaits[i], 4)), 1.6);
     let walks = watched.walks(rest(&gaits));
     assert_eq!(walks.len(), order.len(), "{walks:?}");
-    for (found, truth) in walks.iter().zip(show.spans()) {
+    for (found_span, true_span) in walks.iter().zip(show.spans()) {
         // A found walk includes parts of the rests around it, and misses at most one picture of the movement.
-        let early = truth[0] - found[0];
-        let late = found[1] - truth[1];
-        assert!((-0.2..1.2).contains(&early), "{found:?} {truth:?}");
-        assert!((-0.2..1.2).contains(&late), "{found:?} {truth:?}");
+        let early = true_span[0] - found_span[0];
+        let late = found_span[1] - true_span[1];
+        assert!((-0.2..1.2).contains(&early), "{found_span:?} {true_span:?}");
+        assert!((-0.2..1.2).contains(&late), "{found_span:?} {true_span:?}");
     }
     for (walk, i) in walks.iter().zip(order) {
         assert_eq!(watched.likeness(&gaits, *walk), Likeness::One(i));
@@ -69,22 +69,26 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
         check_result(&measured, &gaits[i]);
     }
     // Both walks together give one result, which is more accurate.
-    let [one, other] = [0, 3].map(|i| watched.measure(&gaits[0], Some(walks[i])).expect("a walk"));
-    let both = Measured::together(&[one.clone(), other.clone()], &gaits[0]);
-    check_result(&both, &gaits[0]);
-    assert_eq!(both.cycles, [&one.cycles[..], &other.cycles[..]].concat());
+    let [first, second] =
+        [0, 3].map(|i| watched.measure(&gaits[0], Some(walks[i])).expect("a walk"));
+    let together = Measured::together(&[first.clone(), second.clone()], &gaits[0]);
+    check_result(&together, &gaits[0]);
+    assert_eq!(
+        together.cycles,
+        [&first.cycles[..], &second.cycles[..]].concat()
+    );
     // A gait that is not the one of this walk is refused.
-    let wrong = watched
+    let trouble = watched
         .measure(&gaits[2], Some(walks[1]))
         .expect_err("it is left");
-    assert!(matches!(wrong, Trouble::NotThisGait { .. }), "{wrong}");
+    assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
 }
 
 #[test]
 fn a_gait_that_nobody_tells_from_another_is_named_with_it() {
     let walk = gait("walk");
     let gaits = [gait("back"), walk.clone(), walk.clone()];
-    let (watched, _) = watched(&[(&walk, 4)], 1.0);
+    let (watched, _) = watch_walks(&[(&walk, 4)], 1.0);
     let walks = watched.walks(rest(&gaits));
     let likeness = watched.likeness(&gaits, walks[0]);
     assert!(
@@ -100,14 +104,14 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_is_like_none() {
         period: 2.0 * gaits[0].period,
         path: gaits[0].path.clone(),
     };
-    let (at_half, _) = watched(&[(&slow, 3)], 1.0);
-    let walks = at_half.walks(2.0 * rest(&gaits));
+    let (half_speed, _) = watch_walks(&[(&slow, 3)], 1.0);
+    let walks = half_speed.walks(2.0 * rest(&gaits));
     assert_eq!(
-        at_half.likeness(&gaits, walks[0]),
+        half_speed.likeness(&gaits, walks[0]),
         Likeness::None(Trouble::AnotherPace { times: 2 })
     );
     let unknown = gait("right");
-    let (watched, _) = watched(&[(&unknown, 4)], 1.0);
+    let (watched, _) = watch_walks(&[(&unknown, 4)], 1.0);
     let walks = watched.walks(rest(&gaits));
     let likeness = watched.likeness(&gaits, walks[0]);
     assert!(matches!(likeness, Likeness::None(_)), "{likeness:?}");
@@ -117,7 +121,7 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_is_like_none() {
 fn gaits_without_a_rest_between_them_are_not_mixed() {
     let [walk, arc, left] = ["walk", "arc-left", "left"].map(gait);
     for (first, second) in [(&walk, &arc), (&walk, &left), (&arc, &walk)] {
-        let (watched, _) = watched(&[(first, 4), (second, 4)], 0.0);
+        let (watched, _) = watch_walks(&[(first, 4), (second, 4)], 0.0);
         let gaits = [walk.clone(), arc.clone(), left.clone()];
         let walks = watched.walks(rest(&gaits));
         assert_eq!(walks.len(), 1);
@@ -143,7 +147,7 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
 #[test]
 fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
     let walk = gait("walk");
-    let nod = |time: f64| {
+    let nod_at = |time: f64| {
         if (4.0..4.5).contains(&time) {
             0.02
         } else {
@@ -151,10 +155,10 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
         }
     };
     let mut rng = Rng::with_seed(6);
-    let show = Show::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIES, &mut rng);
+    let show = Show::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
     let robot = |time: f64| {
         let [x, y, heading] = show.at(time);
-        [x, y, heading + nod(time - 2.0)]
+        [x, y, heading + nod_at(time - 2.0)]
     };
     let film = film_of(&studio(), 8.0, RATE, robot, &mut rng);
     let watched = film.watch(TRUE_SIZE).expect("all tags are seen");
@@ -163,12 +167,14 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
 
 /// The largest deviation from the predicted path within a cycle: its phase, its axis and its size in standard
 /// errors.
-fn farthest(measured: &Measured) -> (f64, usize, f64) {
-    let all = measured.within.iter().flat_map(|point| {
-        let differs = point.standardized_differences().map(f64::abs);
-        (0..3).map(move |axis| (point.phase, axis, differs[axis]))
+fn largest_deviation(measured: &Measured) -> (f64, usize, f64) {
+    let deviations = measured.within.iter().flat_map(|point| {
+        let differences = point.standardized_differences().map(f64::abs);
+        (0..3).map(move |axis| (point.phase, axis, differences[axis]))
     });
-    all.max_by(|a, b| a.2.total_cmp(&b.2)).expect("a point")
+    deviations
+        .max_by(|a, b| a.2.total_cmp(&b.2))
+        .expect("a point")
 }
 
 #[test]
@@ -177,16 +183,16 @@ fn a_path_that_leaves_the_predicted_one_within_a_cycle_is_found_at_its_phase() {
     let mut swerving = walk.clone();
     let count = walk.path.len() - 1;
     for (i, place) in swerving.path.iter_mut().enumerate() {
-        let apart = (i as f64 / count as f64 - 0.6) / 0.12;
-        place.left += 1.5 * (-apart.powi(2)).exp();
+        let offset = (i as f64 / count as f64 - 0.6) / 0.12;
+        place.left += 1.5 * (-offset.powi(2)).exp();
     }
     let measure = |robot: &Gait| {
-        let (watched, _) = watched(&[(robot, 6)], 1.0);
+        let (watched, _) = watch_walks(&[(robot, 6)], 1.0);
         watched.measure(&walk, None).expect("it is measured")
     };
-    let (phase, axis, errors) = farthest(&measure(&swerving));
+    let (phase, axis, errors) = largest_deviation(&measure(&swerving));
     assert!((phase - 0.6).abs() < 0.1 && axis == 1, "{phase} {axis}");
     assert!(errors > 5.0, "{errors}");
-    let (_, _, errors) = farthest(&measure(&walk));
+    let (_, _, errors) = largest_deviation(&measure(&walk));
     assert!(errors < 3.5, "{errors}");
 }

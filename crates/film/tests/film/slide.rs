@@ -20,11 +20,11 @@ fn film(board: &Board, studio: &Studio, rate: f64) -> Film {
     film
 }
 
-fn slide(board: &Board) -> Result<Slide, SlideTrouble> {
-    Slide::of(&watched(&film(board, &studio(), 30.0)))
+fn measure_slide(board: &Board) -> Result<Slide, SlideTrouble> {
+    Slide::of(&watch(&film(board, &studio(), 30.0)))
 }
 
-fn watched(film: &Film) -> AnalysedFilm {
+fn watch(film: &Film) -> AnalysedFilm {
     film.watch(SETUP).expect("it is watched")
 }
 
@@ -47,7 +47,7 @@ fn a_slide_shows_resting_and_sliding_friction_with_head_or_tail_first() {
             head,
             ..BOARD
         };
-        let slide = slide(&board).expect("it slides");
+        let slide = measure_slide(&board).expect("it slides");
         assert_eq!(slide.is_head_first, head == 8.0);
         check(slide.tilt, resting.atan().to_degrees(), 0.6);
         check(slide.resting, resting, 0.02);
@@ -66,8 +66,8 @@ const SLIPPERY: Board = Board {
 
 #[test]
 fn what_is_no_slide_down_a_board_is_named() {
-    let reason = |board: Board| slide(&board).expect_err("it is not measured");
-    let not_slid = reason(Board {
+    let reason_of = |board: Board| measure_slide(&board).expect_err("it is not measured");
+    let not_slid = reason_of(Board {
         end: 12.0,
         ..SLIPPERY
     });
@@ -75,20 +75,20 @@ fn what_is_no_slide_down_a_board_is_named() {
         matches!(not_slid, SlideTrouble::NotSlid { tilt, .. } if (tilt - 12.0).abs() < 1.0),
         "{not_slid}"
     );
-    let moving = reason(Board {
+    let moving = reason_of(Board {
         from: 0.3,
         ..SLIPPERY
     });
     assert!(matches!(moving, SlideTrouble::NotAtRest { .. }), "{moving}");
-    let across = reason(Board {
+    let across_slope = reason_of(Board {
         head: 36.0,
         ..SLIPPERY
     });
     assert!(
-        matches!(across, SlideTrouble::Across { aside } if (aside - 36.0).abs() < 3.0),
-        "{across}"
+        matches!(across_slope, SlideTrouble::Across { aside } if (aside - 36.0).abs() < 3.0),
+        "{across_slope}"
     );
-    let pushed = reason(Board {
+    let pushed = reason_of(Board {
         aside: 180.0,
         ..SLIPPERY
     });
@@ -96,7 +96,7 @@ fn what_is_no_slide_down_a_board_is_named() {
         matches!(pushed, SlideTrouble::NotDown { aside } if aside > 170.0),
         "{pushed}"
     );
-    let fast = reason(Board {
+    let fast = reason_of(Board {
         lift: 40.0,
         ..SLIPPERY
     });
@@ -105,10 +105,10 @@ fn what_is_no_slide_down_a_board_is_named() {
         "{fast}"
     );
     let film = film(&SLIPPERY, &studio(), 5.0);
-    let few = Slide::of(&watched(&film));
+    let result = Slide::of(&watch(&film));
     assert!(
-        matches!(few, Err(SlideTrouble::FewPictures { .. })),
-        "{few:?}"
+        matches!(result, Err(SlideTrouble::FewPictures { .. })),
+        "{result:?}"
     );
 }
 
@@ -121,21 +121,21 @@ fn slides_of_many_boards_show_the_truth_within_two_errors() {
     let (mut resting, mut sliding) = (0, 0);
     for i in 0..films {
         let begin = 0.3 * normal(&mut rng);
-        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
-        let friction = between(0.35, 0.8);
+        let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        let friction = random_between(0.35, 0.8);
         let board = Board {
             resting: friction,
-            sliding: friction * between(0.8, 1.0),
-            lift: between(2.0, 9.0),
-            head: 180.0 * (i % 2) as f64 + between(-12.0, 12.0),
+            sliding: friction * random_between(0.8, 1.0),
+            lift: random_between(2.0, 9.0),
+            head: 180.0 * (i % 2) as f64 + random_between(-12.0, 12.0),
             begin,
             ..BOARD
         };
         let mut studio = studio();
-        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
-        (studio.tilt, studio.lens) = (between(0.0, 18.0), between(-0.006, 0.006));
+        let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        (studio.tilt, studio.lens) = (random_between(0.0, 18.0), random_between(-0.006, 0.006));
         studio.readout = 0.015;
-        let slide = Slide::of(&watched(&film(&board, &studio, [30.0, 60.0][i / 2 % 2])));
+        let slide = Slide::of(&watch(&film(&board, &studio, [30.0, 60.0][i / 2 % 2])));
         let slide = slide.expect("it slides");
         println!(
             "resting {:?} of {:.3}, sliding {:?} of {:.3}",

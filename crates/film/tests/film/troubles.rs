@@ -39,7 +39,7 @@ fn film(studio: &Studio) -> Film {
 }
 
 /// The reason why five cycles of `walk` cannot be measured in this studio.
-fn trouble(studio: &Studio, setup: Setup) -> Trouble {
+fn trouble_of(studio: &Studio, setup: Setup) -> Trouble {
     film(studio)
         .measure(setup, &gait("walk"))
         .expect_err("it is no film to be measured")
@@ -61,10 +61,10 @@ fn without_a_tag_in_any_picture_there_is_nothing_to_measure() {
 fn a_covered_tag_is_named() {
     let mut studio = studio();
     studio.hidden = vec![2];
-    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::FloorTag { id: 2 });
+    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::FloorTag { id: 2 });
     studio.hidden = vec![4];
     assert!(matches!(
-        trouble(&studio, TRUE_SIZE),
+        trouble_of(&studio, TRUE_SIZE),
         Trouble::DeckTag { seen: 0, .. }
     ));
 }
@@ -74,23 +74,23 @@ fn a_tag_with_a_cable_over_its_corner_counts_as_hidden() {
     let mut studio = studio();
     let [x, y, _] = studio.strips[0];
     studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
-    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::FloorTag { id: 1 });
+    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::FloorTag { id: 1 });
 }
 
 #[test]
 fn in_the_dark_and_in_the_glare_no_tag_is_found() {
     let mut studio = studio();
     studio.light = 0.05;
-    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::NoTag);
+    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::NoTag);
     studio.light = 10.0;
-    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::NoTag);
+    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::NoTag);
 }
 
 #[test]
 fn a_card_whose_arrow_shows_to_the_tail_is_another_gait() {
     let gait = gait("walk");
     let walk = walk(&gait, 5);
-    let turned = |time| {
+    let turned_robot = |time| {
         let [x, y, heading] = walk.at(time);
         [x, y, heading + std::f64::consts::PI]
     };
@@ -98,7 +98,7 @@ fn a_card_whose_arrow_shows_to_the_tail_is_another_gait() {
         &studio(),
         walk.seconds(),
         RATE,
-        turned,
+        turned_robot,
         &mut Rng::with_seed(2),
     );
     let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it goes back");
@@ -123,15 +123,15 @@ fn pictures_of_another_size_and_times_that_do_not_rise_are_refused() {
 
 /// A film in the middle of which the camera moves to another place. In its second half, the tags `hidden` are
 /// covered.
-fn pushed(hidden: Vec<usize>) -> Film {
+fn film_pushed_camera(hidden: Vec<usize>) -> Film {
     let gait = gait("walk");
     let walk = walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
     let mut film = Film::default();
-    let one = studio();
-    let mut other = one.clone();
-    (other.tilt, other.aim[0], other.hidden) = (one.tilt + 1.0, one.aim[0] + 12.0, hidden);
-    let backgrounds = [one, other].map(|studio| studio.background(&mut rng));
+    let first = studio();
+    let mut second = first.clone();
+    (second.tilt, second.aim[0], second.hidden) = (first.tilt + 1.0, first.aim[0] + 12.0, hidden);
+    let backgrounds = [first, second].map(|studio| studio.background(&mut rng));
     let count = (walk.seconds() * RATE) as usize;
     for i in 0..count {
         let seconds = i as f64 / RATE;
@@ -145,14 +145,14 @@ fn pushed(hidden: Vec<usize>) -> Film {
 #[test]
 fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let gait = gait("walk");
-    let watched = pushed(Vec::new())
+    let watched = film_pushed_camera(Vec::new())
         .watch(TRUE_SIZE)
         .expect("all tags are seen");
     assert!(watched.sight.has_camera_moved);
     let measured = watched.measure(&gait, None).expect("it is measured");
     let error = measured.forward.mean - truth(&gait).forward;
     assert!(error.abs() < 0.3, "{:?}", measured.forward);
-    let trouble = pushed(vec![1])
+    let trouble = film_pushed_camera(vec![1])
         .measure(TRUE_SIZE, &gait)
         .expect_err("one is hidden");
     assert!(
@@ -162,7 +162,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
 }
 
 /// Checks that the measured distance is the true one.
-fn goes_as_far(measured: &Measured, gait: &Gait) {
+fn check_distance(measured: &Measured, gait: &Gait) {
     let error = measured.forward.mean - truth(gait).forward;
     assert!(error.abs() < 0.2, "{:?}", measured.forward);
 }
@@ -173,17 +173,17 @@ fn a_tag_that_is_covered_for_a_while_does_no_harm_on_a_tripod() {
     let walk = walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
     let mut film = Film::default();
-    let whole = studio();
-    let mut covered = whole.clone();
+    let uncovered = studio();
+    let mut covered = uncovered.clone();
     covered.hidden = vec![0];
-    let backgrounds = [whole, covered].map(|studio| studio.background(&mut rng));
+    let backgrounds = [uncovered, covered].map(|studio| studio.background(&mut rng));
     for i in 0..(walk.seconds() * RATE) as usize {
         let seconds = i as f64 / RATE;
         let picture = backgrounds[i / 8 % 2].picture(seconds, |time| walk.at(time), &mut rng);
         film.add(seconds, &picture).expect("a picture");
     }
     let measured = film.measure(TRUE_SIZE, &gait).expect("it is measured");
-    goes_as_far(&measured, &gait);
+    check_distance(&measured, &gait);
 }
 
 #[test]
@@ -196,32 +196,32 @@ fn a_sheet_that_is_printed_too_small_is_right_with_its_ruler() {
     };
     let gait = gait("walk");
     let measured = film(&studio).measure(setup, &gait).expect("it is measured");
-    goes_as_far(&measured, &gait);
+    check_distance(&measured, &gait);
 }
 
 #[test]
 fn tags_that_do_not_have_their_distance_are_refused() {
     let mut studio = studio();
     studio.cut = 0.95;
-    let trouble = trouble(&studio, TRUE_SIZE);
+    let trouble = trouble_of(&studio, TRUE_SIZE);
     assert!(
         matches!(trouble, Trouble::TagSize { edge } if edge > 51.5)
             || matches!(trouble, Trouble::NotThisSheet { .. }),
         "{trouble}"
     );
-    let words = trouble.to_string();
-    assert!(words.starts_with("the floor's tags"), "{words}");
+    let message = trouble.to_string();
+    assert!(message.starts_with("the floor's tags"), "{message}");
 }
 
 #[test]
 fn a_card_at_another_height_is_found_by_its_size() {
     let mut studio = studio();
     studio.deck = 83.0;
-    let wrong = Setup {
+    let wrong_setup = Setup {
         height: 40.0,
         ..TRUE_SIZE
     };
-    let trouble = trouble(&studio, wrong);
+    let trouble = trouble_of(&studio, wrong_setup);
     assert!(
         matches!(trouble, Trouble::Height { found, .. } if found > 52.0),
         "{trouble}"
@@ -229,14 +229,14 @@ fn a_card_at_another_height_is_found_by_its_size() {
 }
 
 /// The reason why a film of a robot whose place is given by `robot` cannot be measured.
-fn moving(robot: impl Fn(f64) -> Spot) -> Trouble {
+fn trouble_of_robot(robot: impl Fn(f64) -> Spot) -> Trouble {
     let film = film_of(&studio(), 4.0, RATE, robot, &mut Rng::with_seed(2));
     film.measure(TRUE_SIZE, &gait("walk")).expect_err("no walk")
 }
 
 #[test]
 fn a_robot_that_stands_has_not_moved() {
-    let trouble = moving(|_| [0.0; 3]);
+    let trouble = trouble_of_robot(|_| [0.0; 3]);
     assert!(
         matches!(trouble, Trouble::NotMoved { way, .. } if way < 1.0),
         "{trouble}"
@@ -248,8 +248,8 @@ fn a_robot_far_from_the_strips_is_out_of_the_sheet() {
     let mut studio = studio();
     (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
     studio.height = 1000.0;
-    let far = |_: f64| [430.0, 0.0, 0.0];
-    let film = film_of(&studio, 1.0, RATE, far, &mut Rng::with_seed(2));
+    let far_robot = |_: f64| [430.0, 0.0, 0.0];
+    let film = film_of(&studio, 1.0, RATE, far_robot, &mut Rng::with_seed(2));
     let trouble = film
         .measure(TRUE_SIZE, &gait("walk"))
         .expect_err("it is too far");
@@ -261,23 +261,23 @@ fn a_robot_far_from_the_strips_is_out_of_the_sheet() {
 
 #[test]
 fn another_gait_is_not_this_gait() {
-    let another = moving(|time| [0.0, 0.0, 0.6 * time]);
-    assert!(matches!(another, Trouble::NotThisGait { .. }), "{another}");
-    let backward = moving(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
+    let turning = trouble_of_robot(|time| [0.0, 0.0, 0.6 * time]);
+    assert!(matches!(turning, Trouble::NotThisGait { .. }), "{turning}");
+    let backward = trouble_of_robot(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
     assert!(
         matches!(backward, Trouble::NotThisGait { .. }),
         "{backward}"
     );
-    let creeping = moving(|time| [1.5 * time, 0.0, 0.0]);
+    let creeping = trouble_of_robot(|time| [1.5 * time, 0.0, 0.0]);
     assert!(matches!(creeping, Trouble::NotMoved { .. }), "{creeping}");
 }
 
 #[test]
 fn half_the_pace_and_slow_motion_are_told_by_their_cycles() {
     let gait = gait("walk");
-    for times in [2, 4] {
+    for multiple in [2, 4] {
         let slow = Gait {
-            period: gait.period * f64::from(times),
+            period: gait.period * f64::from(multiple),
             path: gait.path.clone(),
         };
         let walk = walk(&slow, 3);
@@ -290,16 +290,16 @@ fn half_the_pace_and_slow_motion_are_told_by_their_cycles() {
             &mut Rng::with_seed(2),
         );
         let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it is too slow");
-        assert_eq!(trouble, Trouble::AnotherPace { times });
+        assert_eq!(trouble, Trouble::AnotherPace { times: multiple });
     }
 }
 
 #[test]
 fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_time() {
     let gait = gait("walk");
-    for off in [0.94, 1.04] {
+    for rate_error in [0.94, 1.04] {
         let stretched = Gait {
-            period: gait.period * off,
+            period: gait.period * rate_error,
             path: gait.path.clone(),
         };
         let walk = walk(&stretched, 6);
@@ -312,29 +312,32 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_tim
             &mut Rng::with_seed(2),
         );
         let measured = film.measure(TRUE_SIZE, &gait).expect("it is measured");
-        goes_as_far(&measured, &gait);
-        let time = measured.period[0] / stretched.period;
-        assert!((time - 1.0).abs() < 0.005, "{off}: {time}");
+        check_distance(&measured, &gait);
+        let period_ratio = measured.period[0] / stretched.period;
+        assert!(
+            (period_ratio - 1.0).abs() < 0.005,
+            "{rate_error}: {period_ratio}"
+        );
     }
 }
 
 /// A picture of the sheet and the card; to its right, a second copy of it if `is_twice`, else an empty area.
-fn doubled(is_twice: bool) -> Picture {
+fn picture_with_copy(is_twice: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()
         .background(&mut rng)
         .picture(0.0, |_| [0.0; 3], &mut rng);
     let [width, height] = picture.size();
-    let nothing = vec![200; width];
+    let empty_row = vec![200; width];
     let rows = picture.grey().chunks(width);
-    let rows = rows.flat_map(|row| [row, if is_twice { row } else { &nothing[..] }].concat());
+    let rows = rows.flat_map(|row| [row, if is_twice { row } else { &empty_row[..] }].concat());
     Picture::new(2 * width, height, rows.collect()).expect("a picture")
 }
 
 #[test]
 fn a_tag_that_is_seen_twice_is_not_guessed() {
     let trouble = Film::default()
-        .add(0.0, &doubled(true))
+        .add(0.0, &picture_with_copy(true))
         .expect_err("two of each");
     assert!(
         matches!(trouble, Trouble::Twice { number: 1, .. }),
@@ -345,9 +348,10 @@ fn a_tag_that_is_seen_twice_is_not_guessed() {
 #[test]
 fn a_second_copy_of_a_tag_that_comes_later_is_noticed_within_sixteen_pictures() {
     let mut film = Film::default();
-    film.add(0.0, &doubled(false)).expect("one of each");
-    let twice = doubled(true);
-    let trouble = (1..=16).find_map(|n| film.add(f64::from(n) / 30.0, &twice).err());
+    film.add(0.0, &picture_with_copy(false))
+        .expect("one of each");
+    let doubled_picture = picture_with_copy(true);
+    let trouble = (1..=16).find_map(|n| film.add(f64::from(n) / 30.0, &doubled_picture).err());
     assert!(
         matches!(trouble, Some(Trouble::Twice { .. })),
         "{trouble:?}"

@@ -39,19 +39,19 @@ impl AngleCamera {
     fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
         const BEGIN: f64 = 0.3;
         let turning = servo.turns(1.0);
-        let seen = |i: usize| {
+        let picture_at = |i: usize| {
             let seconds = i as f64 / self.rate + BEGIN;
-            let parts = [-0.4, -0.2, 0.0, 0.2, 0.4];
-            let open = parts.map(|part| turning.at(seconds + part * self.shutter));
-            let angle = open.iter().sum::<f64>() / 5.0 + self.noise * normal(rng);
-            seen_at(seconds, angle)
+            let shares = [-0.4, -0.2, 0.0, 0.2, 0.4];
+            let angles = shares.map(|share| turning.at(seconds + share * self.shutter));
+            let angle = angles.iter().sum::<f64>() / 5.0 + self.noise * normal(rng);
+            point_at(seconds, angle)
         };
         let pictures = (servo.end() - BEGIN) * self.rate;
-        (0..pictures as usize).map(seen).collect()
+        (0..pictures as usize).map(picture_at).collect()
     }
 }
 
-fn seen_at(seconds: f64, angle: f64) -> PathPoint {
+fn point_at(seconds: f64, angle: f64) -> PathPoint {
     PathPoint {
         seconds,
         place: Place {
@@ -63,35 +63,35 @@ fn seen_at(seconds: f64, angle: f64) -> PathPoint {
 }
 
 /// A random servo.
-fn any(rng: &mut Rng) -> Servo {
-    let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+fn random_servo(rng: &mut Rng) -> Servo {
+    let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
     Servo {
-        gain: between(0.9, 1.1),
-        rate: between(350.0, 700.0),
-        spin_up: between(0.012, 0.03),
-        dead_band: between(0.3, 1.6),
-        begin: between(0.3, 1.5),
-        neutral: between(-180.0, 180.0),
+        gain: random_between(0.9, 1.1),
+        rate: random_between(350.0, 700.0),
+        spin_up: random_between(0.012, 0.03),
+        dead_band: random_between(0.3, 1.6),
+        begin: random_between(0.3, 1.5),
+        neutral: random_between(-180.0, 180.0),
         ..Servo::default()
     }
 }
 
 /// Compares figures with their true values: returns the share of figures within two errors of the truth, and the
 /// mean error.
-fn judged(figures: &[(Figure, f64)]) -> [f64; 2] {
-    let within = figures
+fn judge(figures: &[(Figure, f64)]) -> [f64; 2] {
+    let hits = figures
         .iter()
         .filter(|(figure, truth)| (figure.value - truth).abs() <= 2.0 * figure.error);
     let errors: f64 = figures.iter().map(|(figure, _)| figure.error).sum();
     let count = figures.len() as f64;
-    [within.count() as f64 / count, errors / count]
+    [hits.count() as f64 / count, errors / count]
 }
 
 /// The true dead band nearest to the found one: any value from the controller's own width to that plus the gears'
 /// friction is right.
-fn dead_band(servo: &Servo, found: f64) -> f64 {
+fn nearest_dead_band(servo: &Servo, found_width: f64) -> f64 {
     let friction = 2.0 * FRICTION * FULL;
-    found.clamp(servo.dead_band, servo.dead_band + friction)
+    found_width.clamp(servo.dead_band, servo.dead_band + friction)
 }
 
 #[test]
@@ -100,19 +100,21 @@ fn the_truth_lies_within_two_errors_at_60_to_240_pictures_a_second() {
     for pictures in [60.0, 120.0, 240.0] {
         let mut figures: [Vec<(Figure, f64)>; 4] = Default::default();
         for _ in 0..60 {
-            let servo = any(&mut rng);
+            let servo = random_servo(&mut rng);
             let path = AngleCamera::of_rate(pictures).path(&servo, &mut rng);
             let turns = Turns::of(&path, JIG).expect("it is measured");
             let width = turns.dead_band.width.expect("a dead band");
             figures[0].push((turns.gain, servo.gain));
             figures[1].push((turns.rate, servo.own_rate()));
-            figures[2].push((width, dead_band(&servo, width.value)));
+            figures[2].push((width, nearest_dead_band(&servo, width.value)));
             figures[3].extend(turns.spin_up.map(|spin_up| (spin_up, servo.spin_up)));
         }
         for (i, largest) in [0.005, 8.0, 0.2, 0.002].into_iter().enumerate() {
-            let [within, error] = judged(&figures[i]);
-            println!("{pictures} pictures a second, figure {i}: {within:.2}, error {error:.4}");
-            assert!(within > 0.9, "{pictures} {i}: {within}");
+            let [share_within, error] = judge(&figures[i]);
+            println!(
+                "{pictures} pictures a second, figure {i}: {share_within:.2}, error {error:.4}"
+            );
+            assert!(share_within > 0.9, "{pictures} {i}: {share_within}");
             assert!(error < largest, "{pictures} {i}: {error}");
         }
         assert!(figures[3].len() > 30, "{}", figures[3].len());
@@ -122,43 +124,45 @@ fn the_truth_lies_within_two_errors_at_60_to_240_pictures_a_second() {
 #[test]
 fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
     let mut rng = Rng::with_seed(2);
-    let eye = AngleCamera::of_rate(120.0);
-    let films = |rng: &mut Rng| {
-        let free = any(rng);
+    let camera = AngleCamera::of_rate(120.0);
+    let film_pair = |rng: &mut Rng| {
+        let free = random_servo(rng);
         let loaded = Servo {
             load: LOAD,
             begin: 1.1,
             ..free.clone()
         };
-        [free, loaded].map(|servo| Turns::of(&eye.path(&servo, rng), JIG).expect("measured"))
+        [free, loaded].map(|servo| Turns::of(&camera.path(&servo, rng), JIG).expect("measured"))
     };
     let mut stalls = Vec::new();
     for _ in 0..30 {
-        let [free, loaded] = films(&mut rng);
+        let [free, loaded] = film_pair(&mut rng);
         let stall = free.stall(&loaded, 19.6).expect("a stall");
         // Friction reduces the torque at which the motor's torque-speed line ends.
         stalls.push((stall, 19.6 / LOAD * (1.0 - FRICTION)));
         assert_eq!(loaded.stall(&free, 19.6), Err(TurnsTrouble::Swapped));
     }
-    let [within, error] = judged(&stalls);
-    println!("stall: {within:.2}, error {error:.1} N mm");
-    assert!(within > 0.9 && error < 25.0, "{within} {error}");
+    let [share_within, error] = judge(&stalls);
+    println!("stall: {share_within:.2}, error {error:.1} N mm");
+    assert!(share_within > 0.9 && error < 25.0, "{share_within} {error}");
 }
 
 #[test]
 fn a_load_that_slows_nothing_down_tells_no_torque() {
     let mut rng = Rng::with_seed(3);
-    let films = [0, 1].map(|_| {
+    let measurements = [0, 1].map(|_| {
         let path = AngleCamera::of_rate(120.0).path(&Servo::default(), &mut rng);
         Turns::of(&path, JIG).expect("it is measured")
     });
-    let refused = films[0].stall(&films[1], 19.6).expect_err("no torque");
-    let words = refused.to_string();
-    assert!(words.contains("take a heavier weight"), "{words}");
+    let trouble = measurements[0]
+        .stall(&measurements[1], 19.6)
+        .expect_err("no torque");
+    let message = trouble.to_string();
+    assert!(message.contains("take a heavier weight"), "{message}");
 }
 
 /// The reason why a path cannot be measured.
-fn trouble(path: &[PathPoint]) -> TurnsTrouble {
+fn trouble_of(path: &[PathPoint]) -> TurnsTrouble {
     Turns::of(path, JIG).expect_err("it is not measured")
 }
 
@@ -191,35 +195,42 @@ fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
 fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
     let mut rng = Rng::with_seed(6);
     let mut angle = 0.0;
-    let mut path = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<PathPoint> {
+    let mut path_of = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<PathPoint> {
         (0..60 * 55)
             .map(|i| {
                 angle += turn(f64::from(i) / 60.0);
-                seen_at(f64::from(i) / 60.0, angle)
+                point_at(f64::from(i) / 60.0, angle)
             })
             .collect()
     };
-    assert_eq!(trouble(&[]), TurnsTrouble::NotTurned { turn: 0.0 });
-    let still = path(&mut |_| 0.0);
-    assert_eq!(trouble(&still), TurnsTrouble::NotTurned { turn: 0.0 });
-    let to_and_fro = path(&mut |seconds| seconds.sin());
-    assert_eq!(trouble(&to_and_fro), TurnsTrouble::NotTheSteps);
-    let whole = AngleCamera::of_rate(60.0).path(&Servo::default(), &mut rng);
-    let half = trouble(&whole[..whole.len() / 2]);
-    assert!(matches!(half, TurnsTrouble::TooShort { .. }), "{half}");
+    assert_eq!(trouble_of(&[]), TurnsTrouble::NotTurned { turn: 0.0 });
+    let still_path = path_of(&mut |_| 0.0);
+    assert_eq!(
+        trouble_of(&still_path),
+        TurnsTrouble::NotTurned { turn: 0.0 }
+    );
+    let swaying_path = path_of(&mut |seconds| seconds.sin());
+    assert_eq!(trouble_of(&swaying_path), TurnsTrouble::NotTheSteps);
+    let whole_path = AngleCamera::of_rate(60.0).path(&Servo::default(), &mut rng);
+    let trouble = trouble_of(&whole_path[..whole_path.len() / 2]);
+    assert!(
+        matches!(trouble, TurnsTrouble::TooShort { .. }),
+        "{trouble}"
+    );
 }
 
 #[test]
 fn a_film_in_slow_motion_or_with_few_pictures_is_named() {
     let mut rng = Rng::with_seed(7);
     let mut path = AngleCamera::of_rate(240.0).path(&Servo::default(), &mut rng);
-    path.iter_mut().for_each(|seen| seen.seconds *= 4.0);
-    assert_eq!(trouble(&path), TurnsTrouble::AnotherPace { times: 4.0 });
+    path.iter_mut().for_each(|point| point.seconds *= 4.0);
+    assert_eq!(trouble_of(&path), TurnsTrouble::AnotherPace { times: 4.0 });
     let path = AngleCamera::of_rate(15.0).path(&Servo::default(), &mut rng);
-    let few = trouble(&path);
-    assert!(matches!(few, TurnsTrouble::FewPictures { rate } if (rate - 15.0).abs() < 0.1));
+    let trouble = trouble_of(&path);
+    assert!(matches!(trouble, TurnsTrouble::FewPictures { rate } if (rate - 15.0).abs() < 0.1));
     assert!(
-        few.to_string()
+        trouble
+            .to_string()
             .contains("film at 120 pictures a second or more")
     );
 }
@@ -232,8 +243,8 @@ fn orders_that_are_slower_than_the_servo_do_not_pass_for_its_rate() {
         ..Servo::default()
     };
     let path = AngleCamera::of_rate(120.0).path(&servo, &mut Rng::with_seed(8));
-    let refused = Turns::of(&path, Jig { slew, ..JIG }).expect_err("it follows the orders");
-    assert!(matches!(refused, TurnsTrouble::Ordered { .. }), "{refused}");
+    let trouble = Turns::of(&path, Jig { slew, ..JIG }).expect_err("it follows the orders");
+    assert!(matches!(trouble, TurnsTrouble::Ordered { .. }), "{trouble}");
 }
 
 /// Run by `make measure-test`.
@@ -250,7 +261,7 @@ fn rendered_films_of_horns_show_the_truth_within_two_errors() {
         for shutter in [1.0 / 100.0, 1.0 / 250.0, 1.0 / 1000.0] {
             let mut studio = Studio::random(&mut rng);
             (studio.deck, studio.shutter, studio.readout) = (40.0, shutter, 0.015);
-            let servo = any(&mut rng);
+            let servo = random_servo(&mut rng);
             let mut film = Film::default();
             servo.pictures(&studio, 1.0, rate, &mut rng, |seconds, picture| {
                 film.add(seconds, picture).expect("a picture");
@@ -268,12 +279,12 @@ fn rendered_films_of_horns_show_the_truth_within_two_errors() {
             );
             figures[0].push((turns.gain, servo.gain));
             figures[1].push((turns.rate, servo.own_rate()));
-            figures[2].push((width, dead_band(&servo, width.value)));
+            figures[2].push((width, nearest_dead_band(&servo, width.value)));
         }
     }
     for (i, figures) in figures.iter().enumerate() {
-        let [within, error] = judged(figures);
-        println!("figure {i}: within two errors {within:.2}, mean error {error:.4}");
-        assert!(within > 0.85, "{i}: {within}");
+        let [share_within, error] = judge(figures);
+        println!("figure {i}: within two errors {share_within:.2}, mean error {error:.4}");
+        assert!(share_within > 0.85, "{i}: {share_within}");
     }
 }

@@ -25,7 +25,7 @@ pub fn gait(name: &str) -> Gait {
             places.push(place);
         }
     }
-    let seen = |place: &Place| {
+    let relative_place = |place: &Place| {
         let travel = place.seen_from(places[0]);
         Place {
             forward: travel.forward,
@@ -35,7 +35,7 @@ pub fn gait(name: &str) -> Gait {
     };
     Gait {
         period: gait.period(),
-        path: places.iter().map(seen).collect(),
+        path: places.iter().map(relative_place).collect(),
     }
 }
 
@@ -61,7 +61,13 @@ pub struct Variation {
 }
 
 impl Walk {
-    pub fn new(gait: &Gait, start: Spot, cycles: usize, varies: Variation, rng: &mut Rng) -> Self {
+    pub fn new(
+        gait: &Gait,
+        start: Spot,
+        cycles: usize,
+        variation: Variation,
+        rng: &mut Rng,
+    ) -> Self {
         let mut begins = vec![Place {
             forward: start[0],
             left: start[1],
@@ -71,21 +77,21 @@ impl Walk {
         for _ in 0..cycles {
             let mut extra = [[0.0; 3]; PARTS + 1];
             for i in 1..=PARTS {
-                let step = varies
+                let step = variation
                     .cycle
                     .map(|sigma| sigma * normal(rng) / (PARTS as f64).sqrt());
                 extra[i] = [0, 1, 2].map(|axis| extra[i - 1][axis] + step[axis]);
             }
             let begin = begins[begins.len() - 1];
-            begins.push(then(
-                then(begin, gait.path[gait.path.len() - 1]),
-                place(extra[PARTS]),
+            begins.push(compose(
+                compose(begin, gait.path[gait.path.len() - 1]),
+                place_of(extra[PARTS]),
             ));
             extras.push(extra);
         }
         Self {
             gait: gait.clone(),
-            period: gait.period * (1.0 + varies.clock * normal(rng)),
+            period: gait.period * (1.0 + variation.clock * normal(rng)),
             begins,
             extras,
         }
@@ -99,24 +105,30 @@ impl Walk {
     /// The place at a time.
     pub fn at(&self, seconds: f64) -> Spot {
         let phase = ((seconds - REST) / self.period).clamp(0.0, self.extras.len() as f64 - 1e-9);
-        let (cycle, within) = (phase as usize, phase.fract());
+        let (cycle, cycle_share) = (phase as usize, phase.fract());
         let path = &self.gait.path;
-        let at = within * (path.len() - 1) as f64;
-        let (a, b, share) = (path[at as usize], path[at as usize + 1], at.fract());
-        let mix = |part: fn(&Place) -> f64| part(&a) + share * (part(&b) - part(&a));
-        let there = place([
+        let position = cycle_share * (path.len() - 1) as f64;
+        let (a, b, share) = (
+            path[position as usize],
+            path[position as usize + 1],
+            position.fract(),
+        );
+        let mix = |coordinate: fn(&Place) -> f64| {
+            coordinate(&a) + share * (coordinate(&b) - coordinate(&a))
+        };
+        let gait_place = place_of([
             mix(|place| place.forward),
             mix(|place| place.left),
             mix(|place| place.heading),
         ]);
-        let at = within * PARTS as f64;
-        let (i, share) = (at as usize, at.fract());
+        let position = cycle_share * PARTS as f64;
+        let (i, share) = (position as usize, position.fract());
         let [from, to] = [
             self.extras[cycle][i],
             self.extras[cycle][(i + 1).min(PARTS)],
         ];
         let extra = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-        let place = then(then(self.begins[cycle], there), place(extra));
+        let place = compose(compose(self.begins[cycle], gait_place), place_of(extra));
         [place.forward, place.left, place.heading]
     }
 }
@@ -134,7 +146,7 @@ impl Show {
         start: Spot,
         walks: &[(&Gait, usize)],
         rest: f64,
-        varies: Variation,
+        variation: Variation,
         rng: &mut Rng,
     ) -> Self {
         let mut show = Self {
@@ -143,11 +155,11 @@ impl Show {
         };
         let mut start = start;
         for (gait, cycles) in walks {
-            let walk = Walk::new(gait, start, *cycles, varies, rng);
-            let at = show.seconds + rest - 2.0 * REST;
-            show.seconds = at + walk.seconds();
+            let walk = Walk::new(gait, start, *cycles, variation, rng);
+            let start_seconds = show.seconds + rest - 2.0 * REST;
+            show.seconds = start_seconds + walk.seconds();
             start = walk.at(walk.seconds());
-            show.walks.push((at, walk));
+            show.walks.push((start_seconds, walk));
         }
         show
     }
@@ -158,20 +170,22 @@ impl Show {
 
     /// The begin and end of each walk's movement, s.
     pub fn spans(&self) -> Vec<[f64; 2]> {
-        let span = |(at, walk): &(f64, Walk)| [at + REST, at + walk.seconds() - REST];
-        self.walks.iter().map(span).collect()
+        let span_of = |(start_seconds, walk): &(f64, Walk)| {
+            [start_seconds + REST, start_seconds + walk.seconds() - REST]
+        };
+        self.walks.iter().map(span_of).collect()
     }
 
     /// The place at a time.
     pub fn at(&self, seconds: f64) -> Spot {
-        let begun = |(at, _): &&(f64, Walk)| at + REST <= seconds;
-        let (at, walk) = self
+        let has_begun = |(start_seconds, _): &&(f64, Walk)| start_seconds + REST <= seconds;
+        let (start_seconds, walk) = self
             .walks
             .iter()
             .rev()
-            .find(begun)
+            .find(has_begun)
             .unwrap_or(&self.walks[0]);
-        walk.at(seconds - at)
+        walk.at(seconds - start_seconds)
     }
 }
 
@@ -180,7 +194,7 @@ pub fn truth(gait: &Gait) -> Travel {
     gait.path[gait.path.len() - 1].travel()
 }
 
-fn place([forward, left, heading]: [f64; 3]) -> Place {
+fn place_of([forward, left, heading]: [f64; 3]) -> Place {
     Place {
         forward,
         left,
@@ -189,7 +203,7 @@ fn place([forward, left, heading]: [f64; 3]) -> Place {
 }
 
 /// Converts a place relative to `from` to a place on the floor.
-fn then(from: Place, seen: Place) -> Place {
-    let [forward, left] = from.on_floor([seen.forward, seen.left]);
-    place([forward, left, from.heading + seen.heading])
+fn compose(from: Place, relative: Place) -> Place {
+    let [forward, left] = from.on_floor([relative.forward, relative.left]);
+    place_of([forward, left, from.heading + relative.heading])
 }

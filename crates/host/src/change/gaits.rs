@@ -82,9 +82,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// Computes a table while a spinner shows the elapsed time.
-fn with_spinner<T>(table: impl FnOnce() -> T) -> T {
+fn with_spinner<T>(compute: impl FnOnce() -> T) -> T {
     let _spinner = Spinner::new("walking every gait");
-    table()
+    compute()
 }
 
 /// The angles of one cycle of a gait as CSV, frame by frame, as the firmware reads them from its table.

@@ -26,8 +26,8 @@ pub struct Args {
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let file = File::create_new(&args.file);
-    let written = file.and_then(|mut file| file.write_all(robot_file::BUILT_IN.as_bytes()));
-    written.map_err(|error| match error.kind() {
+    let result = file.and_then(|mut file| file.write_all(robot_file::BUILT_IN.as_bytes()));
+    result.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::Input(format!(
             "{name} already exists and is left as it is; name a new file"
         )),

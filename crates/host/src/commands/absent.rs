@@ -33,25 +33,25 @@ pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
     list_in_build(commands, is_built)
 }
 
-fn list_in_build(commands: &[CommandEntry], has: impl Fn(&str) -> bool) -> String {
-    let lacks = commands
+fn list_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
+    let absent_commands = commands
         .iter()
-        .filter(|commands| !commands.needs.iter().all(|feature| has(feature)));
-    let names: Vec<String> = lacks.map(CommandEntry::name).collect();
+        .filter(|command| !command.needs.iter().all(|feature| has_feature(feature)));
+    let names: Vec<String> = absent_commands.map(CommandEntry::name).collect();
     if names.is_empty() {
         return String::new();
     }
     let features = ["simulator", "paper", "console", "parts"];
-    let without = features.into_iter().filter(|feature| !has(feature));
-    let without: Vec<&str> = without.map(describe_feature).collect();
-    let on = match has("simulator") {
+    let absent_features = features.into_iter().filter(|feature| !has_feature(feature));
+    let absent_features: Vec<&str> = absent_features.map(describe_feature).collect();
+    let platform_note = match has_feature("simulator") {
         true => "",
         false => " The simulator runs on Linux.",
     };
     format!(
-        "Not in this program: {}. It was built without {}.{on}\n\n",
+        "Not in this program: {}. It was built without {}.{platform_note}\n\n",
         names.join(", "),
-        without.join(" and ")
+        absent_features.join(" and ")
     )
 }
 
@@ -85,39 +85,44 @@ impl AbsentCommand {
     }
 }
 
-fn missing_command_failure(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
-    let without: Vec<&str> = needs
+fn missing_command_failure(
+    name: &str,
+    needs: &[&str],
+    has_feature: impl Fn(&str) -> bool,
+) -> Failure {
+    let absent_features: Vec<&str> = needs
         .iter()
-        .filter(|feature| !has(feature))
+        .filter(|feature| !has_feature(feature))
         .map(|feature| describe_feature(feature))
         .collect();
-    let no_simulator = needs.contains(&"simulator") && !has("simulator");
-    let all = match no_simulator && !cfg!(target_os = "linux") {
+    let is_simulator_absent = needs.contains(&"simulator") && !has_feature("simulator");
+    let advice = match is_simulator_absent && !cfg!(target_os = "linux") {
         true => "the simulator runs on Linux",
         false => "make cli builds all",
     };
     Failure::Input(format!(
-        "`lizard {name}` is missing: this program was built without {}; {all}",
-        without.join(" and ")
+        "`lizard {name}` is missing: this program was built without {}; {advice}",
+        absent_features.join(" and ")
     ))
 }
 
 fn explain_in_build(
     typed: &[OsString],
-    known: &[CommandEntry],
-    has: impl Fn(&str) -> bool,
+    commands: &[CommandEntry],
+    has_feature: impl Fn(&str) -> bool,
 ) -> Failure {
     let word = typed.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
-    let names: Vec<String> = known.iter().map(CommandEntry::name).collect();
-    let called = |known: &&CommandEntry| known.name() == word || known.aliases.contains(&word);
-    let Some(known) = known.iter().find(called) else {
-        let like = did_you_mean(word, names.iter().map(String::as_str));
+    let names: Vec<String> = commands.iter().map(CommandEntry::name).collect();
+    let is_called =
+        |command: &&CommandEntry| command.name() == word || command.aliases.contains(&word);
+    let Some(command) = commands.iter().find(is_called) else {
+        let suggestion = did_you_mean(word, names.iter().map(String::as_str));
         return Failure::Input(format!(
-            "there is no command `{word}`{like}; lizard --help lists them"
+            "there is no command `{word}`{suggestion}; lizard --help lists them"
         ));
     };
-    missing_command_failure(&known.name(), known.needs, has)
+    missing_command_failure(&command.name(), command.needs, has_feature)
 }
 
 #[cfg(test)]
@@ -125,7 +130,7 @@ mod tests {
     use super::super::KNOWN;
     use super::*;
 
-    fn message(word: &str, features: &[&str]) -> String {
+    fn message_of(word: &str, features: &[&str]) -> String {
         explain_in_build(&[word.into(), "--json".into()], KNOWN, |feature| {
             features.contains(&feature)
         })
@@ -135,12 +140,12 @@ mod tests {
     #[test]
     fn a_command_of_an_absent_feature_says_how_to_get_it() {
         assert_eq!(
-            message("sim", &["paper"]),
+            message_of("sim", &["paper"]),
             "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
         );
-        assert!(message("info", &[]).contains("without the commands for a board on USB;"));
-        assert!(message("parts", &["console"]).contains("without the parts to print;"));
-        assert!(message("monitor", &[]).starts_with("`lizard console` is missing: "));
+        assert!(message_of("info", &[]).contains("without the commands for a board on USB;"));
+        assert!(message_of("parts", &["console"]).contains("without the parts to print;"));
+        assert!(message_of("monitor", &[]).starts_with("`lizard console` is missing: "));
     }
 
     #[test]
@@ -159,21 +164,21 @@ mod tests {
 
     #[test]
     fn of_two_features_only_the_absent_ones_are_named() {
-        assert!(message("tune", &["simulator"]).contains("without the commands that compute;"));
-        assert!(message("tune", &["paper"]).contains("without the simulator;"));
-        let both = message("tune", &[]);
+        assert!(message_of("tune", &["simulator"]).contains("without the commands that compute;"));
+        assert!(message_of("tune", &["paper"]).contains("without the simulator;"));
+        let message = message_of("tune", &[]);
         assert!(
-            both.contains("the simulator and the commands that compute;"),
-            "{both}"
+            message.contains("the simulator and the commands that compute;"),
+            "{message}"
         );
     }
 
     #[test]
     fn a_mistyped_command_is_answered_with_a_suggestion() {
         assert_eq!(
-            message("fly", &[]),
+            message_of("fly", &[]),
             "there is no command `fly`; lizard --help lists them"
         );
-        assert!(message("claibrate", &[]).contains("; did you mean `calibrate`?"));
+        assert!(message_of("claibrate", &[]).contains("; did you mean `calibrate`?"));
     }
 }

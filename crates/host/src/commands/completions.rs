@@ -54,22 +54,22 @@ fn offer_robots(script: &str) -> String {
         "COMPREPLY=($(compgen -W '{names}' -- \"${{cur}}\") $(compgen -f -X '!*.toml' -- \
          \"${{cur}}\") $(compgen -d -S / -- \"${{cur}}\"))"
     );
-    let mut is_robot = false;
+    let mut is_after_robot = false;
     let lines = script.lines().map(|line| {
-        let narrowed = match line.trim_start() {
+        let narrowed_line = match line.trim_start() {
             // bash: the line after `--robot)`.
-            words if is_robot && words == BASH => line.replace(BASH, &bash),
-            words if words.starts_with("'--robot=") => {
+            trimmed if is_after_robot && trimmed == BASH => line.replace(BASH, &bash),
+            trimmed if trimmed.starts_with("'--robot=") => {
                 line.replace(":_files'", ":_files -g \"*.toml\"'")
             }
-            words if words.contains(" -l robot ") && words.ends_with(" -r -F") => {
+            trimmed if trimmed.contains(" -l robot ") && trimmed.ends_with(" -r -F") => {
                 let option = line.trim_end_matches(" -F");
                 format!("{option} -k -xa \"(__fish_complete_suffix .toml) {names}\"")
             }
             _ => line.to_owned(),
         };
-        is_robot = line.trim() == "--robot)";
-        narrowed + "\n"
+        is_after_robot = line.trim() == "--robot)";
+        narrowed_line + "\n"
     });
     lines.collect()
 }
@@ -82,16 +82,16 @@ pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
     let mut command = command.disable_help_subcommand(true);
     command.build();
     let mut count = 1;
-    page(&args, "lizard", command.clone())?;
+    write_page(&args, "lizard", command.clone())?;
     for sub in command.get_subcommands() {
         let name = format!("lizard-{}", sub.get_name());
-        page(&args, &name, sub.clone())?;
+        write_page(&args, &name, sub.clone())?;
         count += 1;
-        for below in sub.get_subcommands() {
-            page(
+        for nested in sub.get_subcommands() {
+            write_page(
                 &args,
-                &format!("{name}-{}", below.get_name()),
-                below.clone(),
+                &format!("{name}-{}", nested.get_name()),
+                nested.clone(),
             )?;
             count += 1;
         }
@@ -101,7 +101,7 @@ pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
     Ok(())
 }
 
-fn page(args: &ManArgs, name: &str, command: Command) -> Result<(), Failure> {
+fn write_page(args: &ManArgs, name: &str, command: Command) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(command).render(&mut text)?;
     files::write(&args.folder.join(format!("{name}.1")), &text)

@@ -12,10 +12,10 @@ use super::known::{CommandEntry, Group};
 
 /// Returns the command with a help text that lists its subcommands in groups.
 pub(super) fn with_groups(command: Command, known: &[CommandEntry]) -> Command {
-    let list = list(&command, known);
-    let lacks = absent::list_absent(known);
+    let list = list_commands(&command, known);
+    let absent_note = absent::list_absent(known);
     command.help_template(format!(
-        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}{lacks}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}{absent_note}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
         heading("Options")
     ))
 }
@@ -26,12 +26,12 @@ fn heading(text: &str) -> String {
 }
 
 /// Lists every subcommand once, under its heading.
-fn list(command: &Command, known: &[CommandEntry]) -> String {
-    let present: Vec<&Command> = command.get_subcommands().collect();
-    let widest = present.iter().map(|sub| sub.get_name().len()).max();
+fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
+    let subcommands: Vec<&Command> = command.get_subcommands().collect();
+    let widest = subcommands.iter().map(|sub| sub.get_name().len()).max();
     let width = widest.unwrap_or(0);
     let mut text = String::new();
-    let section = |text: &mut String, title: &str, subs: &[&Command]| {
+    let write_section = |text: &mut String, title: &str, subs: &[&Command]| {
         if subs.is_empty() {
             return;
         }
@@ -39,31 +39,34 @@ fn list(command: &Command, known: &[CommandEntry]) -> String {
         for sub in subs {
             let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
             let aliases: Vec<&str> = sub.get_visible_aliases().collect();
-            let note = |word: &str, names: &[&str]| match names.join(", ") {
+            let note_of = |word: &str, names: &[&str]| match names.join(", ") {
                 names if names.is_empty() => names,
                 names => format!(" [{word}: {names}]"),
             };
-            let below: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
-            let also = note("also", &aliases) + &note("with", &below);
+            let nested: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
+            let notes = note_of("also", &aliases) + &note_of("with", &nested);
             // clap would read braces as placeholders of the template.
             let about = about.replace(['{', '}'], "");
-            _ = writeln!(text, "  {:<width$}  {about}{also}", sub.get_name());
+            _ = writeln!(text, "  {:<width$}  {about}{notes}", sub.get_name());
         }
         text.push('\n');
     };
     for group in Group::ALL {
-        let names = known.iter().filter(|known| known.group == group);
+        let names = known.iter().filter(|entry| entry.group == group);
         let subs: Vec<&Command> = names
-            .filter_map(|known| {
-                let name = known.name();
-                present.iter().find(|sub| sub.get_name() == name).copied()
+            .filter_map(|entry| {
+                let name = entry.name();
+                subcommands
+                    .iter()
+                    .find(|sub| sub.get_name() == name)
+                    .copied()
             })
             .collect();
         if group == Group::Itself && !subs.is_empty() {
             let names: Vec<&str> = subs.iter().map(|sub| sub.get_name()).collect();
             _ = writeln!(text, "{}\n  {}\n", heading(group.title()), names.join(", "));
         } else {
-            section(&mut text, group.title(), &subs);
+            write_section(&mut text, group.title(), &subs);
         }
     }
     text
@@ -75,11 +78,11 @@ mod tests {
 
     #[test]
     fn every_command_is_listed_once_and_the_owners_come_first() {
-        let sub = |name: &'static str| Command::new(name).about(format!("does {name}"));
+        let subcommand = |name: &'static str| Command::new(name).about(format!("does {name}"));
         let command = Command::new("lizard").subcommands([
-            sub("pose").visible_alias("fk"),
-            sub("completions"),
-            sub("console"),
+            subcommand("pose").visible_alias("fk"),
+            subcommand("completions"),
+            subcommand("console"),
         ]);
         let row = |group, variant| CommandEntry {
             group,
@@ -93,7 +96,7 @@ mod tests {
             row(Group::Itself, "Completions"),
         ];
         assert_eq!(
-            without_colours(&list(&command, &known)),
+            strip_colours(&list_commands(&command, &known)),
             "Drive the robot:\n  console      does console\n\n\
              The paper, computed:\n  pose         does pose [also: fk]\n\n\
              For scripts and development:\n  completions\n\n"
@@ -101,7 +104,7 @@ mod tests {
     }
 
     /// Removes a terminal's colour codes.
-    fn without_colours(text: &str) -> String {
+    fn strip_colours(text: &str) -> String {
         let mut plain = String::new();
         let mut rest = text;
         while let Some((before, after)) = rest.split_once('\u{1b}') {

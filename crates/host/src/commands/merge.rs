@@ -33,34 +33,34 @@ pub struct MergeArgs {
 /// Fails if a part is missing, is given twice or does not belong to the others, or if the command
 /// itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
-    let whole = MergedParts::of(read_all_parts(&args.files)?)?;
-    match whole.command.as_str() {
+    let merged = MergedParts::of(read_all_parts(&args.files)?)?;
+    match merged.command.as_str() {
         #[cfg(feature = "paper")]
-        "prove" => whole.run(crate::change::prove::run),
+        "prove" => merged.run(crate::change::prove::run),
         #[cfg(feature = "paper")]
-        "design" => whole.run(crate::paper::design::run),
+        "design" => merged.run(crate::paper::design::run),
         #[cfg(all(feature = "simulator", feature = "paper"))]
-        "tune" => whole.run(crate::change::tune::run),
+        "tune" => merged.run(crate::change::tune::run),
         #[cfg(feature = "parts")]
-        "fit" => whole.run(crate::make::parts::fit::run),
-        other => Err(Failure::Input(format!(
-            "the parts are from `lizard {other}`, which this program does not have"
+        "fit" => merged.run(crate::make::parts::fit::run),
+        command => Err(Failure::Input(format!(
+            "the parts are from `lizard {command}`, which this program does not have"
         ))),
     }
 }
 
 /// Reads the parts from files, or from standard input.
 fn read_all_parts(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
-    let mut shares = Vec::new();
+    let mut parts = Vec::new();
     let mut read_parts = |name: &str, text: &str| {
         for (number, line) in (1..).zip(text.lines()) {
             if line.trim().is_empty() {
                 continue;
             }
-            let share = serde_json::from_str(line).map_err(|error| {
+            let part = serde_json::from_str(line).map_err(|error| {
                 Failure::Input(format!("{name}: line {number} is not a part: {error}"))
             })?;
-            shares.push(share);
+            parts.push(part);
         }
         Ok::<(), Failure>(())
     };
@@ -74,7 +74,7 @@ fn read_all_parts(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
         let text = files::read_text(file)?;
         read_parts(&name, &text)?;
     }
-    Ok(shares)
+    Ok(parts)
 }
 
 /// The joined parts of one computation.
@@ -87,59 +87,57 @@ struct MergedParts {
 
 impl MergedParts {
     /// Joins the parts; fails unless they are all the parts of one computation.
-    fn of(shares: Vec<PartOutput>) -> Result<Self, Failure> {
-        let refused = |reason: String| Err(Failure::Input(reason));
-        let Some(first) = shares.first() else {
-            return refused(
+    fn of(parts: Vec<PartOutput>) -> Result<Self, Failure> {
+        let refuse = |reason: String| Err(Failure::Input(reason));
+        let Some(first) = parts.first() else {
+            return refuse(
                 "there are no parts; `lizard merge --help` says how to make them".to_owned(),
             );
         };
         let (part_count, pieces) = (first.part.of, first.pieces);
-        let mut whole = Self {
+        let mut merged = Self {
             command: first.command.clone(),
             options: first.options.clone(),
             robot: first.robot.clone(),
             found: BTreeMap::new(),
         };
-        let mut seen = vec![false; part_count as usize];
-        for share in shares {
-            let name = String::from(share.part);
+        let mut is_given = vec![false; part_count as usize];
+        for part in parts {
+            let name = String::from(part.part);
             let version = env!("CARGO_PKG_VERSION");
-            if share.lizard != version {
-                return refused(format!(
+            if part.lizard != version {
+                return refuse(format!(
                     "part {name} is from version {}, and this is {version}",
-                    share.lizard
+                    part.lizard
                 ));
             }
-            if share.command != whole.command {
-                return refused(format!(
+            if part.command != merged.command {
+                return refuse(format!(
                     "part {name} is from `lizard {}`, and another one is from `lizard {}`",
-                    share.command, whole.command
+                    part.command, merged.command
                 ));
             }
-            if share.options != whole.options
-                || share.part.of != part_count
-                || share.pieces != pieces
+            if part.options != merged.options || part.part.of != part_count || part.pieces != pieces
             {
-                return refused(format!(
+                return refuse(format!(
                     "part {name} has different options from another part"
                 ));
             }
-            if share.robot != whole.robot {
-                return refused(format!(
+            if part.robot != merged.robot {
+                return refuse(format!(
                     "part {name} has a different robot from another part"
                 ));
             }
-            let index = share.part.number as usize - 1;
-            if std::mem::replace(&mut seen[index], true) {
-                return refused(format!("part {name} is given twice"));
+            let index = part.part.number as usize - 1;
+            if std::mem::replace(&mut is_given[index], true) {
+                return refuse(format!("part {name} is given twice"));
             }
-            whole.found.extend(share.found);
+            merged.found.extend(part.found);
         }
-        if let Some(missing) = seen.iter().position(|seen| !seen) {
-            return refused(format!("part {}/{part_count} is missing", missing + 1));
+        if let Some(missing) = is_given.iter().position(|is_given| !is_given) {
+            return refuse(format!("part {}/{part_count} is missing", missing + 1));
         }
-        Ok(whole)
+        Ok(merged)
     }
 
     /// Runs the command as on one machine, with the parts' results in place of the computation.
@@ -147,11 +145,14 @@ impl MergedParts {
         not(any(feature = "paper", feature = "parts")),
         allow(dead_code, reason = "nothing can be spread")
     )]
-    fn run<C: Spreads>(self, run: impl FnOnce(C) -> Result<(), Failure>) -> Result<(), Failure> {
+    fn run<C: Spreads>(
+        self,
+        run_command: impl FnOnce(C) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let mut command: C =
             serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
         command.spread().set_merged(self.robot, self.found);
-        run(command)
+        run_command(command)
     }
 }
 
@@ -159,7 +160,7 @@ impl MergedParts {
 mod tests {
     use super::*;
 
-    fn share(part: &str) -> PartOutput {
+    fn part_output(part: &str) -> PartOutput {
         PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
             command: "prove".to_owned(),
@@ -171,8 +172,8 @@ mod tests {
         }
     }
 
-    fn refusal(shares: Vec<PartOutput>) -> String {
-        match MergedParts::of(shares) {
+    fn refusal_of(parts: Vec<PartOutput>) -> String {
+        match MergedParts::of(parts) {
             Ok(_) => panic!("it is accepted"),
             Err(failure) => failure.to_string(),
         }
@@ -180,32 +181,39 @@ mod tests {
 
     #[test]
     fn parts_that_are_not_of_one_computation_are_refused() {
-        let changed = |change: fn(&mut PartOutput)| {
-            let mut second = share("2/2");
+        let refusal_after = |change: fn(&mut PartOutput)| {
+            let mut second = part_output("2/2");
             change(&mut second);
-            refusal(vec![share("1/2"), second])
+            refusal_of(vec![part_output("1/2"), second])
         };
-        assert_eq!(refusal(vec![share("1/2")]), "part 2/2 is missing");
+        assert_eq!(refusal_of(vec![part_output("1/2")]), "part 2/2 is missing");
         assert_eq!(
-            refusal(vec![share("1/2"), share("1/2"), share("2/2")]),
+            refusal_of(vec![
+                part_output("1/2"),
+                part_output("1/2"),
+                part_output("2/2")
+            ]),
             "part 1/2 is given twice"
         );
         assert_eq!(
-            changed(|part| part.robot = "other".to_owned()),
+            refusal_after(|part| part.robot = "other".to_owned()),
             "part 2/2 has a different robot from another part"
         );
         assert_eq!(
-            changed(|part| part.options = Value::Bool(true)),
+            refusal_after(|part| part.options = Value::Bool(true)),
             "part 2/2 has different options from another part"
         );
         assert_eq!(
-            changed(|part| part.command = "fit".to_owned()),
+            refusal_after(|part| part.command = "fit".to_owned()),
             "part 2/2 is from `lizard fit`, and another one is from `lizard prove`"
         );
-        assert!(changed(|part| part.lizard = "0.0.1".to_owned()).contains("is from version 0.0.1"));
-        assert!(refusal(Vec::new()).starts_with("there are no parts"));
         assert!(
-            MergedParts::of(vec![share("2/2"), share("1/2")]).is_ok(),
+            refusal_after(|part| part.lizard = "0.0.1".to_owned())
+                .contains("is from version 0.0.1")
+        );
+        assert!(refusal_of(Vec::new()).starts_with("there are no parts"));
+        assert!(
+            MergedParts::of(vec![part_output("2/2"), part_output("1/2")]).is_ok(),
             "in any order"
         );
     }

@@ -156,9 +156,9 @@ fn translate_old_arguments(mut arguments: Vec<OsString>) -> Result<Vec<OsString>
     let Some(word) = arguments.get(1).and_then(|word| word.to_str()) else {
         return Ok(arguments);
     };
-    if let Some((word, instead)) = REMOVED.iter().find(|(old, _)| *old == word) {
+    if let Some((word, advice)) = REMOVED.iter().find(|(old, _)| *old == word) {
         return Err(Failure::Input(format!(
-            "there is no command `{word}` any more; {instead}"
+            "there is no command `{word}` any more; {advice}"
         )));
     }
     if let Some((old, new)) = RENAMED.iter().find(|(old, _)| *old == word) {
@@ -205,9 +205,9 @@ fn addresses(page: &str, source: &str) -> String {
         ("Source", source, ""),
         ("Report a fault", source, "/issues"),
     ];
-    let known = lines.iter().filter(|(_, address, _)| !address.is_empty());
-    known
-        .map(|(name, address, below)| format!("{name}: {address}{below}\n"))
+    let present_lines = lines.iter().filter(|(_, address, _)| !address.is_empty());
+    present_lines
+        .map(|(name, address, path)| format!("{name}: {address}{path}\n"))
         .collect()
 }
 
@@ -272,17 +272,17 @@ mod tests {
                 .flat_map(|sub| std::iter::once(sub.get_name()).chain(sub.get_visible_aliases()))
                 .map(str::to_owned)
                 .collect();
-            let known: BTreeSet<String> = KNOWN
+            let known_names: BTreeSet<String> = KNOWN
                 .iter()
-                .flat_map(|known| {
-                    let also = known.aliases.iter().map(ToString::to_string);
-                    std::iter::once(known.name()).chain(also)
+                .flat_map(|entry| {
+                    let aliases = entry.aliases.iter().map(ToString::to_string);
+                    std::iter::once(entry.name()).chain(aliases)
                 })
                 .collect();
-            assert_eq!(built, known);
+            assert_eq!(built, known_names);
             assert!(
-                known.contains("monitor") && known.contains("merge"),
-                "{known:?}"
+                known_names.contains("monitor") && known_names.contains("merge"),
+                "{known_names:?}"
             );
         }
 
@@ -291,16 +291,16 @@ mod tests {
             let page = include_str!("../../../../docs/commands.md");
             let (_, list) = page.split_once("`--json`, except ").expect("the list");
             let (list, _) = list.split_once(": they").expect("its end");
-            let named: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
+            let named_commands: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
             let program = Cli::command();
             let has_json =
                 |sub: &&clap::Command| sub.get_arguments().any(|arg| arg.get_id() == "json");
-            let without = program.get_subcommands().filter(|sub| !has_json(sub));
+            let commands_without_json = program.get_subcommands().filter(|sub| !has_json(sub));
             assert_eq!(
-                without
+                commands_without_json
                     .map(clap::Command::get_name)
                     .collect::<BTreeSet<_>>(),
-                named
+                named_commands
             );
         }
     }
@@ -308,11 +308,11 @@ mod tests {
     #[test]
     fn every_old_word_means_an_existing_command_and_hides_no_new_one() {
         for (old, new) in RENAMED {
-            let [old, name] =
-                [old, new[0]].map(|word| KNOWN.iter().any(|known| known.name() == word));
-            assert_eq!((old, name), (false, true), "{new:?}");
+            let [is_old_known, is_new_known] =
+                [old, new[0]].map(|word| KNOWN.iter().any(|entry| entry.name() == word));
+            assert_eq!((is_old_known, is_new_known), (false, true), "{new:?}");
         }
-        let words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+        let arguments_of = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
         for (old, new) in [
             (
                 "lizard velocity --omega1 5",
@@ -325,13 +325,13 @@ mod tests {
             ("lizard console solve", "lizard console solve"),
         ] {
             assert_eq!(
-                translate_old_arguments(words(old)).expect("it is known"),
-                words(new)
+                translate_old_arguments(arguments_of(old)).expect("it is known"),
+                arguments_of(new)
             );
         }
-        let gone =
-            translate_old_arguments(words("lizard spring --wire 0.6")).expect_err("it is gone");
-        assert!(gone.to_string().contains("[leg.drive]"), "{gone}");
+        let error = translate_old_arguments(arguments_of("lizard spring --wire 0.6"))
+            .expect_err("it is gone");
+        assert!(error.to_string().contains("[leg.drive]"), "{error}");
     }
 
     #[test]
@@ -349,9 +349,9 @@ mod tests {
 
     #[test]
     fn every_feature_that_a_command_needs_has_words() {
-        for known in KNOWN {
-            for feature in known.needs {
-                assert_ne!(absent::describe_feature(feature), "", "{known:?}");
+        for entry in KNOWN {
+            for feature in entry.needs {
+                assert_ne!(absent::describe_feature(feature), "", "{entry:?}");
             }
         }
     }

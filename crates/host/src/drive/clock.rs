@@ -31,10 +31,10 @@ impl Clock {
         self.now_at(Instant::now())
     }
 
-    fn now_at(&mut self, look: Instant) -> Instant {
-        let step = look.saturating_duration_since(self.last_look);
+    fn now_at(&mut self, reading: Instant) -> Instant {
+        let step = reading.saturating_duration_since(self.last_look);
         self.now += step.min(LONGEST_STEP);
-        self.last_look = look;
+        self.last_look = reading;
         self.now
     }
 }
@@ -69,20 +69,22 @@ mod tests {
         let ms = Duration::from_millis;
         let mut clock = Clock::start();
         let start = clock.now;
-        for (look, passed) in [(10, 10), (100, 100), (3000, 200), (3049, 249), (3050, 250)] {
+        for (reading_ms, elapsed_ms) in
+            [(10, 10), (100, 100), (3000, 200), (3049, 249), (3050, 250)]
+        {
             assert_eq!(
-                clock.now_at(start + ms(look)),
-                start + ms(passed),
-                "{look} ms"
+                clock.now_at(start + ms(reading_ms)),
+                start + ms(elapsed_ms),
+                "{reading_ms} ms"
             );
         }
     }
 
     #[test]
     fn a_time_limit_passes_after_its_time() {
-        let mut none = Deadline::after(Duration::ZERO);
-        assert!(none.has_passed());
-        let mut long = Deadline::after(Duration::from_secs(3600));
-        assert!(!long.has_passed());
+        let mut zero_deadline = Deadline::after(Duration::ZERO);
+        assert!(zero_deadline.has_passed());
+        let mut long_deadline = Deadline::after(Duration::from_secs(3600));
+        assert!(!long_deadline.has_passed());
     }
 }

@@ -96,8 +96,8 @@ fn text(lines: &[Line]) -> String {
             ..
         } = line;
         _ = write!(text, "{port}  {name} ({vendor}:{product}), {chip}");
-        if let Some(who) = &line.open_in {
-            _ = write!(text, "; open in {who}");
+        if let Some(program) = &line.open_in {
+            _ = write!(text, "; open in {program}");
         }
         if !line.may_open {
             text += "; you may not open it";
@@ -127,17 +127,17 @@ mod tests {
     fn a_port_says_what_its_chip_is_as_lsusb_names_it() {
         let uno = line(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
         let copy = line(0x1a86, 0x7523, None);
-        let words = text(&[uno, copy]);
-        let words: Vec<&str> = words.lines().collect();
-        assert!(words[0].contains("Arduino Uno"), "{words:?}");
+        let output = text(&[uno, copy]);
+        let output: Vec<&str> = output.lines().collect();
+        assert!(output[0].contains("Arduino Uno"), "{output:?}");
         assert!(
-            words[0].contains("(2341:0043), an Arduino UNO"),
-            "{words:?}"
+            output[0].contains("(2341:0043), an Arduino UNO"),
+            "{output:?}"
         );
-        assert!(!words[0].contains('\u{1b}'), "{words:?}");
+        assert!(!output[0].contains('\u{1b}'), "{output:?}");
         assert!(
-            words[1].contains("no name (1a86:7523), a CH340"),
-            "{words:?}"
+            output[1].contains("no name (1a86:7523), a CH340"),
+            "{output:?}"
         );
         assert!(
             chip_description([0x0483, 0x5740]).is_none(),
@@ -147,18 +147,18 @@ mod tests {
 
     #[test]
     fn a_forbidden_port_comes_with_the_remedy_and_an_open_one_with_its_program() {
-        let mut closed = line(0x2341, 0x0043, None);
-        closed.may_open = false;
-        closed.open_in = Some("screen (process 7)".to_owned());
-        let words = text(&[closed]);
+        let mut closed_port = line(0x2341, 0x0043, None);
+        closed_port.may_open = false;
+        closed_port.open_in = Some("screen (process 7)".to_owned());
+        let output = text(&[closed_port]);
         assert!(
-            words.contains("; open in screen (process 7); you may not open it\n"),
-            "{words}"
+            output.contains("; open in screen (process 7); you may not open it\n"),
+            "{output}"
         );
-        assert!(words.contains("usermod -aG dialout"), "{words}");
-        let mut free = line(0x2341, 0x0043, None);
-        free.may_open = true;
-        assert!(!text(&[free]).contains("dialout"));
+        assert!(output.contains("usermod -aG dialout"), "{output}");
+        let mut free_port = line(0x2341, 0x0043, None);
+        free_port.may_open = true;
+        assert!(!text(&[free_port]).contains("dialout"));
     }
 
     #[test]

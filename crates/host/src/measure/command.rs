@@ -16,10 +16,10 @@ use crate::{Failure, RobotFile};
 /// Measure in films how far the robot goes in a cycle of its gaits, beside the prediction
 ///
 /// FILM is a folder of pictures, or a film that the program ffmpeg can read. It shows the robot from
-/// above with the tags of `lizard measure sheet`, and one gait or several with rests between them. Prints for each gait way ahead,
-/// drift to the left and turn of a cycle: the mean, the spread of single cycles, the standard error of the mean (the truth lies
-/// within two of it in 95 % of films), and what the contact model predicts with the servos of robot.toml; then
-/// where in the cycle the path is farthest from the predicted one.
+/// above with the tags of `lizard measure sheet`, and one gait or several with rests between them. Prints for each
+/// gait way ahead, drift to the left and turn of a cycle: the mean, the spread of single cycles, the standard error of
+/// the mean (the truth lies within two of it in 95 % of films), and what the contact model predicts with the servos of
+/// robot.toml; then where in the cycle the path is farthest from the predicted one.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard measure sheet
@@ -63,13 +63,13 @@ pub struct Args {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pace = f64::from(args.speed) / 100.0;
-    let named = args.gait.iter().map(|name| find(&robot, name));
-    let gaits = Gaits::new(&robot, &named.collect::<Result<Vec<_>, _>>()?, pace);
+    let named_gaits = args.gait.iter().map(|name| find_gait(&robot, name));
+    let gaits = Gaits::new(&robot, &named_gaits.collect::<Result<Vec<_>, _>>()?, pace);
     let height = args.height.unwrap_or_else(|| height_of_board(&robot));
     let setup = args.filming.setup(height);
     let spinner = Spinner::new("reading the pictures");
-    let read = |path: &PathBuf| args.filming.watch(path, setup);
-    let films = args.films.iter().map(read);
+    let watch_film = |path: &PathBuf| args.filming.watch(path, setup);
+    let films = args.films.iter().map(watch_film);
     let films = films.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {
         drop(spinner);
@@ -93,13 +93,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
 ///
 /// # Errors
 /// Fails if the robot has no such gait, or if the gait moves no servo.
-fn find<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+fn find_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     match robot.gait(name) {
         Some(gait) if gait.moves() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
         None => {
-            let moving = robot.gaits().iter().filter(|gait| gait.moves());
-            let names: Vec<&str> = moving.map(CheckedGait::name).collect();
+            let moving_gaits = robot.gaits().iter().filter(|gait| gait.moves());
+            let names: Vec<&str> = moving_gaits.map(CheckedGait::name).collect();
             Err(Failure::Input(format!(
                 "robot.toml has no gait `{name}`; those that move are {}{}",
                 names.join(", "),

@@ -103,14 +103,14 @@ pub(super) fn with_measured_keys(text: &str, keys: &[Key]) -> Result<String, NoS
     let mut text = text.to_owned();
     for key in keys.iter().filter(|key| !key.agrees) {
         let name = format!("{}.{}", key.table, key.key);
-        let ([value, error, was], digits) = (
+        let ([value, error, old], digits) = (
             [key.measured, key.error, key.robot].map(|figure| figure * key.scale),
             key.decimals,
         );
         let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
         text = with_number(&text, &name, rounded)?;
-        let rest = format!("{value:.digits$} +- {error:.digits$}, was {was:.digits$}");
-        text = with_comment(&text, &name, "measured:", &rest)?;
+        let comment = format!("{value:.digits$} +- {error:.digits$}, was {old:.digits$}");
+        text = with_comment(&text, &name, "measured:", &comment)?;
     }
     Ok(text)
 }

@@ -16,8 +16,10 @@ use crate::shared::files::note_input;
 /// Fails for a film that cannot be read, or one whose tags show no path.
 pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<WatchedFilm, Failure> {
     let name = path.display().to_string();
-    let about = |trouble: Trouble| film_failure(&name, &trouble);
-    let watched = read(path, rate, about)?.watch(setup).map_err(about)?;
+    let failure_of = |trouble: Trouble| film_failure(&name, &trouble);
+    let watched = read_film(path, rate, failure_of)?
+        .watch(setup)
+        .map_err(failure_of)?;
     Ok(WatchedFilm { name, watched })
 }
 
@@ -27,15 +29,16 @@ pub(super) fn film_failure(name: &str, trouble: &dyn Display) -> Failure {
 }
 
 /// Reads a film from its file, or from a folder of pictures.
-fn read(
+fn read_film(
     path: &Path,
     rate: Option<f64>,
-    about: impl Fn(Trouble) -> Failure,
+    failure_of: impl Fn(Trouble) -> Failure,
 ) -> Result<Film, Failure> {
     let mut film = Film::default();
     if path.is_dir() {
         for (seconds, file) in frames::list_pictures(path, rate)? {
-            film.add(seconds, &grey::read(&file)?).map_err(&about)?;
+            film.add(seconds, &grey::read(&file)?)
+                .map_err(&failure_of)?;
         }
         return Ok(film);
     }
@@ -46,7 +49,7 @@ fn read(
         )));
     }
     through_ffmpeg::for_each_picture(note_input(path), rate, |seconds, picture| {
-        film.add(seconds, picture).map(|_| ()).map_err(&about)
+        film.add(seconds, picture).map(|_| ()).map_err(&failure_of)
     })?;
     Ok(film)
 }

@@ -9,16 +9,16 @@ use super::film;
 use crate::Failure;
 
 /// Range of lengths that the printed ruler of 100 mm may have, mm.
-const RULER: [f64; 2] = [85.0, 115.0];
+const RULER_RANGE: [f64; 2] = [85.0, 115.0];
 
-/// How films were taken.
+/// The options that describe how films were taken.
 #[derive(clap::Args, Debug)]
 pub(super) struct Filming {
     /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
-    #[arg(long, value_name = "RATE", value_parser = rate)]
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     fps: Option<f64>,
     /// Length of the line on a strip that should be 100 mm long
-    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
+    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = parse_ruler)]
     ruler: f64,
 }
 
@@ -41,26 +41,26 @@ impl Filming {
 }
 
 /// Parses a number in a range. The error says `meaning` and the range.
-pub(super) fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
-    let number = word
+pub(super) fn number(text: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
+    let number = text
         .parse()
         .ok()
         .filter(|value| (low..=high).contains(value));
     number.ok_or_else(|| format!("{meaning}, between {low} and {high}"))
 }
 
-fn rate(word: &str) -> Result<f64, String> {
-    number(word, [1.0, 1000.0], "it is pictures in a second")
+fn parse_rate(text: &str) -> Result<f64, String> {
+    number(text, [1.0, 1000.0], "it is pictures in a second")
 }
 
-pub(super) fn height(word: &str) -> Result<f64, String> {
-    number(word, [0.0, 500.0], "it is mm")
+pub(super) fn height(text: &str) -> Result<f64, String> {
+    number(text, [0.0, 500.0], "it is mm")
 }
 
-fn ruler(word: &str) -> Result<f64, String> {
+fn parse_ruler(text: &str) -> Result<f64, String> {
     number(
-        word,
-        RULER,
+        text,
+        RULER_RANGE,
         "it is the line of 100 mm as a ruler measures it in mm",
     )
 }

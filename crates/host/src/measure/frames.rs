@@ -16,17 +16,17 @@ pub(super) fn list_pictures(
     folder: &Path,
     rate: Option<f64>,
 ) -> Result<Vec<(f64, PathBuf)>, Failure> {
-    let cannot = |error: std::io::Error| {
+    let read_failure = |error: std::io::Error| {
         Failure::Input(format!("cannot read {}: {error}", folder.display()))
     };
     let mut files = Vec::new();
-    for entry in fs::read_dir(folder).map_err(cannot)? {
-        let path = entry.map_err(cannot)?.path();
-        let end = path
+    for entry in fs::read_dir(folder).map_err(read_failure)? {
+        let path = entry.map_err(read_failure)?.path();
+        let extension = path
             .extension()
-            .map(|end| end.to_string_lossy().to_lowercase());
-        if end.is_some_and(|end| PICTURE_EXTENSIONS.contains(&&*end)) {
-            files.push((stem(&path), path));
+            .map(|extension| extension.to_string_lossy().to_lowercase());
+        if extension.is_some_and(|extension| PICTURE_EXTENSIONS.contains(&&*extension)) {
+            files.push((stem_of(&path), path));
         }
     }
     if files.is_empty() {
@@ -36,7 +36,7 @@ pub(super) fn list_pictures(
         )));
     }
     files.sort_by_key(|(stem, _)| sort_key(stem));
-    let time = |(i, (stem, path)): (usize, (String, PathBuf))| match rate {
+    let timed_picture = |(i, (stem, path)): (usize, (String, PathBuf))| match rate {
         Some(rate) => Ok((i as f64 / rate, path)),
         None => match parse_seconds(&stem) {
             Some(seconds) => Ok((seconds, path)),
@@ -47,10 +47,10 @@ pub(super) fn list_pictures(
             ))),
         },
     };
-    files.into_iter().enumerate().map(time).collect()
+    files.into_iter().enumerate().map(timed_picture).collect()
 }
 
-fn stem(path: &Path) -> String {
+fn stem_of(path: &Path) -> String {
     path.file_stem()
         .unwrap_or_default()
         .to_string_lossy()
@@ -61,15 +61,15 @@ fn stem(path: &Path) -> String {
 fn sort_key(name: &str) -> Vec<(u64, String)> {
     let mut parts: Vec<(u64, String)> = Vec::new();
     let mut was_digit = None;
-    for c in name.chars() {
-        if was_digit != Some(c.is_ascii_digit()) {
+    for character in name.chars() {
+        if was_digit != Some(character.is_ascii_digit()) {
             parts.push((0, String::new()));
-            was_digit = Some(c.is_ascii_digit());
+            was_digit = Some(character.is_ascii_digit());
         }
         if let Some((number, word)) = parts.last_mut() {
-            match c.to_digit(10) {
+            match character.to_digit(10) {
                 Some(digit) => *number = number.saturating_mul(10).saturating_add(u64::from(digit)),
-                None => word.push(c),
+                None => word.push(character),
             }
         }
     }
@@ -83,8 +83,8 @@ fn parse_seconds(stem: &str) -> Option<f64> {
         Some(number) => (number, 1e-3),
         None => (stem.strip_suffix('s')?, 1.0),
     };
-    let begin = number.rfind(|c: char| !(c.is_ascii_digit() || c == '.'));
-    let number = &number[begin.map_or(0, |at| at + 1)..];
+    let last_non_digit = number.rfind(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let number = &number[last_non_digit.map_or(0, |index| index + 1)..];
     let value: f64 = number.parse().ok()?;
     Some(value * unit)
 }
@@ -97,8 +97,8 @@ mod tests {
     fn a_name_contains_a_time_only_with_its_unit() {
         assert_eq!(parse_seconds("walk-1033ms"), Some(1.033));
         assert_eq!(parse_seconds("1.5s"), Some(1.5));
-        for none in ["frame-0001", "1.5", "s", "films", "1.2.3s"] {
-            assert_eq!(parse_seconds(none), None, "{none}");
+        for name in ["frame-0001", "1.5", "s", "films", "1.2.3s"] {
+            assert_eq!(parse_seconds(name), None, "{name}");
         }
     }
 

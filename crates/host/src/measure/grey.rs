@@ -20,21 +20,21 @@ pub(super) fn read(path: &Path) -> Result<Picture, Failure> {
     let bytes =
         fs::read(path).map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
     let picture = match bytes.starts_with(b"\x89PNG") {
-        true => png(bytes),
-        false => jpeg(bytes),
+        true => decode_png(bytes),
+        false => decode_jpeg(bytes),
     };
     picture.map_err(|reason| {
         Failure::Input(format!("{name} is no picture that can be read: {reason}"))
     })
 }
 
-fn png(bytes: Vec<u8>) -> Result<Picture, String> {
-    let words = |error: png::DecodingError| error.to_string();
+fn decode_png(bytes: Vec<u8>) -> Result<Picture, String> {
+    let error_text = |error: png::DecodingError| error.to_string();
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
-    let mut reader = decoder.read_info().map_err(words)?;
+    let mut reader = decoder.read_info().map_err(error_text)?;
     let mut pixels = vec![0; reader.output_buffer_size().ok_or("it is too large")?];
-    let info = reader.next_frame(&mut pixels).map_err(words)?;
+    let info = reader.next_frame(&mut pixels).map_err(error_text)?;
     let channels = info.color_type.samples();
     let grey = pixels[..info.buffer_size()]
         .chunks_exact(channels)
@@ -47,7 +47,7 @@ fn png(bytes: Vec<u8>) -> Result<Picture, String> {
     Picture::new(width, height, grey.collect()).ok_or_else(|| "it has no pixels".to_owned())
 }
 
-fn jpeg(bytes: Vec<u8>) -> Result<Picture, String> {
+fn decode_jpeg(bytes: Vec<u8>) -> Result<Picture, String> {
     let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::Luma);
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
     let grey = decoder.decode().map_err(|error| error.to_string())?;

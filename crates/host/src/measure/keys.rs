@@ -14,14 +14,14 @@ use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
 /// Largest difference between a gait's cycle times in two robot.toml files that count as the same robot, s.
-const SAME_PERIOD: f64 = 0.005;
+const MAX_PERIOD_DIFFERENCE_S: f64 = 0.005;
 
 /// Find the keys of robot.toml with which the model goes as far as the robot did
 ///
 /// Each FILE has what `lizard measure --json` printed, for one gait or more; walk, trot, crawl, back, left, right
-/// and the arcs tell most. Finds the play of the legs, their mounting, mass centre, a foot too long, and the friction, by
-/// least squares. A key that these gaits do not tell, or that is right within two standard errors, stays as it is. Writes a new
-/// robot.toml with a comment at each changed line, and prints the predictions before and after.
+/// and the arcs tell most. Finds the play of the legs, their mounting, mass centre, a foot too long, and the friction,
+/// by least squares. A key that these gaits do not tell, or that is right within two standard errors, stays as it is.
+/// Writes a new robot.toml with a comment at each changed line, and prints the predictions before and after.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure film.mp4 --json > film.json
@@ -74,43 +74,43 @@ struct Part {
 /// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, or if the
 /// output would replace something or cannot be written.
 pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
-    let before = args.robot.text()?;
+    let old_text = args.robot.text()?;
     let robot = args.robot.load()?;
-    let mut ways = Vec::new();
+    let mut movements = Vec::new();
     for file in &args.files {
-        ways.append(&mut read(file, &robot)?);
+        movements.append(&mut read_movements(file, &robot)?);
     }
     files::check_replaceable(&args.output)?;
     let spinner = Spinner::new("walking the model");
-    let refused = |trouble: Trouble| Failure::Input(trouble.to_string());
-    let identified = identify(&robot, &ways, &|count, walk| {
+    let failure_of = |trouble: Trouble| Failure::Input(trouble.to_string());
+    let identified = identify(&robot, &movements, &|count, walk| {
         (0..count).into_par_iter().map(walk).collect()
     })
-    .map_err(refused)?;
+    .map_err(failure_of)?;
     drop(spinner);
     let is_moved = identified.moved().next().is_some();
     if is_moved {
-        let new = identified.text(&before).map_err(refused)?;
-        files::write(&args.output, new.as_bytes())?;
+        let new_text = identified.text(&old_text).map_err(failure_of)?;
+        files::write(&args.output, new_text.as_bytes())?;
     }
-    let written = is_moved.then_some(args.output.as_path());
-    let report = KeysReport::new(&identified, written);
-    json::print_json_or(args.json, &report, || text(&identified, written))
+    let written_path = is_moved.then_some(args.output.as_path());
+    let report = KeysReport::new(&identified, written_path);
+    json::print_json_or(args.json, &report, || text(&identified, written_path))
 }
 
 /// Reads the measured gaits of a file.
-fn read(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
-    let about = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+fn read_movements(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
+    let failure_of = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
     let output: Output = serde_json::from_str(&files::read_text(path)?).map_err(|error| {
-        about(format!(
+        failure_of(format!(
             "this is not what `lizard measure --json` prints: {error}"
         ))
     })?;
-    let ways = output
+    let movements = output
         .gaits
         .iter()
         .map(|measured| measured_motion(measured, robot));
-    ways.collect::<Result<_, _>>().map_err(about)
+    movements.collect::<Result<_, _>>().map_err(failure_of)
 }
 
 /// The movement per cycle of a measured gait.
@@ -120,12 +120,12 @@ fn read(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
 fn measured_motion(measured: &Measured, robot: &Robot) -> Result<MeasuredMovement, String> {
     let Measured { gait, speed, .. } = measured;
     let pace = speed / 100.0;
-    let own = robot.gait(gait).map(|gait| gait.period() / pace);
-    if let (Some(own), Some(then)) = (own, measured.period_expected)
-        && (own - then).abs() > SAME_PERIOD
+    let own_period = robot.gait(gait).map(|gait| gait.period() / pace);
+    if let (Some(own_period), Some(film_period)) = (own_period, measured.period_expected)
+        && (own_period - film_period).abs() > MAX_PERIOD_DIFFERENCE_S
     {
         return Err(format!(
-            "a cycle of `{gait}` takes {own:.2} s by this robot.toml, but took {then:.2} s by that of the measurement; \
+            "a cycle of `{gait}` takes {own_period:.2} s by this robot.toml, but took {film_period:.2} s by that of the measurement; \
              give the same one with --robot"
         ));
     }

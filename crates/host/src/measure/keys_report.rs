@@ -62,24 +62,25 @@ struct GaitLine {
 }
 
 impl KeysReport {
-    pub(super) fn new(identified: &Identified, written: Option<&Path>) -> Self {
+    pub(super) fn new(identified: &Identified, written_path: Option<&Path>) -> Self {
         let [card, error] = &identified.card;
-        let pair = |of: fn(&Card) -> f64| [of(card), of(error)];
+        let pair_of = |value_of: fn(&Card) -> f64| [value_of(card), value_of(error)];
         let Goodness {
             chi_square: [chi_square_before, chi_square, chi_square_all_free],
             ..
         } = identified.goodness;
-        let names = |(a, b, correlation): &(&lizard_identify::Key, &lizard_identify::Key, f64)| {
-            (a.full_name(), b.full_name(), *correlation)
-        };
+        let names_of =
+            |(first, second, correlation): &(&lizard_identify::Key, &lizard_identify::Key, f64)| {
+                (first.full_name(), second.full_name(), *correlation)
+            };
         Self {
             keys: identified.keys.iter().map(KeyLine::new).collect(),
             card: CardLine {
-                turn: pair(|card| card.turn),
-                ahead: pair(|card| card.ahead),
-                left: pair(|card| card.left),
+                turn: pair_of(|card| card.turn),
+                ahead: pair_of(|card| card.ahead),
+                left: pair_of(|card| card.left),
             },
-            alike: identified.correlated.iter().map(names).collect(),
+            alike: identified.correlated.iter().map(names_of).collect(),
             fit: FitLine {
                 figures: identified.goodness.figures,
                 chi_square_before,
@@ -90,20 +91,20 @@ impl KeysReport {
                 errors_widened: identified.goodness.error_factor,
             },
             gaits: identified.rows.iter().map(GaitLine::new).collect(),
-            written: written.map(Path::to_owned),
+            written: written_path.map(Path::to_owned),
         }
     }
 }
 
 impl KeyLine {
-    fn new(found: &KeyResult) -> Self {
+    fn new(result: &KeyResult) -> Self {
         Self {
-            key: found.key.full_name(),
-            unit: found.key.unit,
-            before: found.before,
-            after: found.after,
-            error: found.error,
-            verdict: match found.verdict {
+            key: result.key.full_name(),
+            unit: result.key.unit,
+            before: result.before,
+            after: result.after,
+            error: result.error,
+            verdict: match result.verdict {
                 Verdict::Moved => "moved",
                 Verdict::Unchanged => "right",
                 Verdict::Undetermined => "untold",
@@ -130,13 +131,13 @@ impl GaitLine {
 }
 
 /// The result as text for people.
-pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
+pub(super) fn text(identified: &Identified, written_path: Option<&Path>) -> String {
     let mut text = format!(
         "{:<35}{:>10}{:>10}{:>9}\n",
         "key", "before", "after", "error"
     );
-    for found in &identified.keys {
-        text += &key_line(found);
+    for result in &identified.keys {
+        text += &key_line(result);
     }
     let [card, error] = &identified.card;
     let _ = writeln!(
@@ -145,16 +146,16 @@ pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
          {:+.2} +- {:.2} deg.",
         card.ahead, error.ahead, card.left, error.left, card.turn, error.turn
     );
-    for (a, b, correlation) in &identified.correlated {
+    for (first, second, correlation) in &identified.correlated {
         let _ = writeln!(
             text,
             "{} and {} look alike in these gaits: their errors are correlated by {correlation:+.2}.",
-            a.full_name(),
-            b.full_name()
+            first.full_name(),
+            second.full_name()
         );
     }
     text += "\n";
-    text += &goodness(identified);
+    text += &goodness_text(identified);
     let _ = writeln!(
         text,
         "\n{:<28}{:>9}{:>7}{:>9}{:>9}",
@@ -164,7 +165,7 @@ pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
         text += &row_lines(row);
     }
     text += "\n";
-    match written {
+    match written_path {
         Some(path) => {
             let path = path.display();
             let _ = writeln!(
@@ -177,14 +178,14 @@ pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
     text
 }
 
-fn key_line(found: &KeyResult) -> String {
-    let digits = found.digits();
-    let key = found.key;
+fn key_line(result: &KeyResult) -> String {
+    let digits = result.digits();
+    let key = result.key;
     let name = match key.unit {
         "" => key.full_name(),
         unit => format!("{}, {unit}", key.full_name()),
     };
-    let verdict = match found.verdict {
+    let verdict = match result.verdict {
         Verdict::Moved => "changed".to_owned(),
         Verdict::Unchanged => "right".to_owned(),
         Verdict::Undetermined => format!("these gaits do not tell it: {}", key.other_method),
@@ -194,58 +195,61 @@ fn key_line(found: &KeyResult) -> String {
     };
     format!(
         "{name:<35}{:>10}{:>10}{:>9.digits$}  {verdict}\n",
-        format!("{:?}", found.before),
-        if found.verdict == Verdict::Moved {
-            format!("{:.digits$}", found.after)
+        format!("{:?}", result.before),
+        if result.verdict == Verdict::Moved {
+            format!("{:.digits$}", result.after)
         } else {
             "-".to_owned()
         },
-        found.error,
+        result.error,
     )
 }
 
 /// A paragraph about how well the model explains the measurements.
-fn goodness(identified: &Identified) -> String {
+fn goodness_text(identified: &Identified) -> String {
     let Goodness {
         figures,
-        chi_square: [before, after, free],
+        chi_square: [chi_before, chi_after, chi_free],
         freedom,
         chi_square_limit: limit,
-        is_explained: explains,
-        error_factor: widened,
-        worst: (row, part, errors),
+        is_explained,
+        error_factor,
+        worst: (row_index, part_index, errors),
     } = identified.goodness;
     let mut text = format!(
-        "{figures} figures: chi-square {before:.1} by robot.toml, {after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
+        "{figures} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
     );
-    let (name, _) = PARTS[part];
-    let gait = &identified.rows[row].way.gait;
-    let more = if errors > 0.0 { "more" } else { "less" };
-    let worst = format!(
-        "`{gait}`, {name}: {:.1} errors {more} than the model",
+    let (name, _) = PARTS[part_index];
+    let gait = &identified.rows[row_index].way.gait;
+    let comparison = if errors > 0.0 { "more" } else { "less" };
+    let worst_text = format!(
+        "`{gait}`, {name}: {:.1} errors {comparison} than the model",
         errors.abs()
     );
-    if !explains {
+    if !is_explained {
         let _ = writeln!(
             text,
-            "The model does not explain these ways, whatever its keys: chi-square {free:.1} at best, and 1 % of true models exceed \
-             {limit:.1}. Worst is {worst}. All errors above are therefore {widened:.1} times as large. Look for a servo that is not \
+            "The model does not explain these ways, whatever its keys: chi-square {chi_free:.1} at best, and 1 % of true models exceed \
+             {limit:.1}. Worst is {worst_text}. All errors above are therefore {error_factor:.1} times as large. Look for a servo that is not \
              as robot.toml has it, a foot that catches, another floor."
         );
-    } else if freedom >= 1.0 && after > limit {
+    } else if freedom >= 1.0 && chi_after > limit {
         let _ = writeln!(
             text,
-            "The keys that were left would explain more only together ({free:.1}), and these gaits do not tell which of them. \
-             Film further gaits. Worst is {worst}."
+            "The keys that were left would explain more only together ({chi_free:.1}), and these gaits do not tell which of them. \
+             Film further gaits. Worst is {worst_text}."
         );
     } else if freedom < 1.0 {
         text += "That is too few figures to tell whether the model is right: film further gaits.\n";
     } else {
-        let _ = writeln!(text, "The model explains these ways. Worst is {worst}.");
-        if widened >= 1.05 {
+        let _ = writeln!(
+            text,
+            "The model explains these ways. Worst is {worst_text}."
+        );
+        if error_factor >= 1.05 {
             let _ = writeln!(
                 text,
-                "All errors above are {widened:.1} times as large, by what it leaves."
+                "All errors above are {error_factor:.1} times as large, by what it leaves."
             );
         }
     }
@@ -253,23 +257,23 @@ fn goodness(identified: &Identified) -> String {
 }
 
 fn row_lines(row: &Row) -> String {
-    let way = &row.way;
-    let gait = match way.pace {
-        1.0 => way.gait.clone(),
-        pace => format!("{} at {:.0} %", way.gait, 100.0 * pace),
+    let movement = &row.way;
+    let gait = match movement.pace {
+        1.0 => movement.gait.clone(),
+        pace => format!("{} at {:.0} %", movement.gait, 100.0 * pace),
     };
     let mut lines = String::new();
-    for (i, (part, unit)) in PARTS.iter().enumerate() {
+    for (i, (part_name, unit)) in PARTS.iter().enumerate() {
         let name = if i == 0 { gait.as_str() } else { "" };
-        let error = match way.error[i].is_finite() {
-            true => format!("{:.2}", way.error[i]),
+        let error = match movement.error[i].is_finite() {
+            true => format!("{:.2}", movement.error[i]),
             false => "tie".to_owned(),
         };
         let _ = writeln!(
             lines,
             "{name:<17}{:<11}{:>+9.2}{error:>7}{:>+9.2}{:>+9.2}",
-            format!("{part}, {unit}"),
-            way.mean[i],
+            format!("{part_name}, {unit}"),
+            movement.mean[i],
             row.before[i],
             row.after[i]
         );

@@ -22,9 +22,9 @@ const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
 
 /// Measure in a film how far and how fast a servo turns, for robot.toml
 ///
-/// FILM shows the sheet's card on the servo's horn, between the two strips, while `lizard measure steps` turns it. Prints
-/// the figures of [servo] in robot.toml with their standard errors, the file's own beside them, and the lines to write.
-/// The stall torque needs a second film, in which the servo winds a thread with a weight on a drum.
+/// FILM shows the sheet's card on the servo's horn, between the two strips, while `lizard measure steps` turns it.
+/// Prints the figures of [servo] in robot.toml with their standard errors, the file's own beside them, and the lines
+/// to write. The stall torque needs a second film, in which the servo winds a thread with a weight on a drum.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard measure steps --servo A1 --robot jig.toml | lizard console
@@ -44,13 +44,13 @@ pub struct ServoArgs {
     #[arg(long, value_name = "FILM", requires_all = ["grams", "arm"])]
     load: Option<PathBuf>,
     /// The weight, g
-    #[arg(long, requires = "load", value_parser = grams)]
+    #[arg(long, requires = "load", value_parser = parse_grams)]
     grams: Option<f64>,
     /// Distance of the thread's middle from the axis of the servo, mm
-    #[arg(long, value_name = "MM", requires = "load", value_parser = arm)]
+    #[arg(long, value_name = "MM", requires = "load", value_parser = parse_arm)]
     arm: Option<f64>,
     /// Supply at the servo while it moves, V [default: volts of robot.toml]
-    #[arg(long, value_parser = volts)]
+    #[arg(long, value_parser = parse_volts)]
     volts: Option<f64>,
     #[command(flatten)]
     filming: Filming,
@@ -64,16 +64,16 @@ pub struct ServoArgs {
     robot: RobotFile,
 }
 
-fn grams(word: &str) -> Result<f64, String> {
-    number(word, [1.0, 10_000.0], "it is the weight in g")
+fn parse_grams(text: &str) -> Result<f64, String> {
+    number(text, [1.0, 10_000.0], "it is the weight in g")
 }
 
-fn arm(word: &str) -> Result<f64, String> {
-    number(word, [1.0, 200.0], "it is mm")
+fn parse_arm(text: &str) -> Result<f64, String> {
+    number(text, [1.0, 200.0], "it is mm")
 }
 
-fn volts(word: &str) -> Result<f64, String> {
-    number(word, [2.0, 9.0], "it is V")
+fn parse_volts(text: &str) -> Result<f64, String> {
+    number(text, [2.0, 9.0], "it is V")
 }
 
 /// The result, with the field names of `--json`.
@@ -124,27 +124,27 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     };
     let setup = args.filming.setup(args.height);
     let spinner = Spinner::new("reading the pictures");
-    let film = |path: &Path| -> Result<(AnalysedFilm, Turns), Failure> {
+    let watch_film = |path: &Path| -> Result<(AnalysedFilm, Turns), Failure> {
         let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
         let turns =
             Turns::of(&watched.path, jig).map_err(|trouble| film_failure(&name, &trouble))?;
         Ok((watched, turns))
     };
-    let (watched, free) = film(&args.film)?;
+    let (watched, free_turns) = watch_film(&args.film)?;
     let stall = match (&args.load, args.grams, args.arm) {
         (Some(path), Some(grams), Some(arm)) => {
-            let (_, loaded) = film(path)?;
-            let torque = grams / 1000.0 * GRAVITY * arm;
-            let stall = free.stall(&loaded, torque);
+            let (_, loaded_turns) = watch_film(path)?;
+            let torque_n_mm = grams / 1000.0 * GRAVITY * arm;
+            let stall = free_turns.stall(&loaded_turns, torque_n_mm);
             Some(stall.map_err(|trouble| Failure::Input(trouble.to_string()))?)
         }
         _ => None,
     };
     drop(spinner);
-    let report = Report::new(&robot, &args, &watched, &free, stall);
+    let report = Report::new(&robot, &args, &watched, &free_turns, stall);
     if let Some(output) = &args.output {
-        let new = report.new_robot(&text)?;
-        files::write(output, new.as_bytes())?;
+        let new_text = report.new_robot(&text)?;
+        files::write(output, new_text.as_bytes())?;
     }
     json::print_json_or(args.json, &report, || report.text())
 }
@@ -158,45 +158,57 @@ impl Report {
         stall: Option<Figure>,
     ) -> Self {
         let (name, servo) = (NAMES[args.servo], &robot.servos()[args.servo]);
-        let kind = robot.servo_type();
-        let volts = args.volts.unwrap_or(kind.volts);
-        let supply = volts / kind.at_volts;
-        let scaled = |figure: Figure, scale: f64| Figure {
+        let servo_type = robot.servo_type();
+        let volts = args.volts.unwrap_or(servo_type.volts);
+        let supply_ratio = volts / servo_type.at_volts;
+        let scale_figure = |figure: Figure, scale: f64| Figure {
             value: figure.value * scale,
             error: figure.error * scale.abs(),
         };
-        let inverse = |of: f64, figure: Figure| {
-            let value = of / figure.value;
+        let inverse_of = |numerator: f64, figure: Figure| {
+            let value = numerator / figure.value;
             let error = (value / figure.value * figure.error).abs();
             Figure { value, error }
         };
-        let us = servo.us_per_degree;
+        let us_per_degree = servo.us_per_degree;
         let mut figures = Vec::new();
-        let mut of_type = |key, decimals, figure: Figure, robot: f64, scale: f64| {
+        let mut push_key = |key, decimals, figure: Figure, robot: f64, scale: f64| {
             figures
                 .push(Key::new("servo", key, decimals, figure, robot * scale).scaled(1.0 / scale));
         };
-        let time = inverse(60.0, turns.rate);
-        of_type("s_per_60_deg", 4, time, kind.s_per_60_deg, 1.0 / supply);
+        let seconds_per_60_deg = inverse_of(60.0, turns.rate);
+        push_key(
+            "s_per_60_deg",
+            4,
+            seconds_per_60_deg,
+            servo_type.s_per_60_deg,
+            1.0 / supply_ratio,
+        );
         if let Some(stall) = stall {
-            let stall = scaled(stall, 1.0 / N_MM_PER_KG_CM);
-            of_type("stall_kg_cm", 2, stall, kind.stall_kg_cm, supply);
+            let stall = scale_figure(stall, 1.0 / N_MM_PER_KG_CM);
+            push_key(
+                "stall_kg_cm",
+                2,
+                stall,
+                servo_type.stall_kg_cm,
+                supply_ratio,
+            );
         }
         if let Some(width) = turns.dead_band.width {
-            of_type(
+            push_key(
                 "dead_band_us",
                 1,
-                scaled(width, us.abs()),
-                kind.dead_band_us,
+                scale_figure(width, us_per_degree.abs()),
+                servo_type.dead_band_us,
                 1.0,
             );
         }
         if let Some(spin_up) = turns.spin_up {
-            of_type(
+            push_key(
                 "spin_up_ms",
                 1,
-                scaled(spin_up, 1000.0),
-                kind.spin_up_ms,
+                scale_figure(spin_up, 1000.0),
+                servo_type.spin_up_ms,
                 1.0,
             );
         }
@@ -205,19 +217,19 @@ impl Report {
             &table,
             "us_per_degree",
             2,
-            inverse(us, turns.gain),
-            us,
+            inverse_of(us_per_degree, turns.gain),
+            us_per_degree,
         ));
-        let pair = |figure: Figure| [figure.value, figure.error];
+        let value_and_error = |figure: Figure| [figure.value, figure.error];
         Self {
             servo: name,
             pictures: turns.pictures,
             height: args.height,
             height_by_size: watched.sight.deck,
             figures,
-            rates: turns.rates.map(pair),
-            sides: pair(turns.hysteresis),
-            still_us: turns.dead_band.largest_ignored_step * us.abs(),
+            rates: turns.rates.map(value_and_error),
+            sides: value_and_error(turns.hysteresis),
+            still_us: turns.dead_band.largest_ignored_step * us_per_degree.abs(),
             is_spin_up_known: turns.spin_up.is_some(),
             is_dead_band_known: turns.dead_band.width.is_some(),
             turns_the_other_way: turns.gain.value < 0.0,
@@ -231,20 +243,22 @@ impl Report {
     /// Returns the text of robot.toml in which the keys that the film contradicts are replaced, and the supply if it
     /// was measured.
     fn new_robot(&self, text: &str) -> Result<String, Failure> {
-        let refused = |error: &dyn Display| Failure::Input(error.to_string());
-        let mut new =
-            figures::with_measured_keys(text, &self.figures).map_err(|error| refused(&error))?;
+        let failure_of = |error: &dyn Display| Failure::Input(error.to_string());
+        let mut new_text =
+            figures::with_measured_keys(text, &self.figures).map_err(|error| failure_of(&error))?;
         if self.is_volts_measured {
-            new = edit::with_number(&new, "servo.volts", self.volts)
-                .and_then(|new| edit::with_comment(&new, "servo.volts", "measured:", "by hand"))
-                .map_err(|error| refused(&error))?;
+            new_text = edit::with_number(&new_text, "servo.volts", self.volts)
+                .and_then(|new_text| {
+                    edit::with_comment(&new_text, "servo.volts", "measured:", "by hand")
+                })
+                .map_err(|error| failure_of(&error))?;
         }
-        Robot::parse(&new).map_err(|error| refused(&error))?;
-        Ok(new)
+        Robot::parse(&new_text).map_err(|error| failure_of(&error))?;
+        Ok(new_text)
     }
 
     fn text(&self) -> String {
-        let [[left, _], [right, _]] = self.rates;
+        let [[left_rate, _], [right_rate, _]] = self.rates;
         let mut text = format!(
             "{} at {} V, {:.0} pictures a second; card {:.0} mm above the strips, by its size {:.0} mm\n\n{}\n",
             self.servo,
@@ -256,15 +270,15 @@ impl Report {
         );
         let _ = writeln!(
             text,
-            "counter-clockwise {left:.0} deg/s, clockwise {right:.0} deg/s; a step of {:.1} us moved nothing",
+            "counter-clockwise {left_rate:.0} deg/s, clockwise {right_rate:.0} deg/s; a step of {:.1} us moved nothing",
             self.still_us
         );
-        let [sides, error] = self.sides;
+        let [difference, error] = self.sides;
         let _ = writeln!(
             text,
             "as it comes from either side, it stops {:.2} deg {}, to {error:.2} deg",
-            sides.abs(),
-            if sides < 0.0 { "too far" } else { "apart" },
+            difference.abs(),
+            if difference < 0.0 { "too far" } else { "apart" },
         );
         if self.turns_the_other_way {
             text +=
@@ -292,11 +306,11 @@ impl Report {
         if self.figures.iter().all(|key| key.name() != "stall_kg_cm") {
             text += "Not told: stall_kg_cm, which takes a second film with a weight (--load).\n";
         }
-        if let Some(written) = &self.written {
+        if let Some(path) = &self.written {
             let _ = writeln!(
                 text,
                 "Written: {}, where [limits] slew is still {} deg/s, as the jig needs it.",
-                written.display(),
+                path.display(),
                 self.slew
             );
         }

@@ -17,9 +17,10 @@ use crate::{Failure, RobotFile};
 
 /// Measure in films of a tilted board the friction of the robot's pads, for robot.toml
 ///
-/// Each FILM shows the robot on a board between the two strips, from a camera that stands still. It begins with the board
-/// level; then one end is lifted slowly until the robot slides. Prints the friction of sliding pads with its standard
-/// error, and static friction beside it. Films with the head downhill give friction forward, with the head uphill backward.
+/// Each FILM shows the robot on a board between the two strips, from a camera that stands still. It begins with the
+/// board level; then one end is lifted slowly until the robot slides. Prints the friction of sliding pads with its
+/// standard error, and static friction beside it. Films with the head downhill give friction forward, with the head
+/// uphill backward.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure slope downhill.mp4 uphill.mp4")]
@@ -68,7 +69,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let height = args.height.unwrap_or_else(|| height_of_board(&robot));
     let setup = args.filming.setup(height);
     let spinner = Spinner::new("reading the pictures");
-    let slide = |path: &PathBuf| {
+    let slide_of = |path: &PathBuf| {
         let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
         let slide = Slide::of(&watched).map_err(|trouble| film_failure(&name, &trouble))?;
         Ok((name, slide))
@@ -76,7 +77,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let slides: Vec<(String, Slide)> = args
         .films
         .iter()
-        .map(slide)
+        .map(slide_of)
         .collect::<Result<_, Failure>>()?;
     drop(spinner);
     let report = Report::new(&robot, &slides);
@@ -86,24 +87,25 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
 /// The mean of figures that share a systematic error, such as that of the level; `None` if `figures` is empty.
 fn mean(figures: &[Figure]) -> Option<Figure> {
     let count = figures.len() as f64;
-    let mean = |part: &dyn Fn(&Figure) -> f64| figures.iter().map(part).sum::<f64>() / count;
-    let value = mean(&|figure| figure.value);
-    let variance = mean(&|figure| (figure.value - value).powi(2)) / (count - 1.0).max(1.0);
+    let mean_of =
+        |value_of: &dyn Fn(&Figure) -> f64| figures.iter().map(value_of).sum::<f64>() / count;
+    let value = mean_of(&|figure| figure.value);
+    let variance = mean_of(&|figure| (figure.value - value).powi(2)) / (count - 1.0).max(1.0);
     (!figures.is_empty()).then(|| Figure {
         value,
-        error: mean(&|figure| figure.error).hypot(variance.sqrt()),
+        error: mean_of(&|figure| figure.error).hypot(variance.sqrt()),
     })
 }
 
 impl Report {
     fn new(robot: &Robot, slides: &[(String, Slide)]) -> Self {
-        let of = |is_ahead: bool| {
+        let friction_of = |is_head_first: bool| {
             let slides = slides
                 .iter()
-                .filter(|(_, slide)| slide.is_head_first == is_ahead);
+                .filter(|(_, slide)| slide.is_head_first == is_head_first);
             mean(&slides.map(|(_, slide)| slide.sliding).collect::<Vec<_>>())
         };
-        let (forward, backward) = (of(true), of(false));
+        let (forward, backward) = (friction_of(true), friction_of(false));
         let mut figures = Vec::new();
         let ground = robot.ground();
         if let Some(forward) = forward {
@@ -119,16 +121,16 @@ impl Report {
                 figures.push(Key::new("ground", key, 3, ratio, ground.ratio));
             }
         }
-        let pair = |figure: Figure| [figure.value, figure.error];
-        let line = |(film, slide): &(String, Slide)| Line {
+        let value_and_error = |figure: Figure| [figure.value, figure.error];
+        let line_of = |(film, slide): &(String, Slide)| Line {
             film: film.clone(),
             is_head_first: slide.is_head_first,
-            tilt: pair(slide.tilt),
-            resting: pair(slide.resting),
-            sliding: pair(slide.sliding),
+            tilt: value_and_error(slide.tilt),
+            resting: value_and_error(slide.resting),
+            sliding: value_and_error(slide.sliding),
         };
         Self {
-            films: slides.iter().map(line).collect(),
+            films: slides.iter().map(line_of).collect(),
             figures,
         }
     }
@@ -137,16 +139,16 @@ impl Report {
         let mut text =
             "slides first  begins at, deg   static friction  sliding friction\n".to_owned();
         for line in &self.films {
-            let first = if line.is_head_first { "head" } else { "tail" };
-            let pair = |[value, error]: [f64; 2], digits: usize| {
+            let end_name = if line.is_head_first { "head" } else { "tail" };
+            let format_pair = |[value, error]: [f64; 2], digits: usize| {
                 format!("{value:.digits$} to {error:.digits$}")
             };
             let _ = writeln!(
                 text,
-                "{first:<14}{:<17}{:<17}{:<18}{}",
-                pair(line.tilt, 1),
-                pair(line.resting, 3),
-                pair(line.sliding, 3),
+                "{end_name:<14}{:<17}{:<17}{:<18}{}",
+                format_pair(line.tilt, 1),
+                format_pair(line.resting, 3),
+                format_pair(line.sliding, 3),
                 line.film
             );
         }

@@ -11,17 +11,17 @@ use lizard_robot::servo::NAMES;
 use crate::{Failure, RobotFile};
 
 /// Time before the first step, s: the console waits for the board meanwhile.
-const LEAD: f64 = 6.0;
+const LEAD_TIME_S: f64 = 6.0;
 /// Slew limit for the jig, deg/s: the largest that robot.toml allows, faster than servos turn.
-const SLEW: f64 = 1000.0;
+const JIG_SLEW: f64 = 1000.0;
 /// Spacing of the poses that are checked along a step, deg.
 const CHECK_STEP_DEG: f64 = 1.0;
 
 /// Print the lines that turn a servo for `lizard measure servo`, one each second
 ///
 /// Pipe them into `lizard console`: the time between them counts. The robot must stand free, or the servo without its
-/// link, because it jumps by 60 deg. The robot's file needs `slew = 1000.0` under [limits], in a copy that is flashed for
-/// this trial alone, and the board's calibration is set back with `factory` until the next reset.
+/// link, because it jumps by 60 deg. The robot's file needs `slew = 1000.0` under [limits], in a copy that is flashed
+/// for this trial alone, and the board's calibration is set back with `factory` until the next reset.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure steps --servo A1 --robot jig.toml | lizard console")]
@@ -37,11 +37,11 @@ pub struct StepsArgs {
 }
 
 /// Parses a servo's name.
-pub(super) fn servo(word: &str) -> Result<usize, String> {
-    let found = NAMES
+pub(super) fn servo(text: &str) -> Result<usize, String> {
+    let index = NAMES
         .iter()
-        .position(|name| name.eq_ignore_ascii_case(word));
-    found.ok_or_else(|| "it is A1, A2, A3 or A4".to_owned())
+        .position(|name| name.eq_ignore_ascii_case(text));
+    index.ok_or_else(|| "it is A1, A2, A3 or A4".to_owned())
 }
 
 /// Prints the console lines, each at its time unless `--list` is given.
@@ -51,25 +51,25 @@ pub(super) fn servo(word: &str) -> Result<usize, String> {
 pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     check_slew(&robot)?;
-    let lines = lines(&robot, args.servo)?;
+    let lines = console_lines(&robot, args.servo)?;
     let mut out = io::stdout().lock();
-    for (line, pause) in lines {
+    for (line, pause_s) in lines {
         writeln!(out, "{line}")?;
         out.flush()?;
         if !args.list {
-            thread::sleep(Duration::from_secs_f64(pause));
+            thread::sleep(Duration::from_secs_f64(pause_s));
         }
     }
     Ok(())
 }
 
-/// Checks that the slew limit is at least [`SLEW`], so that it does not slow a servo down.
+/// Checks that the slew limit is at least [`JIG_SLEW`], so that it does not slow a servo down.
 pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
     let slew = robot.pace().slew;
-    if slew < SLEW {
+    if slew < JIG_SLEW {
         return Err(Failure::Input(format!(
             "robot {} changes its pulses by {slew} deg/s at most, so its servos cannot show their own rate: write \
-             slew = {SLEW:.1} under [limits] into a copy, flash that one, and give it with --robot",
+             slew = {JIG_SLEW:.1} under [limits] into a copy, flash that one, and give it with --robot",
             robot.name()
         )));
     }
@@ -77,38 +77,41 @@ pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
 }
 
 /// The lines for the console, each with the time until the next one, s.
-fn lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
-    let way = free_direction(robot, servo)?;
-    let neutral = |sweep: f64| pose(robot, servo, sweep);
-    let mut lines = vec![("factory".to_owned(), PAUSE), (neutral(0.0), LEAD - PAUSE)];
-    let sign = |is_reversed: bool| {
+fn console_lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
+    let direction = free_direction(robot, servo)?;
+    let pose_at = |sweep: f64| pose_line(robot, servo, sweep);
+    let mut lines = vec![
+        ("factory".to_owned(), PAUSE),
+        (pose_at(0.0), LEAD_TIME_S - PAUSE),
+    ];
+    let sign_of = |is_reversed: bool| {
         let is_positive = robot.servos()[servo].us_per_degree > 0.0;
         if is_positive == is_reversed { '-' } else { '+' }
     };
     let mut was_reversed = false;
-    for Order { sweep, is_reversed } in orders(way) {
+    for Order { sweep, is_reversed } in orders(direction) {
         let line = match is_reversed == was_reversed {
-            true => neutral(sweep),
-            false => format!("dir {} {}", servo + 1, sign(is_reversed)),
+            true => pose_at(sweep),
+            false => format!("dir {} {}", servo + 1, sign_of(is_reversed)),
         };
         was_reversed = is_reversed;
         lines.push((line, PAUSE));
     }
-    lines.push((neutral(0.0), 0.0));
+    lines.push((pose_at(0.0), 0.0));
     Ok(lines)
 }
 
 /// The neutral angles of all servos, but with one servo turned by `sweep` from neutral, deg.
-fn angles(robot: &Robot, servo: usize, sweep: f64) -> [f64; 4] {
+fn swept_angles(robot: &Robot, servo: usize, sweep: f64) -> [f64; 4] {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     angles[servo] += sweep;
     angles
 }
 
 /// The console line for the pose with one servo turned by `sweep` from neutral, deg.
-fn pose(robot: &Robot, servo: usize, sweep: f64) -> String {
-    let [a, b, c, d] = angles(robot, servo, sweep).map(|angle| format!("{angle:.2}"));
-    format!("pose {a} {b} {c} {d}")
+fn pose_line(robot: &Robot, servo: usize, sweep: f64) -> String {
+    let [a1, a2, a3, a4] = swept_angles(robot, servo, sweep).map(|angle| format!("{angle:.2}"));
+    format!("pose {a1} {a2} {a3} {a4}")
 }
 
 /// The direction from neutral in which the linkage allows all steps of a servo: 1 counter-clockwise, -1 clockwise.
@@ -116,16 +119,16 @@ fn pose(robot: &Robot, servo: usize, sweep: f64) -> String {
 /// # Errors
 /// Fails if neither direction is free.
 pub(super) fn free_direction(robot: &Robot, servo: usize) -> Result<f64, Failure> {
-    let is_free = |way: &f64| {
-        orders(*way).iter().all(|order| {
+    let is_free = |direction: &f64| {
+        orders(*direction).iter().all(|order| {
             let Order { sweep, .. } = *order;
             let steps = (sweep.abs() / CHECK_STEP_DEG).ceil().max(1.0);
-            let on_the_way = (0..=steps as usize).all(|i| {
-                let angles = angles(robot, servo, sweep * i as f64 / steps);
+            let is_path_accepted = (0..=steps as usize).all(|i| {
+                let angles = swept_angles(robot, servo, sweep * i as f64 / steps);
                 robot.accepted(angles).is_some()
             });
             let travel = robot.servos()[servo].travel();
-            on_the_way && (travel.0..=travel.1).contains(&order.pulse_angle())
+            is_path_accepted && (travel.0..=travel.1).contains(&order.pulse_angle())
         })
     };
     [1.0, -1.0].into_iter().find(is_free).ok_or_else(|| {

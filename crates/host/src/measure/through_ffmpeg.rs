@@ -18,7 +18,7 @@ const FFMPEG_ARGUMENTS: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt g
 const FFPROBE_ARGUMENTS: &str =
     "-v error -select_streams v:0 -show_entries frame=best_effort_timestamp_time -of csv=p=0";
 /// Largest width or height of a picture, px.
-const LARGEST: usize = 10_000;
+const MAX_SIZE_PX: usize = 10_000;
 
 /// Calls a function for each picture of a film with its time, s.
 ///
@@ -27,13 +27,13 @@ const LARGEST: usize = 10_000;
 pub(super) fn for_each_picture(
     film: &Path,
     rate: Option<f64>,
-    mut picture: impl FnMut(f64, &Picture) -> Result<(), Failure>,
+    mut handle_picture: impl FnMut(f64, &Picture) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let times = match rate {
         Some(_) => Vec::new(),
-        None => times(film)?,
+        None => picture_times(film)?,
     };
-    let unreadable = |reason: &str| {
+    let failure_of = |reason: &str| {
         Failure::Input(format!(
             "{} is no film that ffmpeg can read: {reason}",
             film.display()
@@ -46,35 +46,38 @@ pub(super) fn for_each_picture(
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
-        .map_err(|error| missing("ffmpeg", &error))?;
+        .map_err(|error| start_failure("ffmpeg", &error))?;
     let mut stream = BufReader::new(ffmpeg.stdout.take().expect("it is piped"));
     let mut line = String::new();
-    let header = stream.read_line(&mut line).ok().and_then(|_| size(&line));
-    let outcome = match header {
-        None => Err(unreadable("it sends no pictures")),
+    let picture_size = stream
+        .read_line(&mut line)
+        .ok()
+        .and_then(|_| parse_size(&line));
+    let outcome = match picture_size {
+        None => Err(failure_of("it sends no pictures")),
         Some([width, height]) => (0..)
             .try_fold((), |(), i: usize| {
                 line.clear();
                 match stream.read_line(&mut line) {
                     Ok(0) => return Err(None),
                     Ok(_) => {}
-                    Err(error) => return Err(Some(unreadable(&error.to_string()))),
+                    Err(error) => return Err(Some(failure_of(&error.to_string()))),
                 }
                 let mut grey = vec![0; width * height];
-                let whole = stream.read_exact(&mut grey);
-                whole.map_err(|_| Some(unreadable("its last picture is not whole")))?;
+                let read_result = stream.read_exact(&mut grey);
+                read_result.map_err(|_| Some(failure_of("its last picture is not whole")))?;
                 let seconds = match rate {
                     Some(rate) => Some(i as f64 / rate),
                     None => times.get(i).copied(),
                 };
                 let seconds = seconds.ok_or_else(|| {
-                    Some(unreadable("it has more pictures than times; give --fps"))
+                    Some(failure_of("it has more pictures than times; give --fps"))
                 })?;
                 let grey = Picture::new(width, height, grey)
-                    .ok_or_else(|| Some(unreadable("no pixels")))?;
-                picture(seconds, &grey).map_err(Some)
+                    .ok_or_else(|| Some(failure_of("no pixels")))?;
+                handle_picture(seconds, &grey).map_err(Some)
             })
-            .or_else(|end: Option<Failure>| end.map_or(Ok(()), Err)),
+            .or_else(|failure: Option<Failure>| failure.map_or(Ok(()), Err)),
     };
     // ffmpeg may still be sending pictures that are no longer read.
     drop(stream);
@@ -84,12 +87,12 @@ pub(super) fn for_each_picture(
 }
 
 /// The times of a film's pictures, s.
-fn times(film: &Path) -> Result<Vec<f64>, Failure> {
+fn picture_times(film: &Path) -> Result<Vec<f64>, Failure> {
     let output = Command::new("ffprobe")
         .args(FFPROBE_ARGUMENTS.split(' '))
         .arg(film)
         .output()
-        .map_err(|error| missing("ffprobe", &error))?;
+        .map_err(|error| start_failure("ffprobe", &error))?;
     let text = String::from_utf8_lossy(&output.stdout);
     // A picture with side data is followed by a comma and an empty line.
     let lines = text.lines().map(|line| line.trim_end_matches(',').trim());
@@ -105,9 +108,9 @@ fn times(film: &Path) -> Result<Vec<f64>, Failure> {
 }
 
 /// Width and height of a YUV4MPEG2 stream, from its header line; `None` if the header is invalid.
-fn size(header: &str) -> Option<[usize; 2]> {
+fn parse_size(header: &str) -> Option<[usize; 2]> {
     let fields = header.trim().strip_prefix("YUV4MPEG2 ")?;
-    let field = |name: char| {
+    let parse_field = |name: char| {
         let mut values = fields
             .split(' ')
             .filter_map(|field| field.strip_prefix(name));
@@ -115,12 +118,12 @@ fn size(header: &str) -> Option<[usize; 2]> {
             .next()?
             .parse()
             .ok()
-            .filter(|size| (1..=LARGEST).contains(size))
+            .filter(|size| (1..=MAX_SIZE_PX).contains(size))
     };
-    Some([field('W')?, field('H')?])
+    Some([parse_field('W')?, parse_field('H')?])
 }
 
-fn missing(program: &str, error: &std::io::Error) -> Failure {
+fn start_failure(program: &str, error: &std::io::Error) -> Failure {
     Failure::Impossible(match error.kind() {
         ErrorKind::NotFound => format!(
             "a film is read by the program {program}, which is not installed: install ffmpeg, or give a folder of \
@@ -137,9 +140,9 @@ mod tests {
     #[test]
     fn the_size_is_read_from_the_header() {
         let header = "YUV4MPEG2 W1280 H720 F30:1 Ip A1:1 Cmono\n";
-        assert_eq!(size(header), Some([1280, 720]));
-        for wrong in ["", "YUV4MPEG2 W0 H720", "YUV4MPEG2 W99999999 H1", "W1 H1"] {
-            assert_eq!(size(wrong), None, "{wrong}");
+        assert_eq!(parse_size(header), Some([1280, 720]));
+        for invalid_header in ["", "YUV4MPEG2 W0 H720", "YUV4MPEG2 W99999999 H1", "W1 H1"] {
+            assert_eq!(parse_size(invalid_header), None, "{invalid_header}");
         }
     }
 }

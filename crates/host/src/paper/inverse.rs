@@ -60,15 +60,15 @@ struct ModeSolution {
 ///
 /// # Errors
 /// Fails if a point is out of reach, or if the output cannot be written.
-pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(), Failure> {
+pub fn print(robot: &Robot, ends: [Option<Vector>; 2], is_json: bool) -> Result<(), Failure> {
     let [head, tail] = ends;
     let head = head.map(|point| solve(robot, End::Head, point));
     let tail = tail.map(|point| solve(robot, End::Tail, point));
     let report = report(robot, head, tail);
-    json::print_json_or(json, &report, || text(&report))?;
+    json::print_json_or(is_json, &report, || text(&report))?;
     let unreachable = [("head", &report.head), ("tail", &report.tail)]
         .into_iter()
-        .find_map(|(name, part)| Some((name, part.as_ref()?.why.as_ref()?)));
+        .find_map(|(name, five_bar)| Some((name, five_bar.as_ref()?.why.as_ref()?)));
     match unreachable {
         Some((name, reason)) => Err(Failure::Impossible(format!("{name}: {reason}"))),
         None => Ok(()),
@@ -77,10 +77,12 @@ pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(),
 
 /// Solves the five-bar of head or tail for a point, in all working modes.
 fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
-    let local = robot.lizard().to_end(end, point);
-    let (working_modes, reason) = match robot.lizard().end(end).inverse(local) {
-        Ok(all) => {
-            let solutions = all.into_iter().map(|a| solve_mode(robot, end, local, a));
+    let local_point = robot.lizard().to_end(end, point);
+    let (working_modes, reason) = match robot.lizard().end(end).inverse(local_point) {
+        Ok(inverse_solutions) => {
+            let solutions = inverse_solutions
+                .into_iter()
+                .map(|solution| solve_mode(robot, end, local_point, solution));
             (solutions.collect(), None)
         }
         Err(fault) => (Vec::new(), Some(fault.to_string())),
@@ -93,36 +95,44 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
 }
 
 /// Checks an inverse solution: its error, its margin, and the reasons why the robot cannot take it.
-fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> ModeSolution {
+fn solve_mode(robot: &Robot, end: End, point: Vector, solution: InverseSolution) -> ModeSolution {
     let bars = robot.lizard().end(end);
-    let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
+    let pose = bars.forward_in(
+        solution.assembly_mode,
+        solution.theta_left,
+        solution.theta_right,
+    );
     let (error_mm, margin) = match &pose {
         Ok(pose) => ((pose.end_point - point).length(), pose.margin()),
         Err(_) => (0.0, 0.0),
     };
-    let angles = [a.theta_left, a.theta_right].map(|theta| end.mirror_angle(theta));
+    let angles = [solution.theta_left, solution.theta_right].map(|theta| end.mirror_angle(theta));
     let mut reasons: Vec<String> = end
         .servos()
         .into_iter()
         .zip(angles)
         .filter_map(|(servo, angle)| verdict::beyond(robot, servo, angle))
         .collect();
-    let behind = a.assembly_mode == AssemblyMode::Behind;
-    if behind {
+    let is_behind = solution.assembly_mode == AssemblyMode::Behind;
+    if is_behind {
         reasons.push(
             "another assembly mode: the end point would be behind the crank tips".to_string(),
         );
     }
     if let Ok(pose) = &pose {
         // Behind the crank tips the type-2 margin is negative; the reason above says so.
-        let stated = |check| behind && Check::TYPE2.contains(&check);
-        let broken = robot.limits().end_violations(end, pose);
-        reasons.extend(broken.filter(|v| !stated(v.check)).map(|v| v.to_string()));
+        let is_stated = |check| is_behind && Check::TYPE2.contains(&check);
+        let violations = robot.limits().end_violations(end, pose);
+        reasons.extend(
+            violations
+                .filter(|violation| !is_stated(violation.check))
+                .map(|violation| violation.to_string()),
+        );
     }
     ModeSolution {
-        left: elbow_text(a.working_mode.left),
-        right: elbow_text(a.working_mode.right),
-        assembly_mode: if behind { "behind" } else { "ahead" },
+        left: elbow_text(solution.working_mode.left),
+        right: elbow_text(solution.working_mode.right),
+        assembly_mode: if is_behind { "behind" } else { "ahead" },
         theta_left: angles[0],
         theta_right: angles[1],
         error_mm,
@@ -143,20 +153,23 @@ fn elbow_text(elbow: Elbow) -> &'static str {
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut is_complete = true;
-    for (part, end) in [(&head, End::Head), (&tail, End::Tail)] {
-        match part.as_ref().map(|part| part.working_modes.first()) {
-            Some(Some(outward)) => {
+    for (five_bar, end) in [(&head, End::Head), (&tail, End::Tail)] {
+        match five_bar
+            .as_ref()
+            .map(|five_bar| five_bar.working_modes.first())
+        {
+            Some(Some(outward_mode)) => {
                 let [left, right] = end.servos();
-                angles[left] = outward.theta_left;
-                angles[right] = outward.theta_right;
+                angles[left] = outward_mode.theta_left;
+                angles[right] = outward_mode.theta_right;
             }
             Some(None) => is_complete = false,
             None => {}
         }
     }
     let mut reasons: Vec<String> = Vec::new();
-    for part in [&head, &tail].into_iter().flatten() {
-        reasons.extend(part.why.clone());
+    for five_bar in [&head, &tail].into_iter().flatten() {
+        reasons.extend(five_bar.why.clone());
     }
     if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
@@ -181,23 +194,23 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
 
 fn text(report: &Report) -> String {
     let mut page = String::new();
-    for (name, part, servos) in [
+    for (name, five_bar, servos) in [
         ("head", &report.head, ["A1 theta1", "A2 theta4"]),
         ("tail", &report.tail, ["A3 theta8", "A4 theta5"]),
     ] {
-        let Some(part) = part else { continue };
-        let [x, y] = part.point;
+        let Some(five_bar) = five_bar else { continue };
+        let [x, y] = five_bar.point;
         page += &format!(
             "{name} at ({:.3}, {:.3}) mm\n",
             round_decimals(x, 3),
             round_decimals(y, 3)
         );
-        if let Some(reason) = &part.why {
+        if let Some(reason) = &five_bar.why {
             page += &format!("  {reason}\n\n");
             continue;
         }
         // The columns are in servo order, A3 before A4; the tail's left servo is A4.
-        let swapped = name == "tail";
+        let is_swapped = name == "tail";
         page += &format!(
             "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
             &servos[0][..2],
@@ -205,22 +218,24 @@ fn text(report: &Report) -> String {
             servos[0],
             servos[1]
         );
-        for solution in &part.working_modes {
+        for solution in &five_bar.working_modes {
             let verdict = match solution.why.as_slice() {
                 [] => "yes".to_string(),
-                [only] => format!("no: {only}"),
-                [first, rest @ ..] => format!("no: {first}; and {} more", rest.len()),
+                [reason] => format!("no: {reason}"),
+                [first_reason, other_reasons @ ..] => {
+                    format!("no: {first_reason}; and {} more", other_reasons.len())
+                }
             };
-            let mut bends = [solution.left, solution.right];
+            let mut elbows = [solution.left, solution.right];
             let mut angles = [solution.theta_left, solution.theta_right];
-            if swapped {
-                bends.reverse();
+            if is_swapped {
+                elbows.reverse();
                 angles.reverse();
             }
             page += &format!(
                 "  {:8} {:8} {:10.3} {:10.3}  {:8} {:+7.3}    {:>7}   {verdict}\n",
-                bends[0],
-                bends[1],
+                elbows[0],
+                elbows[1],
                 round_decimals(angles[0], 3),
                 round_decimals(angles[1], 3),
                 solution.assembly_mode,

@@ -24,7 +24,7 @@ const RANK_TOLERANCE: f64 = 1e-7;
 const MAX_STILL_SPEED: f64 = 1e-3;
 
 /// The unit of length, mm, that makes rows in mm and in radians comparable.
-const LENGTH: f64 = 50.0;
+const LENGTH_UNIT_MM: f64 = 50.0;
 
 /// A mechanism: joints that connect links. Link 0 is fixed.
 struct Mechanism {
@@ -79,50 +79,51 @@ struct Report {
 ///
 /// # Errors
 /// Fails if the output cannot be written.
-pub fn print(lizard: &Lizard, solution: &Solution, json: bool) -> Result<(), Failure> {
+pub fn print(lizard: &Lizard, solution: &Solution, is_json: bool) -> Result<(), Failure> {
     let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let mut all = vec![body_mechanism(lizard, solution)];
-    all.extend((0..4).map(|i| leg_mechanism(lizard, solution, i, legs[i])));
-    let reports: Vec<Report> = all.iter().map(measure).collect();
-    json::print_json_or(json, &reports, || text(&reports))
+    let mut mechanisms = vec![body_mechanism(lizard, solution)];
+    mechanisms.extend((0..4).map(|i| leg_mechanism(lizard, solution, i, legs[i])));
+    let reports: Vec<Report> = mechanisms.iter().map(measure).collect();
+    json::print_json_or(is_json, &reports, || text(&reports))
 }
 
 fn text(reports: &[Report]) -> String {
     let mut page =
         "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  locked  conditioning\n"
             .to_owned();
-    for r in reports {
+    for report in reports {
         page += &format!(
             "{:16} {:6} {:7} {:9}   {:>5}x{:<2} {:5} {:9} {:7}  {:12.1e}\n",
-            r.mechanism,
-            r.links,
-            r.joints,
-            r.gruebler,
-            r.constraints,
-            r.velocities,
-            r.rank,
-            r.freedoms,
-            r.locked_freedoms,
-            r.conditioning
+            report.mechanism,
+            report.links,
+            report.joints,
+            report.gruebler,
+            report.constraints,
+            report.velocities,
+            report.rank,
+            report.freedoms,
+            report.locked_freedoms,
+            report.conditioning
         );
     }
     page +=
         "locked: freedoms left with the driven cranks locked; conditioning: of that Jacobian\n\n";
-    let singular = |r: &&Report| r.freedoms as i64 != r.gruebler || r.locked_freedoms > 0;
-    if !reports.iter().any(|r| singular(&r)) {
+    let is_singular =
+        |report: &&Report| report.freedoms as i64 != report.gruebler || report.locked_freedoms > 0;
+    if !reports.iter().any(|report| is_singular(&report)) {
         page += "Count and rank agree: four servos hold the body, one spring each leg.\n";
     }
-    for r in reports.iter().filter(singular) {
+    for report in reports.iter().filter(is_singular) {
         page += &format!(
             "{} is singular here: the rank leaves {} freedoms",
-            r.mechanism, r.freedoms
+            report.mechanism, report.freedoms
         );
-        page += &match r.loose.as_slice() {
+        page += &match report.loose.as_slice() {
             [] => ".\n".to_owned(),
-            loose => format!(
+            loose_parts => format!(
                 ", and {} with the driven cranks locked: {}.\n",
-                r.locked_freedoms,
-                loose.join(", ")
+                report.locked_freedoms,
+                loose_parts.join(", ")
             ),
         };
     }
@@ -131,29 +132,31 @@ fn text(reports: &[Report]) -> String {
 
 /// The 13 links of the body: chassis, four cranks with their side arms, four
 /// couplers, four slider halves.
-fn body_mechanism(lizard: &Lizard, s: &Solution) -> Mechanism {
-    const CRANK: [usize; 4] = [1, 2, 3, 4];
-    let tips = s.crank_tips();
+fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
+    const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
+    let tips = solution.crank_tips();
     let shafts = lizard.shafts();
-    let pin = |a: usize, b: usize, point: Vector| Joint {
-        links: [a, b],
+    let pin_joint = |first: usize, second: usize, point: Vector| Joint {
+        links: [first, second],
         kind: Kind::Revolute(point),
     };
-    let mut joints: Vec<Joint> = (0..4).map(|i| pin(0, CRANK[i], shafts[i])).collect();
+    let mut joints: Vec<Joint> = (0..4)
+        .map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]))
+        .collect();
     // Head couplers 5, 6; tail couplers 7 (left), 8 (right).
-    joints.push(pin(CRANK[0], 5, tips[0]));
-    joints.push(pin(CRANK[1], 6, tips[1]));
-    joints.push(pin(5, 6, s.head_point()));
-    joints.push(pin(CRANK[3], 7, tips[3]));
-    joints.push(pin(CRANK[2], 8, tips[2]));
-    joints.push(pin(7, 8, s.tail_point()));
+    joints.push(pin_joint(CRANK_LINKS[0], 5, tips[0]));
+    joints.push(pin_joint(CRANK_LINKS[1], 6, tips[1]));
+    joints.push(pin_joint(5, 6, solution.head_point()));
+    joints.push(pin_joint(CRANK_LINKS[3], 7, tips[3]));
+    joints.push(pin_joint(CRANK_LINKS[2], 8, tips[2]));
+    joints.push(pin_joint(7, 8, solution.tail_point()));
     // Slider halves: left rear 9, front 10; right rear 11, front 12.
     for (side, halves) in Side::ALL.into_iter().zip([[9, 10], [11, 12]]) {
-        let ([front, rear], slider) = (side.servos(), s.side(side));
+        let ([front, rear], slider) = (side.servos(), solution.side(side));
         let rear_tip = shafts[rear] + slider.rear_tip;
-        joints.push(pin(CRANK[rear], halves[0], rear_tip));
-        joints.push(pin(
-            CRANK[front],
+        joints.push(pin_joint(CRANK_LINKS[rear], halves[0], rear_tip));
+        joints.push(pin_joint(
+            CRANK_LINKS[front],
             halves[1],
             shafts[rear] + slider.front_tip,
         ));
@@ -166,7 +169,7 @@ fn body_mechanism(lizard: &Lizard, s: &Solution) -> Mechanism {
         name: "body",
         links: 13,
         joints,
-        driven: CRANK.to_vec(),
+        driven: CRANK_LINKS.to_vec(),
         parts: &[
             (&[5, 6], "the head's end point is loose (type 2)"),
             (&[7, 8], "the tail's end point is loose (type 2)"),
@@ -178,14 +181,19 @@ fn body_mechanism(lizard: &Lizard, s: &Solution) -> Mechanism {
 
 /// A leg's four-bar in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
 /// spring to the body imposes no rigid constraint, so it is not a link.
-fn leg_mechanism(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mechanism {
-    let crank = s.legs[servo].direction * lizard.leg.crank;
-    let across = Vector::new(lizard.leg.ground, 0.0);
+fn leg_mechanism(
+    lizard: &Lizard,
+    solution: &Solution,
+    servo: usize,
+    name: &'static str,
+) -> Mechanism {
+    let crank = solution.legs[servo].direction * lizard.leg.crank;
+    let ground_vector = Vector::new(lizard.leg.ground, 0.0);
     let points = [
         ([0, 1], Vector::default()),
         ([1, 2], crank),
-        ([2, 3], across + crank),
-        ([3, 0], across),
+        ([2, 3], ground_vector + crank),
+        ([3, 0], ground_vector),
     ];
     let joints = points.map(|(links, point)| Joint {
         links,
@@ -215,36 +223,36 @@ pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
 
 /// A mechanism's degrees of freedom with unlocked servos, by rank.
 fn freedoms(mechanism: &Mechanism) -> usize {
-    let free = jacobian(mechanism, &[]);
-    free.ncols() - rank(&free.singular_values())
+    let free_jacobian = jacobian(mechanism, &[]);
+    free_jacobian.ncols() - rank(&free_jacobian.singular_values())
 }
 
 fn measure(mechanism: &Mechanism) -> Report {
     let joints = mechanism.joints.len();
-    let free = jacobian(mechanism, &[]);
-    let (constraints, velocities) = free.shape();
-    let rank = rank(&free.singular_values());
-    let locked = SVD::new(jacobian(mechanism, &mechanism.driven), false, true);
-    let values = &locked.singular_values;
-    let zero = RANK_TOLERANCE * values.max();
-    let mut loose = Vec::new();
-    if let Some(directions) = &locked.v_t {
+    let free_jacobian = jacobian(mechanism, &[]);
+    let (constraints, velocities) = free_jacobian.shape();
+    let rank = rank(&free_jacobian.singular_values());
+    let locked_svd = SVD::new(jacobian(mechanism, &mechanism.driven), false, true);
+    let values = &locked_svd.singular_values;
+    let zero_limit = RANK_TOLERANCE * values.max();
+    let mut loose_parts = Vec::new();
+    if let Some(directions) = &locked_svd.v_t {
         for (value, direction) in values.iter().zip(directions.row_iter()) {
-            if *value <= zero {
+            if *value <= zero_limit {
                 // Speed of each moving link in this direction.
                 let speeds: Vec<f64> = (0..mechanism.links - 1)
                     .map(|link| direction.columns(3 * link, 3).norm())
                     .collect();
                 let fastest = speeds.iter().copied().fold(0.0, f64::max);
-                loose.extend(mechanism.parts.iter().filter_map(|(links, what)| {
-                    let moves = |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * fastest;
-                    links.iter().any(moves).then_some(*what)
+                loose_parts.extend(mechanism.parts.iter().filter_map(|(links, message)| {
+                    let is_moving = |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * fastest;
+                    links.iter().any(is_moving).then_some(*message)
                 }));
             }
         }
     }
-    loose.sort_unstable();
-    loose.dedup();
+    loose_parts.sort_unstable();
+    loose_parts.dedup();
     Report {
         mechanism: mechanism.name,
         links: mechanism.links,
@@ -255,24 +263,24 @@ fn measure(mechanism: &Mechanism) -> Report {
         rank,
         freedoms: velocities - rank,
         locked_freedoms: velocities - self::rank(values),
-        loose,
+        loose: loose_parts,
         conditioning: values.min() / values.max(),
     }
 }
 
 /// The number of singular values that are not zero.
 fn rank(values: &DVector<f64>) -> usize {
-    let zero = RANK_TOLERANCE * values.max();
-    values.iter().filter(|value| **value > zero).count()
+    let zero_limit = RANK_TOLERANCE * values.max();
+    values.iter().filter(|value| **value > zero_limit).count()
 }
 
 /// The constraints on the velocities of the moving links: two rows for each
 /// joint, and one for each link that is locked against turning.
-fn jacobian(mechanism: &Mechanism, locked: &[usize]) -> DMatrix<f64> {
-    let joints = mechanism.joints.len();
-    let velocities = 3 * (mechanism.links - 1);
-    let mut rows = DMatrix::<f64>::zeros(2 * joints + locked.len(), velocities);
-    let mut add = |row: usize, link: usize, entries: [f64; 3]| {
+fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
+    let joint_count = mechanism.joints.len();
+    let velocity_count = 3 * (mechanism.links - 1);
+    let mut rows = DMatrix::<f64>::zeros(2 * joint_count + locked_links.len(), velocity_count);
+    let mut add_entries = |row: usize, link: usize, entries: [f64; 3]| {
         if link > 0 {
             for (i, entry) in entries.into_iter().enumerate() {
                 rows[(row, 3 * (link - 1) + i)] += entry;
@@ -283,25 +291,33 @@ fn jacobian(mechanism: &Mechanism, locked: &[usize]) -> DMatrix<f64> {
         for (link, sign) in [(joint.links[0], 1.0), (joint.links[1], -1.0)] {
             match joint.kind {
                 // Both links give the common point the same velocity, v + omega x p.
-                Kind::Revolute(p) => {
-                    add(2 * i, link, [sign, 0.0, -sign * p.y / LENGTH]);
-                    add(2 * i + 1, link, [0.0, sign, sign * p.x / LENGTH]);
-                }
-                // Both links have the same omega, and the same velocity across the slide.
-                Kind::Prismatic(p, along) => {
-                    let n = along.rotated_left();
-                    add(2 * i, link, [0.0, 0.0, sign]);
-                    add(
+                Kind::Revolute(point) => {
+                    add_entries(2 * i, link, [sign, 0.0, -sign * point.y / LENGTH_UNIT_MM]);
+                    add_entries(
                         2 * i + 1,
                         link,
-                        [sign * n.x, sign * n.y, sign * p.cross(n) / LENGTH],
+                        [0.0, sign, sign * point.x / LENGTH_UNIT_MM],
+                    );
+                }
+                // Both links have the same omega, and the same velocity across the slide.
+                Kind::Prismatic(point, direction) => {
+                    let normal = direction.rotated_left();
+                    add_entries(2 * i, link, [0.0, 0.0, sign]);
+                    add_entries(
+                        2 * i + 1,
+                        link,
+                        [
+                            sign * normal.x,
+                            sign * normal.y,
+                            sign * point.cross(normal) / LENGTH_UNIT_MM,
+                        ],
                     );
                 }
             }
         }
     }
-    for (i, &link) in locked.iter().enumerate() {
-        add(2 * joints + i, link, [0.0, 0.0, 1.0]);
+    for (i, &link) in locked_links.iter().enumerate() {
+        add_entries(2 * joint_count + i, link, [0.0, 0.0, 1.0]);
     }
     rows
 }

@@ -76,17 +76,18 @@ enum Subject {
 /// cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let ends = [&args.head, &args.tail].map(|end| end.as_ref().map(|p| Vector::new(p[0], p[1])));
+    let ends = [&args.head, &args.tail]
+        .map(|end| end.as_ref().map(|point| Vector::new(point[0], point[1])));
     if ends.iter().any(Option::is_some) {
         return inverse::print(&robot, ends, args.json);
     }
     let pose = args.pose.get();
     let lizard = robot.lizard();
-    let solved = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
+    let solve_pose = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
     match args.show {
         Subject::Joints => solve::print(&robot, pose.as_ref(), args.json),
-        Subject::Singularities => singularity::print(&robot, &solved()?, args.json),
-        Subject::Freedoms => mobility::print(lizard, &solved()?, args.json),
-        Subject::Rates => velocity::print(lizard, &solved()?, &args.drive.into(), args.json),
+        Subject::Singularities => singularity::print(&robot, &solve_pose()?, args.json),
+        Subject::Freedoms => mobility::print(lizard, &solve_pose()?, args.json),
+        Subject::Rates => velocity::print(lizard, &solve_pose()?, &args.drive.into(), args.json),
     }
 }

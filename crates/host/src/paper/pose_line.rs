@@ -66,7 +66,7 @@ impl Serialize for Sines {
 impl PoseLine {
     /// Makes the object of a pose, with or without a solution.
     pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
-        let s = match solved {
+        let solution = match solved {
             Ok(solution) => solution,
             Err(infeasible) => {
                 return Self {
@@ -76,33 +76,33 @@ impl PoseLine {
                 };
             }
         };
-        let reason = verdict::reasons(robot, s);
-        let (head, tail) = (s.head_point(), s.tail_point());
-        let p = s.passive();
-        let [lf, rf, rh, lh] = s.legs.map(|leg| Leg {
+        let reasons = verdict::reasons(robot, solution);
+        let (head, tail) = (solution.head_point(), solution.tail_point());
+        let passive = solution.passive();
+        let [lf, rf, rh, lh] = solution.legs.map(|leg| Leg {
             follower: leg.follower(),
             coupler: leg.coupler(),
         });
         Self {
             seconds,
-            theta2: Some(p.theta2),
-            theta3: Some(p.theta3),
-            theta6: Some(p.theta6),
-            theta7: Some(p.theta7),
+            theta2: Some(passive.theta2),
+            theta3: Some(passive.theta3),
+            theta6: Some(passive.theta6),
+            theta7: Some(passive.theta7),
             head: Some([head.x, head.y]),
             tail: Some([tail.x, tail.y]),
             left: Some(Side {
-                phi: p.phi_left,
-                s: s.left.s,
+                phi: passive.phi_left,
+                s: solution.left.s,
             }),
             right: Some(Side {
-                phi: p.phi_right,
-                s: s.right.s,
+                phi: passive.phi_right,
+                s: solution.right.s,
             }),
             legs: Some(Legs { lf, rf, rh, lh }),
-            margins: Some(Sines(s.margins)),
-            safe: reason.is_empty(),
-            why: reason,
+            margins: Some(Sines(solution.margins)),
+            safe: reasons.is_empty(),
+            why: reasons,
         }
     }
 }
@@ -129,26 +129,31 @@ pub fn heading(has_time: bool) -> String {
 }
 
 /// Formats a pose as one row of a table.
-pub fn row(robot: &Robot, timed: &TimedPose, solved: &Result<Solution, Infeasible>) -> String {
-    let angles = <[f64; 4]>::from(timed.pose);
+pub fn row(robot: &Robot, timed_pose: &TimedPose, solved: &Result<Solution, Infeasible>) -> String {
+    let angles = <[f64; 4]>::from(timed_pose.pose);
     let mut line = String::with_capacity(192);
-    if let Some(seconds) = timed.seconds {
+    if let Some(seconds) = timed_pose.seconds {
         let _ = write!(line, "{seconds:8.2} |");
     }
     for angle in angles {
         let _ = write!(line, " {:8.3}", round_decimals(angle, 3));
     }
-    let s = match solved {
+    let solution = match solved {
         Err(infeasible) => {
             let _ = write!(line, " | {infeasible}");
             return line;
         }
         Ok(solution) => solution,
     };
-    let (head, tail) = (s.head_point(), s.tail_point());
-    let (min, value) = s.margins.min();
+    let (head, tail) = (solution.head_point(), solution.tail_point());
+    let (check, value) = solution.margins.min();
     for block in [
-        [s.theta2(), s.theta3(), s.theta6(), s.theta7()],
+        [
+            solution.theta2(),
+            solution.theta3(),
+            solution.theta6(),
+            solution.theta7(),
+        ],
         [head.x, head.y, tail.x, tail.y],
     ] {
         line.push_str(" |");
@@ -158,12 +163,12 @@ pub fn row(robot: &Robot, timed: &TimedPose, solved: &Result<Solution, Infeasibl
     }
     let _ = write!(
         line,
-        " | {:+7.2} {:+7.2} | {min:9} {:+7.4} | ",
-        round_decimals(s.left.s, 2),
-        round_decimals(s.right.s, 2),
+        " | {:+7.2} {:+7.2} | {check:9} {:+7.4} | ",
+        round_decimals(solution.left.s, 2),
+        round_decimals(solution.right.s, 2),
         round_decimals(value, 4),
     );
-    match verdict::reasons(robot, s).first() {
+    match verdict::reasons(robot, solution).first() {
         None => line.push_str("safe"),
         Some(reason) => line.push_str(reason),
     }
@@ -173,22 +178,22 @@ pub fn row(robot: &Robot, timed: &TimedPose, solved: &Result<Solution, Infeasibl
 /// Formats a pose as a page of text.
 pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
     let limits = robot.limits();
-    let milli = |value: f64| round_decimals(value, 3);
-    let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(milli);
+    let round_3 = |value: f64| round_decimals(value, 3);
+    let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(round_3);
     let mut page = format!(
         "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
     );
-    let s = match solved {
+    let solution = match solved {
         Err(infeasible) => {
             let _ = writeln!(page, "\nno solution: {infeasible}");
             return page;
         }
         Ok(solution) => solution,
     };
-    let (head, tail) = (s.head_point(), s.tail_point());
-    let legs = s.legs.map(|leg| milli(leg.follower()));
-    let fine = |margin: f64| round_decimals(margin, 4);
-    let m = &s.margins;
+    let (head, tail) = (solution.head_point(), solution.tail_point());
+    let legs = solution.legs.map(|leg| round_3(leg.follower()));
+    let round_4 = |margin: f64| round_decimals(margin, 4);
+    let margins = &solution.margins;
     let _ = write!(
         page,
         "
@@ -204,18 +209,18 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
          legs      LF   {:+.4}   RF   {:+.4}   RH {:+.4}   LH {:+.4}
 
 ",
-        milli(head.x),
-        milli(head.y),
-        milli(s.theta2()),
-        milli(s.theta3()),
-        milli(tail.x),
-        milli(tail.y),
-        milli(s.theta6()),
-        milli(s.theta7()),
-        milli(s.left.s),
-        milli(s.left.phi()),
-        milli(s.right.s),
-        milli(s.right.phi()),
+        round_3(head.x),
+        round_3(head.y),
+        round_3(solution.theta2()),
+        round_3(solution.theta3()),
+        round_3(tail.x),
+        round_3(tail.y),
+        round_3(solution.theta6()),
+        round_3(solution.theta7()),
+        round_3(solution.left.s),
+        round_3(solution.left.phi()),
+        round_3(solution.right.s),
+        round_3(solution.right.phi()),
         legs[0],
         legs[1],
         legs[2],
@@ -223,29 +228,29 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
         limits.type2,
         limits.type1,
         limits.leg,
-        fine(m.type2[0]),
-        fine(m.type2[1]),
-        fine(m.type1[0]),
-        fine(m.type1[1]),
-        fine(m.type1[2]),
-        fine(m.type1[3]),
-        fine(m.leg[0]),
-        fine(m.leg[1]),
-        fine(m.leg[2]),
-        fine(m.leg[3]),
+        round_4(margins.type2[0]),
+        round_4(margins.type2[1]),
+        round_4(margins.type1[0]),
+        round_4(margins.type1[1]),
+        round_4(margins.type1[2]),
+        round_4(margins.type1[3]),
+        round_4(margins.leg[0]),
+        round_4(margins.leg[1]),
+        round_4(margins.leg[2]),
+        round_4(margins.leg[3]),
     );
-    let broken = verdict::reasons(robot, s);
-    if broken.is_empty() {
-        let (min, value) = m.min();
-        let _ = writeln!(page, "safe     yes, the least margin is {min} {value:.4}");
+    let reasons = verdict::reasons(robot, solution);
+    if reasons.is_empty() {
+        let (check, value) = margins.min();
+        let _ = writeln!(page, "safe     yes, the least margin is {check} {value:.4}");
     } else {
-        for (i, reason) in broken.iter().enumerate() {
-            let lead = if i == 0 {
+        for (i, reason) in reasons.iter().enumerate() {
+            let prefix = if i == 0 {
                 "safe     no, "
             } else {
                 "             "
             };
-            let _ = writeln!(page, "{lead}{reason}");
+            let _ = writeln!(page, "{prefix}{reason}");
         }
     }
     page

@@ -26,7 +26,7 @@ impl Column {
         }
     }
 
-    fn named(name: &str) -> Option<Self> {
+    fn from_name(name: &str) -> Option<Self> {
         if name == SECONDS {
             return Some(Self::Seconds);
         }
@@ -95,7 +95,7 @@ impl<R: BufRead> Poses<R> {
             return Ok(poses);
         }
         let number = poses.number;
-        let wrong = |column: usize, problem: String| {
+        let header_failure = |column: usize, problem: String| {
             Failure::Input(format!(
                 "line {number}, column {column}: {problem}; the header is {expected}, in any order, \
                  and {SECONDS} if you like"
@@ -103,17 +103,20 @@ impl<R: BufRead> Poses<R> {
         };
         let mut columns = Vec::with_capacity(names.len());
         for (i, name) in names.iter().enumerate() {
-            let Some(column) = Column::named(name) else {
-                return Err(wrong(i + 1, format!("\"{name}\" is not a column")));
+            let Some(column) = Column::from_name(name) else {
+                return Err(header_failure(i + 1, format!("\"{name}\" is not a column")));
             };
             if columns.contains(&column) {
-                return Err(wrong(i + 1, format!("\"{name}\" comes twice")));
+                return Err(header_failure(i + 1, format!("\"{name}\" comes twice")));
             }
             columns.push(column);
         }
-        if let Some(missing) = SERVO_ORDER.iter().find(|angle| !columns.contains(angle)) {
-            let missing = missing.name();
-            return Err(wrong(names.len() + 1, format!("{missing} is missing")));
+        if let Some(missing_column) = SERVO_ORDER.iter().find(|angle| !columns.contains(angle)) {
+            let missing_column = missing_column.name();
+            return Err(header_failure(
+                names.len() + 1,
+                format!("{missing_column} is missing"),
+            ));
         }
         poses.columns = columns;
         Ok(poses)
@@ -128,14 +131,14 @@ impl<R: BufRead> Poses<R> {
     fn advance(&mut self) -> Result<bool, Failure> {
         loop {
             self.line.clear();
-            let outcome = (&mut self.input)
+            let byte_count = (&mut self.input)
                 .take(MAX_LINE_BYTES)
                 .read_until(b'\n', &mut self.line)?;
-            if outcome == 0 {
+            if byte_count == 0 {
                 return Ok(false);
             }
             self.number += 1;
-            if outcome as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
+            if byte_count as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
                 return Err(Failure::Input(format!(
                     "line {}, column 1: longer than {MAX_LINE_BYTES} bytes",
                     self.number
@@ -151,15 +154,15 @@ impl<R: BufRead> Poses<R> {
     fn text(&self) -> Result<&str, Failure> {
         std::str::from_utf8(&self.line)
             .map(|text| {
-                let first = self.number == 1;
+                let is_first = self.number == 1;
                 let text = text
                     .strip_prefix('\u{feff}')
-                    .filter(|_| first)
+                    .filter(|_| is_first)
                     .unwrap_or(text);
                 text.trim_end_matches(['\n', '\r'])
             })
-            .map_err(|fault| {
-                let valid_bytes = &self.line[..fault.valid_up_to()];
+            .map_err(|error| {
+                let valid_bytes = &self.line[..error.valid_up_to()];
                 let column = valid_bytes.iter().filter(|&&byte| byte == b',').count() + 1;
                 Failure::Input(format!(
                     "line {}, column {column}: not UTF-8 text",
@@ -195,13 +198,14 @@ impl<R: BufRead> Poses<R> {
             if text.is_empty() {
                 return Err(failure_at(field, "no value".to_string()));
             }
-            let refused = |fault: NumberFault| failure_at(field, format!("\"{text}\" {fault}"));
+            let number_failure =
+                |fault: NumberFault| failure_at(field, format!("\"{text}\" {fault}"));
             match column {
                 Column::Angle(servo) => {
-                    angles[servo] = Quantity::ANGLE.parse(text).map_err(refused)?;
+                    angles[servo] = Quantity::ANGLE.parse(text).map_err(number_failure)?;
                 }
                 Column::Seconds => {
-                    seconds = Some(Quantity::TIME.parse(text).map_err(refused)?);
+                    seconds = Some(Quantity::TIME.parse(text).map_err(number_failure)?);
                 }
             }
             count = field + 1;

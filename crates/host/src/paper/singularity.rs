@@ -14,7 +14,7 @@ use crate::shared::number::round_decimals;
 use crate::shared::pose_args::ANGLES;
 
 /// Names of the passive joints and slider travels, in the order of the columns of K*.
-const PASSIVE: [&str; 8] = [
+const PASSIVE_NAMES: [&str; 8] = [
     "theta2",
     "theta3",
     "theta6",
@@ -26,7 +26,7 @@ const PASSIVE: [&str; 8] = [
 ];
 
 /// Names of the loop equations, in the order of the rows of K and K*.
-const LOOPS: [&str; 8] = [
+const LOOP_NAMES: [&str; 8] = [
     "head x", "head y", "tail x", "tail y", "left x", "left y", "right x", "right y",
 ];
 
@@ -41,7 +41,7 @@ struct Matrix {
 impl Matrix {
     fn new<const N: usize>(columns: &'static [&'static str; N], values: [[f64; N]; 8]) -> Self {
         Self {
-            rows: LOOPS,
+            rows: LOOP_NAMES,
             columns,
             // Adding 0.0 removes negative zeros.
             values: values
@@ -109,9 +109,9 @@ struct Nearest {
 ///
 /// # Errors
 /// Fails for an output that cannot be written.
-pub fn print(robot: &Robot, solution: &Solution, json: bool) -> Result<(), Failure> {
+pub fn print(robot: &Robot, solution: &Solution, is_json: bool) -> Result<(), Failure> {
     let report = report(robot, solution);
-    json::print_json_or(json, &report, || text(&report))
+    json::print_json_or(is_json, &report, || text(&report))
 }
 
 fn report(robot: &Robot, solution: &Solution) -> Report {
@@ -137,7 +137,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
                 let mut turn = [0.0; 4];
                 turn[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
                 turn[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
-                let what = match kind {
+                let description = match kind {
                     Singularity::Couplers => format!("{end} type 2, the end point comes loose"),
                     Singularity::LeftArm => {
                         format!("{end} type 1, A{} arm straight or folded", servos[0] + 1)
@@ -147,7 +147,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
                     }
                 };
                 nearest.push(Nearest {
-                    what,
+                    what: description,
                     distance,
                     turn,
                 });
@@ -168,7 +168,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     nearest.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     Report {
         k: Matrix::new(&ANGLES, solution.active_matrix()),
-        k_star: Matrix::new(&PASSIVE, k_star),
+        k_star: Matrix::new(&PASSIVE_NAMES, k_star),
         determinant: matrix.determinant(),
         factored: blocks.determinant(),
         blocks: Factors {
@@ -185,46 +185,48 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     }
 }
 
-/// The singular crank angles of one kind that are nearest to `from`, with their distance in degrees; `None` if there
+/// The singular crank angles of one kind that are nearest to `angles`, with their distance in degrees; `None` if there
 /// are none. Scans the singularity curves over all left crank angles, then refines the step around the best one.
 pub fn nearest_singularity(
     bars: &FiveBar,
     kind: Singularity,
-    from: [f64; 2],
+    angles: [f64; 2],
 ) -> Option<(f64, SingularPose)> {
-    let measured = |pose: SingularPose| {
+    let with_distance = |pose: SingularPose| {
         let (left, right) = (
-            wrap(pose.theta_left - from[0]),
-            wrap(pose.theta_right - from[1]),
+            wrap(pose.theta_left - angles[0]),
+            wrap(pose.theta_right - angles[1]),
         );
         (left.hypot(right), pose)
     };
-    let closest = |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
-    let along = |centre: f64, half: f64, step: f64| {
-        let steps = (half / step).round() as i32;
+    let closer_of = |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
+    let scan = |centre: f64, half_range: f64, step: f64| {
+        let steps = (half_range / step).round() as i32;
         (-steps..=steps)
             .flat_map(|i| bars.singular_with(centre + f64::from(i) * step))
             .filter(|pose| pose.kind == kind)
-            .map(measured)
-            .reduce(closest)
+            .map(with_distance)
+            .reduce(closer_of)
     };
-    let mut best = along(0.0, 180.0, 0.25);
+    let mut best = scan(0.0, 180.0, 0.25);
     let mut step = 0.25;
     for _ in 0..4 {
         if let Some((_, pose)) = best {
-            let finer = along(pose.theta_left, 2.0 * step, step / 20.0);
-            best = best.into_iter().chain(finer).reduce(closest);
+            let finer_best = scan(pose.theta_left, 2.0 * step, step / 20.0);
+            best = best.into_iter().chain(finer_best).reduce(closer_of);
             step /= 20.0;
         }
     }
     let points = bars
         .coinciding_tips()
         .filter(|_| kind == Singularity::Couplers);
-    best.into_iter().chain(points.map(measured)).reduce(closest)
+    best.into_iter()
+        .chain(points.map(with_distance))
+        .reduce(closer_of)
 }
 
 fn text(report: &Report) -> String {
-    let b = &report.blocks;
+    let blocks = &report.blocks;
     let mut page = format!(
         "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
          K*: the same rows, columns are the passive joints (mm per radian; by s, mm per mm)\n{}\n\
@@ -239,22 +241,25 @@ fn text(report: &Report) -> String {
         report.k_star.text(),
         report.determinant,
         report.factored,
-        round_decimals(b.head, 2),
-        round_decimals(b.tail, 2),
-        round_decimals(b.left, 2),
-        round_decimals(b.right, 2),
+        round_decimals(blocks.head, 2),
+        round_decimals(blocks.tail, 2),
+        round_decimals(blocks.left, 2),
+        round_decimals(blocks.right, 2),
         report
             .leg_determinants
             .map(|det| format!("{:+.1}", round_decimals(det, 1)))
             .join(" "),
     );
     page += "nearest singularities, and how A1, A2, A3, A4 would have to turn to them\n";
-    for near in &report.nearest {
-        let turn = near
+    for singularity in &report.nearest {
+        let turn = singularity
             .turn
             .map(|angle| format!("{:+8.2}", round_decimals(angle, 2)))
             .join(" ");
-        page += &format!("  {:7.2} deg  {turn}   {}\n", near.distance, near.what);
+        page += &format!(
+            "  {:7.2} deg  {turn}   {}\n",
+            singularity.distance, singularity.what
+        );
     }
     page
 }

@@ -14,30 +14,30 @@ use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{Poses, TimedPose};
 
 /// Number of poses that are solved together, which bounds the memory.
-const BATCH: usize = 8192;
+const BATCH_SIZE: usize = 8192;
 
 /// Number of blocks of lines, each a sixteenth of a batch, that may wait to be written.
-const AHEAD: usize = 32;
+const MAX_WAITING_BLOCKS: usize = 32;
 
 /// Solves a pose and prints it; without a pose, solves those of standard input.
 ///
 /// # Errors
 /// Fails for an invalid pose or line of the stream, or an output that cannot be written.
-pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failure> {
+pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Failure> {
     match pose {
-        Some(pose) => Ok(io::stdout().write_all(&solve_one(robot, pose, json)?)?),
+        Some(pose) => Ok(io::stdout().write_all(&solve_one(robot, pose, is_json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
             "give a pose with --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
                 .to_string(),
         )),
-        None => stream(robot, json),
+        None => solve_stream(robot, is_json),
     }
 }
 
 /// The output for one pose, as a page or a JSON object.
-fn solve_one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
+fn solve_one(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Failure> {
     let solved = robot.lizard().solve(pose);
-    if !json {
+    if !is_json {
         return Ok(pose_line::page(robot, pose, &solved).into_bytes());
     }
     let mut line = serde_json::to_vec(&PoseLine::new(robot, None, &solved))?;
@@ -47,14 +47,14 @@ fn solve_one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure>
 
 /// Solves batches on all cores and writes them in order; one batch is written while the next is solved. The
 /// poses before a malformed line are still solved and written.
-fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
+fn solve_stream(robot: &Robot, is_json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
-    let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
+    let (sender, receiver) = mpsc::sync_channel::<Vec<u8>>(MAX_WAITING_BLOCKS);
     thread::scope(|scope| {
-        let heading = (!json).then(|| pose_line::heading(poses.has_time()));
-        let writer = scope.spawn(move || write(to_write, heading));
-        let outcome = solve_all(robot, json, &mut poses, &solved);
-        drop(solved);
+        let heading = (!is_json).then(|| pose_line::heading(poses.has_time()));
+        let writer = scope.spawn(move || write_blocks(receiver, heading));
+        let outcome = solve_all(robot, is_json, &mut poses, &sender);
+        drop(sender);
         // A failure to write takes precedence over a failure to read.
         writer.join().unwrap_or_else(|panic| resume_unwind(panic))?;
         outcome
@@ -62,12 +62,12 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
 }
 
 /// Writes the blocks until the channel is closed.
-fn write(lines: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), Failure> {
+fn write_blocks(blocks: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     if let Some(heading) = heading {
         writeln!(out, "{heading}")?;
     }
-    for block in lines {
+    for block in blocks {
         out.write_all(&block)?;
     }
     Ok(out.flush()?)
@@ -77,50 +77,53 @@ fn write(lines: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), 
 /// stopped; the writer reports the reason.
 fn solve_all(
     robot: &Robot,
-    json: bool,
+    is_json: bool,
     poses: &mut Poses<impl BufRead>,
-    solved: &mpsc::SyncSender<Vec<u8>>,
+    sender: &mpsc::SyncSender<Vec<u8>>,
 ) -> Result<(), Failure> {
-    let mut batch = Vec::with_capacity(BATCH);
+    let mut batch = Vec::with_capacity(BATCH_SIZE);
     loop {
         batch.clear();
-        let mut fault = None;
-        for pose in poses.by_ref().take(BATCH) {
+        let mut first_failure = None;
+        for pose in poses.by_ref().take(BATCH_SIZE) {
             match pose {
                 Ok(pose) => batch.push(pose),
                 Err(failure) => {
-                    fault = Some(failure);
+                    first_failure = Some(failure);
                     break;
                 }
             }
         }
-        let last = batch.len() < BATCH;
+        let is_last = batch.len() < BATCH_SIZE;
         let blocks: Vec<_> = batch
-            .par_chunks(BATCH / 16)
-            .map(|poses| lines(robot, poses, json))
+            .par_chunks(BATCH_SIZE / 16)
+            .map(|poses| format_lines(robot, poses, is_json))
             .collect();
         for block in blocks {
-            if solved.send(block?).is_err() {
+            if sender.send(block?).is_err() {
                 return Ok(());
             }
         }
-        match fault {
+        match first_failure {
             Some(failure) => return Err(failure),
-            None if last => return Ok(()),
+            None if is_last => return Ok(()),
             None => {}
         }
     }
 }
 
 /// Solves poses and returns their lines, CSV or JSON.
-fn lines(robot: &Robot, poses: &[TimedPose], json: bool) -> Result<Vec<u8>, Failure> {
-    let mut text = Vec::with_capacity(poses.len() * if json { 1024 } else { 192 });
-    for timed in poses {
-        let solved = robot.lizard().solve(&timed.pose);
-        if json {
-            serde_json::to_writer(&mut text, &PoseLine::new(robot, timed.seconds, &solved))?;
+fn format_lines(robot: &Robot, poses: &[TimedPose], is_json: bool) -> Result<Vec<u8>, Failure> {
+    let mut text = Vec::with_capacity(poses.len() * if is_json { 1024 } else { 192 });
+    for timed_pose in poses {
+        let solved = robot.lizard().solve(&timed_pose.pose);
+        if is_json {
+            serde_json::to_writer(
+                &mut text,
+                &PoseLine::new(robot, timed_pose.seconds, &solved),
+            )?;
         } else {
-            text.extend_from_slice(pose_line::row(robot, timed, &solved).as_bytes());
+            text.extend_from_slice(pose_line::row(robot, timed_pose, &solved).as_bytes());
         }
         text.push(b'\n');
     }

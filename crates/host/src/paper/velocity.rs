@@ -58,10 +58,10 @@ struct Row {
 }
 
 impl From<DriveArgs> for Drive {
-    fn from(d: DriveArgs) -> Self {
+    fn from(args: DriveArgs) -> Self {
         Self {
-            rate: [d.omega1, d.omega4, d.omega8, d.omega5],
-            acceleration: [d.alpha1, d.alpha4, d.alpha8, d.alpha5],
+            rate: [args.omega1, args.omega4, args.omega8, args.omega5],
+            acceleration: [args.alpha1, args.alpha4, args.alpha8, args.alpha5],
         }
     }
 }
@@ -74,16 +74,16 @@ pub fn print(
     lizard: &Lizard,
     solution: &Solution,
     drive: &Drive,
-    json: bool,
+    is_json: bool,
 ) -> Result<(), Failure> {
-    let singular = solution.margins.type2[0].min(solution.margins.type2[1]);
-    if singular < 1e-9 {
+    let singularity_margin = solution.margins.type2[0].min(solution.margins.type2[1]);
+    if singularity_margin < 1e-9 {
         return Err(Failure::Impossible(
             "the couplers line up: rates do not follow from the servos'".to_string(),
         ));
     }
     let rows = rows(lizard, solution, drive);
-    json::print_json_or(json, &rows, || text(&rows))
+    json::print_json_or(is_json, &rows, || text(&rows))
 }
 
 fn text(rows: &[Row]) -> String {
@@ -91,10 +91,10 @@ fn text(rows: &[Row]) -> String {
         "joint        value          rate 1/s   acceleration 1/s^2   against finite differences\n"
             .to_owned();
     for row in rows {
-        let agrees = |deviation: f64, value: f64| deviation.abs() < 1e-6 * (100.0 + value.abs());
+        let is_small = |deviation: f64, value: f64| deviation.abs() < 1e-6 * (100.0 + value.abs());
         let verdict = match (row.rate_deviation, row.acceleration_deviation) {
             (Some(rate), Some(acceleration))
-                if agrees(rate, row.rate) && agrees(acceleration, row.acceleration) =>
+                if is_small(rate, row.rate) && is_small(acceleration, row.acceleration) =>
             {
                 "agree to 1e-6".to_string()
             }
@@ -114,59 +114,67 @@ fn text(rows: &[Row]) -> String {
 }
 
 /// Name, unit and value of each joint and coordinate.
-fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
-    let (head, tail) = (s.head_point(), s.tail_point());
+fn values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
+    let (head, tail) = (solution.head_point(), solution.tail_point());
     [
-        ("theta2", "deg", s.theta2()),
-        ("theta3", "deg", s.theta3()),
-        ("theta6", "deg", s.theta6()),
-        ("theta7", "deg", s.theta7()),
+        ("theta2", "deg", solution.theta2()),
+        ("theta3", "deg", solution.theta3()),
+        ("theta6", "deg", solution.theta6()),
+        ("theta7", "deg", solution.theta7()),
         ("head x", "mm", head.x),
         ("head y", "mm", head.y),
         ("tail x", "mm", tail.x),
         ("tail y", "mm", tail.y),
-        ("phi left", "deg", s.left.phi()),
-        ("s left", "mm", s.left.s),
-        ("phi right", "deg", s.right.phi()),
-        ("s right", "mm", s.right.s),
+        ("phi left", "deg", solution.left.phi()),
+        ("s left", "mm", solution.left.s),
+        ("phi right", "deg", solution.right.phi()),
+        ("s right", "mm", solution.right.s),
     ]
 }
 
 /// Rate and acceleration of each joint and coordinate, in the order of [`values`].
-fn rates(m: &Derivatives) -> [(f64, f64); 12] {
-    let rate_and_acceleration = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
+fn rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
+    let rate_and_acceleration =
+        |derivative: lizard_kinematics::Derivative<f64>| (derivative.rate, derivative.acceleration);
     [
-        rate_and_acceleration(m.theta2),
-        rate_and_acceleration(m.theta3),
-        rate_and_acceleration(m.theta6),
-        rate_and_acceleration(m.theta7),
-        (m.head.rate.x, m.head.acceleration.x),
-        (m.head.rate.y, m.head.acceleration.y),
-        (m.tail.rate.x, m.tail.acceleration.x),
-        (m.tail.rate.y, m.tail.acceleration.y),
-        rate_and_acceleration(m.phi_left),
-        rate_and_acceleration(m.s_left),
-        rate_and_acceleration(m.phi_right),
-        rate_and_acceleration(m.s_right),
+        rate_and_acceleration(derivatives.theta2),
+        rate_and_acceleration(derivatives.theta3),
+        rate_and_acceleration(derivatives.theta6),
+        rate_and_acceleration(derivatives.theta7),
+        (derivatives.head.rate.x, derivatives.head.acceleration.x),
+        (derivatives.head.rate.y, derivatives.head.acceleration.y),
+        (derivatives.tail.rate.x, derivatives.tail.acceleration.x),
+        (derivatives.tail.rate.y, derivatives.tail.acceleration.y),
+        rate_and_acceleration(derivatives.phi_left),
+        rate_and_acceleration(derivatives.s_left),
+        rate_and_acceleration(derivatives.phi_right),
+        rate_and_acceleration(derivatives.s_right),
     ]
 }
 
 /// Rates and accelerations in closed form, compared with finite differences of the poses around this one.
 fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
-    let start = <[f64; 4]>::from(solution.pose);
-    let largest = |all: &[f64; 4]| all.iter().fold(0.0f64, |max, one| max.max(one.abs()));
-    // If the servos stand still, the quotients are infinite and do not limit the step.
-    let step = MAX_STEP_S
-        .min(MAX_STEP_TURN_DEG / largest(&drive.rate))
-        .min((MAX_STEP_TURN_DEG / largest(&drive.acceleration)).sqrt());
-    let solved_at = |steps: f64| {
-        let t = steps * step;
-        let angles: [f64; 4] = std::array::from_fn(|i| {
-            start[i] + drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0
-        });
-        lizard.solve(&Pose::from(angles)).ok().map(|s| values(&s))
+    let start_angles = <[f64; 4]>::from(solution.pose);
+    let largest_of = |values: &[f64; 4]| {
+        values
+            .iter()
+            .fold(0.0f64, |max, value| max.max(value.abs()))
     };
-    let around = match [-2.0, -1.0, 1.0, 2.0].map(solved_at) {
+    // If the servos stand still, the quotients are infinite and do not limit the step.
+    let step_s = MAX_STEP_S
+        .min(MAX_STEP_TURN_DEG / largest_of(&drive.rate))
+        .min((MAX_STEP_TURN_DEG / largest_of(&drive.acceleration)).sqrt());
+    let values_at = |steps: f64| {
+        let t = steps * step_s;
+        let angles: [f64; 4] = std::array::from_fn(|i| {
+            start_angles[i] + drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0
+        });
+        lizard
+            .solve(&Pose::from(angles))
+            .ok()
+            .map(|solution| values(&solution))
+    };
+    let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(values_at) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
@@ -176,15 +184,15 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
         .zip(motion)
         .enumerate()
         .map(|(i, ((joint, unit, value), (rate, acceleration)))| {
-            let differences = around.as_ref().map(|around| {
-                let [a, b, c, d] = around.each_ref().map(|all| {
-                    let change = all[i].2 - value;
+            let differences = neighbours.as_ref().map(|neighbours| {
+                let [a, b, c, d] = neighbours.each_ref().map(|neighbour| {
+                    let change = neighbour[i].2 - value;
                     if unit == "deg" { wrap(change) } else { change }
                 });
                 // Five-point differences: the error is of the fourth order in the step.
                 (
-                    (a - 8.0 * b + 8.0 * c - d) / (12.0 * step),
-                    (16.0 * (b + c) - a - d) / (12.0 * step * step),
+                    (a - 8.0 * b + 8.0 * c - d) / (12.0 * step_s),
+                    (16.0 * (b + c) - a - d) / (12.0 * step_s * step_s),
                 )
             });
             Row {
@@ -194,8 +202,9 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
                 value: value + 0.0,
                 rate: rate + 0.0,
                 acceleration: acceleration + 0.0,
-                rate_deviation: differences.map(|(first, _)| first - rate),
-                acceleration_deviation: differences.map(|(_, second)| second - acceleration),
+                rate_deviation: differences.map(|(rate_difference, _)| rate_difference - rate),
+                acceleration_deviation: differences
+                    .map(|(_, acceleration_difference)| acceleration_difference - acceleration),
             }
         })
         .collect()

@@ -51,7 +51,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
     let reason = if inputs.iter().any(is_input) {
         "this command reads it"
-    } else if is_robot(path) {
+    } else if is_robot_file(path) {
         "it describes a robot"
     } else {
         return Ok(());
@@ -64,18 +64,18 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
 
 /// True for a file that is named robot.toml or has the table `[links]` of a robot, even if the rest of the file is
 /// wrong.
-fn is_robot(path: &Path) -> bool {
+fn is_robot_file(path: &Path) -> bool {
     if !path.is_file() {
         return false;
     }
-    let Ok(end) = path.canonicalize() else {
+    let Ok(resolved_path) = path.canonicalize() else {
         return false;
     };
-    let has_lengths = |bytes: Vec<u8>| {
+    let has_links_table = |bytes: Vec<u8>| {
         let text = String::from_utf8_lossy(&bytes);
         text.lines().any(|line| line.trim().starts_with("[links]"))
     };
-    end.ends_with("robot.toml") || fs::read(end).is_ok_and(has_lengths)
+    resolved_path.ends_with("robot.toml") || fs::read(resolved_path).is_ok_and(has_links_table)
 }
 
 /// Writes a file completely or not at all, and creates the folders it needs. An existing file is replaced, also
@@ -123,7 +123,7 @@ fn is_stream(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
     path.metadata()
         .map(|metadata| metadata.file_type())
-        .is_ok_and(|kind| kind.is_char_device() || kind.is_fifo())
+        .is_ok_and(|file_type| file_type.is_char_device() || file_type.is_fifo())
 }
 
 #[cfg(not(unix))]
@@ -134,7 +134,9 @@ fn is_stream(_: &Path) -> bool {
 /// Follows the symbolic links of a path. Returns the path of the file itself, and its permissions if it exists.
 fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
-        Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
+        Ok(metadata) if metadata.is_file() => {
+            Ok((path.canonicalize()?, Some(metadata.permissions())))
+        }
         Ok(_) => Err(io::Error::other(
             "it already exists and is not an ordinary file",
         )),
@@ -151,7 +153,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let fill = |file: &mut File| {
+    let write_content = |file: &mut File| {
         file.write_all(bytes)?;
         if let Some(permissions) = permissions {
             file.set_permissions(permissions)?;
@@ -160,10 +162,10 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     };
     #[cfg(target_os = "linux")]
     if let Some(mut file) = create_nameless(folder) {
-        fill(&mut file)?;
-        let link = |name: &Path| link_to_name(&file, name);
+        write_content(&mut file)?;
+        let link_file = |name: &Path| link_to_name(&file, name);
         tempfile::Builder::new()
-            .make_in(folder, link)?
+            .make_in(folder, link_file)?
             .persist(path)?;
         return Ok(());
     }
@@ -180,7 +182,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     // In the same folder, because a file can be moved atomically only within a file system.
     let mut file = builder.tempfile_in(folder)?;
-    fill(file.as_file_mut())?;
+    write_content(file.as_file_mut())?;
     file.persist(path)?;
     Ok(())
 }
@@ -201,15 +203,15 @@ fn create_nameless(folder: &Path) -> Option<File> {
 fn link_to_name(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
     use std::os::fd::AsRawFd;
-    let open = format!("/proc/self/fd/{}", file.as_raw_fd());
-    Ok(linkat(CWD, open, CWD, name, AtFlags::SYMLINK_FOLLOW)?)
+    let fd_path = format!("/proc/self/fd/{}", file.as_raw_fd());
+    Ok(linkat(CWD, fd_path, CWD, name, AtFlags::SYMLINK_FOLLOW)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn refusal(path: &Path) -> String {
+    fn refusal_of(path: &Path) -> String {
         write(path, b"x")
             .expect_err("it is not written")
             .to_string()
@@ -229,23 +231,26 @@ mod tests {
     #[test]
     fn an_input_and_a_robot_are_not_replaced_under_any_name() {
         let folder = tempfile::tempdir().expect("a folder");
-        let [input, other, robot, mine] =
+        let [input, other_name, robot, unnamed_robot] =
             ["a.jsonl", "b", "robot.toml", "mine"].map(|name| folder.path().join(name));
         fs::write(&input, "an input").expect("it is written");
         fs::write(&robot, "broken").expect("it is written");
-        fs::write(&mine, "# mine\n [links]\nl0 = x\n").expect("it is written");
-        fs::hard_link(&input, &other).expect("another name of it");
+        fs::write(&unnamed_robot, "# mine\n [links]\nl0 = x\n").expect("it is written");
+        fs::hard_link(&input, &other_name).expect("another name of it");
         let _ = note_input(&folder.path().join("../").join(&input));
         for (path, reason) in [
             (&input, "but this command reads it; name another file"),
-            (&other, "but this command reads it; name another file"),
+            (&other_name, "but this command reads it; name another file"),
             (&robot, "but it describes a robot; name another file"),
-            (&mine, "but it describes a robot; name another file"),
+            (
+                &unnamed_robot,
+                "but it describes a robot; name another file",
+            ),
         ] {
-            let before = fs::read(path).expect("it is there");
-            let words = refusal(path);
-            assert!(words.contains(reason), "{words}");
-            assert_eq!(fs::read(path).expect("it is there"), before);
+            let old_bytes = fs::read(path).expect("it is there");
+            let message = refusal_of(path);
+            assert!(message.contains(reason), "{message}");
+            assert_eq!(fs::read(path).expect("it is there"), old_bytes);
         }
         write(&folder.path().join("c"), b"x").expect("a file like any other");
     }
@@ -253,7 +258,7 @@ mod tests {
     #[test]
     fn a_file_that_cannot_be_written_is_named() {
         assert_eq!(
-            refusal(Path::new("/dev/null/folder/a.toml")),
+            refusal_of(Path::new("/dev/null/folder/a.toml")),
             "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
         );
     }
@@ -261,10 +266,12 @@ mod tests {
     #[test]
     fn a_folder_is_not_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
-        let inner = folder.path().join("inner");
-        fs::create_dir(&inner).expect("a folder in it");
-        assert!(refusal(&inner).ends_with("it already exists and is not an ordinary file"));
-        assert!(inner.is_dir());
+        let inner_folder = folder.path().join("inner");
+        fs::create_dir(&inner_folder).expect("a folder in it");
+        assert!(
+            refusal_of(&inner_folder).ends_with("it already exists and is not an ordinary file")
+        );
+        assert!(inner_folder.is_dir());
     }
 
     #[test]
@@ -272,7 +279,8 @@ mod tests {
     fn a_link_stays_and_the_file_at_its_end_is_replaced_with_its_permissions() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().expect("a folder");
-        let [file, link, astray] = ["file", "link", "astray"].map(|name| folder.path().join(name));
+        let [file, link, broken_link] =
+            ["file", "link", "astray"].map(|name| folder.path().join(name));
         fs::write(&file, "old").expect("it is written");
         fs::set_permissions(&file, Permissions::from_mode(0o640)).expect("it is ours");
         symlink("file", &link).expect("a link");
@@ -281,9 +289,9 @@ mod tests {
         assert_eq!(fs::read(&file).expect("it is read"), b"new");
         let mode = file.metadata().expect("it is there").permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
-        symlink("nothing", &astray).expect("a link");
-        assert!(refusal(&astray).ends_with("astray: it is a link that leads nowhere"));
-        assert!(astray.is_symlink());
+        symlink("nothing", &broken_link).expect("a link");
+        assert!(refusal_of(&broken_link).ends_with("astray: it is a link that leads nowhere"));
+        assert!(broken_link.is_symlink());
     }
 
     #[test]
@@ -300,22 +308,22 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn in_a_read_only_folder_the_error_names_only_the_file() {
-        let words = refusal(Path::new("/proc/self/a.toml"));
+        let message = refusal_of(Path::new("/proc/self/a.toml"));
         assert!(
-            words.starts_with("cannot write /proc/self/a.toml: "),
-            "{words}"
+            message.starts_with("cannot write /proc/self/a.toml: "),
+            "{message}"
         );
-        assert!(!words.contains("at path"), "{words}");
+        assert!(!message.contains("at path"), "{message}");
     }
 
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_device_is_named() {
-        let words = write(Path::new("/dev/full"), b"<svg/>").expect_err("it is full");
-        let words = words.to_string();
+        let message = write(Path::new("/dev/full"), b"<svg/>").expect_err("it is full");
+        let message = message.to_string();
         assert!(
-            words.starts_with("cannot write /dev/full: No space left"),
-            "{words}"
+            message.starts_with("cannot write /dev/full: No space left"),
+            "{message}"
         );
     }
 }

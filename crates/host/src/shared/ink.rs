@@ -38,16 +38,16 @@ pub enum Anchor {
     End,
 }
 
-/// A line of text. `at` lies on its base line, at the part that `anchor` names.
-pub fn text(content: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
+/// A line of text. `point` lies on its base line, at the part that `anchor` names.
+pub fn text(content: &str, point: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
     let anchor = match anchor {
         Anchor::Start => "start",
         Anchor::Middle => "middle",
         Anchor::End => "end",
     };
     Text::new(content)
-        .set("x", fixed(at.0))
-        .set("y", fixed(at.1))
+        .set("x", fixed(point.0))
+        .set("y", fixed(point.1))
         .set("font-size", size)
         .set("font-family", FONTS)
         .set("fill", colour)
@@ -55,18 +55,18 @@ pub fn text(content: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anch
 }
 
 /// Dark text that starts at a point.
-pub fn text_start(content: &str, at: (f64, f64), size: f64) -> Text {
-    text(content, at, size, DARK, Anchor::Start)
+pub fn text_start(content: &str, point: (f64, f64), size: f64) -> Text {
+    text(content, point, size, DARK, Anchor::Start)
 }
 
 /// Dark text centred on a point.
-pub fn text_middle(content: &str, at: (f64, f64), size: f64) -> Text {
-    text(content, at, size, DARK, Anchor::Middle)
+pub fn text_middle(content: &str, point: (f64, f64), size: f64) -> Text {
+    text(content, point, size, DARK, Anchor::Middle)
 }
 
 /// Dark text that ends at a point.
-pub fn text_end(content: &str, at: (f64, f64), size: f64) -> Text {
-    text(content, at, size, DARK, Anchor::End)
+pub fn text_end(content: &str, point: (f64, f64), size: f64) -> Text {
+    text(content, point, size, DARK, Anchor::End)
 }
 
 /// Adds a picture's title, and a note below it.
@@ -88,11 +88,21 @@ pub fn page(size: (f64, f64), group: Group) -> String {
 }
 
 /// A diagonal cross, as the letter x.
-pub fn cross(at: (f64, f64), arm: f64, colour: &str, width: f64) -> Group {
-    let (x, y) = at;
+pub fn cross(centre: (f64, f64), arm_length: f64, colour: &str, width: f64) -> Group {
+    let (x, y) = centre;
     Group::new()
-        .add(line((x - arm, y - arm), (x + arm, y + arm), colour, width))
-        .add(line((x - arm, y + arm), (x + arm, y - arm), colour, width))
+        .add(line(
+            (x - arm_length, y - arm_length),
+            (x + arm_length, y + arm_length),
+            colour,
+            width,
+        ))
+        .add(line(
+            (x - arm_length, y + arm_length),
+            (x + arm_length, y - arm_length),
+            colour,
+            width,
+        ))
 }
 
 /// A straight line.
@@ -108,10 +118,10 @@ pub fn line(from: (f64, f64), to: (f64, f64), colour: &str, width: f64) -> Line 
 }
 
 /// A rectangle by its upper left corner and its size.
-pub fn rectangle(at: (f64, f64), size: (f64, f64), fill: &str) -> Rectangle {
+pub fn rectangle(corner: (f64, f64), size: (f64, f64), fill: &str) -> Rectangle {
     Rectangle::new()
-        .set("x", fixed(at.0))
-        .set("y", fixed(at.1))
+        .set("x", fixed(corner.0))
+        .set("y", fixed(corner.1))
         .set("width", fixed(size.0))
         .set("height", fixed(size.1))
         .set("fill", fill)
@@ -135,12 +145,12 @@ pub fn edged<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T 
 
 /// An open curve through points.
 pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
-    let list: Vec<String> = points
+    let coordinates: Vec<String> = points
         .iter()
         .map(|(x, y)| format!("{},{}", fixed(*x), fixed(*y)))
         .collect();
     Polyline::new()
-        .set("points", list.join(" "))
+        .set("points", coordinates.join(" "))
         .set("fill", "none")
         .set("stroke", colour)
         .set("stroke-width", width)
@@ -157,7 +167,7 @@ pub fn fixed(value: f64) -> f64 {
 pub fn pin_name(number: u8) -> String {
     const A0: u8 = 14;
     match number.checked_sub(A0) {
-        Some(n) => format!("A{n}"),
+        Some(index) => format!("A{index}"),
         None => format!("D{number}"),
     }
 }

@@ -4,19 +4,19 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-/// Prints the value as a line of JSON if `json` is true, else as the text that `text` returns.
+/// Prints the value as a line of JSON if `is_json` is true, else as the text that `text_of` returns.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn print_json_or(
-    json: bool,
+    is_json: bool,
     value: &impl Serialize,
-    text: impl FnOnce() -> String,
+    text_of: impl FnOnce() -> String,
 ) -> Result<(), crate::Failure> {
     let mut out = io::stdout().lock();
-    match json {
+    match is_json {
         true => write_line(&mut out, value)?,
-        false => out.write_all(text().as_bytes())?,
+        false => out.write_all(text_of().as_bytes())?,
     }
     Ok(())
 }

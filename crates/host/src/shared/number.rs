@@ -9,11 +9,11 @@ pub fn round_decimals(value: f64, decimals: i32) -> f64 {
 
 /// A number with blanks between groups of three digits.
 pub fn grouped(value: f64, decimals: usize) -> String {
-    let plain = format!("{value:.decimals$}");
-    let (integer, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let ungrouped = format!("{value:.decimals$}");
+    let (integer, fraction) = ungrouped.split_at(ungrouped.find('.').unwrap_or(ungrouped.len()));
     let mut text = String::new();
-    for (n, digit) in integer.chars().enumerate() {
-        if n > 0 && (integer.len() - n).is_multiple_of(3) {
+    for (index, digit) in integer.chars().enumerate() {
+        if index > 0 && (integer.len() - index).is_multiple_of(3) {
             text.push(' ');
         }
         text.push(digit);

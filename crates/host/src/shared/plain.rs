@@ -7,11 +7,11 @@
 /// The text with every control character as an escape of Rust, such as `\u{1b}`.
 pub fn escape_controls(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
-    for c in text.chars() {
-        if c.is_control() {
-            result.extend(c.escape_default());
+    for character in text.chars() {
+        if character.is_control() {
+            result.extend(character.escape_default());
         } else {
-            result.push(c);
+            result.push(character);
         }
     }
     result
@@ -28,14 +28,17 @@ pub fn readable_lines(text: &str) -> String {
 
 /// Replaces the middle of a very long line by the number of its characters.
 fn shorten(line: &str) -> String {
-    const SIDE: usize = 300;
+    const SIDE_LENGTH: usize = 300;
     let count = line.chars().count();
-    if count <= 3 * SIDE {
+    if count <= 3 * SIDE_LENGTH {
         return line.to_owned();
     }
-    let start: String = line.chars().take(SIDE).collect();
-    let end: String = line.chars().skip(count - SIDE).collect();
-    format!("{start} [...{} characters...] {end}", count - 2 * SIDE)
+    let start: String = line.chars().take(SIDE_LENGTH).collect();
+    let end: String = line.chars().skip(count - SIDE_LENGTH).collect();
+    format!(
+        "{start} [...{} characters...] {end}",
+        count - 2 * SIDE_LENGTH
+    )
 }
 
 #[cfg(test)]
@@ -44,11 +47,11 @@ mod tests {
 
     #[test]
     fn a_line_too_long_to_read_loses_its_middle() {
-        let [fits, long] = [900, 901].map(|count| "ä".repeat(count));
-        assert_eq!(readable_lines(&fits), fits);
+        let [short_line, long_line] = [900, 901].map(|count| "ä".repeat(count));
+        assert_eq!(readable_lines(&short_line), short_line);
         let side = "ä".repeat(300);
-        let shortened = format!("no\n{side} [...301 characters...] {side}");
-        assert_eq!(readable_lines(&format!("no\n{long}")), shortened);
+        let expected = format!("no\n{side} [...301 characters...] {side}");
+        assert_eq!(readable_lines(&format!("no\n{long_line}")), expected);
     }
 
     #[test]

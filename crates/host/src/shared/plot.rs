@@ -67,60 +67,70 @@ impl Plot {
     }
 
     /// The lower right corner on the page.
-    fn end(&self) -> (f64, f64) {
+    fn far_corner(&self) -> (f64, f64) {
         (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
     }
 
     /// Adds a grid in the background.
     pub fn draw_grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         for value in ticks(self.x, x.step) {
-            let px = self.page_point(value, 0.0).0;
-            group = group.add(line((px, self.corner.1), (px, self.end().1), GRID, 1.0));
+            let page_x = self.page_point(value, 0.0).0;
+            group = group.add(line(
+                (page_x, self.corner.1),
+                (page_x, self.far_corner().1),
+                GRID,
+                1.0,
+            ));
         }
         for value in ticks(self.y, y.step) {
-            let py = self.page_point(0.0, value).1;
-            group = group.add(line((self.corner.0, py), (self.end().0, py), GRID, 1.0));
+            let page_y = self.page_point(0.0, value).1;
+            group = group.add(line(
+                (self.corner.0, page_y),
+                (self.far_corner().0, page_y),
+                GRID,
+                1.0,
+            ));
         }
         group
     }
 
     /// Adds frame, ticks, numbers and names.
     pub fn draw_axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
-        let (right, bottom) = self.end();
+        let (right, bottom) = self.far_corner();
         group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
         for value in ticks(self.x, x.step) {
-            let px = self.page_point(value, 0.0).0;
+            let page_x = self.page_point(value, 0.0).0;
             group = group
-                .add(line((px, bottom), (px, bottom + 6.0), DARK, 1.0))
+                .add(line((page_x, bottom), (page_x, bottom + 6.0), DARK, 1.0))
                 .add(text_middle(
                     &format_tick(value, x.step),
-                    (px, bottom + 23.0),
+                    (page_x, bottom + 23.0),
                     15.0,
                 ));
         }
         for value in ticks(self.y, y.step) {
-            let py = self.page_point(0.0, value).1;
+            let page_y = self.page_point(0.0, value).1;
             group = group
                 .add(line(
-                    (self.corner.0 - 6.0, py),
-                    (self.corner.0, py),
+                    (self.corner.0 - 6.0, page_y),
+                    (self.corner.0, page_y),
                     DARK,
                     1.0,
                 ))
                 .add(text_end(
                     &format_tick(value, y.step),
-                    (self.corner.0 - 10.0, py + 5.0),
+                    (self.corner.0 - 10.0, page_y + 5.0),
                     15.0,
                 ));
         }
-        let below = ((self.corner.0 + right) / 2.0, bottom + 50.0);
-        let beside = (self.corner.0 - 58.0, (self.corner.1 + bottom) / 2.0);
-        group
-            .add(text_middle(x.name, below, 17.0))
-            .add(text_middle(y.name, beside, 17.0).set(
+        let x_name_point = ((self.corner.0 + right) / 2.0, bottom + 50.0);
+        let y_name_point = (self.corner.0 - 58.0, (self.corner.1 + bottom) / 2.0);
+        group.add(text_middle(x.name, x_name_point, 17.0)).add(
+            text_middle(y.name, y_name_point, 17.0).set(
                 "transform",
-                format!("rotate(-90 {} {})", beside.0, beside.1),
-            ))
+                format!("rotate(-90 {} {})", y_name_point.0, y_name_point.1),
+            ),
+        )
     }
 
     /// Adds a map of `cells` (columns, rows) in bands of colour. `colour` returns the colour at the middle of a cell,
@@ -139,32 +149,32 @@ impl Plot {
             let y = self.y.0 + row as f64 * height;
             let left_of = |column: usize| self.x.0 + column as f64 * width;
             let colour_of = |column: usize| colour(left_of(column) + width / 2.0, y + height / 2.0);
-            let mut from = 0;
+            let mut first_column = 0;
             let mut fill = colour_of(0);
             for column in 1..=cells.0 {
-                let next = if column < cells.0 {
+                let next_fill = if column < cells.0 {
                     colour_of(column)
                 } else {
                     None
                 };
-                if column < cells.0 && next == fill {
+                if column < cells.0 && next_fill == fill {
                     continue;
                 }
                 if let Some(fill) = fill {
-                    let (left, top) = self.page_point(left_of(from), y + height);
+                    let (left, top) = self.page_point(left_of(first_column), y + height);
                     let (right, bottom) = self.page_point(left_of(column), y);
-                    let (wide, high) = (right - left, bottom - top);
+                    let (band_width, band_height) = (right - left, bottom - top);
                     let _ = write!(
                         outlines.entry(fill).or_default(),
-                        "M{left:.1} {top:.1}h{wide:.1}v{high:.1}h-{wide:.1}z"
+                        "M{left:.1} {top:.1}h{band_width:.1}v{band_height:.1}h-{band_width:.1}z"
                     );
                 }
-                (from, fill) = (column, next);
+                (first_column, fill) = (column, next_fill);
             }
         }
         for (fill, outline) in outlines {
-            let bands = Path::new().set("d", outline).set("fill", fill);
-            group = group.add(bands.set("shape-rendering", "crispEdges"));
+            let path = Path::new().set("d", outline).set("fill", fill);
+            group = group.add(path.set("shape-rendering", "crispEdges"));
         }
         group
     }
@@ -204,10 +214,10 @@ pub struct Scale {
 impl Scale {
     /// The colour of a value; a value outside the range gets the nearest band.
     pub fn colour(&self, value: f64) -> &'static str {
-        let share = (value - self.least) / (self.most - self.least);
+        let fraction = (value - self.least) / (self.most - self.least);
         // A value on a limit belongs to the band above it, despite rounding.
-        let band = (share * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
-        self.colours[band.min(self.colours.len() - 1)]
+        let band_index = (fraction * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
+        self.colours[band_index.min(self.colours.len() - 1)]
     }
 
     /// Adds a vertical colour key with the limits of the bands.
@@ -220,14 +230,14 @@ impl Scale {
         digits: usize,
     ) -> Group {
         let count = self.colours.len();
-        let band = height / count as f64;
+        let band_height = height / count as f64;
         for (i, colour) in self.colours.iter().enumerate() {
-            let top = corner.1 + height - (i + 1) as f64 * band;
-            group = group.add(rectangle((corner.0, top), (22.0, band), colour));
+            let top = corner.1 + height - (i + 1) as f64 * band_height;
+            group = group.add(rectangle((corner.0, top), (22.0, band_height), colour));
         }
         for i in 0..=count {
             let value = self.least + (self.most - self.least) * i as f64 / count as f64;
-            let top = corner.1 + height - i as f64 * band;
+            let top = corner.1 + height - i as f64 * band_height;
             group = group.add(text_start(
                 &format!("{value:.digits$}"),
                 (corner.0 + 30.0, top + 5.0),
@@ -241,8 +251,14 @@ impl Scale {
 }
 
 /// Adds an entry of a legend: a short line and its meaning.
-pub fn draw_entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
+pub fn draw_entry(
+    group: Group,
+    point: (f64, f64),
+    colour: &str,
+    dashes: &str,
+    meaning: &str,
+) -> Group {
     group
-        .add(line(at, (at.0 + 34.0, at.1), colour, 3.0).set("stroke-dasharray", dashes))
-        .add(text_start(words, (at.0 + 44.0, at.1 + 5.0), 15.0))
+        .add(line(point, (point.0 + 34.0, point.1), colour, 3.0).set("stroke-dasharray", dashes))
+        .add(text_start(meaning, (point.0 + 44.0, point.1 + 5.0), 15.0))
 }

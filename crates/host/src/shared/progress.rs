@@ -17,9 +17,9 @@ pub fn progress_bar(length: usize, template: &str) -> ProgressBar {
 pub struct Spinner(ProgressBar);
 
 impl Spinner {
-    /// Starts to show the time, after these words.
-    pub fn new(words: &'static str) -> Self {
-        let spinner = progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(words);
+    /// Starts to show the time, after this message.
+    pub fn new(message: &'static str) -> Self {
+        let spinner = progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(message);
         spinner.enable_steady_tick(Duration::from_millis(100));
         Self(spinner)
     }

@@ -30,8 +30,10 @@ pub(crate) fn names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
 /// A robot of robots/, for tests.
 #[cfg(test)]
 pub fn named(name: &str) -> Robot {
-    let file = BUILT_IN_ROBOTS.iter().find(|(known, _)| *known == name);
-    Robot::parse(file.expect(name).1).expect("robots/ holds valid robots")
+    let entry = BUILT_IN_ROBOTS
+        .iter()
+        .find(|(known_name, _)| *known_name == name);
+    Robot::parse(entry.expect(name).1).expect("robots/ holds valid robots")
 }
 
 /// The option `--robot`.
@@ -113,17 +115,17 @@ impl RobotFile {
     /// looks for robot.toml in the current folder and the folders above it.
     fn find_source(&self) -> Result<RobotSource, Failure> {
         if let Some(path) = &self.path {
-            let named = BUILT_IN_ROBOTS
+            let built_in = BUILT_IN_ROBOTS
                 .iter()
                 .find(|(name, _)| path.as_os_str() == *name);
-            return Ok(match named {
+            return Ok(match built_in {
                 Some((_, text)) if !path.exists() => RobotSource::BuiltIn(text),
                 _ => RobotSource::File(path.clone()),
             });
         }
-        let here = current_folder()?;
-        let mut above = here.ancestors().map(|folder| folder.join("robot.toml"));
-        let file = above.find(|path| path.is_file());
+        let folder = current_folder()?;
+        let mut candidates = folder.ancestors().map(|folder| folder.join("robot.toml"));
+        let file = candidates.find(|path| path.is_file());
         Ok(file.map_or(RobotSource::BuiltIn(BUILT_IN), RobotSource::File))
     }
 }
@@ -165,7 +167,7 @@ mod tests {
             assert_eq!(file.text().expect("a text"), text);
             assert_eq!(file.name().expect("a name"), format!("the robot {name}"));
         }
-        let missing = RobotFile::from_path(Some("papre".into())).load();
-        assert!(missing.is_err_and(|error| error.to_string().contains("papre")));
+        let result = RobotFile::from_path(Some("papre".into())).load();
+        assert!(result.is_err_and(|error| error.to_string().contains("papre")));
     }
 }

@@ -35,15 +35,16 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MAX_PARTS}");
-        let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+        let parse_failure =
+            || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MAX_PARTS}");
+        let (number, of) = text.split_once('/').ok_or_else(parse_failure)?;
         let (Ok(number), Ok(of)) = (number.parse(), of.parse()) else {
-            return Err(wrong());
+            return Err(parse_failure());
         };
         if (1..=MAX_PARTS).contains(&of) && (1..=of).contains(&number) {
             Ok(Self { number, of })
         } else {
-            Err(wrong())
+            Err(parse_failure())
         }
     }
 }
@@ -65,13 +66,13 @@ impl From<Part> for String {
 impl Part {
     /// True if a piece belongs to this part. Neighbouring pieces go to different parts, because a
     /// piece that takes long often has neighbours that do too.
-    fn has(self, piece: usize) -> bool {
+    fn has_piece(self, piece: usize) -> bool {
         piece % self.of as usize == self.number as usize - 1
     }
 
     /// The number of this part's pieces.
     pub fn count(self, pieces: usize) -> usize {
-        (0..pieces).filter(|piece| self.has(*piece)).count()
+        (0..pieces).filter(|piece| self.has_piece(*piece)).count()
     }
 
     /// Computes this part's pieces and prints them.
@@ -87,10 +88,10 @@ impl Part {
     ) -> Result<(), Failure> {
         let robot = robot.text()?;
         let mut values = BTreeMap::new();
-        for index in (0..pieces).filter(|index| self.has(*index)) {
+        for index in (0..pieces).filter(|index| self.has_piece(*index)) {
             values.insert(index, serde_json::to_value(compute_piece(index))?);
         }
-        let share = PartOutput {
+        let output = PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
             command: C::COMMAND.to_owned(),
             options: serde_json::to_value(command)?,
@@ -99,7 +100,7 @@ impl Part {
             pieces,
             found: values,
         };
-        Ok(json::write_line(&mut io::stdout().lock(), &share)?)
+        Ok(json::write_line(&mut io::stdout().lock(), &output)?)
     }
 }
 
@@ -163,7 +164,11 @@ impl Spread {
             return Ok(None);
         };
         let values = merged.iter().zip(0..);
-        if merged.len() != count || values.clone().any(|((index, _), at)| *index != at) {
+        if merged.len() != count
+            || values
+                .clone()
+                .any(|((index, _), expected_index)| *index != expected_index)
+        {
             return Err(wrong_parts_failure());
         }
         let deserialize = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
@@ -221,7 +226,7 @@ mod tests {
                         number: *number,
                         of: part_count,
                     }
-                    .has(piece)
+                    .has_piece(piece)
                 });
                 assert_eq!(parts.count(), 1, "piece {piece} of {part_count} parts");
             }
@@ -231,7 +236,7 @@ mod tests {
     #[test]
     fn a_part_is_written_as_two_numbers() {
         assert_eq!("2/8".parse(), Ok(Part { number: 2, of: 8 }));
-        for wrong in [
+        for invalid_text in [
             "",
             "2",
             "0/8",
@@ -242,10 +247,10 @@ mod tests {
             "a/b",
             "1/1000001",
         ] {
-            let message = wrong.parse::<Part>().expect_err(wrong);
+            let message = invalid_text.parse::<Part>().expect_err(invalid_text);
             assert!(
                 message.starts_with("it must be as 2/8"),
-                "{wrong}: {message}"
+                "{invalid_text}: {message}"
             );
         }
     }

@@ -6,12 +6,12 @@ const MIN_SIMILARITY: f64 = 0.7;
 
 /// The text `; did you mean NAME?` with the name that is most similar to `word`; empty if no name is similar.
 pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    let like = names
+    let candidates = names
         .into_iter()
         .map(|name| (strsim::jaro(word, name), name))
-        .filter(|(like, _)| *like > MIN_SIMILARITY);
-    let max = like.max_by(|a, b| a.0.total_cmp(&b.0));
-    max.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
+        .filter(|(similarity, _)| *similarity > MIN_SIMILARITY);
+    let best = candidates.max_by(|a, b| a.0.total_cmp(&b.0));
+    best.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
 }
 
 #[cfg(test)]

@@ -116,7 +116,7 @@ impl SimulatedBoard {
         let mut board = Self::power_on(elf, fidelity, robot)?;
         match board.next_line(BANNER_MS) {
             Some(line) if line.starts_with("# lizard") => Ok(board),
-            other => Err(BoardError::Banner(other)),
+            line => Err(BoardError::Banner(line)),
         }
     }
 
@@ -174,19 +174,19 @@ impl SimulatedBoard {
     /// Returns the next line without its line end; `None` if it does not come
     /// within `ms` after the bytes still to be sent, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
-        let sending = self.uno.unsent() as u64 * BYTE_CYCLES;
-        let end = self.uno.cycle() + sending + ms * CYCLES_PER_MS;
+        let sending_cycles = self.uno.unsent() as u64 * BYTE_CYCLES;
+        let end_cycle = self.uno.cycle() + sending_cycles + ms * CYCLES_PER_MS;
         loop {
-            let next = self.returned_lines;
-            if let Some(line) = self.lines().get(next) {
+            let index = self.returned_lines;
+            if let Some(line) = self.lines().get(index) {
                 let text = line.text.clone();
                 self.returned_lines += 1;
                 return Some(text);
             }
-            if self.uno.cycle() >= end || *self.uno.state() != State::Alive {
+            if self.uno.cycle() >= end_cycle || *self.uno.state() != State::Alive {
                 return None;
             }
-            self.uno.run_until_line(end - self.uno.cycle());
+            self.uno.run_until_line(end_cycle - self.uno.cycle());
         }
     }
 
@@ -233,14 +233,14 @@ impl SimulatedBoard {
 
     /// Runs the board until a cycle.
     fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
-        let resets = self.uno.watchdog_resets();
+        let resets_before = self.uno.watchdog_resets();
         match self.uno.run_until_cycle(cycle) {
             State::Alive => {}
             State::Halted => return Err(BoardError::Halted),
             State::Crashed { message, .. } => return Err(BoardError::Crashed(message.clone())),
             State::Off => return Err(BoardError::Off),
         }
-        if self.uno.watchdog_resets() == resets {
+        if self.uno.watchdog_resets() == resets_before {
             Ok(())
         } else {
             Err(BoardError::Reset)
@@ -261,9 +261,11 @@ impl SimulatedBoard {
 
     /// The cycles spent so far in the handlers of the vectors that `is_counted` accepts.
     pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
-        let all = self.uno.interrupts();
-        let counted = all.iter().filter(|used| is_counted(used.vector));
-        counted.map(|used| used.cycles).sum()
+        let interrupts = self.uno.interrupts();
+        let counted_interrupts = interrupts
+            .iter()
+            .filter(|interrupt| is_counted(interrupt.vector));
+        counted_interrupts.map(|interrupt| interrupt.cycles).sum()
     }
 
     /// The cycle at which A1's first pulse starts, among the edges not yet taken.
@@ -283,11 +285,11 @@ impl SimulatedBoard {
     /// # Errors
     /// See [`SimulatedBoard::run_ms`].
     pub fn run_for_frames(&mut self, count: u64) -> Result<Vec<Frame>, BoardError> {
-        let now = self.uno.cycle();
+        let current_cycle = self.uno.cycle();
         self.anchor = latest_start(&self.uno.edges(), self.pins).or(self.anchor);
-        let start = self
-            .anchor
-            .map_or(now + FRAME, |anchor| next_start(anchor, now));
+        let start = self.anchor.map_or(current_cycle + FRAME, |anchor| {
+            next_start(anchor, current_cycle)
+        });
         self.run_until(first_cycle(start))?;
         self.uno.take_edges();
         self.run_until(first_cycle(start + count * FRAME))?;

@@ -19,22 +19,22 @@ use crate::{Failure, RobotFile};
 /// fails.
 pub fn course(
     robot: &Robot,
-    file: &RobotFile,
+    robot_file: &RobotFile,
     gait: &str,
     elf: Option<&Path>,
 ) -> Result<Course, Failure> {
     let gait = twin::moving_gait(robot, gait)?;
-    let image = firmware::select_firmware(elf, file, robot)?.image;
+    let image = firmware::select_firmware(elf, robot_file, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::walk_script(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
     let log = &recording.frames;
-    let stop = script.steps.last().map_or(script.end_ms, |step| step.ms);
-    let end = log.index(stop as f64 / 1000.0) as f64 * FRAME;
+    let stop_ms = script.steps.last().map_or(script.end_ms, |step| step.ms);
+    let end_s = log.index(stop_ms as f64 / 1000.0) as f64 * FRAME;
     Ok(Course {
         gait: gait.name().to_owned(),
         frames: targets(robot, log),
-        measure_start: end - gait.period(),
+        measure_start: end_s - gait.period(),
         period: gait.period(),
         count: 1,
     })
@@ -47,8 +47,8 @@ fn targets(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
     let frames = log.widths.iter().map(|widths| {
         for (servo, width) in widths.iter().enumerate() {
             if *width > 0 {
-                let us = f64::from(*width) / CYCLES_PER_US as f64;
-                targets[servo] = robot.servos()[servo].sweep(us);
+                let width_us = f64::from(*width) / CYCLES_PER_US as f64;
+                targets[servo] = robot.servos()[servo].sweep(width_us);
             }
         }
         targets
@@ -71,13 +71,13 @@ mod tests {
             ],
             ..FrameLog::default()
         };
-        let found = targets(&robot, &log);
-        assert_eq!(found[0], [0.0; 4]);
-        assert_eq!(found[1], [0.0; 4]);
+        let sweeps = targets(&robot, &log);
+        assert_eq!(sweeps[0], [0.0; 4]);
+        assert_eq!(sweeps[1], [0.0; 4]);
         assert!(
-            (found[2][0] - 10.0).abs() < 1e-9,
-            "92 us are 10 deg: {found:?}"
+            (sweeps[2][0] - 10.0).abs() < 1e-9,
+            "92 us are 10 deg: {sweeps:?}"
         );
-        assert_eq!(found[2][1..], [0.0; 3]);
+        assert_eq!(sweeps[2][1..], [0.0; 3]);
     }
 }

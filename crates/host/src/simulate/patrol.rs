@@ -12,7 +12,7 @@ pub const PATROL: &str = "patrol";
 const MAX_MORE_GAITS: usize = 8;
 
 /// The Arduino pins that are tried for a missing input, in this order. Here A1 to A4 are analogue pins, not servos.
-const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
+const CANDIDATE_PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
 /// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine
 /// waits for the button, walks with the first gait until the nose touches something, goes through
@@ -28,22 +28,28 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     }
     let mut text = text.to_owned();
     for name in ["button", "nose"] {
-        if robot.inputs().each().any(|(own, _)| own == name) {
+        if robot
+            .inputs()
+            .each()
+            .any(|(input_name, _)| input_name == name)
+        {
             continue;
         }
-        let with = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
-        let free = PINS.iter().find(|pin| Robot::parse(&with(pin)).is_ok());
+        let with_input = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
+        let free_pin = CANDIDATE_PINS
+            .iter()
+            .find(|pin| Robot::parse(&with_input(pin)).is_ok());
         // If no pin is free, an occupied one is taken, so that the last `parse` reports the error.
-        text = with(free.unwrap_or(&PINS[0]));
+        text = with_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
     }
     let gaits: Vec<String> = tour::moving_gaits(&robot)
         .iter()
         .map(|name| name.replace('-', " "))
         .collect();
-    let first = gaits.first().map_or("stand 1 s", String::as_str);
-    let mut steps = vec!["wait button".to_owned(), format!("{first} until nose")];
-    let others = gaits.iter().skip(1).take(MAX_MORE_GAITS);
-    steps.extend(others.map(|gait| format!("{gait} 1 until button")));
+    let first_gait = gaits.first().map_or("stand 1 s", String::as_str);
+    let mut steps = vec!["wait button".to_owned(), format!("{first_gait} until nose")];
+    let other_gaits = gaits.iter().skip(1).take(MAX_MORE_GAITS);
+    steps.extend(other_gaits.map(|gait| format!("{gait} 1 until button")));
     steps.extend(last_steps.iter().map(|step| (*step).to_owned()));
     Robot::parse(&format!(
         "{text}\n[routine.{PATROL}]\nsteps = {steps:?}\nrepeat = \"for ever\"\nrepeat_from = 2\n"
@@ -57,10 +63,10 @@ mod tests {
 
     #[test]
     fn a_patrol_has_both_inputs_and_goes_through_the_gaits() {
-        let patrolling = with_patrol(robot_file::BUILT_IN, &[]).expect("a robot");
-        let inputs: Vec<&str> = patrolling.inputs().each().map(|(name, _)| name).collect();
+        let robot = with_patrol(robot_file::BUILT_IN, &[]).expect("a robot");
+        let inputs: Vec<&str> = robot.inputs().each().map(|(name, _)| name).collect();
         assert_eq!(inputs, ["button", "nose"]);
-        let patrol = patrolling.routine(PATROL).expect("a routine");
+        let patrol = robot.routine(PATROL).expect("a routine");
         assert!(patrol.has_inputs());
     }
 }

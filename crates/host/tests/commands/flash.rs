@@ -15,10 +15,10 @@ const HEX: &str = "\
 
 #[test]
 fn without_a_board_and_without_a_firmware_built_it_gets_as_far_as_the_port() {
-    let empty = tempfile::tempdir().expect("a folder");
-    for words in [&[][..], &["--only-robot"], &["--robot", "large"]] {
-        let arguments = [&["flash", "/dev/no-such-port"], words].concat();
-        let message = run_in(empty.path(), &arguments, "").expect_refusal();
+    let folder = tempfile::tempdir().expect("a folder");
+    for options in [&[][..], &["--only-robot"], &["--robot", "large"]] {
+        let arguments = [&["flash", "/dev/no-such-port"], options].concat();
+        let message = run_in(folder.path(), &arguments, "").expect_refusal();
         assert!(message.contains("no-such-port"), "{message}");
     }
 }
@@ -33,22 +33,22 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
         ]
         .concat();
         let start = Instant::now();
-        let made = run_in(folder.path(), &arguments, "");
+        let outcome = run_in(folder.path(), &arguments, "");
         assert!(
             start.elapsed() < Duration::from_secs(20),
             "{:?}",
             start.elapsed()
         );
-        assert_eq!(made.err, "");
-        let output = made.expect_success();
+        assert_eq!(outcome.err, "");
+        let output = outcome.expect_success();
         assert!(
             output.starts_with("x.hex: ") && output.contains(&format!("robot {name} ")),
             "{output}"
         );
         let text = fs::read_to_string(folder.path().join("x.hex")).expect("it is written");
-        let piped = [&["flash", "image", "--robot", name], options].concat();
-        let piped = run_in(folder.path(), &piped, "").expect_success();
-        assert!(piped == text, "the same goes to a pipe");
+        let pipe_arguments = [&["flash", "image", "--robot", name], options].concat();
+        let piped_text = run_in(folder.path(), &pipe_arguments, "").expect_success();
+        assert!(piped_text == text, "the same goes to a pipe");
         // Read by the simulator's loader, not by the code that wrote it.
         let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
         let robot = Robot::load(robot(name)).expect("it is right");
@@ -63,12 +63,13 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
 fn a_script_reads_what_an_image_has() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
-    let made = run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_success();
-    let made: serde_json::Value = serde_json::from_str(&made).expect("it is JSON");
+    let summary =
+        run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_success();
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("it is JSON");
     let robot = Robot::load(robot("large")).expect("it is right");
     let hash = robot.firmware().hash();
     assert_eq!(
-        made,
+        summary,
         serde_json::json!({
             "file": "x.hex",
             "firmware": env!("CARGO_PKG_VERSION"),
@@ -77,8 +78,8 @@ fn a_script_reads_what_an_image_has() {
             "robot_space": 0x7e00 - 0x6e00,
         })
     );
-    let piped = run_in(folder.path(), &["flash", "image", "--json"], "").expect_refusal();
-    assert!(piped.contains("--output"), "{piped}");
+    let refusal = run_in(folder.path(), &["flash", "image", "--json"], "").expect_refusal();
+    assert!(refusal.contains("--output"), "{refusal}");
 }
 
 #[test]
@@ -98,8 +99,9 @@ fn a_port_that_is_not_there_is_named() {
     fs::write(folder.path().join("a.hex"), HEX).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
     let message = run_in(folder.path(), &arguments, "").expect_refusal();
-    let start = "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
-    assert!(message.starts_with(start), "{message}");
+    let expected_start =
+        "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
+    assert!(message.starts_with(expected_start), "{message}");
 }
 
 #[test]
@@ -112,9 +114,9 @@ fn a_file_that_is_not_an_image_is_refused_before_any_port_is_opened() {
         message.starts_with("lizard: half.hex: line 2 is not Intel HEX"),
         "{message}"
     );
-    for other in [&["--robot", "robot.toml"][..], &["--only-robot"]] {
-        let both = [&arguments[..], other].concat();
-        let message = run_in(folder.path(), &both, "").expect_refusal();
+    for conflicting_options in [&["--robot", "robot.toml"][..], &["--only-robot"]] {
+        let all_arguments = [&arguments[..], conflicting_options].concat();
+        let message = run_in(folder.path(), &all_arguments, "").expect_refusal();
         assert!(message.contains("cannot be used with"), "{message}");
     }
 }

@@ -18,12 +18,12 @@ fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
     let path = file.display().to_string();
     run(&["model", &path]).expect_success();
     let text = fs::read_to_string(&file).expect("a file");
-    for part in [
+    for fragment in [
         "<position name=\"A1\"",
         "<position name=\"A4\"",
         "<geom name=\"pad LH\"",
     ] {
-        assert_eq!(text.matches(part).count(), 1, "{part}");
+        assert_eq!(text.matches(fragment).count(), 1, "{fragment}");
     }
     assert!(text.ends_with("</mujoco>\n"));
     assert_eq!(text.matches("<key ").count(), 1, "nobody asked for a gait");
@@ -41,16 +41,26 @@ fn a_stream_gets_the_file_and_nothing_else() {
 fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
     let file = fresh_path("wrong.xml");
     let path = file.display().to_string();
-    let refusal = |words: &[&str]| run(&[&["model", &path], words].concat()).expect_refusal();
-    let wolk = refusal(&["--drive", "wolk"]);
-    assert!(wolk.contains("robot.toml has no gait `wolk`"), "{wolk}");
-    assert!(wolk.ends_with("did you mean `walk`?"), "{wolk}");
-    let stand = refusal(&["--drive", "stand"]);
-    assert_eq!(stand, "lizard: the gait `stand` moves no servo");
-    let far = refusal(&["--long-foot", "LF=5.1"]);
-    assert!(far.contains("at most 5 mm either way"), "{far}");
-    let twice = refusal(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
-    assert_eq!(twice, "lizard: --long-foot LF is given twice");
+    let refusal_of =
+        |arguments: &[&str]| run(&[&["model", &path], arguments].concat()).expect_refusal();
+    let wolk_message = refusal_of(&["--drive", "wolk"]);
+    assert!(
+        wolk_message.contains("robot.toml has no gait `wolk`"),
+        "{wolk_message}"
+    );
+    assert!(
+        wolk_message.ends_with("did you mean `walk`?"),
+        "{wolk_message}"
+    );
+    let stand_message = refusal_of(&["--drive", "stand"]);
+    assert_eq!(stand_message, "lizard: the gait `stand` moves no servo");
+    let far_message = refusal_of(&["--long-foot", "LF=5.1"]);
+    assert!(
+        far_message.contains("at most 5 mm either way"),
+        "{far_message}"
+    );
+    let twice_message = refusal_of(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
+    assert_eq!(twice_message, "lizard: --long-foot LF is given twice");
     assert!(!file.exists());
 }
 
@@ -59,8 +69,8 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
     let folder = tempfile::tempdir().expect("a folder");
     for ending in ["urdf", "sdf"] {
         let file = folder.path().join(format!("new/my.{ending}"));
-        let printed = run(&["model", &file.display().to_string()]).expect_success();
-        assert!(printed.contains("my-meshes"), "{printed}");
+        let output = run(&["model", &file.display().to_string()]).expect_success();
+        assert!(output.contains("my-meshes"), "{output}");
         let text = fs::read_to_string(&file).expect("a file");
         let names = text.split("my-meshes/").skip(1);
         let names: Vec<&str> = names
@@ -83,7 +93,7 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
 #[test]
 fn options_that_a_format_lacks_are_refused_and_nothing_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
-    for (name, words, refusal) in [
+    for (name, options, expected) in [
         ("a.urfd", vec![], "the ending decides the format"),
         (
             "a.urdf",
@@ -97,9 +107,9 @@ fn options_that_a_format_lacks_are_refused_and_nothing_is_written() {
         ),
     ] {
         let file = folder.path().join(name).display().to_string();
-        let printed = run(&[&["model", &file], &words[..]].concat()).expect_refusal();
-        assert!(printed.contains(refusal), "{printed}");
+        let message = run(&[&["model", &file], &options[..]].concat()).expect_refusal();
+        assert!(message.contains(expected), "{message}");
     }
-    let left = folder.path().read_dir().expect("a folder");
-    assert_eq!(left.count(), 0);
+    let remaining_files = folder.path().read_dir().expect("a folder");
+    assert_eq!(remaining_files.count(), 0);
 }

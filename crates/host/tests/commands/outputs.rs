@@ -8,14 +8,14 @@ use lizard_time_limit::LIMIT;
 
 use crate::program::{Outcome, read, run_in};
 
-fn lizard(folder: &Path, line: &str) -> Outcome {
+fn run_line(folder: &Path, line: &str) -> Outcome {
     run_in(folder, &line.split(' ').collect::<Vec<_>>(), "")
 }
 
 #[test]
 fn no_command_writes_over_its_input_or_over_a_robot() {
     let folder = tempfile::tempdir().expect("a folder");
-    let here = folder.path();
+    let folder_path = folder.path();
     let robot = &read("robots/paper.toml");
     let session =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
@@ -27,11 +27,15 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("a.txt", "500 walk\n"),
     ];
     for (name, text) in files {
-        fs::write(here.join(name), text).expect("it is written");
+        fs::write(folder_path.join(name), text).expect("it is written");
     }
-    fs::create_dir(here.join("charts")).expect("a folder");
-    fs::hard_link(here.join("my.toml"), here.join("charts/top-view.svg")).expect("another name");
-    fs::hard_link(here.join("my.toml"), here.join("my.urdf")).expect("another name");
+    fs::create_dir(folder_path.join("charts")).expect("a folder");
+    fs::hard_link(
+        folder_path.join("my.toml"),
+        folder_path.join("charts/top-view.svg"),
+    )
+    .expect("another name");
+    fs::hard_link(folder_path.join("my.toml"), folder_path.join("my.urdf")).expect("another name");
     for (line, file) in [
         ("flash image --robot my.toml --output my.toml", "my.toml"),
         (
@@ -51,10 +55,10 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("sim --script a.txt --svg a.txt", "a.txt"),
         ("draw charts charts --robot my.toml", "top-view.svg"),
     ] {
-        fs::create_dir_all(here.join("x")).expect("a folder");
+        fs::create_dir_all(folder_path.join("x")).expect("a folder");
         let Outcome {
             code, err: error, ..
-        } = lizard(here, line);
+        } = run_line(folder_path, line);
         assert_eq!(code, Some(2), "{line}: {error}");
         assert!(
             error.contains(file) && error.contains("; name another file for the output"),
@@ -62,36 +66,33 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         );
     }
     for (name, text) in files {
-        let now = fs::read_to_string(here.join(name)).expect("it is there");
-        assert!(now == text, "{name} has changed");
+        let current_text = fs::read_to_string(folder_path.join(name)).expect("it is there");
+        assert!(current_text == text, "{name} has changed");
     }
-    assert!(!here.join("my-meshes").exists());
+    assert!(!folder_path.join("my-meshes").exists());
 }
 
 #[test]
 fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
     let folder = tempfile::tempdir().expect("a folder");
-    let here = folder.path();
-    let printed = lizard(here, "new my.toml").expect_success();
-    assert!(
-        printed.contains("lizard gaits --robot my.toml"),
-        "{printed}"
-    );
-    let file = here.join("my.toml");
+    let folder_path = folder.path();
+    let output = run_line(folder_path, "new my.toml").expect_success();
+    assert!(output.contains("lizard gaits --robot my.toml"), "{output}");
+    let file = folder_path.join("my.toml");
     let text = fs::read_to_string(&file).expect("it is written");
     assert!(
         text.contains("\n[gait.walk]\n") && text.contains("# "),
         "{text}"
     );
-    lizard(here, "gaits --robot my.toml").expect_success();
+    run_line(folder_path, "gaits --robot my.toml").expect_success();
     fs::write(&file, "mine").expect("it is written");
-    let refusal = lizard(here, "new my.toml").expect_refusal();
+    let refusal = run_line(folder_path, "new my.toml").expect_refusal();
     assert_eq!(
         refusal,
         "lizard: my.toml already exists and is left as it is; name a new file"
     );
     assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
-    let outcome = lizard(here, "new no/folder/my.toml");
+    let outcome = run_line(folder_path, "new no/folder/my.toml");
     assert_eq!(outcome.code, Some(1), "{}", outcome.err);
 }
 
@@ -99,7 +100,7 @@ fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
 fn an_image_makes_the_folders_that_it_needs() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = "flash image --robot large --output new/folder/x.hex";
-    lizard(folder.path(), line).expect_success();
+    run_line(folder.path(), line).expect_success();
     assert!(folder.path().join("new/folder/x.hex").is_file());
 }
 
@@ -112,8 +113,8 @@ fn a_command_that_is_killed_while_it_writes_leaves_nothing() {
     let mut bash = Command::new("bash");
     bash.args(["-c", line, env!("CARGO_BIN_EXE_lizard")])
         .current_dir(folder.path());
-    let done = LIMIT.output(&mut bash, b"").expect("bash runs");
-    assert_eq!(done.status.code(), None, "no signal: {done:?}");
-    let left: Vec<_> = folder.path().read_dir().expect("a folder").collect();
-    assert!(left.is_empty(), "{left:?}");
+    let output = LIMIT.output(&mut bash, b"").expect("bash runs");
+    assert_eq!(output.status.code(), None, "no signal: {output:?}");
+    let remaining_files: Vec<_> = folder.path().read_dir().expect("a folder").collect();
+    assert!(remaining_files.is_empty(), "{remaining_files:?}");
 }

@@ -93,17 +93,18 @@ fn one_corner_can_be_printed_first() {
 
 #[test]
 fn a_wrong_weight_is_reported_with_the_right_one() {
-    let light = write_changed_paper("light.toml", |text| {
+    let light_robot = write_changed_paper("light.toml", |text| {
         text.replace("mass = 435.0", "mass = 280.0")
     });
-    let summary =
+    let summary_of =
         |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
-    let light = summary(&light);
+    let light_summary = summary_of(&light_robot);
     assert!(
-        light.contains("The parts weigh 435 g") && light.ends_with("\n[body]\nmass = 435.0\n"),
-        "{light}"
+        light_summary.contains("The parts weigh 435 g")
+            && light_summary.ends_with("\n[body]\nmass = 435.0\n"),
+        "{light_summary}"
     );
-    assert_eq!(summary(&robot("paper")).lines().count(), 1);
+    assert_eq!(summary_of(&robot("paper")).lines().count(), 1);
 }
 
 #[test]
@@ -122,14 +123,14 @@ fn struts_may_have_springs() {
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
     assert!(guide.contains("## 9. Struts and springs"), "{guide}");
-    for words in [
+    for phrase in [
         "Instead of the struts, 4 x rigid strut,",
         "hook",
         "tension",
         "pulls 4.0 N (0.40 N/mm)",
         "[leg.drive]\nkind = \"strut\"\nforce = 4.00\nrate = 0.400\n",
     ] {
-        assert!(guide.contains(words), "{words}: {guide}");
+        assert!(guide.contains(phrase), "{phrase}: {guide}");
     }
 }
 
@@ -137,9 +138,9 @@ fn struts_may_have_springs() {
 fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
     let folder = fresh_path("parts-refused");
     let robot = write_changed_paper("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
-    let made = make(&folder, &["--robot", &robot]);
-    assert_eq!(made.code, Some(1));
-    let message = made.err;
+    let outcome = make(&folder, &["--robot", &robot]);
+    assert_eq!(outcome.code, Some(1));
+    let message = outcome.err;
     assert!(
         message.contains(" overlap by ") && message.contains(" at pose "),
         "{message}"

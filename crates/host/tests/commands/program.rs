@@ -96,8 +96,8 @@ impl Drop for RobotFile {
 
 /// Runs the program in the repository's root with this standard input.
 pub fn lizard(line: &str, input: impl AsRef<[u8]>) -> Outcome {
-    let words: Vec<&str> = line.split_whitespace().collect();
-    run_in(&root(), &words, input)
+    let arguments: Vec<&str> = line.split_whitespace().collect();
+    run_in(&root(), &arguments, input)
 }
 
 /// Runs the program in a folder for files of tests.

@@ -35,10 +35,10 @@ impl Board {
 
 /// True if a line is as the page shows it; a shown line that ends in `...` is compared only up
 /// to there.
-fn matches_page(line: &str, shown: &str) -> bool {
-    shown
+fn matches_page(line: &str, page_line: &str) -> bool {
+    page_line
         .strip_suffix("...")
-        .map_or(line == shown, |start| line.starts_with(start))
+        .map_or(line == page_line, |start| line.starts_with(start))
 }
 
 #[test]
@@ -49,27 +49,27 @@ fn every_line_of_the_quickstart_is_answered_as_it_shows() {
     for line in &greeting[1..] {
         assert!(page.contains(line), "{line}");
     }
-    let mut lines = 0;
+    let mut line_count = 0;
     for block in page.split("```text\n").skip(1) {
         let block = block.split("```").next().expect("a closed block");
         for turn in block.split("> ").skip(1) {
-            let mut shown = turn.lines();
-            let line = shown.next().expect("a line");
-            let shown: Vec<&str> = shown.collect();
+            let mut page_lines = turn.lines();
+            let line = page_lines.next().expect("a line");
+            let page_lines: Vec<&str> = page_lines.collect();
             let answer = board.send(line);
-            let alike = answer.len() == shown.len()
+            let is_as_shown = answer.len() == page_lines.len()
                 && answer
                     .iter()
-                    .zip(&shown)
-                    .all(|(answer, shown)| matches_page(answer, shown));
+                    .zip(&page_lines)
+                    .all(|(answer, page_line)| matches_page(answer, page_line));
             assert!(
-                alike,
-                "{line}\n  is answered by {answer:#?}\n  but shown as {shown:#?}"
+                is_as_shown,
+                "{line}\n  is answered by {answer:#?}\n  but shown as {page_lines:#?}"
             );
-            lines += 1;
+            line_count += 1;
         }
     }
-    assert!(lines > 20, "{lines}");
+    assert!(line_count > 20, "{line_count}");
 }
 
 #[test]
@@ -80,9 +80,9 @@ fn every_message_in_the_table_of_troubles_is_one_of_the_firmware() {
     );
     let (_, table) = page.split_once("## Troubleshooting").expect("a table");
     let mut codes = [false; 10];
-    let mut rows = 0;
+    let mut row_count = 0;
     for row in table.lines().filter(|line| line.starts_with('|')) {
-        rows += 1;
+        row_count += 1;
         for quoted in row.split('`').skip(1).step_by(2) {
             let answer = if let Some(refusal) = quoted.strip_prefix("err ") {
                 let (code, reason) = refusal.split_at(1);
@@ -93,15 +93,15 @@ fn every_message_in_the_table_of_troubles_is_one_of_the_firmware() {
             } else {
                 continue;
             };
-            for words in answer
+            for phrase in answer
                 .split("...")
-                .map(|words| words.trim_matches([' ', ',']))
+                .map(|phrase| phrase.trim_matches([' ', ',']))
             {
-                assert!(messages.contains(words), "nothing says {words:?}");
+                assert!(messages.contains(phrase), "nothing says {phrase:?}");
             }
         }
     }
-    assert!(rows > 17, "{rows}");
+    assert!(row_count > 17, "{row_count}");
     assert_eq!(
         codes,
         [false, true, true, true, true, true, true, true, true, true]

@@ -2,13 +2,13 @@
 
 use crate::program::{read, robot, run, scratch};
 
-fn complaint(arguments: &[&str]) -> String {
+fn refusal_of(arguments: &[&str]) -> String {
     run(arguments).expect_refusal()
 }
 
 #[test]
 fn a_missing_firmware_is_named() {
-    let message = complaint(&["sim", "--elf", "no/such.elf"]);
+    let message = refusal_of(&["sim", "--elf", "no/such.elf"]);
     assert_eq!(
         message,
         "lizard: there is no firmware at no/such.elf; without --elf, the one inside this program \
@@ -18,10 +18,12 @@ fn a_missing_firmware_is_named() {
 
 #[test]
 fn a_file_that_is_not_firmware_is_refused() {
-    let own = env!("CARGO_BIN_EXE_lizard");
-    let message = complaint(&["sim", "--elf", own]);
+    let program_path = env!("CARGO_BIN_EXE_lizard");
+    let message = refusal_of(&["sim", "--elf", program_path]);
     assert!(
-        message.starts_with(&format!("lizard: {own}: not an ELF file of an AVR")),
+        message.starts_with(&format!(
+            "lizard: {program_path}: not an ELF file of an AVR"
+        )),
         "{message}"
     );
 }
@@ -31,7 +33,7 @@ fn a_wrong_script_names_file_and_line() {
     let path = scratch().join("wrong-script.txt");
     std::fs::write(&path, "100 walk\nsoon stop\n").expect("the script is written");
     let path = path.display().to_string();
-    let message = complaint(&["sim", "--script", &path]);
+    let message = refusal_of(&["sim", "--script", &path]);
     assert_eq!(
         message,
         format!(
@@ -42,7 +44,7 @@ fn a_wrong_script_names_file_and_line() {
 
 #[test]
 fn a_script_that_never_ends_is_refused() {
-    let message = complaint(&["sim", "--script", "/dev/zero"]);
+    let message = refusal_of(&["sim", "--script", "/dev/zero"]);
     assert_eq!(
         message,
         "lizard: cannot read /dev/zero: it is longer than 256 MiB"
@@ -51,7 +53,7 @@ fn a_script_that_never_ends_is_refused() {
 
 #[test]
 fn an_unknown_gait_lists_those_of_the_paper_robot() {
-    let message = complaint(&["sim", "--robot", &robot("paper"), "--gait", "gallop"]);
+    let message = refusal_of(&["sim", "--robot", &robot("paper"), "--gait", "gallop"]);
     assert!(
         message.contains("no gait `gallop`; it has stand, walk, trot"),
         "{message}"
@@ -60,75 +62,82 @@ fn an_unknown_gait_lists_those_of_the_paper_robot() {
 
 #[test]
 fn a_routine_goes_on_at_the_presses_of_its_inputs_and_the_core_agrees() {
-    let (own, script) = (scratch().join("patrol.toml"), scratch().join("patrol.txt"));
+    let (robot_path, script) = (scratch().join("patrol.toml"), scratch().join("patrol.txt"));
     let gaits = read("docs/gaits.md");
     let patrol = gaits
         .split("```toml\n")
-        .find(|it| it.starts_with("[input.button]"));
+        .find(|block| block.starts_with("[input.button]"));
     let patrol = patrol
-        .and_then(|it| it.split("```").next())
+        .and_then(|block| block.split("```").next())
         .expect("it is there");
     let text = format!("{}\n{patrol}", read("robots/paper.toml"));
-    std::fs::write(&own, text).expect("the robot is written");
+    std::fs::write(&robot_path, text).expect("the robot is written");
     std::fs::write(&script, "1000 patrol\n").expect("the script is written");
-    let [own, script] = [own, script].map(|path| path.display().to_string());
-    let words = [
+    let [robot_path, script] = [robot_path, script].map(|path| path.display().to_string());
+    let arguments = [
         "sim",
         "--json",
         "--robot",
-        &own,
+        &robot_path,
         "--script",
         &script,
         "--duration=5",
     ];
-    let svg = ["--svg", &scratch().join("patrol.svg").display().to_string()].map(str::to_owned);
-    let played = |presses: &[&str]| {
-        let mut all = words.to_vec();
-        all.extend(svg.iter().map(String::as_str));
-        all.extend(presses.iter().flat_map(|press| ["--press", press]));
-        run(&all).json()
+    let svg_option =
+        ["--svg", &scratch().join("patrol.svg").display().to_string()].map(str::to_owned);
+    let play = |presses: &[&str]| {
+        let mut all_arguments = arguments.to_vec();
+        all_arguments.extend(svg_option.iter().map(String::as_str));
+        all_arguments.extend(presses.iter().flat_map(|press| ["--press", press]));
+        run(&all_arguments).json()
     };
-    let waits = |played: &serde_json::Value, input: &str| -> Vec<f64> {
-        let lines = played["dialogue"].as_array().expect("lines");
+    let wait_times_ms_of = |report: &serde_json::Value, input: &str| -> Vec<f64> {
+        let lines = report["dialogue"].as_array().expect("lines");
         let text = format!("# waiting for {input}");
-        let of_input = lines.iter().filter(|line| line["text"] == text.as_str());
-        of_input
+        let input_lines = lines.iter().filter(|line| line["text"] == text.as_str());
+        input_lines
             .map(|line| line["ms"].as_f64().expect("a time"))
             .collect()
     };
-    let pressed = played(&["button@2", "nose@3-3.5"]);
-    let begins = waits(&pressed, "nose");
+    let pressed_report = play(&["button@2", "nose@3-3.5"]);
+    let wait_starts_ms = wait_times_ms_of(&pressed_report, "nose");
     assert!(
-        matches!(begins[..], [at] if (2_040.0..2_100.0).contains(&at)),
-        "{begins:?}"
+        matches!(wait_starts_ms[..], [start_ms] if (2_040.0..2_100.0).contains(&start_ms)),
+        "{wait_starts_ms:?}"
     );
     assert_eq!(
-        pressed["servos"][0]["width_error"], 0,
+        pressed_report["servos"][0]["width_error"], 0,
         "{}",
-        pressed["servos"]
+        pressed_report["servos"]
     );
-    let alone = played(&[]);
+    let report_without_presses = play(&[]);
     assert_eq!(
-        (waits(&alone, "button").len(), waits(&alone, "nose").len()),
+        (
+            wait_times_ms_of(&report_without_presses, "button").len(),
+            wait_times_ms_of(&report_without_presses, "nose").len()
+        ),
         (1, 0)
     );
-    let words = complaint(&["sim", "--robot", &robot("paper"), "--press", "nose@1"]);
-    assert_eq!(words, "lizard: robot.toml has no [input.nose] for --press");
+    let message = refusal_of(&["sim", "--robot", &robot("paper"), "--press", "nose@1"]);
+    assert_eq!(
+        message,
+        "lizard: robot.toml has no [input.nose] for --press"
+    );
 }
 
 #[test]
 fn times_out_of_range_are_refused() {
     for duration in ["0", "-3", "nan", "1e9", "soon"] {
         let argument = format!("--duration={duration}");
-        let message = complaint(&["sim", &argument]);
+        let message = refusal_of(&["sim", &argument]);
         assert!(message.contains("--duration"), "{message}");
     }
-    let message = complaint(&["sim", "--duration=2"]);
+    let message = refusal_of(&["sim", "--duration=2"]);
     assert!(message.contains("at least 4 s"), "{message}");
 }
 
 #[test]
 fn the_picture_in_docs_is_up_to_date() {
-    let drawn = run(&["draw", "--robot", &robot("paper")]).expect_success();
-    assert!(read("docs/lizard.svg") == drawn, "run `make docs`");
+    let picture = run(&["draw", "--robot", &robot("paper")]).expect_success();
+    assert!(read("docs/lizard.svg") == picture, "run `make docs`");
 }

@@ -5,9 +5,9 @@ use serde_json::Value;
 use crate::program::{RobotFile, lizard, paper, read};
 
 /// Runs a command and returns the printed JSON object in which `key` is `name`.
-fn object(line: &str, key: &str, name: &str) -> Value {
-    let printed = lizard(line, "").expect_success();
-    let mut objects = printed
+fn find_object(line: &str, key: &str, name: &str) -> Value {
+    let output = lizard(line, "").expect_success();
+    let mut objects = output
         .lines()
         .map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
     objects.find(|object| object[key] == name).expect(line)
@@ -18,25 +18,29 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
     const ROUTINES: &str = "[routine.tour]\nsteps = [\"walk 2\", \"rest 1 s\", \"left 2\", \"trot 1\", \"arc-left 2\"]\n\
          [routine.gaze]\nsteps = [\"look 1\"]\n[gait.stand]";
     let robot = RobotFile::with("routines", &[("[gait.stand]", ROUTINES)]);
-    let twin = |routine: &str, servo: &str| {
+    let run_twin = |routine: &str, servo: &str| {
         let line = format!("twin --json --gait {routine} --servo {servo}");
-        object(&robot.add_to(&line), "command", &format!("{routine} 1"))
+        find_object(&robot.add_to(&line), "command", &format!("{routine} 1"))
     };
-    let tour = object(&robot.add_to("gaits --json"), "routine", "tour");
-    let part = |path: &Value, name: &str| path[name].as_f64().expect(name);
+    let tour = find_object(&robot.add_to("gaits --json"), "routine", "tour");
+    let component_of = |path: &Value, name: &str| path[name].as_f64().expect(name);
     for (servo, key) in [("own", "by_servos"), ("ideal", "predicted")] {
-        let walked = twin("tour", servo);
-        assert_eq!(walked["round"], tour[key], "{servo}");
+        let walk_report = run_twin("tour", servo);
+        assert_eq!(walk_report["round"], tour[key], "{servo}");
         for name in ["forward", "left", "turn"] {
-            let error = part(&walked["way"], name) - part(&tour[key], name);
+            let error = component_of(&walk_report["way"], name) - component_of(&tour[key], name);
             assert!(error.abs() < 0.2, "{servo}, {name}: {error}");
         }
     }
-    let lost = part(&tour["predicted"], "turn") - part(&tour["by_servos"], "turn");
-    assert!(lost > 1.0, "servos with a mass to turn lose some: {lost}");
+    let lost_deg =
+        component_of(&tour["predicted"], "turn") - component_of(&tour["by_servos"], "turn");
+    assert!(
+        lost_deg > 1.0,
+        "servos with a mass to turn lose some: {lost_deg}"
+    );
     // Two feet pull against the other two. Then the distance is not determined, so neither command may state one.
-    let gaze = object(&robot.add_to("gaits --json"), "routine", "gaze");
-    for path in [&twin("gaze", "own")["way"], &gaze["by_servos"]] {
+    let gaze = find_object(&robot.add_to("gaits --json"), "routine", "gaze");
+    for path in [&run_twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
     }
 }
@@ -59,30 +63,32 @@ fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
         let robot = RobotFile::changed("robots/grain.toml", "grain", &changes);
-        let printed = lizard(&robot.add_to("twin --json"), "").expect_success();
-        let figure = |gait: &str, pointer: &str| {
-            let mut lines = printed.lines().flat_map(serde_json::from_str::<Value>);
+        let output = lizard(&robot.add_to("twin --json"), "").expect_success();
+        let figure_of = |gait: &str, pointer: &str| {
+            let mut lines = output.lines().flat_map(serde_json::from_str::<Value>);
             let line = lines.find(|line| line["command"] == gait);
             let figure = line.as_ref().and_then(|line| line.pointer(pointer));
             figure.and_then(Value::as_f64).expect(gait)
         };
-        let run = figure("run", "/cycle/speed");
-        let back = figure("back", "/cycle/way/forward");
-        let [left, arc] = ["left", "arc left"].map(|gait| figure(gait, "/cycle/way/turn"));
-        let row =
-            format!("| {name} | {friction} | {run:.0} | {left:.1} | {arc:.1} | {back:.1} |\n");
+        let run_speed = figure_of("run", "/cycle/speed");
+        let back_mm = figure_of("back", "/cycle/way/forward");
+        let [left_deg, arc_deg] =
+            ["left", "arc left"].map(|gait| figure_of(gait, "/cycle/way/turn"));
+        let row = format!(
+            "| {name} | {friction} | {run_speed:.0} | {left_deg:.1} | {arc_deg:.1} | {back_mm:.1} |\n"
+        );
         assert!(page.contains(&row), "docs/gaits.md has no {row}");
-        assert_eq!(run >= 90.0, is_fast, "{name}: {run} mm/s");
+        assert_eq!(run_speed >= 90.0, is_fast, "{name}: {run_speed} mm/s");
         assert!(
-            left > 9.0 && arc > 6.0,
-            "{name} turns: {left} and {arc} deg"
+            left_deg > 9.0 && arc_deg > 6.0,
+            "{name} turns: {left_deg} and {arc_deg} deg"
         );
     }
 }
 
 #[test]
 fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
-    for (gait, words) in [
+    for (gait, expected) in [
         (
             "jump",
             "lizard: robot.toml has no gait `jump`; those that move are walk, trot, crawl, back, \
@@ -91,6 +97,6 @@ fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
         ("stand", "lizard: the gait `stand` moves no servo"),
     ] {
         let line = paper(&format!("twin --gait {gait}"));
-        assert_eq!(lizard(&line, "").expect_refusal(), words);
+        assert_eq!(lizard(&line, "").expect_refusal(), expected);
     }
 }

@@ -7,25 +7,25 @@ use lizard_time_limit::LIMIT;
 
 use crate::program::{robot, root, run, scratch};
 
-fn output(arguments: &[&str]) -> String {
+fn output_of(arguments: &[&str]) -> String {
     run(arguments).expect_success()
 }
 
-fn complaint(arguments: &[&str]) -> String {
+fn refusal_of(arguments: &[&str]) -> String {
     run(arguments).expect_refusal()
 }
 
 /// The first words of the lines under a heading of `lizard --help`.
 fn words_under(help: &str, heading: &str) -> Vec<String> {
-    let (_, after) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
-    let (section, _) = after.split_once("\n\n").expect("a section ends");
-    let first = |line: &str| line.split_whitespace().next().expect("a word").to_owned();
-    section.lines().map(first).collect()
+    let (_, rest) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
+    let (section, _) = rest.split_once("\n\n").expect("a section ends");
+    let first_word_of = |line: &str| line.split_whitespace().next().expect("a word").to_owned();
+    section.lines().map(first_word_of).collect()
 }
 
 #[test]
 fn help_groups_all_commands_by_purpose_with_the_owners_first() {
-    let help = output(&["--help"]);
+    let help = output_of(&["--help"]);
     let headings = [
         "Drive the robot",
         "Simulate it",
@@ -35,25 +35,25 @@ fn help_groups_all_commands_by_purpose_with_the_owners_first() {
         "For scripts and development",
         "Options",
     ];
-    let places = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
-    assert!(places.is_sorted(), "{help}");
+    let positions = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
+    assert!(positions.is_sorted(), "{help}");
     assert!(help.contains("\n  merge, completions\n"), "{help}");
-    let listed = headings[..5]
+    let command_counts = headings[..5]
         .iter()
         .map(|heading| words_under(&help, heading).len());
     // Two more commands, `merge` and `completions`, are for scripts.
-    assert!(listed.sum::<usize>() + 2 <= 20, "{help}");
+    assert!(command_counts.sum::<usize>() + 2 <= 20, "{help}");
     assert!(words_under(&help, "Drive the robot").contains(&"console".to_owned()));
-    assert_eq!(output(&["help"]), help);
+    assert_eq!(output_of(&["help"]), help);
 }
 
 #[test]
 fn terms_of_robotics_are_aliases_of_the_commands() {
     assert_eq!(
-        output(&["monitor", "--help"]),
-        output(&["console", "--help"])
+        output_of(&["monitor", "--help"]),
+        output_of(&["console", "--help"])
     );
-    let help = output(&["help"]);
+    let help = output_of(&["help"]);
     let line = help.lines().find(|line| line.contains(" console "));
     assert!(line.expect("console").contains("[also: monitor]"));
 }
@@ -84,29 +84,29 @@ fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
         );
         assert_eq!(new.err, "");
     }
-    let gone = complaint(&["spring", "--wire", "0.6"]);
+    let message = refusal_of(&["spring", "--wire", "0.6"]);
     assert!(
-        gone.contains("no command `spring` any more; a spring's force"),
-        "{gone}"
+        message.contains("no command `spring` any more; a spring's force"),
+        "{message}"
     );
 }
 
 #[test]
 fn a_word_of_20_000_letters_is_not_repeated_in_full() {
-    let long = "x".repeat(20_000);
+    let long_word = "x".repeat(20_000);
     let folder = tempfile::tempdir().expect("a folder");
     let robot = folder.path().join("x.toml");
-    std::fs::write(&robot, format!("name = {long}\n")).expect("it is written");
+    std::fs::write(&robot, format!("name = {long_word}\n")).expect("it is written");
     let robot = robot.display().to_string();
-    for words in [
-        &[long.as_str()][..],
-        &["gaits", "--robot", &long],
+    for arguments in [
+        &[long_word.as_str()][..],
+        &["gaits", "--robot", &long_word],
         &["gaits", "--robot", &robot],
-        &["sim", "--gait", &long],
-        &["draw", "--theta1", &long],
-        &["calibrate", "restore", &long],
+        &["sim", "--gait", &long_word],
+        &["draw", "--theta1", &long_word],
+        &["calibrate", "restore", &long_word],
     ] {
-        let error = complaint(words);
+        let error = refusal_of(arguments);
         assert!(error.contains("xxx [..."), "{error}");
         assert!(error.len() < 2500, "{} bytes: {error}", error.len());
     }
@@ -115,7 +115,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
 #[test]
 fn a_mistyped_word_is_answered_with_a_suggestion() {
     let paper = &robot("paper");
-    for (words, expected) in [
+    for (arguments, expected) in [
         (&["claibrate"][..], "'calibrate'"),
         (&["sim", "--durration", "5"], "'--duration'"),
         (&["draw", "--wirring"], "'--wiring'"),
@@ -137,17 +137,17 @@ fn a_mistyped_word_is_answered_with_a_suggestion() {
             "; did you mean `arc-left`?",
         ),
     ] {
-        let error = complaint(words);
-        assert!(error.contains(expected), "{words:?}: {error}");
+        let error = refusal_of(arguments);
+        assert!(error.contains(expected), "{arguments:?}: {error}");
     }
 }
 
 /// Runs the completion script in bash, without bash's own completions, and returns the offers for the word at
 /// `index`.
 #[cfg(unix)]
-fn bash_completions(script: &Path, words: &str, index: usize) -> Vec<String> {
+fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String> {
     let line = format!(
-        ". {}; COMP_WORDS=({words}); COMP_CWORD={index}; COMP_LINE='{words}'; \
+        ". {}; COMP_WORDS=({typed_line}); COMP_CWORD={index}; COMP_LINE='{typed_line}'; \
          _lizard lizard \"${{COMP_WORDS[{index}]}}\" \"${{COMP_WORDS[{}]}}\"; \
          printf '%s\\n' \"${{COMPREPLY[@]}}\"",
         script.display(),
@@ -166,7 +166,7 @@ fn bash_completions(script: &Path, words: &str, index: usize) -> Vec<String> {
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
     let script = scratch().join("lizard.bash");
-    std::fs::write(&script, output(&["completions", "bash"])).expect("it is written");
+    std::fs::write(&script, output_of(&["completions", "bash"])).expect("it is written");
     assert_eq!(bash_completions(&script, "lizard calib", 1), ["calibrate"]);
     assert_eq!(
         bash_completions(&script, "lizard twin --ro", 2),
@@ -188,7 +188,7 @@ fn bash_completes_commands_and_options() {
         ("zsh", ":_files -g \"*.toml\"' "),
         ("fish", " -r -k -xa \"(__fish_complete_suffix .toml) grain "),
     ] {
-        let text = output(&["completions", shell]);
+        let text = output_of(&["completions", shell]);
         assert!(text.contains(offer), "{shell}: {text}");
     }
     let gaits = bash_completions(&script, "lizard sim --gait ", 3);
@@ -199,8 +199,8 @@ fn bash_completes_commands_and_options() {
 fn every_command_has_a_manual_page_that_names_its_options() {
     let folder = tempfile::tempdir().expect("a folder");
     let pages = folder.path().join("man1");
-    output(&["completions", "man", &pages.display().to_string()]);
-    let help = output(&["--help"]);
+    output_of(&["completions", "man", &pages.display().to_string()]);
+    let help = output_of(&["--help"]);
     let mut count = 0;
     for heading in [
         "Drive the robot",
@@ -217,20 +217,23 @@ fn every_command_has_a_manual_page_that_names_its_options() {
             count += 1;
         }
     }
-    for below in ["calibrate-backup", "flash-image", "sim-bench"] {
-        assert!(pages.join(format!("lizard-{below}.1")).is_file(), "{below}");
+    for subcommand in ["calibrate-backup", "flash-image", "sim-bench"] {
+        assert!(
+            pages.join(format!("lizard-{subcommand}.1")).is_file(),
+            "{subcommand}"
+        );
     }
     assert!(count > 13, "{count}");
-    let whole = std::fs::read_to_string(pages.join("lizard.1")).expect("it is there");
-    assert!(whole.contains("lizard\\-console(1)"), "{whole}");
+    let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("it is there");
+    assert!(main_page.contains("lizard\\-console(1)"), "{main_page}");
 }
 
 #[test]
 fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
     let ports: serde_json::Value =
-        serde_json::from_str(&output(&["info", "ports", "--json"])).expect("JSON");
+        serde_json::from_str(&output_of(&["info", "ports", "--json"])).expect("JSON");
     let ports = ports.as_array().expect("an array");
-    let text = output(&["info", "ports"]);
+    let text = output_of(&["info", "ports"]);
     assert_eq!(
         text.contains("no USB serial port"),
         ports.is_empty(),
@@ -241,7 +244,7 @@ fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
 
 #[test]
 fn bench_without_a_build_says_what_is_missing_and_how_to_get_it() {
-    let words = complaint(&["sim", "bench"]);
-    assert!(words.contains("`make firmware`"), "{words}");
-    assert!(words.contains("lizard sim bench --elf "), "{words}");
+    let message = refusal_of(&["sim", "bench"]);
+    assert!(message.contains("`make firmware`"), "{message}");
+    assert!(message.contains("lizard sim bench --elf "), "{message}");
 }

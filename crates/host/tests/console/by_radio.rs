@@ -9,19 +9,19 @@ fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::by_radio(folder.path());
     // The radio loses lines, so the script is repeated until all answers have come.
-    let say = |lines: &str, expected: &[&str]| {
+    let send_script = |lines: &str, expected: &[&str]| {
         let mut text = String::new();
         LIMIT.expect("the script to be heard", || {
             // Longer than the `deadman` time, so that the robot stops.
             std::thread::sleep(std::time::Duration::from_millis(1_500));
             text = run(folder.path(), &["console", &uno.port()], lines).0;
-            expected.iter().all(|words| text.contains(words))
+            expected.iter().all(|answer| text.contains(answer))
         });
         text
     };
     let gait = moving_gait(folder.path());
     let accepted = format!("ok {gait}");
-    say(
+    send_script(
         &format!("stand\n{gait}\ncal\n"),
         &[
             "not reset",
@@ -30,10 +30,10 @@ fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
             "(the robot stops by itself now",
         ],
     );
-    say("status\n", &["ok gait=stop", "fault=link"]);
-    let stopped = say(
+    send_script("status\n", &["ok gait=stop", "fault=link"]);
+    let stop_text = send_script(
         &format!("{gait}\nstop\nstatus\n"),
         &[&accepted, "ok stop", "ok gait=stop"],
     );
-    assert!(!stopped.contains("fault=link"), "{stopped}");
+    assert!(!stop_text.contains("fault=link"), "{stop_text}");
 }

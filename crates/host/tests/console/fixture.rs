@@ -15,17 +15,17 @@ use rustix::termios::{Winsize, tcsetwinsize};
 
 /// The robot file of the simulated board, found as in the other tests: the file that
 /// `LIZARD_ROBOT` names, relative to the root of the project, or robot.toml.
-fn robot() -> PathBuf {
+fn robot_path() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    root.join(given.unwrap_or_else(|| "robot.toml".into()))
+    let environment_path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    root.join(environment_path.unwrap_or_else(|| "robot.toml".into()))
 }
 
 pub fn lizard(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(arguments);
     if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
-        command.arg("--robot").arg(robot());
+        command.arg("--robot").arg(robot_path());
     }
     command
         .current_dir(folder)
@@ -43,8 +43,8 @@ pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, O
     } = LIMIT
         .output(&mut lizard(folder, arguments), input.as_bytes())
         .expect("the program ends");
-    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    (text(stdout), text(stderr), status.code())
+    let text_of = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    (text_of(stdout), text_of(stderr), status.code())
 }
 
 /// The first gait of the robot under test that moves.
@@ -64,15 +64,15 @@ pub struct Uno {
 
 impl Uno {
     pub fn start(folder: &Path) -> Self {
-        Self::with(folder, &[])
+        Self::start_with(folder, &[])
     }
 
     /// A board behind a radio module, which loses a packet now and then.
     pub fn by_radio(folder: &Path) -> Self {
-        Self::with(folder, &["--radio", "115200"])
+        Self::start_with(folder, &["--radio", "115200"])
     }
 
-    fn with(folder: &Path, options: &[&str]) -> Self {
+    fn start_with(folder: &Path, options: &[&str]) -> Self {
         let link = folder.join("uno");
         let name = link.display().to_string();
         let child = lizard(folder, &[&["sim", "--pty", &name], options].concat())
@@ -106,31 +106,31 @@ impl Drop for Uno {
 
 /// Opens a pseudo terminal; returns the test's side, the program's side, and its path.
 pub fn terminal() -> (File, OwnedFd, PathBuf) {
-    let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
-    let ours = ours.expect("a pseudo terminal");
-    unlockpt(&ours).expect("it is ours");
-    let path = ptsname(&ours, Vec::new()).expect("it has a name");
+    let test_side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
+    let test_side = test_side.expect("a pseudo terminal");
+    unlockpt(&test_side).expect("it is ours");
+    let path = ptsname(&test_side, Vec::new()).expect("it has a name");
     let path = PathBuf::from(path.to_string_lossy().into_owned());
-    let theirs = File::options()
+    let program_side = File::options()
         .read(true)
         .write(true)
         .open(&path)
         .expect("it opens");
-    (File::from(ours), theirs.into(), path)
+    (File::from(test_side), program_side.into(), path)
 }
 
 /// Opens a pseudo terminal, 100 columns wide; returns the test's side and the program's
 /// side.
 pub fn wide_terminal() -> (File, OwnedFd) {
-    let (ours, theirs, _) = terminal();
+    let (test_side, program_side, _) = terminal();
     let size = Winsize {
         ws_row: 30,
         ws_col: 100,
         ws_xpixel: 0,
         ws_ypixel: 0,
     };
-    tcsetwinsize(&theirs, size).expect("it takes a size");
-    (ours, theirs)
+    tcsetwinsize(&program_side, size).expect("it takes a size");
+    (test_side, program_side)
 }
 
 /// A program at a terminal of its own, 100 columns wide.
@@ -143,28 +143,28 @@ pub struct TerminalSession {
 
 impl TerminalSession {
     pub fn start(mut command: Command) -> Self {
-        let (ours, theirs) = wide_terminal();
-        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+        let (test_side, program_side) = wide_terminal();
+        let copy_stdio = || Stdio::from(program_side.try_clone().expect("another of it"));
         let child = command
-            .stdin(end())
-            .stdout(end())
-            .stderr(end())
+            .stdin(copy_stdio())
+            .stdout(copy_stdio())
+            .stderr(copy_stdio())
             .spawn()
             .expect("the program starts");
-        let mut screen = ours.try_clone().expect("another of it");
-        let (send, seen) = mpsc::channel();
+        let mut screen = test_side.try_clone().expect("another of it");
+        let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {
             let mut bytes = [0; 4096];
             while let Ok(count @ 1..) = screen.read(&mut bytes) {
-                if send.send(bytes[..count].to_vec()).is_err() {
+                if sender.send(bytes[..count].to_vec()).is_err() {
                     break;
                 }
             }
         });
         Self {
             child,
-            keys: ours,
-            seen,
+            keys: test_side,
+            seen: receiver,
             text: String::new(),
         }
     }
@@ -185,17 +185,17 @@ impl TerminalSession {
 
     /// Waits until the screen shows these words after those of the previous wait. Panics if
     /// the program ends first or the time limit passes.
-    pub fn wait_for(&mut self, words: &str) {
-        let (mut found, mut ended) = (None, false);
+    pub fn wait_for(&mut self, expected: &str) {
+        let (mut position, mut has_ended) = (None, false);
         LIMIT.wait_for(|| {
-            ended = self.read();
-            found = self.text.find(words);
-            found.is_some() || ended
+            has_ended = self.read();
+            position = self.text.find(expected);
+            position.is_some() || has_ended
         });
-        let Some(at) = found else {
-            panic!("waited up to {LIMIT} for `{words}`, but {:?}", self.text);
+        let Some(start) = position else {
+            panic!("waited up to {LIMIT} for `{expected}`, but {:?}", self.text);
         };
-        self.text.drain(..at + words.len());
+        self.text.drain(..start + expected.len());
     }
 
     pub fn exit_code(mut self) -> Option<i32> {
@@ -214,14 +214,14 @@ pub struct Device {
 impl Device {
     /// Starts a device that calls `act` repeatedly with its own side of the terminal.
     pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
-        let (mut ours, theirs, path) = terminal();
+        let (mut test_side, program_side, path) = terminal();
         // Otherwise this test itself would keep the port open.
-        drop(theirs);
-        let (end, ended) = mpsc::channel::<()>();
+        drop(program_side);
+        let (end, end_receiver) = mpsc::channel::<()>();
         let thread = std::thread::spawn(move || {
             let pause = Duration::from_millis(20);
-            while ended.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
-                act(&mut ours);
+            while end_receiver.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+                act(&mut test_side);
             }
         });
         let port = path.display().to_string();
@@ -230,7 +230,7 @@ impl Device {
 
     pub fn stop(self) {
         drop(self.end);
-        let ended = LIMIT.within("the end of the device", || self.thread.join());
-        ended.expect("it has ended");
+        let join_result = LIMIT.within("the end of the device", || self.thread.join());
+        join_result.expect("it has ended");
     }
 }

@@ -47,26 +47,26 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
 #[test]
 fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    let here = folder.path();
-    let uno = Uno::start(here);
+    let folder_path = folder.path();
+    let uno = Uno::start(folder_path);
     let port = uno.port();
-    let (_, error, code) = run(here, &["calibrate", "backup", "a.toml", &port], "");
+    let (_, error, code) = run(folder_path, &["calibrate", "backup", "a.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
-    let first = fs::read_to_string(here.join("a.toml")).expect("it was written");
+    let first_text = fs::read_to_string(folder_path.join("a.toml")).expect("it was written");
 
-    let changed = first.replacen("trim = 0.0", "trim = -1.75", 1);
-    fs::write(here.join("b.toml"), &changed).expect("it is written");
-    let (out, error, code) = run(here, &["calibrate", "restore", "b.toml", &port], "");
+    let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
+    fs::write(folder_path.join("b.toml"), &changed_text).expect("it is written");
+    let (out, error, code) = run(folder_path, &["calibrate", "restore", "b.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     assert!(
         out.ends_with("has accepted and saved the calibration of b.toml\n"),
         "{out}"
     );
 
-    let scale = first.lines().find(|line| line.starts_with("scale = "));
-    let refused = changed.replacen(scale.expect("A1 has one"), "scale = 99.0", 1);
-    fs::write(here.join("c.toml"), refused).expect("it is written");
-    let (out, error, code) = run(here, &["calibrate", "restore", "c.toml", &port], "");
+    let scale_line = first_text.lines().find(|line| line.starts_with("scale = "));
+    let refused_text = changed_text.replacen(scale_line.expect("A1 has one"), "scale = 99.0", 1);
+    fs::write(folder_path.join("c.toml"), refused_text).expect("it is written");
+    let (out, error, code) = run(folder_path, &["calibrate", "restore", "c.toml", &port], "");
     assert_eq!(code, Some(1), "{error}");
     assert!(
         error.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
@@ -74,22 +74,29 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     );
     assert_eq!(out, "");
 
-    let (_, error, code) = run(here, &["calibrate", "backup", "d.toml", &port], "");
+    let (_, error, code) = run(folder_path, &["calibrate", "backup", "d.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
-    let last = fs::read_to_string(here.join("d.toml")).expect("it was written");
-    assert_eq!(last, changed, "what was saved last, after a reset");
+    let last_text = fs::read_to_string(folder_path.join("d.toml")).expect("it was written");
+    assert_eq!(
+        last_text, changed_text,
+        "what was saved last, after a reset"
+    );
 }
 
 #[test]
 fn info_says_what_a_board_has_and_leaves_its_settings() {
     let folder = tempfile::tempdir().expect("a folder");
-    let here = folder.path();
-    let uno = Uno::start(here);
+    let folder_path = folder.path();
+    let uno = Uno::start(folder_path);
     let port = uno.port();
-    let saved = run(here, &["console", &port], "trim 3 -4.25\nboot rest\nsave\n");
-    assert_eq!(saved.2, Some(0), "{}", saved.1);
+    let save_result = run(
+        folder_path,
+        &["console", &port],
+        "trim 3 -4.25\nboot rest\nsave\n",
+    );
+    assert_eq!(save_result.2, Some(0), "{}", save_result.1);
     for _ in 0..2 {
-        let (out, error, code) = run(here, &["info", "--json", &port], "");
+        let (out, error, code) = run(folder_path, &["info", "--json", &port], "");
         assert_eq!(code, Some(0), "{error}");
         let board: serde_json::Value = serde_json::from_str(&out).expect("JSON");
         assert_eq!(board["firmware"], env!("CARGO_PKG_VERSION"));
@@ -99,7 +106,7 @@ fn info_says_what_a_board_has_and_leaves_its_settings() {
         assert_eq!(board["calibration"]["boot"], "rest");
         assert_eq!(board["calibration"]["servo"]["A3"]["trim"], -4.25);
     }
-    let (text, ..) = run(here, &["info", &port], "");
+    let (text, ..) = run(folder_path, &["info", &port], "");
     assert!(text.contains("\nA3          trim -4.25 deg, "), "{text}");
 }
 
@@ -152,8 +159,8 @@ fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
 #[test]
 fn a_recorded_session_is_drawn_and_summarized() {
     let folder = tempfile::tempdir().expect("a folder");
-    let here = folder.path();
-    let mut child = lizard(here, &["console", "--record", "a.jsonl", "--sim"])
+    let folder_path = folder.path();
+    let mut child = lizard(folder_path, &["console", "--record", "a.jsonl", "--sim"])
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -161,17 +168,17 @@ fn a_recorded_session_is_drawn_and_summarized() {
         .expect("the program starts");
     let mut stdin = child.stdin.take().expect("it has an input");
     stdin.write_all(b"speed 50\nfly\n").expect("it is read");
-    let file = here.join("a.jsonl");
+    let file = folder_path.join("a.jsonl");
     LIMIT.expect("a refusal and a second of poses in the file", || {
-        let kept = fs::read_to_string(&file).unwrap_or_default();
-        kept.contains(r#""answer":"err "#) && kept.matches(r#""pose":"#).count() > 50
+        let recording = fs::read_to_string(&file).unwrap_or_default();
+        recording.contains(r#""answer":"err "#) && recording.matches(r#""pose":"#).count() > 50
     });
     drop(stdin);
     let status = LIMIT.end_of(&mut child).expect("it ends");
     assert_eq!(status.code(), Some(1), "a line was refused");
 
     let (out, error, code) = run(
-        here,
+        folder_path,
         &["console", "replay", "a.jsonl", "--svg", "a.svg"],
         "",
     );
@@ -185,7 +192,7 @@ fn a_recorded_session_is_drawn_and_summarized() {
         "{out}"
     );
     assert!(out.contains("trouble     none\n"), "{out}");
-    let picture = fs::read_to_string(here.join("a.svg")).expect("it was drawn");
+    let picture = fs::read_to_string(folder_path.join("a.svg")).expect("it was drawn");
     // If the machine pauses for a second, all four curves have a gap.
     let curves = picture.matches("<polyline").count();
     assert!(
@@ -193,7 +200,11 @@ fn a_recorded_session_is_drawn_and_summarized() {
         "{curves}: a curve for each servo"
     );
 
-    let (_, error, code) = run(here, &["console", "--record", "a.jsonl", "--sim"], "");
+    let (_, error, code) = run(
+        folder_path,
+        &["console", "--record", "a.jsonl", "--sim"],
+        "",
+    );
     assert_eq!(code, Some(2));
     assert!(error.contains("a.jsonl already exists"), "{error}");
 }
@@ -202,26 +213,27 @@ fn a_recorded_session_is_drawn_and_summarized() {
 fn a_port_that_another_program_has_open_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::start(folder.path());
-    let mut other = TerminalSession::start(lizard(folder.path(), &["console", &uno.port()]));
-    other.wait_for("# lizard ");
+    let mut other_session =
+        TerminalSession::start(lizard(folder.path(), &["console", &uno.port()]));
+    other_session.wait_for("# lizard ");
     let (_, error, code) = run(
         folder.path(),
         &["calibrate", "backup", "a.toml", &uno.port()],
         "",
     );
-    let who = format!("is open in lizard (process {})", other.child.id());
-    other.press("\x03");
+    let owner_text = format!("is open in lizard (process {})", other_session.child.id());
+    other_session.press("\x03");
     assert_eq!(code, Some(1));
-    assert!(error.contains(&who), "{error}");
+    assert!(error.contains(&owner_text), "{error}");
     assert!(!folder.path().join("a.toml").exists());
 }
 
 #[test]
 fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
     let folder = tempfile::tempdir().expect("a folder");
-    let device = Device::start(|line| {
+    let device = Device::start(|terminal| {
         // Writing fails while no program has the port open.
-        let _ = line.write_all(b"Grbl 1.1h ['$' for help]\r\n");
+        let _ = terminal.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
     let (_, error, code) = run(
         folder.path(),
@@ -230,8 +242,8 @@ fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
     );
     device.stop();
     assert_eq!(code, Some(1), "{error}");
-    let words = "this is not a lizard: it says `Grbl 1.1h ['$' for help]`";
-    assert!(error.contains(words), "{error}");
+    let expected = "this is not a lizard: it says `Grbl 1.1h ['$' for help]`";
+    assert!(error.contains(expected), "{error}");
     assert!(
         !folder.path().join("a.toml").exists(),
         "nothing half written"
@@ -241,36 +253,36 @@ fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
 #[test]
 fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut asked: Vec<u8> = Vec::new();
-    let device = Device::start(move |line| {
+    let mut received_bytes: Vec<u8> = Vec::new();
+    let device = Device::start(move |terminal| {
         let mut bytes = [0; 64];
         // Reading fails while no program has the port open.
-        let count = line.read(&mut bytes).unwrap_or_default();
-        asked.extend(&bytes[..count]);
-        if asked == b"status\n" {
-            let _ = line.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
+        let count = terminal.read(&mut bytes).unwrap_or_default();
+        received_bytes.extend(&bytes[..count]);
+        if received_bytes == b"status\n" {
+            let _ = terminal.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
         }
     });
     let arguments = ["console", "--record", "a.jsonl", &device.port];
     let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
     device.stop();
     assert_eq!(code, Some(1), "{error}");
-    let words = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: not sent\n";
-    assert!(error.ends_with(words), "{error}");
+    let expected = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: not sent\n";
+    assert!(error.ends_with(expected), "{error}");
 }
 
 #[test]
 fn wrong_input_is_a_message_and_starts_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    let here = folder.path();
-    fs::write(here.join("no.toml"), "trim: 5\n").expect("it is written");
-    fs::write(here.join("other.toml"), "[links]\nl0 = 20.0\n").expect("it is written");
-    let complaint = |arguments: &[&str]| {
-        let (out, error, code) = run(here, arguments, "");
+    let folder_path = folder.path();
+    fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("it is written");
+    fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("it is written");
+    let refusal_of = |arguments: &[&str]| {
+        let (out, error, code) = run(folder_path, arguments, "");
         assert_eq!(out, "");
         (error.trim().to_owned(), code)
     };
-    for (arguments, words) in [
+    for (arguments, expected) in [
         (
             &["console", "/dev/no-such-port"][..],
             "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ",
@@ -296,8 +308,8 @@ fn wrong_input_is_a_message_and_starts_nothing() {
             "lizard: calibrate asks for single keys; run it in a terminal",
         ),
     ] {
-        let (error, code) = complaint(arguments);
-        assert!(error.starts_with(words), "{error}");
+        let (error, code) = refusal_of(arguments);
+        assert!(error.starts_with(expected), "{error}");
         assert_eq!(code, Some(2), "{error}");
     }
 }
@@ -305,9 +317,9 @@ fn wrong_input_is_a_message_and_starts_nothing() {
 #[test]
 fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
-    std::os::unix::fs::symlink("a-file", &other).expect("a link");
-    let name = other.display().to_string();
+    let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
+    std::os::unix::fs::symlink("a-file", &other_link).expect("a link");
+    let name = other_link.display().to_string();
     let (_, error, code) = run(folder.path(), &["sim", "--pty", &name], "");
     assert_eq!(
         error.trim(),
@@ -315,24 +327,24 @@ fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
     );
     assert_eq!(code, Some(2));
     assert_eq!(
-        fs::read_link(&other).expect("it is left"),
+        fs::read_link(&other_link).expect("it is left"),
         Path::new("a-file")
     );
 
     // A killed run leaves such a link behind.
-    std::os::unix::fs::symlink("/dev/pts/999999", &own).expect("a link");
-    let name = own.display().to_string();
+    std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("a link");
+    let name = board_link.display().to_string();
     let mut child = lizard(folder.path(), &["sim", "--pty", &name])
         .stdout(Stdio::null())
         .spawn()
         .expect("the program starts");
-    LIMIT.expect("a port at the end of the link", || own.exists());
+    LIMIT.expect("a port at the end of the link", || board_link.exists());
     let id = rustix::process::Pid::from_child(&child);
     rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs");
     let status = LIMIT.end_of(&mut child).expect("it ends");
     let signal = std::os::unix::process::ExitStatusExt::signal(&status);
     assert_eq!(signal, Some(15), "as it ends without a link");
-    assert!(!own.is_symlink(), "the link is gone");
+    assert!(!board_link.is_symlink(), "the link is gone");
 }
 
 #[test]
@@ -345,10 +357,10 @@ fn a_picture_is_not_poured_over_a_terminal() {
 }
 
 /// The state of a process, as `ps` prints it: S asleep, R running, T stopped.
-fn state(child: &Child) -> char {
+fn state_of(child: &Child) -> char {
     let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("it is there");
-    let (_, after) = stat.rsplit_once(") ").expect("its name ends");
-    after.chars().next().expect("a letter")
+    let (_, rest) = stat.rsplit_once(") ").expect("its name ends");
+    rest.chars().next().expect("a letter")
 }
 
 /// True if keys come line by line and are echoed, as a shell expects of its terminal.
@@ -364,21 +376,21 @@ fn control_z_restores_the_terminal_and_fg_continues() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::start(folder.path());
     let port = uno.port();
-    for (command, first, keys, then) in [
+    for (command, first_text, keys, next_text) in [
         ("console", "no fault", "stop\r", "ok stop"),
         ("calibrate", "before you begin", "\r", "fit the horns"),
     ] {
         let mut person = TerminalSession::start(lizard(folder.path(), &[command, &port]));
-        person.wait_for(first);
+        person.wait_for(first_text);
         assert!(!is_cooked(&person.keys), "{command}");
         person.press("\x1a");
-        LIMIT.expect("a stopped program", || state(&person.child) == 'T');
+        LIMIT.expect("a stopped program", || state_of(&person.child) == 'T');
         assert!(is_cooked(&person.keys), "{command}");
         let id = rustix::process::Pid::from_child(&person.child);
         rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("it is there");
         LIMIT.expect("keys one by one", || !is_cooked(&person.keys));
         person.press(keys);
-        person.wait_for(then);
+        person.wait_for(next_text);
         person.press(if command == "console" { "\x04" } else { "q" });
         assert_eq!(person.exit_code(), Some(0), "{command}");
     }
@@ -389,26 +401,26 @@ fn a_program_whose_terminal_is_closed_ends() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::start(folder.path());
     let port = uno.port();
-    for (command, first) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let (mut ours, theirs) = wide_terminal();
-        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+    for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
+        let (mut test_side, program_side) = wide_terminal();
+        let copy_stdio = || Stdio::from(program_side.try_clone().expect("another of it"));
         let mut child = lizard(folder.path(), &[command, &port])
-            .stdin(end())
-            .stdout(end())
-            .stderr(end())
+            .stdin(copy_stdio())
+            .stdout(copy_stdio())
+            .stderr(copy_stdio())
             .spawn()
             .expect("the program starts");
-        let seen = LIMIT.within(first, move || {
+        let seen_text = LIMIT.within(first_text, move || {
             let (mut text, mut bytes) = (String::new(), [0; 4096]);
-            while !text.contains(first) {
-                let count = ours.read(&mut bytes).expect("it is shown");
+            while !text.contains(first_text) {
+                let count = test_side.read(&mut bytes).expect("it is shown");
                 text.push_str(&String::from_utf8_lossy(&bytes[..count]));
             }
             // Closes the terminal: no other process has this side of it open.
-            drop(ours);
+            drop(test_side);
             text
         });
-        assert!(seen.contains(first));
+        assert!(seen_text.contains(first_text));
         let status = LIMIT.end_of(&mut child).expect("it ends");
         assert_eq!(status.code(), Some(0), "{command}");
     }
@@ -444,6 +456,6 @@ fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
     let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
     assert_eq!(code, Some(2));
     assert!(error.contains("]0;owned"), "{error}");
-    let controls = error.trim_end().matches(|c: char| c.is_control()).count();
-    assert_eq!(controls, 0, "{error:?}");
+    let control_count = error.trim_end().matches(|c: char| c.is_control()).count();
+    assert_eq!(control_count, 0, "{error:?}");
 }

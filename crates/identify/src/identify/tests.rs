@@ -12,163 +12,189 @@ const GAITS: usize = 8;
 const ERROR: f64 = 0.05;
 
 /// A model whose movements are curved functions of the keys, with other coefficients for each gait.
-fn model(values: &Values) -> Vec<Travel> {
+fn model_travels(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
-    let mut part = || {
+    let mut next_part = || {
         let mut movement = 0.0;
         for (value, key) in values.iter().zip(&KEYS) {
             let x = value / key.prior_error();
-            movement += deviate(&mut rng) * (x + 0.1 * x * x);
+            movement += random_deviate(&mut rng) * (x + 0.1 * x * x);
         }
         movement
     };
-    let mut travel = |_| Travel {
-        forward: 30.0 + part(),
-        left: part(),
-        turn: 5.0 + part(),
+    let mut next_travel = |_| Travel {
+        forward: 30.0 + next_part(),
+        left: next_part(),
+        turn: 5.0 + next_part(),
     };
-    (0..GAITS).map(&mut travel).collect()
+    (0..GAITS).map(&mut next_travel).collect()
 }
 
 /// An approximately normal deviate: the sum of twelve uniform ones.
-fn deviate(rng: &mut Rng) -> f64 {
+fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
 /// The values from which each fit starts, in place of those of a robot.toml: zero, or the least possible value.
-fn start() -> Values {
+fn start_values() -> Values {
     std::array::from_fn(|i| KEYS[i].least.max(0.0))
 }
 
 /// The movements of a robot with random measurement errors, as a camera sees them from a tag card that may be glued
 /// on slightly out of place.
-fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
-    let way = |travel: Travel| {
-        let seen = card.card_travel(travel);
-        let parts = [seen.forward, seen.left, seen.turn];
+fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
+    let movement_of = |travel: Travel| {
+        let seen_travel = card.card_travel(travel);
+        let parts = [seen_travel.forward, seen_travel.left, seen_travel.turn];
         MeasuredMovement {
             gait: "walk".to_owned(),
             pace: 1.0,
-            mean: parts.map(|part| part + ERROR.hypot(MODEL_ERROR) * deviate(rng)),
+            mean: parts.map(|part| part + ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
             error: [ERROR; 3],
         }
     };
-    model(values).into_iter().map(way).collect()
+    model_travels(values).into_iter().map(movement_of).collect()
 }
 
-fn card(rng: &mut Rng) -> Card {
-    Card::PRIOR_ERRORS.map(|doubt| doubt * deviate(rng)).into()
+fn random_card(rng: &mut Rng) -> Card {
+    Card::PRIOR_ERRORS
+        .map(|prior_error| prior_error * random_deviate(rng))
+        .into()
 }
 
-fn verdicts(found: &Identified) -> Vec<Verdict> {
-    found.keys.iter().map(|found| found.verdict).collect()
+fn verdicts_of(result: &Identified) -> Vec<Verdict> {
+    result.keys.iter().map(|key| key.verdict).collect()
 }
 
 #[test]
 fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
-    let (mut within, mut changed, mut moved, mut right, mut explained) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let (
+        mut within_count,
+        mut changed_count,
+        mut moved_count,
+        mut unchanged_count,
+        mut explained_count,
+    ) = (0.0, 0.0, 0.0, 0.0, 0.0);
     const ROBOTS: u64 = 300;
     for seed in 0..ROBOTS {
         let mut rng = Rng::with_seed(seed);
-        let mut truth = start();
+        let mut true_values = start_values();
         let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
         for i in (0..KEY_COUNT).filter(|&i| is_changed[i]) {
-            truth[i] += KEYS[i].prior_error()
+            true_values[i] += KEYS[i].prior_error()
                 * if i == PLAY {
                     rng.f64()
                 } else {
-                    deviate(&mut rng).max(-1.5).abs()
+                    random_deviate(&mut rng).max(-1.5).abs()
                 };
         }
-        let card = card(&mut rng);
-        let ways = measured(&truth, card, &mut rng);
-        let found = solve(&ways, start(), &model).expect("a fit");
-        explained += f64::from(u8::from(found.goodness.is_explained));
+        let card = random_card(&mut rng);
+        let movements = measure_robot(&true_values, card, &mut rng);
+        let result = solve(&movements, start_values(), &model_travels).expect("a fit");
+        explained_count += f64::from(u8::from(result.goodness.is_explained));
         for i in 0..KEY_COUNT {
-            let key = &found.keys[i];
+            let key = &result.keys[i];
             assert!(key.verdict != Verdict::Undetermined, "{seed} {key:?}");
             if is_changed[i] {
-                changed += 1.0;
-                within += f64::from(u8::from((key.after - truth[i]).abs() <= 2.0 * key.error));
+                changed_count += 1.0;
+                within_count += f64::from(u8::from(
+                    (key.after - true_values[i]).abs() <= 2.0 * key.error,
+                ));
             } else {
-                right += 1.0;
-                moved += f64::from(u8::from(key.verdict == Verdict::Moved));
+                unchanged_count += 1.0;
+                moved_count += f64::from(u8::from(key.verdict == Verdict::Moved));
             }
             let distance = (key.after - key.before).abs();
             assert_eq!(key.verdict == Verdict::Moved, distance > 0.0);
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
     }
-    let share = within / changed;
-    assert!((0.93..=0.985).contains(&share), "{share} of {changed}");
-    assert!(moved / right < 0.05, "{} of {right}", moved / right);
-    assert!(explained / ROBOTS as f64 > 0.97, "{explained}");
+    let share = within_count / changed_count;
+    assert!(
+        (0.93..=0.985).contains(&share),
+        "{share} of {changed_count}"
+    );
+    assert!(
+        moved_count / unchanged_count < 0.05,
+        "{} of {unchanged_count}",
+        moved_count / unchanged_count
+    );
+    assert!(explained_count / ROBOTS as f64 > 0.97, "{explained_count}");
 }
 
 #[test]
 fn at_a_fold_the_error_is_that_of_the_flatter_side() {
     /// Twist below which the foot carries no load, so a shorter foot changes nothing more, mm.
     const FOLD: f64 = -0.5;
-    let folded = |values: &Values| {
+    let folded_model = |values: &Values| {
         let mut values = *values;
         values[TWIST] = values[TWIST].max(FOLD);
-        model(&values)
+        model_travels(&values)
     };
-    let mut truth = start();
-    truth[TWIST] = FOLD;
-    let mut ways = measured(&truth, Card::default(), &mut Rng::with_seed(1));
-    for (way, travel) in ways.iter_mut().zip(model(&truth)) {
-        way.mean = [travel.forward, travel.left, travel.turn];
+    let mut true_values = start_values();
+    true_values[TWIST] = FOLD;
+    let mut movements = measure_robot(&true_values, Card::default(), &mut Rng::with_seed(1));
+    for (movement, travel) in movements.iter_mut().zip(model_travels(&true_values)) {
+        movement.mean = [travel.forward, travel.left, travel.turn];
     }
-    let error = |model: &dyn Fn(&Values) -> Vec<Travel>| {
-        solve(&ways, start(), model).expect("a fit").keys[TWIST].error
+    let twist_error_of = |model: &dyn Fn(&Values) -> Vec<Travel>| {
+        solve(&movements, start_values(), model)
+            .expect("a fit")
+            .keys[TWIST]
+            .error
     };
-    let [folded, smooth] = [error(&folded), error(&model)];
-    assert!(folded > 1.2 * smooth, "{folded} {smooth}");
+    let [folded_error, smooth_error] = [
+        twist_error_of(&folded_model),
+        twist_error_of(&model_travels),
+    ];
+    assert!(
+        folded_error > 1.2 * smooth_error,
+        "{folded_error} {smooth_error}"
+    );
 }
 
 #[test]
 fn a_key_without_influence_stays_and_is_said_to_be_untold() {
-    let blind = |values: &Values| {
+    let blind_model = |values: &Values| {
         let mut values = *values;
         values[5] = 0.7;
-        model(&values)
+        model_travels(&values)
     };
-    let mut truth = start();
-    (truth[0], truth[5]) = (8.0, 1.1);
+    let mut true_values = start_values();
+    (true_values[0], true_values[5]) = (8.0, 1.1);
     let mut rng = Rng::with_seed(1);
-    let card = card(&mut rng);
-    let mut ways = measured(&truth, card, &mut rng);
-    for (way, travel) in ways.iter_mut().zip(blind(&truth)) {
-        let seen = card.card_travel(travel);
-        way.mean = [seen.forward, seen.left, seen.turn];
+    let card = random_card(&mut rng);
+    let mut movements = measure_robot(&true_values, card, &mut rng);
+    for (movement, travel) in movements.iter_mut().zip(blind_model(&true_values)) {
+        let seen_travel = card.card_travel(travel);
+        movement.mean = [seen_travel.forward, seen_travel.left, seen_travel.turn];
     }
-    let found = solve(&ways, start(), &blind).expect("a fit");
-    let mut wanted = vec![Verdict::Unchanged; KEY_COUNT];
-    (wanted[0], wanted[5]) = (Verdict::Moved, Verdict::Undetermined);
-    assert_eq!(verdicts(&found), wanted);
-    assert_eq!(found.keys[5].after, found.keys[5].before);
+    let result = solve(&movements, start_values(), &blind_model).expect("a fit");
+    let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
+    (expected[0], expected[5]) = (Verdict::Moved, Verdict::Undetermined);
+    assert_eq!(verdicts_of(&result), expected);
+    assert_eq!(result.keys[5].after, result.keys[5].before);
     assert!(
-        found.keys[5].error > 0.9 * KEYS[5].prior_error(),
+        result.keys[5].error > 0.9 * KEYS[5].prior_error(),
         "{:?}",
-        found.keys[5]
+        result.keys[5]
     );
 }
 
 #[test]
 fn two_keys_that_look_alike_are_named() {
-    let alike = |values: &Values| {
+    let alike_model = |values: &Values| {
         let mut values = *values;
         let sum = values[2] + values[3];
         values[2] = sum + 0.02 * values[3];
         values[3] = 0.0;
-        model(&values)
+        model_travels(&values)
     };
     let mut rng = Rng::with_seed(1);
-    let ways = measured(&start(), Card::default(), &mut rng);
-    let found = solve(&ways, start(), &alike).expect("a fit");
-    let [(a, b, correlation)] = found.correlated[..] else {
-        panic!("{:?}", found.correlated);
+    let movements = measure_robot(&start_values(), Card::default(), &mut rng);
+    let result = solve(&movements, start_values(), &alike_model).expect("a fit");
+    let [(a, b, correlation)] = result.correlated[..] else {
+        panic!("{:?}", result.correlated);
     };
     assert_eq!(
         (a.full_name(), b.full_name()),
@@ -180,44 +206,55 @@ fn two_keys_that_look_alike_are_named() {
 #[test]
 fn a_way_that_no_key_explains_is_named_and_widens_the_errors() {
     let mut rng = Rng::with_seed(2);
-    let mut ways = measured(&start(), Card::default(), &mut rng);
-    let good = solve(&ways, start(), &model).expect("a fit");
-    assert!(good.goodness.is_explained && good.goodness.error_factor == 1.0);
-    ways[3].mean[0] += 4.0;
-    let bad = solve(&ways, start(), &model).expect("a fit");
+    let mut movements = measure_robot(&start_values(), Card::default(), &mut rng);
+    let good_result = solve(&movements, start_values(), &model_travels).expect("a fit");
+    assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
+    movements[3].mean[0] += 4.0;
+    let bad_result = solve(&movements, start_values(), &model_travels).expect("a fit");
     let Goodness {
-        is_explained: explains,
-        error_factor: widened,
+        is_explained,
+        error_factor,
         worst,
         ..
-    } = bad.goodness;
-    assert!(!explains && widened > 5.0, "{:?}", bad.goodness);
+    } = bad_result.goodness;
+    assert!(
+        !is_explained && error_factor > 5.0,
+        "{:?}",
+        bad_result.goodness
+    );
     assert_eq!((worst.0, worst.1), (3, 0));
-    for (bad, good) in bad.keys.iter().zip(&good.keys) {
-        assert!(bad.error > 4.0 * good.error, "{bad:?} {good:?}");
+    for (bad_key, good_key) in bad_result.keys.iter().zip(&good_result.keys) {
+        assert!(
+            bad_key.error > 4.0 * good_key.error,
+            "{bad_key:?} {good_key:?}"
+        );
     }
 }
 
 #[test]
 fn a_play_below_zero_is_not_written() {
     let mut rng = Rng::with_seed(3);
-    let mut ways = measured(&start(), Card::default(), &mut rng);
-    let with_play = |play: f64| {
-        let mut values = start();
+    let mut movements = measure_robot(&start_values(), Card::default(), &mut rng);
+    let travels_with_play = |play: f64| {
+        let mut values = start_values();
         values[PLAY] = play;
-        model(&values)
+        model_travels(&values)
     };
     // Shifts the movements by the opposite of what a play of 0.5 deg would do, so that the fit asks for -0.5 deg.
-    for ((way, at), play) in ways.iter_mut().zip(with_play(0.0)).zip(with_play(0.5)) {
-        way.mean[0] -= play.forward - at.forward;
-        way.mean[1] -= play.left - at.left;
-        way.mean[2] -= play.turn - at.turn;
+    for ((movement, base_travel), play_travel) in movements
+        .iter_mut()
+        .zip(travels_with_play(0.0))
+        .zip(travels_with_play(0.5))
+    {
+        movement.mean[0] -= play_travel.forward - base_travel.forward;
+        movement.mean[1] -= play_travel.left - base_travel.left;
+        movement.mean[2] -= play_travel.turn - base_travel.turn;
     }
-    let found = solve(&ways, start(), &model).expect("a fit");
-    let play = &found.keys[PLAY];
-    assert_eq!(play.after, 0.0);
+    let result = solve(&movements, start_values(), &model_travels).expect("a fit");
+    let play_key = &result.keys[PLAY];
+    assert_eq!(play_key.after, 0.0);
     assert!(
-        matches!(play.verdict, Verdict::Impossible(value) if (value + 0.5).abs() < 0.1),
-        "{play:?}"
+        matches!(play_key.verdict, Verdict::Impossible(value) if (value + 0.5).abs() < 0.1),
+        "{play_key:?}"
     );
 }

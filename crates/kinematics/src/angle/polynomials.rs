@@ -40,7 +40,7 @@ pub const POLYNOMIALS: [Polynomial; 3] = [
     Polynomial {
         name: "SIN",
         terms: 6,
-        limit: || Number::pi(BITS) / number(4),
+        limit: || Number::pi(BITS) / number_of(4),
         function: Number::sin,
         lead: Number::clone,
         power: 3,
@@ -48,27 +48,27 @@ pub const POLYNOMIALS: [Polynomial; 3] = [
     Polynomial {
         name: "COS",
         terms: 6,
-        limit: || Number::pi(BITS) / number(4),
+        limit: || Number::pi(BITS) / number_of(4),
         function: Number::cos,
-        lead: |r| number(1) - r * r / number(2),
+        lead: |r| number_of(1) - r * r / number_of(2),
         power: 4,
     },
     Polynomial {
         name: "ATAN",
         terms: 11,
-        limit: || (Number::pi(BITS) / number(8)).tan(),
+        limit: || (Number::pi(BITS) / number_of(8)).tan(),
         function: Number::atan,
         lead: Number::clone,
         power: 3,
     },
 ];
 
-fn number(whole: u32) -> Number {
-    Number::from(whole).with_precision(BITS).value()
+fn number_of(value: u32) -> Number {
+    Number::from(value).with_precision(BITS).value()
 }
 
 /// Converts an f64 exactly.
-fn exact_number(value: f64) -> Number {
+fn exact_number_of(value: f64) -> Number {
     let exact = Number::try_from(value).expect("a finite number");
     exact.with_precision(BITS).value()
 }
@@ -77,16 +77,17 @@ impl Polynomial {
     /// Computes the coefficients, the constant first.
     pub fn coefficients(&self) -> Vec<f64> {
         let limit = (self.limit)();
-        let longest = &limit * &limit * (number(1) + exact_number(MARGIN_SHARE));
-        let half = longest / number(2);
+        let largest_square = &limit * &limit * (number_of(1) + exact_number_of(MARGIN_SHARE));
+        let half_interval = largest_square / number_of(2);
         let nodes: Vec<Number> = (0..self.terms)
             .map(|k| {
-                let turn = Number::pi(BITS) * number(2 * k + 1) / number(2 * self.terms);
-                &half * (number(1) + turn.cos())
+                let turn = Number::pi(BITS) * number_of(2 * k + 1) / number_of(2 * self.terms);
+                &half_interval * (number_of(1) + turn.cos())
             })
             .collect();
         // Computes divided differences, then expands Newton's form to powers.
-        let mut differences: Vec<Number> = nodes.iter().map(|z| self.target(&z.sqrt())).collect();
+        let mut differences: Vec<Number> =
+            nodes.iter().map(|z| self.target_value(&z.sqrt())).collect();
         for order in 1..nodes.len() {
             for i in (order..nodes.len()).rev() {
                 let rise = &differences[i] - &differences[i - 1];
@@ -96,13 +97,13 @@ impl Polynomial {
         let mut powers: Vec<Number> = Vec::new();
         for (node, difference) in nodes.iter().zip(&differences).rev() {
             // powers * (z - node) + difference
-            let mut next = vec![number(0); powers.len() + 1];
+            let mut next_powers = vec![number_of(0); powers.len() + 1];
             for (i, power) in powers.iter().enumerate() {
-                next[i + 1] += power;
-                next[i] -= power * node;
+                next_powers[i + 1] += power;
+                next_powers[i] -= power * node;
             }
-            next[0] += difference;
-            powers = next;
+            next_powers[0] += difference;
+            powers = next_powers;
         }
         powers.iter().map(|power| power.to_f64().value()).collect()
     }
@@ -113,25 +114,25 @@ impl Polynomial {
         let limit = (self.limit)();
         (1..=POINTS)
             .map(|i| {
-                let x = &limit * number(i) / number(POINTS);
+                let x = &limit * number_of(i) / number_of(POINTS);
                 let z = &x * &x;
                 let sum = coefficients
                     .iter()
                     .rev()
-                    .fold(number(0), |sum, c| sum * &z + exact_number(*c));
+                    .fold(number_of(0), |sum, c| sum * &z + exact_number_of(*c));
                 let deviation =
-                    (sum - self.target(&x)) * power(&x, self.power) / (self.function)(&x);
+                    (sum - self.target_value(&x)) * power_of(&x, self.power) / (self.function)(&x);
                 deviation.to_f64().value().abs()
             })
             .fold(0.0, f64::max)
     }
 
     /// The exact value, at an argument x, that the polynomial P approximates.
-    fn target(&self, x: &Number) -> Number {
-        ((self.function)(x) - (self.lead)(x)) / power(x, self.power)
+    fn target_value(&self, x: &Number) -> Number {
+        ((self.function)(x) - (self.lead)(x)) / power_of(x, self.power)
     }
 }
 
-fn power(x: &Number, n: i32) -> Number {
+fn power_of(x: &Number, n: i32) -> Number {
     (1..n).fold(x.clone(), |power, _| power * x)
 }

@@ -70,9 +70,9 @@ impl FiveBar {
     /// where a crank's angle is free, [`Fault::NotFinite`] for input that is not finite or that
     /// overflows.
     pub fn inverse(&self, point: Vector) -> Result<[InverseSolution; 4], Fault> {
-        let arms = self.arms(point)?;
-        let solution = |working_mode: WorkingMode| {
-            let (left, right, assembly_mode) = arms.directions(working_mode);
+        let arms = self.solve_arms(point)?;
+        let solution_of = |working_mode: WorkingMode| {
+            let (left, right, assembly_mode) = arms.directions_in(working_mode);
             InverseSolution {
                 working_mode,
                 assembly_mode,
@@ -80,7 +80,7 @@ impl FiveBar {
                 theta_right: right.angle(),
             }
         };
-        Ok(WorkingMode::ALL.map(solution))
+        Ok(WorkingMode::ALL.map(solution_of))
     }
 
     /// The pose with the end point at a point (mm, own frame) and both elbows outward; cheaper than
@@ -89,22 +89,27 @@ impl FiveBar {
     /// # Errors
     /// Fails as [`FiveBar::inverse`] and [`FiveBar::forward`] do.
     pub fn reach(&self, point: Vector) -> Result<FiveBarPose, Fault> {
-        let (left, right, mode) = self.arms(point)?.directions(WorkingMode::OUTWARD);
+        let (left, right, mode) = self.solve_arms(point)?.directions_in(WorkingMode::OUTWARD);
         self.close(mode, left, right)
     }
 
-    fn arms(&self, point: Vector) -> Result<Arms, Fault> {
+    fn solve_arms(&self, point: Vector) -> Result<Arms, Fault> {
         if !point.is_finite() {
             return Err(Fault::NotFinite);
         }
-        let to_left = point - self.left_shaft();
-        let to_right = point - self.right_shaft();
+        let from_left_shaft = point - self.left_shaft();
+        let from_right_shaft = point - self.right_shaft();
         Ok(Arms {
             bars: *self,
-            from_left_shaft: to_left,
-            from_right_shaft: to_right,
-            left: crank_directions(to_left, self.crank_left, self.coupler_left, true)?,
-            right: crank_directions(to_right, self.crank_right, self.coupler_right, false)?,
+            from_left_shaft,
+            from_right_shaft,
+            left: crank_directions(from_left_shaft, self.crank_left, self.coupler_left, true)?,
+            right: crank_directions(
+                from_right_shaft,
+                self.crank_right,
+                self.coupler_right,
+                false,
+            )?,
         })
     }
 }
@@ -126,7 +131,7 @@ struct Arms {
 
 impl Arms {
     /// Crank directions (length one) in a working mode, and the assembly mode.
-    fn directions(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
+    fn directions_in(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
         // Outward is to the left of the line from the left shaft to the point,
         // and to the right of the line from the right shaft.
         let left = match mode.left {
@@ -137,14 +142,14 @@ impl Arms {
             Elbow::Outward => self.right[1],
             Elbow::Inward => self.right[0],
         };
-        let from_left = self.from_left_shaft - left * self.bars.crank_left;
-        let from_right = self.from_right_shaft - right * self.bars.crank_right;
-        let mode = if from_left.cross(from_right) >= 0.0 {
+        let left_coupler = self.from_left_shaft - left * self.bars.crank_left;
+        let right_coupler = self.from_right_shaft - right * self.bars.crank_right;
+        let assembly_mode = if left_coupler.cross(right_coupler) >= 0.0 {
             AssemblyMode::Ahead
         } else {
             AssemblyMode::Behind
         };
-        (left, right, mode)
+        (left, right, assembly_mode)
     }
 }
 
@@ -175,18 +180,18 @@ fn crank_directions(
         return Err(Fault::OnShaft);
     }
     // Crank direction relative to the line to the point, scaled by twice the product of both lengths.
-    let along = distance * distance + (crank - coupler) * (crank + coupler);
-    let across = 2.0 * double_area(crank, coupler, distance);
-    let bent = [across, -across].map(|across| {
-        let crank = rotate(Vector::new(along, across), to_point);
+    let parallel = distance * distance + (crank - coupler) * (crank + coupler);
+    let perpendicular = 2.0 * double_area(crank, coupler, distance);
+    let directions = [perpendicular, -perpendicular].map(|perpendicular| {
+        let crank = rotate(Vector::new(parallel, perpendicular), to_point);
         crank * (1.0 / crank.length())
     });
     // If the products overflow or vanish, no direction of length one is left.
-    if bent
+    if directions
         .iter()
         .all(|crank| (crank.length_squared() - 1.0).abs() < 1e-9)
     {
-        Ok(bent)
+        Ok(directions)
     } else {
         Err(Fault::NotFinite)
     }

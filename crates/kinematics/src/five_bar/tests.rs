@@ -40,7 +40,7 @@ proptest! {
                 prop_assert!((pose.end_point.x - x).hypot(pose.end_point.y - y) < tolerance);
             }
             (Err(Fault::TooFarApart { .. } | Fault::TooClose { .. }), None) => {}
-            (ours, theirs) => prop_assert!(false, "{ours:?} against {theirs:?}"),
+            (computed, expected) => prop_assert!(false, "{computed:?} against {expected:?}"),
         }
     }
 
@@ -50,11 +50,11 @@ proptest! {
         nudge in [-2.0..2.0, -2.0..2.0f64],
     ) {
         if let Ok(pose) = bars.forward(left, right) && pose.type2 > 0.3 {
-            let truth = [pose.theta_left_coupler(), pose.theta_right_coupler()];
-            let start = [truth[0] + nudge[0], truth[1] + nudge[1]];
-            let found = newton(&bars, [left, right], start).expect("Newton converges");
-            for (a, b) in truth.iter().zip(found) {
-                prop_assert!(wrap(a - b).abs() < 1e-9, "{truth:?} {found:?}");
+            let expected = [pose.theta_left_coupler(), pose.theta_right_coupler()];
+            let start = [expected[0] + nudge[0], expected[1] + nudge[1]];
+            let angles = newton(&bars, [left, right], start).expect("Newton converges");
+            for (a, b) in expected.iter().zip(angles) {
+                prop_assert!(wrap(a - b).abs() < 1e-9, "{expected:?} {angles:?}");
             }
         }
     }
@@ -65,10 +65,10 @@ proptest! {
     ) {
         if let Ok(pose) = bars.forward(left, right) {
             let (t2, t3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
-            let sine = |degrees: f64| degrees.to_radians().sin();
-            prop_assert!((pose.type2 - sine(t3 - t2)).abs() < 1e-7);
-            prop_assert!((pose.type1_left() - sine(left - t2)).abs() < 1e-9);
-            prop_assert!((pose.type1_right() - sine(t3 - right)).abs() < 1e-9);
+            let sine_of = |degrees: f64| degrees.to_radians().sin();
+            prop_assert!((pose.type2 - sine_of(t3 - t2)).abs() < 1e-7);
+            prop_assert!((pose.type1_left() - sine_of(left - t2)).abs() < 1e-9);
+            prop_assert!((pose.type1_right() - sine_of(t3 - right)).abs() < 1e-9);
         }
     }
 
@@ -77,14 +77,14 @@ proptest! {
         bars in any_five_bar(), x in -300.0..300.0f64, y in -300.0..300.0f64,
     ) {
         let point = Vector::new(x, y);
-        if let Ok(assemblies) = bars.inverse(point) {
-            for a in assemblies {
-                let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right).unwrap();
+        if let Ok(solutions) = bars.inverse(point) {
+            for solution in solutions {
+                let pose = bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
                 // The end point is nearly free where the crank tips nearly coincide, and
                 // where the couplers are nearly in line.
-                let stiff = (pose.gap.length() / 1e3).min(pose.type2.abs());
-                let tolerance = 1e-9_f64.max(1e-12 / stiff);
-                prop_assert!((pose.end_point - point).length() < tolerance, "{a:?} {pose:?}");
+                let stiffness = (pose.gap.length() / 1e3).min(pose.type2.abs());
+                let tolerance = 1e-9_f64.max(1e-12 / stiffness);
+                prop_assert!((pose.end_point - point).length() < tolerance, "{solution:?} {pose:?}");
             }
         }
     }
@@ -94,41 +94,41 @@ proptest! {
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
         if let Ok(pose) = bars.forward(left, right) {
-            let (l, r) = (pose.type1_left(), pose.type1_right());
+            let (left_margin, right_margin) = (pose.type1_left(), pose.type1_right());
             // Near a type-1 singularity, the angle varies like a square root of the point's
             // distance.
-            prop_assume!(l.abs() > 1e-2 && r.abs() > 1e-2 && pose.type2 > 1e-3);
+            prop_assume!(left_margin.abs() > 1e-2 && right_margin.abs() > 1e-2 && pose.type2 > 1e-3);
             // A shaft under the end point leaves that crank's angle free.
             prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);
             prop_assume!((pose.end_point - bars.right_shaft()).length() > 1.0);
-            let elbow = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
-            let back = bars.inverse(pose.end_point).unwrap().into_iter()
-                .find(|a| a.working_mode.left == elbow(l) && a.working_mode.right == elbow(r)).unwrap();
-            prop_assert_eq!(back.assembly_mode, AssemblyMode::Ahead);
-            prop_assert!(wrap(back.theta_left - left).abs() < 1e-9, "{:?}", back);
-            prop_assert!(wrap(back.theta_right - right).abs() < 1e-9, "{:?}", back);
+            let elbow_of = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
+            let solution = bars.inverse(pose.end_point).unwrap().into_iter()
+                .find(|a| a.working_mode.left == elbow_of(left_margin) && a.working_mode.right == elbow_of(right_margin)).unwrap();
+            prop_assert_eq!(solution.assembly_mode, AssemblyMode::Ahead);
+            prop_assert!(wrap(solution.theta_left - left).abs() < 1e-9, "{:?}", solution);
+            prop_assert!(wrap(solution.theta_right - right).abs() < 1e-9, "{:?}", solution);
         }
     }
 }
 
 #[test]
 fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
-    let (mut worst, mut reached) = (0.0_f64, 0);
+    let (mut worst_mm, mut reached_count) = (0.0_f64, 0);
     for i in -90..=90 {
         for j in 0..=90 {
             let point = Vector::new(f64::from(i), f64::from(j));
-            let Ok([outward, ..]) = HEAD.inverse(point) else {
+            let Ok([solution, ..]) = HEAD.inverse(point) else {
                 continue;
             };
-            let (left, right) = (outward.theta_left, outward.theta_right);
-            let pose = HEAD.forward_in(outward.assembly_mode, left, right);
-            worst = worst.max((pose.unwrap().end_point - point).length());
-            reached += 1;
+            let (left, right) = (solution.theta_left, solution.theta_right);
+            let pose = HEAD.forward_in(solution.assembly_mode, left, right);
+            worst_mm = worst_mm.max((pose.unwrap().end_point - point).length());
+            reached_count += 1;
         }
     }
-    assert!(worst < 1e-9, "worst {worst} mm");
+    assert!(worst_mm < 1e-9, "worst {worst_mm} mm");
     // Half a disc of 80 mm has 10 000 such points, less those too near to a shaft.
-    assert!(reached > 5_000, "{reached} points");
+    assert!(reached_count > 5_000, "{reached_count} points");
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
     match HEAD.forward(theta, 180.0 - theta) {
         Err(Fault::Coincident) => {}
         Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.end_point.is_finite()),
-        Err(other) => panic!("{other}"),
+        Err(fault) => panic!("{fault}"),
     }
     let degenerate = FiveBar { base: 0.0, ..HEAD };
     assert_eq!(degenerate.forward(50.0, 50.0), Err(Fault::Coincident));
@@ -147,20 +147,24 @@ fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
 #[test]
 fn the_solver_works_where_the_papers_a_vanishes() {
     // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
-    let mut smallest = f64::INFINITY;
+    let mut smallest_value = f64::INFINITY;
     for step in 0..=1800 {
         let theta4 = f64::from(step) / 10.0;
         for theta1 in [100.0, 120.0, 138.59, 150.0] {
             let Ok(pose) = HEAD.forward(theta1, theta4) else {
                 continue;
             };
-            smallest = smallest.min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
+            smallest_value =
+                smallest_value.min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let gap = loop_gap(&HEAD, [theta1, theta2, theta3, theta4]);
             assert!(gap[0].hypot(gap[1]) < 1e-12);
         }
     }
-    assert!(smallest < 10.0, "the sweep passes A = 0 nearby, {smallest}");
+    assert!(
+        smallest_value < 10.0,
+        "the sweep passes A = 0 nearby, {smallest_value}"
+    );
 }
 
 #[test]
@@ -178,17 +182,17 @@ fn unreachable_points_and_bad_numbers_say_why() {
         ),
         (f64::NAN, 5.0, "a value is not a finite number"),
     ] {
-        let refused = HEAD.inverse(Vector::new(x, y)).unwrap_err();
-        assert_eq!(refused.to_string(), message);
+        let fault = HEAD.inverse(Vector::new(x, y)).unwrap_err();
+        assert_eq!(fault.to_string(), message);
     }
-    let short = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
+    let short_bars = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
     assert_eq!(
-        short.forward(180.0, 0.0).unwrap_err().to_string(),
+        short_bars.forward(180.0, 0.0).unwrap_err().to_string(),
         "the crank tips are 80.000 mm apart, the couplers reach 25.000 mm"
     );
-    let unequal = FiveBar::new([20.0, 30.0, 80.0, 50.0, 30.0]);
+    let unequal_bars = FiveBar::new([20.0, 30.0, 80.0, 50.0, 30.0]);
     assert_eq!(
-        unequal.forward(90.0, 90.0).unwrap_err().to_string(),
+        unequal_bars.forward(90.0, 90.0).unwrap_err().to_string(),
         "the crank tips are 20.000 mm apart, the couplers need 30.000 mm"
     );
     assert_eq!(
@@ -199,10 +203,13 @@ fn unreachable_points_and_bad_numbers_say_why() {
 
 #[test]
 fn a_distance_that_overflows_is_reported_as_not_finite_and_not_as_out_of_reach() {
-    let far = Vector::new(1e200, 0.0);
-    assert_eq!(HEAD.inverse(far).unwrap_err(), Fault::NotFinite);
-    assert_eq!(HEAD.reach(far).unwrap_err(), Fault::NotFinite);
-    let endless = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
-    let near = Vector::new(0.0, 50.0);
-    assert_eq!(endless.inverse(near).unwrap_err(), Fault::NotFinite);
+    let far_point = Vector::new(1e200, 0.0);
+    assert_eq!(HEAD.inverse(far_point).unwrap_err(), Fault::NotFinite);
+    assert_eq!(HEAD.reach(far_point).unwrap_err(), Fault::NotFinite);
+    let endless_bars = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
+    let near_point = Vector::new(0.0, 50.0);
+    assert_eq!(
+        endless_bars.inverse(near_point).unwrap_err(),
+        Fault::NotFinite
+    );
 }

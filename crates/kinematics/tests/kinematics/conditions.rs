@@ -14,7 +14,10 @@ fn sine_between(a: Vector, b: Vector) -> f64 {
 
 /// The values of all conditions by name, in the chassis frame; `None` where a loop does not
 /// close.
-fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static str, f64>> {
+fn reference_values(
+    robot: &Lizard,
+    [t1, t4, t8, t5]: [f64; 4],
+) -> Option<BTreeMap<&'static str, f64>> {
     let l = &robot.links;
     let y = l.l10 / 2.0;
     let a1 = Vector::new(-l.l0 / 2.0, y);
@@ -50,8 +53,8 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
 
 /// Limits that differ from kind to kind of condition.
 fn any_limits() -> impl Strategy<Value = Limits> {
-    let any = [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64];
-    any.prop_map(|values| Limits {
+    let ranges = [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64];
+    ranges.prop_map(|values| Limits {
         type2: values[0],
         type1: values[1],
         leg: values[2],
@@ -61,7 +64,7 @@ fn any_limits() -> impl Strategy<Value = Limits> {
 }
 
 /// The least and the greatest safe value of a condition, chosen by the first word of its name.
-fn range(limits: &Limits, name: &str) -> (f64, f64) {
+fn range_of(limits: &Limits, name: &str) -> (f64, f64) {
     match name.split('_').next().unwrap() {
         "type2" => (limits.type2, f64::INFINITY),
         "type1" => (limits.type1, f64::INFINITY),
@@ -80,128 +83,128 @@ proptest! {
     ) {
         let pose = pose.map(|angle| angle + 360.0 * f64::from(turns));
         let solution = robot.solve(&pose.into()).ok();
-        let Some(truth) = truth(&robot, pose) else {
+        let Some(expected_values) = reference_values(&robot, pose) else {
             prop_assert!(solution.is_none_or(|s| s.head.type2.min(s.tail.type2) < 1e-6));
             return Ok(());
         };
-        let Some(s) = solution else {
-            prop_assert!(truth["type2_head"].min(truth["type2_tail"]) < 1e-6);
+        let Some(solution) = solution else {
+            prop_assert!(expected_values["type2_head"].min(expected_values["type2_tail"]) < 1e-6);
             return Ok(());
         };
         // In nearly flat triangles the law of cosines loses half its digits.
-        prop_assume!(truth["type2_head"].min(truth["type2_tail"]) > 1e-4);
-        let conditions: BTreeMap<_, _> = s.conditions().map(|(what, v)| (what.name(), v)).collect();
+        prop_assume!(expected_values["type2_head"].min(expected_values["type2_tail"]) > 1e-4);
+        let conditions: BTreeMap<_, _> = solution.conditions().map(|(check, v)| (check.name(), v)).collect();
         prop_assert_eq!(conditions.len(), 14);
-        for (name, expected) in &truth {
-            let found = conditions[name];
-            prop_assert!((found - expected).abs() < 1e-7, "{name} {found} {expected}");
+        for (name, expected) in &expected_values {
+            let actual = conditions[name];
+            prop_assert!((actual - expected).abs() < 1e-7, "{name} {actual} {expected}");
         }
         // The array of margins and the conditions of each single end give the same values.
-        for (what, value) in s.margins.iter() {
-            prop_assert_eq!(value, conditions[what.name()]);
+        for (check, value) in solution.margins.iter() {
+            prop_assert_eq!(value, conditions[check.name()]);
         }
         for end in End::ALL {
-            for (what, value) in s.end(end).conditions(end) {
-                prop_assert_eq!(value, conditions[what.name()], "{} {}", end, what);
+            for (check, value) in solution.end(end).conditions(end) {
+                prop_assert_eq!(value, conditions[check.name()], "{} {}", end, check);
             }
         }
-        let smallest = s.margins.iter().map(|(_, value)| value).fold(1.0, f64::min);
-        prop_assert_eq!(s.margins.min().1, smallest);
+        let smallest = solution.margins.iter().map(|(_, value)| value).fold(1.0, f64::min);
+        prop_assert_eq!(solution.margins.min().1, smallest);
     }
 
     #[test]
     fn a_limit_is_broken_exactly_by_the_conditions_of_its_kind(
-        (_, _, s) in any_solved(), limits in any_limits(),
+        (_, _, solution) in any_solved(), limits in any_limits(),
     ) {
         let mut expected = Vec::new();
-        for (what, value) in s.conditions() {
-            let (min, max) = range(&limits, what.name());
+        for (check, value) in solution.conditions() {
+            let (min, max) = range_of(&limits, check.name());
             if value < min {
-                let crossed = Check::UNCROSSED.contains(&what);
-                expected.push((what, value, if crossed { 0.0 } else { min }));
+                let is_crossing = Check::UNCROSSED.contains(&check);
+                expected.push((check, value, if is_crossing { 0.0 } else { min }));
             } else if value > max {
-                expected.push((what, value, max));
+                expected.push((check, value, max));
             }
         }
-        let found: Vec<_> = limits.violations(&s).map(|v| (v.check, v.value, v.limit)).collect();
-        prop_assert_eq!(limits.is_safe(&s), found.is_empty());
-        prop_assert_eq!(&found, &expected);
+        let violations: Vec<_> = limits.violations(&solution).map(|v| (v.check, v.value, v.limit)).collect();
+        prop_assert_eq!(limits.is_safe(&solution), violations.is_empty());
+        prop_assert_eq!(&violations, &expected);
         // Each end alone finds its own violations.
-        let of_end = |end: End| limits.end_violations(end, s.end(end));
-        let of_ends = End::ALL.into_iter().flat_map(of_end).map(|v| v.check.name());
-        let of_all = expected.iter().map(|(what, ..)| what);
-        let of_all = of_all.filter(|what| !Check::STROKE.contains(what)).map(|what| what.name());
-        prop_assert_eq!(BTreeSet::from_iter(of_ends), BTreeSet::from_iter(of_all));
+        let violations_of_end = |end: End| limits.end_violations(end, solution.end(end));
+        let names_of_ends = End::ALL.into_iter().flat_map(violations_of_end).map(|v| v.check.name());
+        let expected_names = expected.iter().map(|(check, ..)| check);
+        let expected_names = expected_names.filter(|check| !Check::STROKE.contains(check)).map(|check| check.name());
+        prop_assert_eq!(BTreeSet::from_iter(names_of_ends), BTreeSet::from_iter(expected_names));
     }
 
     #[test]
     fn a_value_at_its_limit_is_safe_and_the_next_one_is_not(limits in any_limits()) {
-        let of_kinds: [(&[Check], f64); 4] = [
+        let limits_of_kinds: [(&[Check], f64); 4] = [
             (&Check::TYPE2, limits.type2),
             (&Check::TYPE1, limits.type1),
             (&Check::LEG, limits.leg),
             (&Check::STROKE, limits.stroke_min),
         ];
-        for (checks, min) in of_kinds {
-            for &what in checks {
-                prop_assert_eq!(limits.violation_of(what, min), None);
-                let broken = limits.violation_of(what, min.next_down()).unwrap();
-                prop_assert_eq!((broken.check, broken.limit), (what, min));
+        for (checks, min) in limits_of_kinds {
+            for &check in checks {
+                prop_assert_eq!(limits.violation_of(check, min), None);
+                let violation = limits.violation_of(check, min.next_down()).unwrap();
+                prop_assert_eq!((violation.check, violation.limit), (check, min));
             }
         }
-        for what in Check::STROKE {
-            prop_assert_eq!(limits.violation_of(what, limits.stroke_max), None);
-            let broken = limits.violation_of(what, limits.stroke_max.next_up()).unwrap();
-            prop_assert_eq!(broken.limit, limits.stroke_max);
+        for check in Check::STROKE {
+            prop_assert_eq!(limits.violation_of(check, limits.stroke_max), None);
+            let violation = limits.violation_of(check, limits.stroke_max.next_up()).unwrap();
+            prop_assert_eq!(violation.limit, limits.stroke_max);
         }
-        for what in Check::UNCROSSED {
-            prop_assert!(limits.violation_of(what, 0.0).is_some());
-            prop_assert_eq!(limits.violation_of(what, f64::MIN_POSITIVE), None);
+        for check in Check::UNCROSSED {
+            prop_assert!(limits.violation_of(check, 0.0).is_some());
+            prop_assert_eq!(limits.violation_of(check, f64::MIN_POSITIVE), None);
         }
     }
 
     #[test]
     fn points_of_the_robot_lie_at_the_ends_of_their_links(
-        (robot, pose, s) in any_solved(),
+        (robot, pose, solution) in any_solved(),
     ) {
-        prop_assume!(s.head.type2.min(s.tail.type2) > 1e-3);
+        prop_assume!(solution.head.type2.min(solution.tail.type2) > 1e-3);
         let l = &robot.links;
-        let distance = |a: Vector, b: Vector| (a - b).length();
-        let ([p1, p4, p8, p5], [a1, a2, a3, a4]) = (s.crank_tips(), robot.shafts());
+        let distance_of = |a: Vector, b: Vector| (a - b).length();
+        let ([p1, p4, p8, p5], [a1, a2, a3, a4]) = (solution.crank_tips(), robot.shafts());
         for (tip, shaft, theta, length) in [
             (p1, a1, pose[0], l.l1), (p4, a2, pose[1], l.l4),
             (p8, a3, pose[2], l.l9), (p5, a4, pose[3], l.l6),
         ] {
-            prop_assert!(distance(tip, shaft + cis(theta) * length) < 1e-9);
+            prop_assert!(distance_of(tip, shaft + cis(theta) * length) < 1e-9);
         }
         for (end, tips, couplers) in [
             (End::Head, [p1, p4], [l.l2, l.l3]), (End::Tail, [p5, p8], [l.l7, l.l8]),
         ] {
-            let point = s.point(end);
+            let point = solution.point(end);
             for i in 0..2 {
-                prop_assert!(distance(tips[i] + s.couplers(end)[i] * couplers[i], point) < 1e-9);
+                prop_assert!(distance_of(tips[i] + solution.couplers(end)[i] * couplers[i], point) < 1e-9);
             }
-            prop_assert!(distance(robot.to_end(end, point), s.end(end).end_point) < 1e-9);
+            prop_assert!(distance_of(robot.to_end(end, point), solution.end(end).end_point) < 1e-9);
         }
         // Arm tips, relative to the rear shaft.
-        let [left, right] = Side::ALL.map(|side| s.side(side));
-        prop_assert!(distance(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
-        prop_assert!(distance(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
-        prop_assert!(distance(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
-        prop_assert!(distance(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
+        let [left, right] = Side::ALL.map(|side| solution.side(side));
+        prop_assert!(distance_of(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
+        prop_assert!(distance_of(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
+        prop_assert!(distance_of(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
+        prop_assert!(distance_of(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
     }
 
     #[test]
     fn the_angles_for_a_point_put_the_end_point_there_in_servo_order(
-        (robot, pose, s) in any_solved(),
+        (robot, pose, solution) in any_solved(),
     ) {
         // The inverse returns outward elbows only, and loses digits near a singularity.
-        prop_assume!(s.margins.type1.iter().chain(&s.margins.type2).all(|m| *m > 1e-2));
-        let mut found = Vec::new();
+        prop_assume!(solution.margins.type1.iter().chain(&solution.margins.type2).all(|m| *m > 1e-2));
+        let mut angles = Vec::new();
         for end in End::ALL {
-            found.extend(robot.point_angles(end, s.end(end).end_point).unwrap());
+            angles.extend(robot.point_angles(end, solution.end(end).end_point).unwrap());
         }
-        for (angle, expected) in found.into_iter().zip(pose) {
+        for (angle, expected) in angles.into_iter().zip(pose) {
             prop_assert!(angle > -180.0 && angle <= 180.0);
             prop_assert!(lizard_kinematics::wrap(angle - expected).abs() < 1e-9);
         }

@@ -18,9 +18,9 @@ fn any_length() -> impl Strategy<Value = f64> {
 
 /// Five-bars with links of similar size, most of which close, or of unrelated sizes.
 fn any_bars() -> impl Strategy<Value = FiveBar> {
-    let unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
+    let any_unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
-        unit(),
+        any_unit(),
         proptest::array::uniform5(0.2..2.0f64),
         proptest::array::uniform5(any_length()),
     )
@@ -32,7 +32,7 @@ fn any_bars() -> impl Strategy<Value = FiveBar> {
         })
 }
 
-fn finite(pose: &FiveBarPose) -> bool {
+fn is_finite_pose(pose: &FiveBarPose) -> bool {
     let vectors = [
         pose.left_crank,
         pose.right_crank,
@@ -56,31 +56,31 @@ proptest! {
     fn a_five_bar_of_any_size(bars in any_bars(), left in any::<f64>(), right in -180.0..180.0f64) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
             if let Ok(pose) = bars.forward_in(mode, left, right) {
-                prop_assert!(finite(&pose), "{pose:?}");
+                prop_assert!(is_finite_pose(&pose), "{pose:?}");
             }
         }
     }
 
     #[test]
     fn the_inverse_of_a_five_bar_of_any_size(
-        bars in any_bars(), x in -1.0..1.0f64, y in 0.0..2.0f64, other in any_length(),
+        bars in any_bars(), x in -1.0..1.0f64, y in 0.0..2.0f64, other_length in any_length(),
     ) {
-        for unit in [bars.crank_left, other] {
+        for unit in [bars.crank_left, other_length] {
             let point = Vector::new(x * unit, y * unit);
-            if let Ok(all) = bars.inverse(point) {
-                for a in all {
-                    prop_assert!(a.theta_left.is_finite() && a.theta_right.is_finite());
+            if let Ok(solutions) = bars.inverse(point) {
+                for solution in solutions {
+                    prop_assert!(solution.theta_left.is_finite() && solution.theta_right.is_finite());
                     // No intermediate result underflowed either: the computed arm ends at the
                     // point.
-                    let tip = bars.left_shaft() + Vector::direction(a.theta_left) * bars.crank_left;
+                    let tip = bars.left_shaft() + Vector::direction(solution.theta_left) * bars.crank_left;
                     let reach = (point - tip).length();
                     let error = (reach - bars.coupler_left).abs();
                     let size = bars.crank_left + bars.coupler_left + bars.base;
-                    prop_assert!(error < 1e-6 * size, "{error} of {size}: {a:?}");
+                    prop_assert!(error < 1e-6 * size, "{error} of {size}: {solution:?}");
                 }
             }
             if let Ok(pose) = bars.reach(point) {
-                prop_assert!(finite(&pose));
+                prop_assert!(is_finite_pose(&pose));
             }
         }
     }
@@ -103,14 +103,14 @@ proptest! {
         prop_assume!(huge.is_finite());
         let mut pose = pose;
         pose[servo] = huge;
-        let far = robot.solve(&Pose::from(pose));
+        let huge_solution = robot.solve(&Pose::from(pose));
         pose[servo] = huge % 360.0;
-        let near = robot.solve(&Pose::from(pose));
-        prop_assert_eq!(far.is_ok(), near.is_ok());
-        if let (Ok(far), Ok(near)) = (far, near) {
-            prop_assert_eq!(far.margins, near.margins);
-            prop_assert_eq!(far.head_point(), near.head_point());
-            prop_assert_eq!(far.legs[servo].follower(), near.legs[servo].follower());
+        let reduced_solution = robot.solve(&Pose::from(pose));
+        prop_assert_eq!(huge_solution.is_ok(), reduced_solution.is_ok());
+        if let (Ok(huge_solution), Ok(reduced_solution)) = (huge_solution, reduced_solution) {
+            prop_assert_eq!(huge_solution.margins, reduced_solution.margins);
+            prop_assert_eq!(huge_solution.head_point(), reduced_solution.head_point());
+            prop_assert_eq!(huge_solution.legs[servo].follower(), reduced_solution.legs[servo].follower());
         }
     }
 }
@@ -133,10 +133,10 @@ fn a_robot_whose_lengths_overflow_says_which_part_does() {
         l[index] = length;
         robot.links = l.into();
         let neutral = [138.59, 41.41, 318.59, 221.41];
-        let refused = robot.solve(&neutral.into()).expect_err("no finite pose");
+        let infeasible = robot.solve(&neutral.into()).expect_err("no finite pose");
         let expected = (part.to_string(), Fault::NotFinite);
         assert_eq!(
-            (refused.part.to_string(), refused.fault),
+            (infeasible.part.to_string(), infeasible.fault),
             expected,
             "l{index}"
         );

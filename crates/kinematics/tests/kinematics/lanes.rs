@@ -8,9 +8,9 @@ use crate::reference::any_lizard;
 
 const N: usize = 8;
 
-fn poses() -> impl Strategy<Value = Vec<[f64; 4]>> {
-    let angle = || prop_oneof![0.0..360.0f64, Just(f64::NAN), -1e300..1e300];
-    proptest::collection::vec([angle(), angle(), angle(), angle()], N)
+fn any_poses() -> impl Strategy<Value = Vec<[f64; 4]>> {
+    let any_angle = || prop_oneof![0.0..360.0f64, Just(f64::NAN), -1e300..1e300];
+    proptest::collection::vec([any_angle(), any_angle(), any_angle(), any_angle()], N)
 }
 
 proptest! {
@@ -18,38 +18,38 @@ proptest! {
 
     #[test]
     fn a_mechanism_in_a_lane_has_the_bits_of_the_mechanism_alone(
-        robot in any_lizard(), poses in poses(),
+        robot in any_lizard(), poses in any_poses(),
     ) {
         let cranks: [Vector<Lanes<N>>; 4] = std::array::from_fn(|servo| {
-            let all: [Vector; N] = std::array::from_fn(|i| Vector::direction(poses[i][servo]));
-            Vector::new(Lanes(all.map(|v| v.x)), Lanes(all.map(|v| v.y)))
+            let directions: [Vector; N] = std::array::from_fn(|i| Vector::direction(poses[i][servo]));
+            Vector::new(Lanes(directions.map(|v| v.x)), Lanes(directions.map(|v| v.y)))
         });
         for end in End::ALL {
             let pose = robot.shape_end(end, cranks);
-            let closes = robot.end(end).closes(&pose);
+            let is_closed = robot.end(end).closes(&pose);
             for i in 0..N {
                 let [left, right] = end.pick(poses[i]).map(|angle| end.sign() * angle);
-                let alone = robot.end(end).forward(left, right);
-                prop_assert_eq!(closes[i], alone.is_ok());
-                let Ok(alone) = alone else { continue };
-                let [.., (_, across)] = alone.conditions(end);
+                let single_pose = robot.end(end).forward(left, right);
+                prop_assert_eq!(is_closed[i], single_pose.is_ok());
+                let Ok(single_pose) = single_pose else { continue };
+                let [.., (_, crossing)] = single_pose.conditions(end);
                 let pairs = [
-                    (pose.type2, alone.type2), (pose.type1_left(), alone.type1_left()),
-                    (pose.type1_right(), alone.type1_right()), (pose.gap.x, across),
+                    (pose.type2, single_pose.type2), (pose.type1_left(), single_pose.type1_left()),
+                    (pose.type1_right(), single_pose.type1_right()), (pose.gap.x, crossing),
                 ];
-                for (lane, one) in pairs {
-                    prop_assert_eq!(lane.0[i].to_bits(), one.to_bits());
+                for (lanes, single) in pairs {
+                    prop_assert_eq!(lanes.0[i].to_bits(), single.to_bits());
                 }
             }
         }
         for side in Side::ALL {
             let pose = robot.shape_side(side, cranks);
-            let closes = robot.side(side).closes(&pose);
+            let is_closed = robot.side(side).closes(&pose);
             for i in 0..N {
-                let alone = travel_by_arms(&robot, side, poses[i]);
-                prop_assert_eq!(closes[i], alone.is_some());
-                let Some(alone) = alone else { continue };
-                prop_assert_eq!(pose.s.0[i].to_bits(), alone.to_bits());
+                let single_travel = travel_by_arms(&robot, side, poses[i]);
+                prop_assert_eq!(is_closed[i], single_travel.is_some());
+                let Some(single_travel) = single_travel else { continue };
+                prop_assert_eq!(pose.s.0[i].to_bits(), single_travel.to_bits());
             }
         }
     }
@@ -58,8 +58,8 @@ proptest! {
 /// The travel of a side's slider, computed from the directions of its arms.
 fn travel_by_arms(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
     let [front, rear] = side.pick(pose).map(Vector::direction);
-    let closed = robot
+    let result = robot
         .side(side)
         .close(side.rear_arm(rear), side.front_arm(front));
-    closed.ok().map(|pose| pose.s)
+    result.ok().map(|pose| pose.s)
 }

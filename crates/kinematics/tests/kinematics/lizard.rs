@@ -15,10 +15,10 @@ const LIMITS: Limits = Limits {
 };
 
 /// The limits that the paper's robot breaks at a pose, as messages.
-fn violations(pose: [f64; 4]) -> Vec<String> {
+fn messages_of(pose: [f64; 4]) -> Vec<String> {
     let solution = lizard().solve(&pose.into()).unwrap();
-    let broken = LIMITS.violations(&solution);
-    broken.map(|of| of.to_string()).collect()
+    let violations = LIMITS.violations(&solution);
+    violations.map(|violation| violation.to_string()).collect()
 }
 
 #[test]
@@ -38,27 +38,27 @@ proptest! {
     #![proptest_config(cases(4096))]
 
     #[test]
-    fn all_four_loops_close_in_the_chassis_frame((robot, pose, s) in any_solved()) {
+    fn all_four_loops_close_in_the_chassis_frame((robot, pose, solution) in any_solved()) {
         let [t1, t4, t8, t5] = pose;
         // In chassis angles both loops have the same vector equation; only the frames of the ends differ in sign.
-        let head = loop_gap(&robot.end(End::Head), [t1, s.theta2(), s.theta3(), t4]);
-        let tail = loop_gap(&robot.end(End::Tail), [t5, s.theta6(), s.theta7(), t8]);
+        let head = loop_gap(&robot.end(End::Head), [t1, solution.theta2(), solution.theta3(), t4]);
+        let tail = loop_gap(&robot.end(End::Tail), [t5, solution.theta6(), solution.theta7(), t8]);
         prop_assert!(head[0].hypot(head[1]) < 1e-9);
         prop_assert!(tail[0].hypot(tail[1]) < 1e-9);
         // R10 + R14 = R11 + R12 + R13, and the same on the right.
         let ([a1, a2, a3, a4], l) = (robot.shafts(), &robot.links);
         let left = a1 + cis(t1 + 90.0) * l.l14
-            - a4 - cis(t5 - 90.0) * l.l11 - cis(s.left.phi()) * (l.l12 + l.l13 + s.left.s);
+            - a4 - cis(t5 - 90.0) * l.l11 - cis(solution.left.phi()) * (l.l12 + l.l13 + solution.left.s);
         let right = a2 + cis(t4 - 90.0) * l.l19
-            - a3 - cis(t8 + 90.0) * l.l16 - cis(s.right.phi()) * (l.l17 + l.l18 + s.right.s);
+            - a3 - cis(t8 + 90.0) * l.l16 - cis(solution.right.phi()) * (l.l17 + l.l18 + solution.right.s);
         prop_assert!(left.length() < 1e-9, "{left:?}");
         prop_assert!(right.length() < 1e-9, "{right:?}");
         // End points: from each shaft along crank and coupler.
-        let head = a1 + cis(t1) * l.l1 + cis(s.theta2()) * l.l2;
-        let tail = a3 + cis(t8) * l.l9 + cis(s.theta7()) * l.l8;
-        prop_assert!((s.head_point() - head).length() < 1e-9);
-        prop_assert!((s.tail_point() - tail).length() < 1e-9);
-        for (leg, theta) in s.legs.iter().zip(pose) {
+        let head = a1 + cis(t1) * l.l1 + cis(solution.theta2()) * l.l2;
+        let tail = a3 + cis(t8) * l.l9 + cis(solution.theta7()) * l.l8;
+        prop_assert!((solution.head_point() - head).length() < 1e-9);
+        prop_assert!((solution.tail_point() - tail).length() < 1e-9);
+        for (leg, theta) in solution.legs.iter().zip(pose) {
             prop_assert!(wrap(leg.follower() - theta).abs() < 1e-9);
         }
     }
@@ -68,14 +68,14 @@ proptest! {
         t1 in 80.0..170.0f64, t4 in 10.0..100.0f64, t8 in 260.0..350.0f64, t5 in 190.0..280.0f64,
     ) {
         let robot = lizard();
-        let one = robot.solve(&[t1, t4, t8, t5].into());
-        let two = robot.solve(&[180.0 - t4, 180.0 - t1, 540.0 - t5, 540.0 - t8].into());
-        prop_assume!(one.is_ok());
-        let (one, two) = (one.unwrap(), two.unwrap());
-        prop_assert!((one.head_point().x + two.head_point().x).abs() < 1e-9);
-        prop_assert!((one.left.s - two.right.s).abs() < 1e-9);
-        prop_assert!((one.margins.type1[0] - two.margins.type1[1]).abs() < 1e-9);
-        prop_assert!((one.margins.type1[2] - two.margins.type1[3]).abs() < 1e-9);
+        let original = robot.solve(&[t1, t4, t8, t5].into());
+        let mirrored = robot.solve(&[180.0 - t4, 180.0 - t1, 540.0 - t5, 540.0 - t8].into());
+        prop_assume!(original.is_ok());
+        let (original, mirrored) = (original.unwrap(), mirrored.unwrap());
+        prop_assert!((original.head_point().x + mirrored.head_point().x).abs() < 1e-9);
+        prop_assert!((original.left.s - mirrored.right.s).abs() < 1e-9);
+        prop_assert!((original.margins.type1[0] - mirrored.margins.type1[1]).abs() < 1e-9);
+        prop_assert!((original.margins.type1[2] - mirrored.margins.type1[3]).abs() < 1e-9);
     }
 
     #[test]
@@ -83,8 +83,8 @@ proptest! {
         t1 in 94.0..162.0f64, t4 in 18.0..86.0f64, t8 in 18.0..86.0f64, t5 in 94.0..162.0f64,
     ) {
         let solution = lizard().solve(&[t1, t4, -t8, -t5].into()).unwrap();
-        let broken = violations([t1, t4, -t8, -t5]);
-        prop_assert!(broken.is_empty(), "{broken:?}");
+        let messages = messages_of([t1, t4, -t8, -t5]);
+        prop_assert!(messages.is_empty(), "{messages:?}");
         prop_assert!(solution.margins.min().1 >= 0.3);
     }
 }
@@ -92,8 +92,11 @@ proptest! {
 #[test]
 fn head_and_tail_angles_lead_back_to_the_points() {
     let robot = lizard();
-    let angles = |end: End, x: f64, y: f64| robot.point_angles(end, Vector::new(x, y)).unwrap();
-    let ([a1, a2], [a3, a4]) = (angles(End::Head, 8.0, 52.0), angles(End::Tail, -5.0, 60.0));
+    let angles_of = |end: End, x: f64, y: f64| robot.point_angles(end, Vector::new(x, y)).unwrap();
+    let ([a1, a2], [a3, a4]) = (
+        angles_of(End::Head, 8.0, 52.0),
+        angles_of(End::Tail, -5.0, 60.0),
+    );
     let solution = robot.solve(&[a1, a2, a3, a4].into()).unwrap();
     assert!((solution.head_point() - Vector::new(8.0, 119.5)).length() < 1e-9);
     assert!((solution.tail_point() - Vector::new(-5.0, -127.5)).length() < 1e-9);
@@ -103,28 +106,28 @@ fn head_and_tail_angles_lead_back_to_the_points() {
 #[test]
 fn each_broken_limit_has_its_message() {
     let [_, a2, a3, a4] = NEUTRAL;
-    let leg = "margin leg_lf 0.070 is below 0.300";
-    let arm = "margin type1_a1 -0.317 is below 0.300";
-    let slider = "left slider travel +47.09 mm is above +45.00 mm";
-    let crossed = "head crank tips are crossed: -18.57 mm from left to right";
+    let leg_message = "margin leg_lf 0.070 is below 0.300";
+    let arm_message = "margin type1_a1 -0.317 is below 0.300";
+    let slider_message = "left slider travel +47.09 mm is above +45.00 mm";
+    let crossed_message = "head crank tips are crossed: -18.57 mm from left to right";
     // The leg is beyond its change point: its sine is large enough, but negative.
-    let beyond = "margin leg_rf -0.319 is below 0.300";
+    let beyond_message = "margin leg_rf -0.319 is below 0.300";
     for (pose, message) in [
-        ([176.0, a2, a3, a4], leg),
-        ([60.0, 60.0, a3, a4], arm),
-        ([88.0, a2, a3, 272.0], slider),
-        ([50.0, 130.0, a3, a4], crossed),
-        ([138.59, 341.41, 318.59, 221.41], beyond),
+        ([176.0, a2, a3, a4], leg_message),
+        ([60.0, 60.0, a3, a4], arm_message),
+        ([88.0, a2, a3, 272.0], slider_message),
+        ([50.0, 130.0, a3, a4], crossed_message),
+        ([138.59, 341.41, 318.59, 221.41], beyond_message),
     ] {
-        assert_eq!(violations(pose), [message]);
+        assert_eq!(messages_of(pose), [message]);
     }
 }
 
 #[test]
 fn a_pose_that_is_not_a_number_is_refused_by_part() {
-    let refused = lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
+    let result = lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
     assert_eq!(
-        refused.unwrap_err().to_string(),
+        result.unwrap_err().to_string(),
         "head: a value is not a finite number"
     );
 }
@@ -137,7 +140,7 @@ fn margins_have_ten_names_and_a_least() {
         names.join(" "),
         "type2_head type2_tail type1_a1 type1_a2 type1_a3 type1_a4 leg_lf leg_rf leg_rh leg_lh"
     );
-    let (min, value) = margins.min();
-    assert!(Check::LEG.contains(&min));
+    let (least_check, value) = margins.min();
+    assert!(Check::LEG.contains(&least_check));
     assert!((value - 41.409622f64.to_radians().sin()).abs() < 1e-12);
 }

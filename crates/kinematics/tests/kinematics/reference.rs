@@ -69,9 +69,9 @@ pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64;
 /// the right one; `None` if the circles do not intersect.
 pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
-    let (half, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
-    let left = Vector::new(l1 * a.cos() - half, l1 * a.sin());
-    let right = Vector::new(l4 * b.cos() + half, l4 * b.sin());
+    let (half_base, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
+    let left = Vector::new(l1 * a.cos() - half_base, l1 * a.sin());
+    let right = Vector::new(l4 * b.cos() + half_base, l4 * b.sin());
     let point = circle_intersection(left, bars.coupler_left, right, bars.coupler_right)?;
     Some([point.x, point.y])
 }
@@ -95,8 +95,8 @@ pub fn any_lizard() -> impl Strategy<Value = Lizard> {
 /// Any robot and any pose at which it closes.
 pub fn any_solved() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
     (any_lizard(), any_pose()).prop_filter_map("a loop does not close", |(robot, pose)| {
-        let solved = robot.solve(&pose.into()).ok()?;
-        Some((robot, pose, solved))
+        let solution = robot.solve(&pose.into()).ok()?;
+        Some((robot, pose, solution))
     })
 }
 

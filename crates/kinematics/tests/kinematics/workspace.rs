@@ -30,19 +30,19 @@ proptest! {
         let edge = workspace.outer;
         let n = 400;
         let cell = 2.0 * edge / f64::from(n);
-        let mut inside = 0;
+        let mut inside_count = 0;
         for i in 0..n {
             for j in 0..n {
-                let at = |k: i32| -edge + (f64::from(k) + 0.5) * cell;
-                let point = Vector::new(at(i), at(j));
-                let reached = bars.inverse(point).is_ok();
-                prop_assert_eq!(workspace.contains(point), reached);
-                inside += i32::from(reached);
+                let coordinate_of = |k: i32| -edge + (f64::from(k) + 0.5) * cell;
+                let point = Vector::new(coordinate_of(i), coordinate_of(j));
+                let is_reached = bars.inverse(point).is_ok();
+                prop_assert_eq!(workspace.contains(point), is_reached);
+                inside_count += i32::from(is_reached);
             }
         }
         // The count is wrong by about one cell for each cell along the edge of the workspace.
-        let counted = f64::from(inside) * cell * cell;
-        prop_assert!((counted - workspace.area()).abs() < 6.0 * edge * cell, "{counted} {}", workspace.area());
+        let counted_area = f64::from(inside_count) * cell * cell;
+        prop_assert!((counted_area - workspace.area()).abs() < 6.0 * edge * cell, "{counted_area} {}", workspace.area());
     }
 
     #[test]
@@ -50,9 +50,9 @@ proptest! {
         bars in symmetrical_bars(),
     ) {
         let workspace = Workspace::of(&bars);
-        let found = workspace.inscribed_circle().map_or(0.0, |circle| circle.radius);
-        let (largest, cell) = largest_by_distance_field(&bars);
-        prop_assert!((found - largest).abs() <= 1.5 * cell, "{found} {largest} cell {cell}");
+        let radius = workspace.inscribed_circle().map_or(0.0, |circle| circle.radius);
+        let (largest_radius, cell) = largest_by_distance_field(&bars);
+        prop_assert!((radius - largest_radius).abs() <= 1.5 * cell, "{radius} {largest_radius} cell {cell}");
     }
 
     #[test]
@@ -60,20 +60,20 @@ proptest! {
         bars in symmetrical_bars(), x in -1.0..1.0f64, y in -1.0..1.0f64,
     ) {
         let workspace = Workspace::of(&bars);
-        let clearance = |point: Vector| {
+        let clearance_of = |point: Vector| {
             [-workspace.half_base, workspace.half_base].into_iter().map(|shaft| {
                 let distance = (point - Vector::new(shaft, 0.0)).length();
                 (distance - workspace.inner).min(workspace.outer - distance)
             }).fold(f64::INFINITY, f64::min)
         };
-        let other = clearance(Vector::new(x, y) * workspace.outer);
+        let other_clearance = clearance_of(Vector::new(x, y) * workspace.outer);
         match workspace.inscribed_circle() {
             Some(circle) => {
                 prop_assert!(circle.centre.y >= 0.0);
-                prop_assert!((clearance(circle.centre) - circle.radius).abs() < 1e-9);
-                prop_assert!(other <= circle.radius + 1e-9);
+                prop_assert!((clearance_of(circle.centre) - circle.radius).abs() < 1e-9);
+                prop_assert!(other_clearance <= circle.radius + 1e-9);
             }
-            None => prop_assert!(other <= 0.0),
+            None => prop_assert!(other_clearance <= 0.0),
         }
     }
 
@@ -82,17 +82,17 @@ proptest! {
         bars in symmetrical_bars(), x in -100.0..100.0, y in 0.0..100.0f64, scale in 0.01..100.0f64,
     ) {
         let (crank, coupler) = (bars.crank_left, bars.coupler_left);
-        let large = [bars.base, crank, coupler, coupler, crank].map(|length| length * scale);
-        let large = FiveBar::new(large);
-        if let Ok(all) = bars.inverse(Vector::new(x, y)) {
-            for a in all {
-                let (Ok(one), Ok(two)) = (
-                    bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right),
-                    large.forward_in(a.assembly_mode, a.theta_left, a.theta_right),
+        let large_bars = [bars.base, crank, coupler, coupler, crank].map(|length| length * scale);
+        let large_bars = FiveBar::new(large_bars);
+        if let Ok(solutions) = bars.inverse(Vector::new(x, y)) {
+            for solution in solutions {
+                let (Ok(pose), Ok(large_pose)) = (
+                    bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right),
+                    large_bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right),
                 ) else { continue };
-                prop_assert!((0.0..=1.0 + 1e-12).contains(&one.lci()));
-                prop_assume!(one.gap.length() > 1e-3);
-                prop_assert!((one.lci() - two.lci()).abs() < 1e-6);
+                prop_assert!((0.0..=1.0 + 1e-12).contains(&pose.lci()));
+                prop_assume!(pose.gap.length() > 1e-3);
+                prop_assert!((pose.lci() - large_pose.lci()).abs() < 1e-6);
             }
         }
     }
@@ -104,33 +104,33 @@ fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
     const CELLS: usize = 120;
     let reach = bars.crank_left + bars.coupler_left;
     let cell = 2.2 * reach / CELLS as f64;
-    let at = |k: usize| (k as f64 + 0.5) * cell - 1.1 * reach;
-    let point = |i: usize, j: usize| Vector::new(at(i), at(j));
-    let reached = |i| {
+    let coordinate_of = |k: usize| (k as f64 + 0.5) * cell - 1.1 * reach;
+    let point_of = |i: usize, j: usize| Vector::new(coordinate_of(i), coordinate_of(j));
+    let reached_column_of = |i| {
         (0..CELLS)
-            .map(|j| bars.inverse(point(i, j)).is_ok())
+            .map(|j| bars.inverse(point_of(i, j)).is_ok())
             .collect()
     };
-    let inside: Vec<Vec<bool>> = (0..CELLS).map(reached).collect();
-    let mut rim = vec![bars.left_shaft(), bars.right_shaft()];
+    let is_inside: Vec<Vec<bool>> = (0..CELLS).map(reached_column_of).collect();
+    let mut rim_points = vec![bars.left_shaft(), bars.right_shaft()];
     for i in 1..CELLS - 1 {
         for j in 1..CELLS - 1 {
-            let beside = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
-            if !inside[i][j] && beside.into_iter().any(|(i, j)| inside[i][j]) {
-                rim.push(point(i, j));
+            let neighbours = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
+            if !is_inside[i][j] && neighbours.into_iter().any(|(i, j)| is_inside[i][j]) {
+                rim_points.push(point_of(i, j));
             }
         }
     }
-    let mut largest = 0.0_f64;
-    for (i, column) in inside.iter().enumerate() {
+    let mut largest_square = 0.0_f64;
+    for (i, column) in is_inside.iter().enumerate() {
         for j in (0..CELLS).filter(|&j| column[j]) {
-            let squares = rim
+            let squares = rim_points
                 .iter()
-                .map(|&outside| (point(i, j) - outside).length_squared());
-            largest = largest.max(squares.fold(f64::INFINITY, f64::min));
+                .map(|&rim_point| (point_of(i, j) - rim_point).length_squared());
+            largest_square = largest_square.max(squares.fold(f64::INFINITY, f64::min));
         }
     }
-    (largest.sqrt(), cell)
+    (largest_square.sqrt(), cell)
 }
 
 #[test]
@@ -145,12 +145,17 @@ fn a_wide_base_leaves_a_circle_between_the_shafts() {
 fn conditioning_vanishes_where_the_inscribed_circle_touches_the_rim() {
     let circle = Workspace::of(&HEAD).inscribed_circle().unwrap();
     for shaft in [HEAD.left_shaft(), HEAD.right_shaft()] {
-        let away = circle.centre - shaft;
+        let shaft_line = circle.centre - shaft;
         for side in [1.0, -1.0] {
-            let rim = circle.centre + away * (side * circle.radius / away.length());
-            let a = HEAD.inverse(rim).unwrap()[0];
-            assert_eq!(a.working_mode, WorkingMode::OUTWARD);
-            let pose = HEAD.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
+            let rim_point =
+                circle.centre + shaft_line * (side * circle.radius / shaft_line.length());
+            let solution = HEAD.inverse(rim_point).unwrap()[0];
+            assert_eq!(solution.working_mode, WorkingMode::OUTWARD);
+            let pose = HEAD.forward_in(
+                solution.assembly_mode,
+                solution.theta_left,
+                solution.theta_right,
+            );
             let index = pose.unwrap().lci();
             assert!(index < 1e-6, "{index}");
         }

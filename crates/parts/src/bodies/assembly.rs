@@ -91,42 +91,42 @@ impl Assembly {
 
     /// The placement of a mount's frame, for joints of any number type.
     pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &Cranks<T>) -> Placement<T> {
-        let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
-        let turned = |servo: usize, at: Vector| Placement {
-            origin: vector(at),
+        let vector_of = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
+        let placement_on_crank = |servo: usize, origin: Vector| Placement {
+            origin: vector_of(origin),
             x_axis: joints.cranks[servo],
         };
-        let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
+        let link_placement_of = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;
         match mount {
             Mount::Chassis => Placement {
-                origin: vector(Placement::CHASSIS.origin),
-                x_axis: vector(Placement::CHASSIS.x_axis),
+                origin: vector_of(Placement::CHASSIS.origin),
+                x_axis: vector_of(Placement::CHASSIS.x_axis),
             },
-            Mount::Link(servo) => link(servo),
-            Mount::Crank(servo) => turned(servo, legs[servo].crank_pivot),
-            Mount::Follower(servo) => turned(servo, legs[servo].follower_pivot),
+            Mount::Link(servo) => link_placement_of(servo),
+            Mount::Crank(servo) => placement_on_crank(servo, legs[servo].crank_pivot),
+            Mount::Follower(servo) => placement_on_crank(servo, legs[servo].follower_pivot),
             Mount::Foot(servo) => Placement {
-                origin: turned(servo, legs[servo].crank_pivot).map(legs[servo].joint),
-                x_axis: vector(legs[servo].coupler_direction),
+                origin: placement_on_crank(servo, legs[servo].crank_pivot).map(legs[servo].joint),
+                x_axis: vector_of(legs[servo].coupler_direction),
             },
             Mount::Strut(servo) => Placement {
-                origin: link(servo).map(legs[servo].anchor),
-                x_axis: vector(legs[servo].strut),
+                origin: link_placement_of(servo).map(legs[servo].anchor),
+                x_axis: vector_of(legs[servo].strut),
             },
             Mount::Coupler(servo) => {
                 let (end, hand) = end_and_hand(servo);
                 let bars = joints.end(end);
                 let tip = [bars.left_tip, bars.right_tip][hand];
-                let along = [bars.left_coupler, bars.right_coupler][hand];
+                let coupler_direction = [bars.left_coupler, bars.right_coupler][hand];
                 Placement {
                     origin: self.robot.lizard().to_chassis(end, tip),
-                    x_axis: end.mirror(along),
+                    x_axis: end.mirror(coupler_direction),
                 }
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
                 let slider = joints.side(side);
-                let rear = vector(self.layout.shafts[side.servos()[1]]);
+                let rear = vector_of(self.layout.shafts[side.servos()[1]]);
                 let tip = match mount {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,

@@ -200,7 +200,7 @@ impl<'a> Builder<'a> {
         self.add_screw(bolt, length);
         let flats = Shape::hexagon(bolt.at, screw.nut);
         let thread = Shape::disc(bolt.at, screw.diameter / 2.0);
-        let nut = Prism::new([flats], [thread], ordered(bolt.nut_z, nut_end));
+        let nut = Prism::new([flats], [thread], order_heights(bolt.nut_z, nut_end));
         self.add_body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
         self.allow_contact(bolt.meets);
     }
@@ -209,7 +209,8 @@ impl<'a> Builder<'a> {
     pub fn add_screw(&mut self, bolt: &Bolt, length: f64) {
         let screw = self.parts.screw;
         let sign = bolt.direction.sign();
-        let prism = |shape: Shape, from: f64, to: f64| Prism::solid([shape], ordered(from, to));
+        let solid_prism_of =
+            |shape: Shape, from: f64, to: f64| Prism::solid([shape], order_heights(from, to));
         let shank = Shape::disc(bolt.at, screw.diameter / 2.0);
         let (head, height, kind) = if bolt.is_hex {
             let hexagon = Shape::hexagon(bolt.at, screw.nut);
@@ -219,8 +220,8 @@ impl<'a> Builder<'a> {
             (disc, screw.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
-            prism(shank, bolt.head_z, bolt.head_z + sign * length),
-            prism(head, bolt.head_z - sign * height, bolt.head_z),
+            solid_prism_of(shank, bolt.head_z, bolt.head_z + sign * length),
+            solid_prism_of(head, bolt.head_z - sign * height, bolt.head_z),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
         self.add_body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
@@ -233,7 +234,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         mount: Mount,
-        at: Vector,
+        position: Vector,
         top: f64,
         meets: &[&str],
     ) {
@@ -241,12 +242,18 @@ impl<'a> Builder<'a> {
             nut_z: top + PLAY,
             meets,
             is_hex: true,
-            ..Bolt::new(name, mount, at, self.stack.hex_head_face, Direction::Up)
+            ..Bolt::new(
+                name,
+                mount,
+                position,
+                self.stack.hex_head_face,
+                Direction::Up,
+            )
         });
     }
 }
 
 /// Two heights, the lower one first.
-fn ordered(a: f64, b: f64) -> Span {
+fn order_heights(a: f64, b: f64) -> Span {
     [a.min(b), a.max(b)]
 }

@@ -20,7 +20,7 @@ const PILOT_RADIUS: f64 = 0.75;
 
 /// Distance from a seat to the middle of its servo's number, and the number's outward shift from
 /// the servo's middle, mm.
-const NUMBER: f64 = 4.0;
+const NUMBER_DISTANCE: f64 = 4.0;
 
 /// The holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600,
 /// 2000), (2600, 300), (2600, 1400) mil from a corner.
@@ -33,7 +33,7 @@ const UNO_HOLES: [(f64, f64); 4] = [
 /// The hole beside the pin AREF, whose header leaves no room for a screw's head.
 const UNO_TIGHT_HOLE: usize = 1;
 
-fn at(x: f64, y: f64) -> Vector {
+fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
@@ -49,10 +49,10 @@ pub fn add(builder: &mut Builder) {
     add_board(builder);
 }
 
-/// Outline of a servo's case from above, wider by `air` on each side.
-fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
+/// Outline of a servo's case from above, wider by `margin` on each side.
+fn case_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     let body = &builder.parts.servo;
-    let size = at(body.width + 2.0 * air, body.length + 2.0 * air);
+    let size = vector(body.width + 2.0 * margin, body.length + 2.0 * margin);
     Shape::rectangle(case_middle(builder, servo), size, 0.0)
 }
 
@@ -60,22 +60,22 @@ fn case_middle(builder: &Builder, servo: usize) -> Vector {
     builder.layout.plate.cases[servo]
 }
 
-fn inward(servo: usize) -> Vector {
-    at(0.0, -End::of_servo(servo).sign())
+fn inward_direction(servo: usize) -> Vector {
+    vector(0.0, -End::of_servo(servo).sign())
 }
 
 /// The positions of the two screws that hold a servo's flange.
 fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
-    let half = inward(servo) * (builder.parts.servo.holes / 2.0);
+    let half = inward_direction(servo) * (builder.parts.servo.holes / 2.0);
     let middle = case_middle(builder, servo);
     [middle - half, middle + half]
 }
 
-/// Outline of a servo's seat, wider by `more` on each side.
-fn seat(builder: &Builder, servo: usize, more: f64) -> Shape {
+/// Outline of a servo's seat, wider by `margin` on each side.
+fn seat_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     let body = &builder.parts.servo;
-    let around = builder.parts.fit + builder.parts.wall + more;
-    let size = at(body.width + 2.0 * around, body.flange + 2.0 + 2.0 * more);
+    let border = builder.parts.fit + builder.parts.wall + margin;
+    let size = vector(body.width + 2.0 * border, body.flange + 2.0 + 2.0 * margin);
     Shape::rectangle(case_middle(builder, servo), size, 1.0)
 }
 
@@ -89,48 +89,57 @@ fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
         parts.fit,
         outward,
     );
-    let mut cut = vec![opening(builder, servo, parts.fit), notch];
-    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT_RADIUS)));
+    let mut cut = vec![case_outline(builder, servo, parts.fit), notch];
+    cut.extend(flange_holes(builder, servo).map(|position| Shape::disc(position, PILOT_RADIUS)));
     cut
 }
 
-fn standoffs() -> [Vector; 4] {
+fn standoff_positions() -> [Vector; 4] {
     let [x, y] = STANDOFFS;
-    [at(-x, y), at(x, y), at(x, -y), at(-x, -y)]
+    [vector(-x, y), vector(x, y), vector(x, -y), vector(-x, -y)]
 }
 
 fn add_plate(builder: &mut Builder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
-    let seats: Vec<_> = (0..4).map(|servo| seat(builder, servo, 0.0)).collect();
+    let seats: Vec<_> = (0..4)
+        .map(|servo| seat_outline(builder, servo, 0.0))
+        .collect();
     // First all openings, then all holes: the shapes appear in this order in the files, which
     // must not change.
-    let all: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
-    let openings = all.iter().flat_map(|cut| &cut[..2]);
+    let servo_cutouts: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
+    let openings = servo_cutouts.iter().flat_map(|cut| &cut[..2]);
     let cut: Vec<_> = openings
-        .chain(all.iter().flat_map(|cut| &cut[2..]))
+        .chain(servo_cutouts.iter().flat_map(|cut| &cut[2..]))
         .cloned()
         .collect();
     let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
-    let mut add = vec![body];
-    let mut through = cut.clone();
+    let mut filled = vec![body];
+    let mut through_holes = cut.clone();
     // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
-    for (leg, [between, driven, idle]) in layout.legs.iter().zip(plate.arms) {
-        let bar = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
-        add.push(bar(between, plate.arm));
-        for (pivot, arm) in [(leg.crank_pivot, driven), (leg.follower_pivot, idle)] {
-            add.push(bar(arm, plate.arm - 0.01));
-            through.push(builder.hole(pivot));
+    for (leg, [pivot_arm, driven_arm, idle_arm]) in layout.legs.iter().zip(plate.arms) {
+        let bar_of = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
+        filled.push(bar_of(pivot_arm, plate.arm));
+        for (pivot, arm) in [
+            (leg.crank_pivot, driven_arm),
+            (leg.follower_pivot, idle_arm),
+        ] {
+            filled.push(bar_of(arm, plate.arm - 0.01));
+            through_holes.push(builder.hole(pivot));
         }
     }
-    through.extend(standoffs().map(|at| builder.hole(at)));
-    through.extend(leads::holes());
-    through.extend(fittings::slots(builder));
+    through_holes.extend(standoff_positions().map(|position| builder.hole(position)));
+    through_holes.extend(leads::holes());
+    through_holes.extend(fittings::slots(builder));
     let [low, high] = stack.plate;
-    let engraved = [&through[..], &numbers(builder)].concat();
+    let engraved_cuts = [&through_holes[..], &number_strokes(builder)].concat();
     let prisms = [
-        Prism::new(add.clone(), through, [low, high - mark::MARK_DEPTH]),
-        Prism::new(add, engraved, [high - mark::MARK_DEPTH, high]),
+        Prism::new(
+            filled.clone(),
+            through_holes,
+            [low, high - mark::MARK_DEPTH],
+        ),
+        Prism::new(filled, engraved_cuts, [high - mark::MARK_DEPTH, high]),
         Prism::new(seats, cut, stack.seat),
     ];
     builder.add_printed("plate", Mount::Chassis, prisms);
@@ -144,34 +153,34 @@ pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
     let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
     let leg = &builder.layout.legs[servo];
     let middle = case_middle(builder, servo);
-    let mut add = vec![seat(builder, servo, AROUND)];
-    let [between, driven, idle] = plate.arms[servo];
+    let mut filled = vec![seat_outline(builder, servo, AROUND)];
+    let [pivot_arm, driven_arm, idle_arm] = plate.arms[servo];
     // As in the plate, bars that end at the same point differ by 0.01 mm.
-    add.push(Shape::bar(between[0], between[1], plate.arm));
-    for [from, to] in [driven, idle] {
-        add.push(Shape::bar(from, to, plate.arm - 0.01));
-        add.push(Shape::bar(to, middle, plate.arm - 0.02));
+    filled.push(Shape::bar(pivot_arm[0], pivot_arm[1], plate.arm));
+    for [from, to] in [driven_arm, idle_arm] {
+        filled.push(Shape::bar(from, to, plate.arm - 0.01));
+        filled.push(Shape::bar(to, middle, plate.arm - 0.02));
     }
     let cut = cutouts(builder, servo);
-    let pivots = [leg.crank_pivot, leg.follower_pivot].map(|at| builder.hole(at));
-    let raised = stack.seat.map(|z| z + parts.plate);
+    let pivots = [leg.crank_pivot, leg.follower_pivot].map(|position| builder.hole(position));
+    let raised_seat = stack.seat.map(|z| z + parts.plate);
     vec![
-        Prism::new(add, [&cut[..], &pivots].concat(), [0.0, parts.plate]),
-        Prism::new([seat(builder, servo, 0.0)], cut, raised),
+        Prism::new(filled, [&cut[..], &pivots].concat(), [0.0, parts.plate]),
+        Prism::new([seat_outline(builder, servo, 0.0)], cut, raised_seat),
     ]
 }
 
 /// The servos' numbers, engraved beside the seats, so that head and tail can be told apart.
-fn numbers(builder: &Builder) -> Vec<Shape> {
+fn number_strokes(builder: &Builder) -> Vec<Shape> {
     let body = &builder.parts.servo;
     let strokes = (0..4).flat_map(|servo| {
-        let [wide, high] = mark::size("1");
+        let [width, height] = mark::size("1");
         let middle = case_middle(builder, servo);
         // On the inner side of the seat, away from the hole for the leads.
-        let out = middle.x.signum() * NUMBER;
-        let before = inward(servo) * (body.flange / 2.0 + 1.0 + NUMBER);
-        let at = middle + before + at(out - wide / 2.0, -high / 2.0);
-        mark::strokes(&(servo + 1).to_string(), at)
+        let outward_shift = middle.x.signum() * NUMBER_DISTANCE;
+        let inward_shift = inward_direction(servo) * (body.flange / 2.0 + 1.0 + NUMBER_DISTANCE);
+        let corner = middle + inward_shift + vector(outward_shift - width / 2.0, -height / 2.0);
+        mark::strokes(&(servo + 1).to_string(), corner)
     });
     strokes.collect()
 }
@@ -181,31 +190,35 @@ fn add_case(builder: &mut Builder, servo: usize) {
     let body = builder.parts.servo;
     let bottom = builder.stack.servo;
     let shaft = builder.layout.shafts[servo];
-    let layer =
-        |add: Vec<Shape>, low: f64, high: f64| Prism::solid(add, [bottom + low, bottom + high]);
-    let case = opening(builder, servo, 0.0);
+    let solid_layer = |filled: Vec<Shape>, low: f64, high: f64| {
+        Prism::solid(filled, [bottom + low, bottom + high])
+    };
+    let case = case_outline(builder, servo, 0.0);
     let flange = Shape::rectangle(
         case_middle(builder, servo),
-        at(body.width, body.flange),
+        vector(body.width, body.flange),
         0.0,
     );
     let gears = vec![
         Shape::disc(shaft, body.width / 2.0 - 0.05),
-        Shape::bar(shaft, shaft + inward(servo) * body.shaft, 3.0),
+        Shape::bar(shaft, shaft + inward_direction(servo) * body.shaft, 3.0),
     ];
-    let over = body.flange_height + body.flange_thickness;
+    let flange_top = body.flange_height + body.flange_thickness;
     let spline = vec![Shape::disc(shaft, SPLINE)];
     let prisms = [
-        layer(vec![case.clone()], 0.0, body.flange_height),
-        layer(vec![flange], body.flange_height, over),
-        layer(vec![case], over, body.height),
-        layer(gears, body.height, body.boss),
-        layer(spline, body.boss, body.boss + 3.0),
+        solid_layer(vec![case.clone()], 0.0, body.flange_height),
+        solid_layer(vec![flange], body.flange_height, flange_top),
+        solid_layer(vec![case], flange_top, body.height),
+        solid_layer(gears, body.height, body.boss),
+        solid_layer(spline, body.boss, body.boss + 3.0),
     ];
     builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.allow_contact(&[format!("horn {name}")]);
-    for (number, at) in flange_holes(builder, servo).into_iter().enumerate() {
-        let head = Prism::solid([Shape::disc(at, 2.2)], [bottom + over, bottom + over + 1.6]);
+    for (number, position) in flange_holes(builder, servo).into_iter().enumerate() {
+        let head = Prism::solid(
+            [Shape::disc(position, 2.2)],
+            [bottom + flange_top, bottom + flange_top + 1.6],
+        );
         let screw = format!("servo screw {name} {}", number + 1);
         builder.add_body(screw, Kind::ServoScrew, Mount::Chassis, [head]);
     }
@@ -213,7 +226,7 @@ fn add_case(builder: &mut Builder, servo: usize) {
 
 fn add_battery(builder: &mut Builder) {
     let [x, y, z] = builder.parts.battery;
-    let block = Shape::rectangle(Vector::default(), at(x, y), 0.0);
+    let block = Shape::rectangle(Vector::default(), vector(x, y), 0.0);
     let block = Prism::solid([block], [0.0, z]);
     builder.add_body("battery", Kind::Battery, Mount::Chassis, [block]);
 }
@@ -221,37 +234,45 @@ fn add_battery(builder: &mut Builder) {
 fn add_deck(builder: &mut Builder) {
     let (stack, parts) = (builder.stack, builder.parts);
     let [x, y] = STANDOFFS;
-    let bar = |a: (f64, f64), b: (f64, f64)| Shape::bar(at(a.0, a.1), at(b.0, b.1), 5.0);
-    let mut add = vec![
-        Shape::rectangle(Vector::default(), at(2.0 * x + 10.5, 2.0 * y + 14.0), 5.0),
-        bar(UNO_HOLES[0], UNO_HOLES[1]),
-        bar(UNO_HOLES[2], UNO_HOLES[3]),
+    let bar_between =
+        |a: (f64, f64), b: (f64, f64)| Shape::bar(vector(a.0, a.1), vector(b.0, b.1), 5.0);
+    let mut filled = vec![
+        Shape::rectangle(
+            Vector::default(),
+            vector(2.0 * x + 10.5, 2.0 * y + 14.0),
+            5.0,
+        ),
+        bar_between(UNO_HOLES[0], UNO_HOLES[1]),
+        bar_between(UNO_HOLES[2], UNO_HOLES[3]),
     ];
-    let [wings, open] = fittings::wings(UNO_HOLES);
-    add.extend(wings);
-    let screws = standoffs().map(|at| builder.hole(at));
-    let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
+    let [wings, openings] = fittings::wings(UNO_HOLES);
+    filled.extend(wings);
+    let screws = standoff_positions().map(|position| builder.hole(position));
+    let threads = UNO_HOLES.map(|(x, y)| builder.thread(vector(x, y)));
     // The window saves weight, and cable ties for the parts below the deck pass through it.
-    let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
-    let holes = [&screws[..], &threads, &leads::holes(), &[window], &open].concat();
-    let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0));
+    let window = Shape::rectangle(vector(0.0, 4.0), vector(12.0, 36.0), 3.0);
+    let holes = [&screws[..], &threads, &leads::holes(), &[window], &openings].concat();
+    let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 4.0));
     let prisms = [
-        Prism::new(add, holes, stack.deck),
+        Prism::new(filled, holes, stack.deck),
         Prism::new(bosses, threads, stack.boss),
     ];
     builder.add_printed("deck", Mount::Chassis, prisms);
-    for (number, place) in (1..).zip(standoffs()) {
+    for (number, position) in (1..).zip(standoff_positions()) {
         let length = stack.deck[0];
-        let (post, thread) = (Shape::disc(place, STANDOFF_RADIUS), builder.thread(place));
+        let (post, thread) = (
+            Shape::disc(position, STANDOFF_RADIUS),
+            builder.thread(position),
+        );
         let post = Prism::new([post], [thread], [0.0, length]);
         let name = format!("standoff {number}");
         builder.add_body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
-        for (end, head, points) in [
+        for (end, head, direction) in [
             ("below", stack.plate[0], Direction::Up),
             ("above", stack.deck[1], Direction::Down),
         ] {
             let name = format!("{name} {end}");
-            let bolt = Bolt::new(&name, Mount::Chassis, place, head, points);
+            let bolt = Bolt::new(&name, Mount::Chassis, position, head, direction);
             builder.add_screw(&bolt, parts.plate + 4.0);
         }
     }
@@ -261,16 +282,16 @@ fn add_board(builder: &mut Builder) {
     let low = builder.stack.boss[1];
     let [x, y, z] = UNO;
     let top = low + UNO_BOARD_THICKNESS;
-    let block = |x: f64, y: f64| [Shape::rectangle(Vector::default(), at(x, y), 0.0)];
-    let holes = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 1.6));
-    let heads = UNO_HOLES.map(|(x, y)| builder.sink(at(x, y)));
-    let board = Prism::new(block(x, y), holes, [low, top]);
-    let parts = Prism::new(block(x - 4.0, y - 4.0), heads, [top, low + z]);
+    let block_of = |x: f64, y: f64| [Shape::rectangle(Vector::default(), vector(x, y), 0.0)];
+    let holes = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 1.6));
+    let heads = UNO_HOLES.map(|(x, y)| builder.sink(vector(x, y)));
+    let board = Prism::new(block_of(x, y), holes, [low, top]);
+    let parts = Prism::new(block_of(x - 4.0, y - 4.0), heads, [top, low + z]);
     builder.add_body("board", Kind::Board, Mount::Chassis, [board, parts]);
     for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
         if number != UNO_TIGHT_HOLE {
             let name = format!("board {}", number + 1);
-            let bolt = Bolt::new(&name, Mount::Chassis, at(x, y), top, Direction::Down);
+            let bolt = Bolt::new(&name, Mount::Chassis, vector(x, y), top, Direction::Down);
             builder.add_screw(&bolt, 10.0);
         }
     }

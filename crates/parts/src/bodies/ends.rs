@@ -22,13 +22,14 @@ pub fn add(builder: &mut Builder) {
         add_bar(builder, left, lower);
         add_bar(builder, right, upper);
         // The right coupler lies higher, so a spacer fills the gap between the crank and this coupler.
-        for (servo, top, ring) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))] {
+        for (servo, top, spacer_top) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))]
+        {
             let tip = Vector::new(builder.layout.crank[servo], 0.0);
             let (mount, meets) = (Mount::Link(servo), [&*coupler(servo)]);
             let (name, _) = names(servo);
-            if let Some(high) = ring {
+            if let Some(spacer_top) = spacer_top {
                 let name = format!("tip spacer {name}");
-                builder.add_spacer(name, mount, tip, [link[1], high], &meets);
+                builder.add_spacer(name, mount, tip, [link[1], spacer_top], &meets);
             }
             builder.add_held_joint(&format!("tip {name}"), mount, tip, top, &meets);
         }
@@ -52,21 +53,21 @@ pub fn add(builder: &mut Builder) {
 fn add_bar(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
-    let layer = |hole: Option<Shape>, z: Span| {
-        let mut add = vec![Shape::bar(from, to, builder.half_bar())];
+    let layer_of = |hole: Option<Shape>, z: Span| {
+        let mut filled = vec![Shape::bar(from, to, builder.half_bar())];
         let mut cut = vec![builder.hole(from), builder.hole(to)];
-        let around = |hole: &Shape| Shape::disc(hole.middle(), builder.around_head());
-        add.extend(hole.iter().map(around));
+        let boss_of = |hole: &Shape| Shape::disc(hole.middle(), builder.around_head());
+        filled.extend(hole.iter().map(boss_of));
         cut.extend(hole);
-        Prism::new(add, cut, z)
+        Prism::new(filled, cut, z)
     };
     let prisms = match looks::second_screw_holes(builder, servo, to) {
-        Some([below, above]) => {
+        Some([lower_hole, upper_hole]) => {
             let seat = z[1] - builder.parts.screw.head_height - PLAY;
-            let lower = layer(Some(below), [z[0], seat]);
-            vec![lower, layer(Some(above), [seat, z[1]])]
+            let lower = layer_of(Some(lower_hole), [z[0], seat]);
+            vec![lower, layer_of(Some(upper_hole), [seat, z[1]])]
         }
-        None => vec![layer(None, z)],
+        None => vec![layer_of(None, z)],
     };
     builder.add_printed(coupler(servo), Mount::Coupler(servo), prisms);
 }

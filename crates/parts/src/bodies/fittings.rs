@@ -19,9 +19,9 @@ const TIE_SLOT: [f64; 2] = [4.0, 2.0];
 /// Least distance of the terminal strips' middles from the plate's middle, mm.
 const MIN_STRIP_X: f64 = 13.2;
 /// Distance from the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
-const TIES: f64 = 31.5;
+const TIE_DISTANCE: f64 = 31.5;
 /// Thickness of a cable tie, mm.
-const TIE: f64 = 1.6;
+const TIE_THICKNESS: f64 = 1.6;
 
 /// A wing of the deck, mm: its inner and its outer edge from the middle, and half its length. A longer wing would
 /// cover nuts of the sliders.
@@ -41,12 +41,12 @@ const SOCKET: [f64; 2] = [6.5, 2.0];
 /// The round socket's middle, mm to the right of the board's middle.
 const SOCKET_X: f64 = 19.05;
 
-fn at(x: f64, y: f64) -> Vector {
+fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
-fn slot(x: f64, y: f64, [along, across]: [f64; 2]) -> Shape {
-    Shape::rectangle(at(x, y), at(across, along), 0.5)
+fn slot_shape(x: f64, y: f64, [slot_length, slot_width]: [f64; 2]) -> Shape {
+    Shape::rectangle(vector(x, y), vector(slot_width, slot_length), 0.5)
 }
 
 /// Slots in the plate: for the strap beside the battery, if the plate is wide enough, and
@@ -54,11 +54,16 @@ fn slot(x: f64, y: f64, [along, across]: [f64; 2]) -> Shape {
 pub fn slots(builder: &Builder) -> Vec<Shape> {
     let mut slots = Vec::new();
     if let Some(x) = strap_slot_x(builder) {
-        slots.extend([-x, x].map(|x| slot(x, 0.0, STRAP_SLOT)));
+        slots.extend([-x, x].map(|x| slot_shape(x, 0.0, STRAP_SLOT)));
     }
-    let strips = strip_x(builder);
-    for x in [-strips - 4.5, -strips + 4.5, strips - 4.5, strips + 4.5] {
-        slots.extend([-TIES, TIES].map(|y| slot(x, y, TIE_SLOT)));
+    let strip_distance = strip_x(builder);
+    for x in [
+        -strip_distance - 4.5,
+        -strip_distance + 4.5,
+        strip_distance - 4.5,
+        strip_distance + 4.5,
+    ] {
+        slots.extend([-TIE_DISTANCE, TIE_DISTANCE].map(|y| slot_shape(x, y, TIE_SLOT)));
     }
     slots
 }
@@ -68,77 +73,77 @@ pub fn slots(builder: &Builder) -> Vec<Shape> {
 fn strip_x(builder: &Builder) -> f64 {
     let plate = builder.layout.plate;
     let cases = plate.cases.iter().map(|case| case.x.abs());
-    let lead = cases.fold(0.0, f64::max) - plate.case.x / 2.0;
-    MIN_STRIP_X.max(lead + 0.3 + length(Fitting::Ground, 0) / 2.0)
+    let lead_edge = cases.fold(0.0, f64::max) - plate.case.x / 2.0;
+    MIN_STRIP_X.max(lead_edge + 0.3 + fitting_size(Fitting::Ground, 0) / 2.0)
 }
 
 /// The outlines of the deck's wings and of the arms that carry them from the holes of the board; then the holes in
 /// the wings.
 pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
-    let [inner, outer, half] = WING;
+    let [inner, outer, half_length] = WING;
     let middle = (inner + outer) / 2.0;
-    let mut add = Vec::new();
+    let mut filled = Vec::new();
     let mut cut = Vec::new();
     for side in [-1.0, 1.0] {
-        let size = at(outer - inner, 2.0 * half);
-        add.push(Shape::rectangle(at(side * middle, 0.0), size, 4.0));
+        let size = vector(outer - inner, 2.0 * half_length);
+        filled.push(Shape::rectangle(vector(side * middle, 0.0), size, 4.0));
         for [x, y] in WING_OPENINGS {
-            let size = at(x[1] - x[0], y[1] - y[0]);
-            let middle = at(side * (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
+            let size = vector(x[1] - x[0], y[1] - y[0]);
+            let middle = vector(side * (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
             cut.push(Shape::rectangle(middle, size, 2.0));
         }
     }
     for (x, y) in holes {
-        add.push(Shape::bar(at(x, y), at(middle.copysign(x), y), 5.0));
+        filled.push(Shape::bar(vector(x, y), vector(middle.copysign(x), y), 5.0));
     }
     // The ties of the signal strip are behind the resistors, whose wires lie beside the middle of the strip.
     for x in WING_TIES {
-        cut.push(slot(-x, signal_strip_y() - 11.0, TIE_SLOT));
+        cut.push(slot_shape(-x, signal_strip_y() - 11.0, TIE_SLOT));
     }
-    cut.push(slot(WING_TIES[0], fuse_y(), TIE_SLOT));
-    cut.push(slot(
-        WING_FITTING_X + length(Fitting::Fuse, 0) + 2.4,
+    cut.push(slot_shape(WING_TIES[0], fuse_y(), TIE_SLOT));
+    cut.push(slot_shape(
+        WING_FITTING_X + fitting_size(Fitting::Fuse, 0) + 2.4,
         fuse_y(),
         TIE_SLOT,
     ));
-    let [along, across] = TIE_SLOT;
-    cut.push(slot(38.5, switch_tie_y(), [across, along]));
-    [add, cut]
+    let [tie_length, tie_width] = TIE_SLOT;
+    cut.push(slot_shape(38.5, switch_tie_y(), [tie_width, tie_length]));
+    [filled, cut]
 }
 
-fn length(fitting: Fitting, axis: usize) -> f64 {
+fn fitting_size(fitting: Fitting, axis: usize) -> f64 {
     fitting.facts().size[axis]
 }
 
 /// Position of the middle of the signal strip, mm ahead of the plate's middle. The strip begins at the wing's rear
 /// end.
 fn signal_strip_y() -> f64 {
-    0.5 - WING[2] + length(Fitting::Signals, 1) / 2.0
+    0.5 - WING[2] + fitting_size(Fitting::Signals, 1) / 2.0
 }
 
 /// Position of the fuse's middle, mm ahead of the plate's middle. The fuse is at the wing's front end.
 fn fuse_y() -> f64 {
-    WING[2] - 0.5 - length(Fitting::Fuse, 1) / 2.0
+    WING[2] - 0.5 - fitting_size(Fitting::Fuse, 1) / 2.0
 }
 
 /// Position of the switch's middle, mm ahead of the plate's middle. The switch is at the wing's rear end, which
 /// its cable tie goes around.
 fn switch_y() -> f64 {
-    0.3 - WING[2] + length(Fitting::Switch, 1) / 2.0
+    0.3 - WING[2] + fitting_size(Fitting::Switch, 1) / 2.0
 }
 
 /// Position of the slot for the switch's cable tie, in front of the switch, mm ahead of the plate's middle.
 fn switch_tie_y() -> f64 {
-    switch_y() + length(Fitting::Switch, 1) / 2.0 + 1.2
+    switch_y() + fitting_size(Fitting::Switch, 1) / 2.0 + 1.2
 }
 
 /// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is too narrow for slots beside
 /// the battery, so that the strap goes around battery and plate.
 fn strap_slot_x(builder: &Builder) -> Option<f64> {
-    let [across, _, _] = builder.parts.battery;
-    let x = (across + STRAP[1]) / 2.0;
-    let min = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
-    (builder.layout.plate.half.x >= min).then_some(x)
+    let [battery_width, _, _] = builder.parts.battery;
+    let x = (battery_width + STRAP[1]) / 2.0;
+    let min_half_width = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
+    (builder.layout.plate.half.x >= min_half_width).then_some(x)
 }
 
 pub fn add(builder: &mut Builder) {
@@ -167,10 +172,10 @@ fn add_sized_block(
     name: String,
     middle: Vector,
     low: f64,
-    [wide, long, high]: [f64; 3],
+    [width, length, height]: [f64; 3],
 ) {
-    let shape = Shape::rectangle(middle, at(wide, long), 0.0);
-    let prism = Prism::solid([shape], [low, low + high]);
+    let shape = Shape::rectangle(middle, vector(width, length), 0.0);
+    let prism = Prism::solid([shape], [low, low + height]);
     builder.add_body(name, Kind::Fitting(fitting), Mount::Chassis, [prism]);
 }
 
@@ -178,60 +183,97 @@ fn add_sized_block(
 fn add_below_plate(builder: &mut Builder) {
     let stack = builder.stack;
     // The fittings hang below the strap and the heads of the standoffs' screws.
-    let belly = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
+    let lower_ceiling = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
     let deck = stack.deck[0];
     let room = STANDOFFS[1] - 3.4;
-    let half = |fitting: Fitting| length(fitting, 1) / 2.0;
-    let strips = strip_x(builder);
+    let half_length_of = |fitting: Fitting| fitting_size(fitting, 1) / 2.0;
+    let strip_distance = strip_x(builder);
     // The ground strip reaches this far forward and back; the supply strip ends there in front, the capacitor
     // behind.
-    let strip = half(Fitting::Ground);
-    let supply = strip - half(Fitting::Supply);
-    let capacitor = half(Fitting::Capacitor) - strip;
+    let strip_reach = half_length_of(Fitting::Ground);
+    let supply_y = strip_reach - half_length_of(Fitting::Supply);
+    let capacitor_y = half_length_of(Fitting::Capacitor) - strip_reach;
     for (fitting, x, y, ceiling) in [
-        (Fitting::Alarm, 0.0, half(Fitting::Alarm) - room, deck),
+        (
+            Fitting::Alarm,
+            0.0,
+            half_length_of(Fitting::Alarm) - room,
+            deck,
+        ),
         (
             Fitting::Converter,
             0.0,
-            room - half(Fitting::Converter),
+            room - half_length_of(Fitting::Converter),
             deck,
         ),
-        (Fitting::Ground, -strips, 0.0, belly),
-        (Fitting::Supply, strips, supply, belly),
-        (Fitting::Capacitor, strips, capacitor, belly),
+        (Fitting::Ground, -strip_distance, 0.0, lower_ceiling),
+        (Fitting::Supply, strip_distance, supply_y, lower_ceiling),
+        (
+            Fitting::Capacitor,
+            strip_distance,
+            capacitor_y,
+            lower_ceiling,
+        ),
     ] {
-        add_block(builder, fitting, at(x, y), ceiling - length(fitting, 2));
+        add_block(
+            builder,
+            fitting,
+            vector(x, y),
+            ceiling - fitting_size(fitting, 2),
+        );
     }
 }
 
 /// Adds the fittings on the deck's wings.
 fn add_on_deck(builder: &mut Builder) {
     let top = builder.stack.deck[1];
-    let half = |fitting: Fitting| length(fitting, 0) / 2.0;
-    let x = |fitting: Fitting| WING_FITTING_X + half(fitting);
+    let half_width_of = |fitting: Fitting| fitting_size(fitting, 0) / 2.0;
+    let wing_x_of = |fitting: Fitting| WING_FITTING_X + half_width_of(fitting);
     add_block(
         builder,
         Fitting::Signals,
-        at(-x(Fitting::Signals), signal_strip_y()),
+        vector(-wing_x_of(Fitting::Signals), signal_strip_y()),
         top,
     );
-    let front = WING[2] - 0.5 - length(Fitting::Radio, 1) / 2.0;
-    add_block(builder, Fitting::Radio, at(-x(Fitting::Radio), front), top);
-    add_block(builder, Fitting::Fuse, at(x(Fitting::Fuse), fuse_y()), top);
+    let radio_y = WING[2] - 0.5 - fitting_size(Fitting::Radio, 1) / 2.0;
+    add_block(
+        builder,
+        Fitting::Radio,
+        vector(-wing_x_of(Fitting::Radio), radio_y),
+        top,
+    );
+    add_block(
+        builder,
+        Fitting::Fuse,
+        vector(wing_x_of(Fitting::Fuse), fuse_y()),
+        top,
+    );
     add_block(
         builder,
         Fitting::Switch,
-        at(x(Fitting::Switch), switch_y()),
+        vector(wing_x_of(Fitting::Switch), switch_y()),
         top,
     );
-    let plus_y = fuse_y() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
-    add_block(builder, Fitting::Plus, at(x(Fitting::Plus), plus_y), top);
+    let plus_y =
+        fuse_y() - (fitting_size(Fitting::Fuse, 1) + fitting_size(Fitting::Plus, 1)) / 2.0 - 0.3;
+    add_block(
+        builder,
+        Fitting::Plus,
+        vector(wing_x_of(Fitting::Plus), plus_y),
+        top,
+    );
     // Each resistor leads from a signal terminal to the middle one: two span one pitch, two span two.
-    let outside = -WING_FITTING_X - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
-    let row = length(Fitting::Resistor, 0) + 0.4;
+    let resistor_x = -WING_FITTING_X
+        - fitting_size(Fitting::Signals, 0)
+        - 0.4
+        - half_width_of(Fitting::Resistor);
+    let row_pitch = fitting_size(Fitting::Resistor, 0) + 0.4;
     let places = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
-    for (number, (out, pitches)) in (1..).zip(places) {
-        let middle = at(outside - out * row, signal_strip_y() + pitches * PITCH);
+    for (number, (row, pitches)) in (1..).zip(places) {
+        let middle = vector(
+            resistor_x - row * row_pitch,
+            signal_strip_y() + pitches * PITCH,
+        );
         let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
         add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
@@ -240,61 +282,64 @@ fn add_on_deck(builder: &mut Builder) {
 /// Adds the battery's plug, ahead of the battery or, if a long battery leaves no room there, on top of it; and the
 /// plug in the board's round socket.
 fn add_plugs(builder: &mut Builder) {
-    let [_, battery, high] = builder.parts.battery;
-    let [wide, thick, tall] = Fitting::Plug.facts().size;
-    let end = battery / 2.0 + 0.3;
+    let [_, battery_length, battery_height] = builder.parts.battery;
+    let [width, thickness, height] = Fitting::Plug.facts().size;
+    let battery_end = battery_length / 2.0 + 0.3;
     let name = Fitting::Plug.name().to_owned();
-    if end + thick <= STANDOFFS[1] - STANDOFF_RADIUS {
-        let middle = at(0.0, end + thick / 2.0);
+    if battery_end + thickness <= STANDOFFS[1] - STANDOFF_RADIUS {
+        let middle = vector(0.0, battery_end + thickness / 2.0);
         add_sized_block(
             builder,
             Fitting::Plug,
             name,
             middle,
-            TIE,
-            [wide, thick, tall],
+            TIE_THICKNESS,
+            [width, thickness, height],
         );
     } else {
-        let middle = at(0.0, STRAP[0] / 2.0 + 1.0 + tall / 2.0);
-        let low = high + 0.2;
+        let middle = vector(0.0, STRAP[0] / 2.0 + 1.0 + height / 2.0);
+        let low = battery_height + 0.2;
         add_sized_block(
             builder,
             Fitting::Plug,
             name,
             middle,
             low,
-            [wide, tall, thick],
+            [width, height, thickness],
         );
     }
-    let [above, beyond] = SOCKET;
-    let [_, long, high] = Fitting::RoundPlug.facts().size;
-    let y = -(UNO[1] + long) / 2.0 - beyond - 0.1;
-    let low = builder.stack.boss[1] + UNO_BOARD_THICKNESS + above - high / 2.0;
-    add_block(builder, Fitting::RoundPlug, at(SOCKET_X, y), low);
+    let [socket_height, socket_overhang] = SOCKET;
+    let [_, plug_length, plug_height] = Fitting::RoundPlug.facts().size;
+    let y = -(UNO[1] + plug_length) / 2.0 - socket_overhang - 0.1;
+    let low = builder.stack.boss[1] + UNO_BOARD_THICKNESS + socket_height - plug_height / 2.0;
+    add_block(builder, Fitting::RoundPlug, vector(SOCKET_X, y), low);
 }
 
 /// Adds the strap around battery and plate.
 fn add_strap(builder: &mut Builder) {
     let stack = builder.stack;
     let [battery_x, battery_y, battery_z] = builder.parts.battery;
-    let [wide, thick] = STRAP;
-    let wide = wide.min(battery_y);
+    let [width, thickness] = STRAP;
+    let width = width.min(battery_y);
     let x = battery_x / 2.0;
-    let bar = |from: f64, to: f64| {
+    let bar_between = |from: f64, to: f64| {
         let middle = Vector::new((from + to) / 2.0, 0.0);
-        Shape::rectangle(middle, Vector::new(to - from, wide), 0.0)
+        Shape::rectangle(middle, Vector::new(to - from, width), 0.0)
     };
-    let out = match strap_slot_x(builder) {
+    let half_width = match strap_slot_x(builder) {
         Some(_) => x,
         None => x.max(builder.layout.plate.half.x),
     };
-    let sides = [bar(-out - thick, -out), bar(out, out + thick)];
-    let across = bar(-out - thick, out + thick);
-    let [under, battery] = [stack.plate[0], battery_z];
+    let sides = [
+        bar_between(-half_width - thickness, -half_width),
+        bar_between(half_width, half_width + thickness),
+    ];
+    let full_bar = bar_between(-half_width - thickness, half_width + thickness);
+    let [strap_bottom, battery_top] = [stack.plate[0], battery_z];
     let prisms = [
-        Prism::solid([across.clone()], [under - thick, under]),
-        Prism::solid(sides, [under, battery]),
-        Prism::solid([across], [battery, battery + thick]),
+        Prism::solid([full_bar.clone()], [strap_bottom - thickness, strap_bottom]),
+        Prism::solid(sides, [strap_bottom, battery_top]),
+        Prism::solid([full_bar], [battery_top, battery_top + thickness]),
     ];
     let (fitting, mount) = (Fitting::Strap, Mount::Chassis);
     builder.add_body(fitting.name(), Kind::Fitting(fitting), mount, prisms);

@@ -22,7 +22,7 @@ const NOTCH_PLAY: f64 = 1.0;
 /// on edge, mm.
 const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
 /// Length of lead that sticks out of the case before the fold, mm.
-const BEND: f64 = 4.0;
+const BEND_LENGTH: f64 = 4.0;
 /// Size of a hole for the leads and the wires, mm: across and along the plate.
 const WIRE_HOLE_SIZE: [f64; 2] = [8.4, 6.0];
 /// Distance of such a hole's middle beyond the middles of the standoffs, mm.
@@ -35,8 +35,8 @@ pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape 
     // The notch overlaps the opening for the case.
     let from = body.length / 2.0 - 2.0;
     let half = (LEAD[0] + NOTCH_PLAY) / 2.0;
-    let corner = |x: f64, y: f64| middle + Vector::new(x, outward * y);
-    let [left, right] = [-half, half].map(|x| [from, reach].map(|y| corner(x, y)));
+    let corner_at = |x: f64, y: f64| middle + Vector::new(x, outward * y);
+    let [left, right] = [-half, half].map(|x| [from, reach].map(|y| corner_at(x, y)));
     Shape::hull(&[left, right].concat(), 0.0)
 }
 
@@ -46,9 +46,9 @@ fn wire_hole_centre(sign: f64) -> Vector {
 
 /// The holes in plate and deck through which leads and wires go up.
 pub fn holes() -> [Shape; 2] {
-    let [across, along] = WIRE_HOLE_SIZE;
+    let [width, length] = WIRE_HOLE_SIZE;
     [1.0, -1.0]
-        .map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(across, along), 1.0))
+        .map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(width, length), 1.0))
 }
 
 pub fn add(builder: &mut Builder) {
@@ -61,23 +61,26 @@ pub fn add(builder: &mut Builder) {
         // The neighbour's lead is on the other side of the middle line.
         let inner = -middle.x.signum();
         let x = middle.x + inner * (half.x + LEAD[1]);
-        let end = middle.y + outward * (half.y + BEND / 2.0);
-        let at = Vector::new;
-        let up = wire_hole_centre(outward) + at(-inner * 1.6, 0.0);
+        let bend_y = middle.y + outward * (half.y + BEND_LENGTH / 2.0);
+        let vector = Vector::new;
+        let riser_position = wire_hole_centre(outward) + vector(-inner * 1.6, 0.0);
         let radius = LEAD[1];
         let low = builder.stack.servo + LEAD_EXIT[0];
-        let [bend, corner] = [at(middle.x, end), at(x, end)];
-        let before = at(x, middle.y - outward * half.y);
-        let way = vec![
-            Shape::rectangle(bend, at(LEAD[0], BEND), 0.0),
+        let [bend, corner] = [vector(middle.x, bend_y), vector(x, bend_y)];
+        let inner_corner = vector(x, middle.y - outward * half.y);
+        let lead_path = vec![
+            Shape::rectangle(bend, vector(LEAD[0], BEND_LENGTH), 0.0),
             Shape::bar(bend, corner, radius),
-            Shape::bar(corner, before, radius),
-            Shape::bar(before, up, radius),
+            Shape::bar(corner, inner_corner, radius),
+            Shape::bar(inner_corner, riser_position, radius),
         ];
-        let lies = [low, low + LEAD_EXIT[1]];
+        let lying_span = [low, low + LEAD_EXIT[1]];
         let prisms = vec![
-            Prism::solid(way, lies),
-            Prism::solid([Shape::disc(up, radius)], [lies[1], builder.stack.deck[1]]),
+            Prism::solid(lead_path, lying_span),
+            Prism::solid(
+                [Shape::disc(riser_position, radius)],
+                [lying_span[1], builder.stack.deck[1]],
+            ),
         ];
         builder.add_body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);
     }

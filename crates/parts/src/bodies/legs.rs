@@ -15,19 +15,19 @@ use crate::layers::shape::Shape;
 use crate::layers::stack::{LEAF, PAD_LIP, PLAY};
 
 /// Radius of the boss around a foot's nut, mm.
-const TIP: f64 = 5.0;
+const TIP_RADIUS: f64 = 5.0;
 /// Distances from the follower's joint to the two screws of the foot's column, mm.
-const CLAMPS: [f64; 2] = [21.0, 9.0];
+const CLAMP_DISTANCES: [f64; 2] = [21.0, 9.0];
 /// Length of the screws between coupler and column, which cut their thread into the column, mm.
-const CLAMP_SCREW: f64 = 10.0;
+const CLAMP_SCREW_LENGTH: f64 = 10.0;
 /// Depth of the holes for the screws between coupler and column, mm.
-const CLAMP_HOLE: f64 = 10.0;
+const CLAMP_HOLE_DEPTH: f64 = 10.0;
 /// Half the width of the column, mm.
-const COLUMN: f64 = 3.2;
+const COLUMN_HALF_WIDTH: f64 = 3.2;
 /// Length of the screw that sets a foot's height, mm.
-const FOOT_SCREW: f64 = 10.0;
+const FOOT_SCREW_LENGTH: f64 = 10.0;
 /// Young's modulus of PLA, N/mm^2.
-const PLA: f64 = 3000.0;
+const PLA_MODULUS: f64 = 3000.0;
 /// Stiffness of a leaf, N/mm. With 0.4 to 0.6 a foot that is 1 mm too long costs no gait
 /// more than 5 % of its distance.
 const LEAF_STIFFNESS: f64 = 0.5;
@@ -35,7 +35,7 @@ const LEAF_STIFFNESS: f64 = 0.5;
 /// The free length of a leaf, mm. The stiffness of a beam clamped at one end is
 /// E b t^3 / (4 L^3).
 fn leaf_length(width: f64) -> f64 {
-    libm::cbrt(PLA * width * (LEAF * LEAF * LEAF) / (4.0 * LEAF_STIFFNESS))
+    libm::cbrt(PLA_MODULUS * width * (LEAF * LEAF * LEAF) / (4.0 * LEAF_STIFFNESS))
 }
 
 pub fn add(builder: &mut Builder) {
@@ -54,23 +54,26 @@ fn add_crank(builder: &mut Builder, servo: usize) {
     let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
     let (pivot, half) = (Vector::default(), builder.half_bar());
     // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
-    let add = [
+    let filled = [
         Shape::disc(pivot, half + 1.0),
         Shape::bar(pivot, joint, half),
         Shape::bar(pivot, anchor, half - 0.01),
         Shape::disc(anchor, builder.around_nut()),
     ];
     let holes = [builder.hole(pivot), builder.hole(joint)];
-    let and = |hole: Shape| [&holes[..], &[hole]].concat();
-    let (pocket, through) = (and(builder.pocket(anchor)), and(builder.hole(anchor)));
+    let holes_with = |hole: Shape| [&holes[..], &[hole]].concat();
+    let (pocket_holes, through_holes) = (
+        holes_with(builder.pocket(anchor)),
+        holes_with(builder.hole(anchor)),
+    );
     let (nut, _) = stack.anchor_nut(parts);
     let nut = nut.clamp(stack.crank[0], stack.crank[1]);
     let bearing = Shape::disc(pivot, half - 0.2);
     let bosses = [bearing.clone(), Shape::disc(anchor, half - 0.4)];
     let mut prisms = vec![
-        Prism::new(add.clone(), pocket, [stack.crank[0], nut]),
-        Prism::new(add, through.clone(), [nut, stack.crank[1]]),
-        Prism::new(bosses, through, stack.anchor),
+        Prism::new(filled.clone(), pocket_holes, [stack.crank[0], nut]),
+        Prism::new(filled, through_holes.clone(), [nut, stack.crank[1]]),
+        Prism::new(bosses, through_holes, stack.anchor),
         Prism::new([bearing], holes, [stack.anchor[1], stack.bearing[1]]),
     ];
     prisms.retain(Prism::has_height);
@@ -93,9 +96,9 @@ fn add_follower(builder: &mut Builder, servo: usize) {
 }
 
 /// The places of the two screws between coupler and foot, in the coupler's frame.
-fn clamps(builder: &Builder) -> [Vector; 2] {
+fn clamp_positions(builder: &Builder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
-    CLAMPS.map(|before| Vector::new(ground - before, 0.0))
+    CLAMP_DISTANCES.map(|distance| Vector::new(ground - distance, 0.0))
 }
 
 /// Height of the faces under the heads of the screws between coupler and foot, which are sunk into the coupler,
@@ -109,17 +112,17 @@ fn add_coupler(builder: &mut Builder, servo: usize) {
     let stack = builder.stack;
     let ground = builder.robot.lizard().leg.ground;
     let (from, to) = (Vector::default(), Vector::new(ground, 0.0));
-    let clamps = clamps(builder);
-    let through = clamps.map(|at| builder.hole(at));
-    let sunk = clamps.map(|at| builder.sink(at));
+    let clamps = clamp_positions(builder);
+    let through_holes = clamps.map(|position| builder.hole(position));
+    let sinks = clamps.map(|position| builder.sink(position));
     let joints = [builder.hole(from), builder.hole(to)];
     let mut bar = vec![Shape::bar(from, to, builder.half_bar())];
-    bar.extend(clamps.map(|at| Shape::disc(at, builder.around_head())));
+    bar.extend(clamps.map(|position| Shape::disc(position, builder.around_head())));
     let (seat, [low, high]) = (clamp_seat(builder), stack.leg_coupler);
-    let through = [joints.clone(), through].concat();
+    let through_holes = [joints.clone(), through_holes].concat();
     let prisms = [
-        Prism::new(bar.clone(), through, [low, seat]),
-        Prism::new(bar, [joints, sunk].concat(), [seat, high]),
+        Prism::new(bar.clone(), through_holes, [low, seat]),
+        Prism::new(bar, [joints, sinks].concat(), [seat, high]),
     ];
     builder.add_printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
@@ -127,62 +130,62 @@ fn add_coupler(builder: &mut Builder, servo: usize) {
 fn add_foot(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let stack = builder.stack;
-    let at = builder.layout.legs[servo].foot;
-    let clamps = clamps(builder);
+    let foot = builder.layout.legs[servo].foot;
+    let clamps = clamp_positions(builder);
     let half = builder.half_bar();
     // The column begins at the end of the leaf's free length.
-    let outward = clamps[0] - at;
-    let toward = outward * (1.0 / outward.length());
-    let root = at + toward * (leaf_length(builder.parts.bar) + COLUMN);
+    let column_offset = clamps[0] - foot;
+    let column_direction = column_offset * (1.0 / column_offset.length());
+    let root = foot + column_direction * (leaf_length(builder.parts.bar) + COLUMN_HALF_WIDTH);
     // As in the crank, bars that end at the same point differ by 0.01 mm.
     let column = vec![
-        Shape::bar(clamps[0], clamps[1], COLUMN),
-        Shape::bar(clamps[0], root, COLUMN - 0.01),
+        Shape::bar(clamps[0], clamps[1], COLUMN_HALF_WIDTH),
+        Shape::bar(clamps[0], root, COLUMN_HALF_WIDTH - 0.01),
     ];
-    let tip = Shape::disc(at, TIP);
+    let tip = Shape::disc(foot, TIP_RADIUS);
     let leaf = vec![
-        Shape::bar(root, at, half),
+        Shape::bar(root, foot, half),
         tip.clone(),
         Shape::bar(clamps[0], clamps[1], half - 0.01),
         Shape::bar(clamps[0], root, half - 0.02),
     ];
-    let (pocket, hole) = (builder.pocket(at), builder.hole(at));
-    let threads = clamps.map(|at| builder.thread(at));
+    let (pocket, hole) = (builder.pocket(foot), builder.hole(foot));
+    let threads = clamps.map(|position| builder.thread(position));
     let [_, boss] = stack.boss_of_foot;
     let nut = stack.leaf[0] + builder.parts.screw.nut_height;
-    let holes = stack.leg_coupler[0] - CLAMP_HOLE;
-    let with_tip = [&column[..], &[tip]].concat();
+    let hole_bottom = stack.leg_coupler[0] - CLAMP_HOLE_DEPTH;
+    let column_and_tip = [&column[..], &[tip]].concat();
     let prisms = [
         Prism::new(leaf, [pocket.clone()], stack.leaf),
-        Prism::new(with_tip.clone(), [pocket], [stack.leaf[1], nut]),
-        Prism::new(with_tip, [hole], [nut, boss]),
-        Prism::solid(column.clone(), [boss, holes]),
-        Prism::new(column, threads, [holes, stack.leg_coupler[0]]),
+        Prism::new(column_and_tip.clone(), [pocket], [stack.leaf[1], nut]),
+        Prism::new(column_and_tip, [hole], [nut, boss]),
+        Prism::solid(column.clone(), [boss, hole_bottom]),
+        Prism::new(column, threads, [hole_bottom, stack.leg_coupler[0]]),
     ];
     let mount = Mount::Foot(servo);
     builder.add_printed(format!("foot {leg}"), mount, prisms);
-    for (number, at) in (1..).zip(clamps) {
+    for (number, position) in (1..).zip(clamps) {
         let name = format!("foot {leg} {number}");
-        let bolt = Bolt::new(&name, mount, at, clamp_seat(builder), Direction::Down);
-        builder.add_screw(&bolt, CLAMP_SCREW);
+        let bolt = Bolt::new(&name, mount, position, clamp_seat(builder), Direction::Down);
+        builder.add_screw(&bolt, CLAMP_SCREW_LENGTH);
     }
     let head = stack.pad[1] - PAD_LIP;
     let name = format!("height {leg}");
     builder.add_screw(
-        &Bolt::new(&name, mount, at, head, Direction::Up),
-        FOOT_SCREW,
+        &Bolt::new(&name, mount, foot, head, Direction::Up),
+        FOOT_SCREW_LENGTH,
     );
     let screw = builder.parts.screw;
     let (flats, thread) = (
-        Shape::hexagon(at, screw.nut),
-        Shape::disc(at, screw.diameter / 2.0),
+        Shape::hexagon(foot, screw.nut),
+        Shape::disc(foot, screw.diameter / 2.0),
     );
-    let sunk = Prism::new([flats], [thread], [stack.leaf[0], nut]);
-    builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [sunk]);
+    let nut_prism = Prism::new([flats], [thread], [stack.leaf[0], nut]);
+    builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut_prism]);
     // The coupler never turns, so a direction stays the same in its frame.
-    let along = builder.layout.legs[servo].coupler_direction;
-    let ahead = Vector::new(along.y, along.x);
-    let pad = pads::layers(builder.parts, at, stack.floor, ahead);
+    let coupler_direction = builder.layout.legs[servo].coupler_direction;
+    let head_direction = Vector::new(coupler_direction.y, coupler_direction.x);
+    let pad = pads::layers(builder.parts, foot, stack.floor, head_direction);
     builder.add_body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 

@@ -14,16 +14,16 @@ use crate::layers::shape::Shape;
 use crate::layers::stack::{PLAY, Span};
 
 /// Positions of the horn's small screws along its arm, as shares of the arm's length.
-const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
+const HORN_SCREW_SHARES: [f64; 2] = [0.52, 0.83];
 /// Radius of the hole that a horn's small screw cuts its thread into, mm.
-const PILOT: f64 = 0.7;
+const PILOT_RADIUS: f64 = 0.7;
 /// Length of a horn's small screw, mm: one of 5 mm would reach the servo's boss under the link.
 pub const HORN_SCREW: f64 = 4.0;
 /// Radius and height of the head of a horn's small screw, mm.
 const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
 
 /// Wall of the ring between strut and link, mm: the spring's coil leaves no room for more.
-const RING: f64 = 1.1;
+const RING_WALL: f64 = 1.1;
 
 /// Clearance on each side of a horn's arm in its pocket, in multiples of `fit`: horns vary in size.
 pub const POCKET: f64 = 1.5;
@@ -37,9 +37,9 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The outline of the horn's arm, which points along the crank, widened by `grown` mm on each side.
-pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
-    let (hub, tip) = (horn.hub / 2.0 + grown, horn.tip / 2.0 + grown);
+/// The outline of the horn's arm, which points along the crank, widened by `margin` mm on each side.
+pub fn arm(horn: &Horn, margin: f64) -> Vec<Shape> {
+    let (hub, tip) = (horn.hub / 2.0 + margin, horn.tip / 2.0 + margin);
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
     // From hub to tip the arm gets narrower.
     let width = 0.8 * hub;
@@ -57,12 +57,12 @@ fn add_horn(builder: &mut Builder, servo: usize) {
     let horn = builder.parts.horn;
     let [low, _] = builder.stack.horn;
     let spline = Shape::disc(Vector::default(), SPLINE);
-    let mut through = vec![spline.clone()];
-    through.extend(horn_holes(&horn).map(|at| Shape::disc(at, PILOT)));
+    let mut through_holes = vec![spline.clone()];
+    through_holes.extend(horn_holes(&horn).map(|position| Shape::disc(position, PILOT_RADIUS)));
     let hub = Shape::disc(Vector::default(), horn.hub / 2.0);
     let prisms = [
         Prism::new([hub], [spline], [low + horn.thickness - horn.height, low]),
-        Prism::new(arm(&horn, 0.0), through, [low, low + horn.thickness]),
+        Prism::new(arm(&horn, 0.0), through_holes, [low, low + horn.thickness]),
     ];
     builder.add_body(
         format!("horn {name}"),
@@ -78,25 +78,25 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
     let tip = Vector::new(layout.crank[servo], 0.0);
-    let side = Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
+    let arm_tip = Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
     let anchor = layout.legs[servo].anchor;
     let half = builder.half_bar();
-    let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
+    let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
     // Without this brace the link would break in the corner between crank and arm.
-    let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
+    let brace = Shape::hull(&[hub, tip * 0.45, arm_tip * 0.45], 0.6 * half);
     // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
-    let add = vec![
-        Shape::disc(hub, round),
+    let filled = vec![
+        Shape::disc(hub, hub_radius),
         Shape::bar(hub, tip, half),
-        Shape::bar(hub, side, half - 0.01),
+        Shape::bar(hub, arm_tip, half - 0.01),
         Shape::bar(hub, anchor, half - 0.02),
         brace,
         Shape::disc(tip, builder.around_nut()),
-        Shape::disc(side, builder.around_nut()),
+        Shape::disc(arm_tip, builder.around_nut()),
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
-    let holes = [builder.hole(tip), builder.hole(side)];
-    let pilots = horn_holes(&parts.horn).map(|position| Shape::disc(position, PILOT));
+    let holes = [builder.hole(tip), builder.hole(arm_tip)];
+    let pilots = horn_holes(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
     let pocket = arm(&parts.horn, POCKET * parts.fit);
     let anchor_hole = builder.hole(anchor);
     let [low, high] = stack.link;
@@ -104,7 +104,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let cuts = [
         (&holes[..], [low, high]),
         (
-            &[tip, side].map(|position| builder.pocket(position)),
+            &[tip, arm_tip].map(|position| builder.pocket(position)),
             [low, stack.hex_head_face],
         ),
         (&[horn_hub], [low, stack.horn[0]]),
@@ -116,31 +116,31 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
     heights.sort_by(f64::total_cmp);
     heights.dedup_by(|a, b| *a - *b < 1e-9);
-    let layer = |z: &[f64]| {
-        let through = |of: Span| of[0] < z[1] - 1e-9 && z[0] < of[1] - 1e-9;
-        let cut = cuts.iter().filter(|(_, of)| through(*of));
+    let layer_of = |z: &[f64]| {
+        let is_cut_in = |span: Span| span[0] < z[1] - 1e-9 && z[0] < span[1] - 1e-9;
+        let cut = cuts.iter().filter(|(_, span)| is_cut_in(*span));
         let cut: Vec<_> = cut.flat_map(|(shapes, _)| shapes.to_vec()).collect();
-        Prism::new(add.clone(), cut, [z[0], z[1]])
+        Prism::new(filled.clone(), cut, [z[0], z[1]])
     };
-    let prisms: Vec<_> = heights.windows(2).map(layer).collect();
+    let prisms: Vec<_> = heights.windows(2).map(layer_of).collect();
     builder.add_printed(format!("link {name}"), Mount::Link(servo), prisms);
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
 /// The positions of the small screws that hold the horn.
 fn horn_holes(horn: &Horn) -> [Vector; 2] {
-    HORN_SCREWS.map(|share| Vector::new(share * horn.arm, 0.0))
+    HORN_SCREW_SHARES.map(|share| Vector::new(share * horn.arm, 0.0))
 }
 
 fn add_horn_screws(builder: &mut Builder, servo: usize) {
     let (name, _) = names(servo);
     let top = builder.stack.horn[0] + builder.parts.horn.thickness;
-    let [radius, high] = HORN_SCREW_HEAD;
-    for (number, at) in horn_holes(&builder.parts.horn).into_iter().enumerate() {
-        let prism = |radius: f64, z: Span| Prism::solid([Shape::disc(at, radius)], z);
+    let [radius, head_height] = HORN_SCREW_HEAD;
+    for (number, position) in horn_holes(&builder.parts.horn).into_iter().enumerate() {
+        let disc_prism_of = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
         let prisms = [
-            prism(PILOT, [top - HORN_SCREW, top]),
-            prism(radius, [top, top + high]),
+            disc_prism_of(PILOT_RADIUS, [top - HORN_SCREW, top]),
+            disc_prism_of(radius, [top, top + head_height]),
         ];
         let name = format!("horn screw {name} {}", number + 1);
         let kind = Kind::HornScrew(HORN_SCREW);
@@ -156,8 +156,8 @@ fn add_anchor(builder: &mut Builder, servo: usize) {
     let strut = builder.strut_name(leg);
     let ring = [stack.anchor_head_face, stack.link[0] - PLAY];
     // Thin enough to fit beside the spring's coil.
-    let thin = Shape::disc(position, parts.screw.diameter / 2.0 + RING);
-    let prism = Prism::new([thin], [builder.hole(position)], ring);
+    let ring_disc = Shape::disc(position, parts.screw.diameter / 2.0 + RING_WALL);
+    let prism = Prism::new([ring_disc], [builder.hole(position)], ring);
     builder.add_printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
     builder.allow_contact(&[&strut]);
     let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));

@@ -18,7 +18,7 @@ const THICKNESS: f64 = 3.0;
 /// Distance from the end point to the second screw, mm.
 const SECOND_SCREW_DISTANCE: f64 = 14.0;
 /// Length of the second screw, which cuts its own thread, mm.
-const SCREW: f64 = 6.0;
+const SCREW_LENGTH: f64 = 6.0;
 /// Angle of each tail link from straight back, deg.
 const TAIL_LINK_ANGLE: f64 = 3.5;
 
@@ -34,7 +34,7 @@ pub struct EndDecoration {
 }
 
 /// Length of an end's decorative part beyond its end point, mm; 0 without one.
-fn length(builder: &Builder, end: End) -> f64 {
+fn decoration_length(builder: &Builder, end: End) -> f64 {
     match end {
         End::Head => builder.parts.head,
         End::Tail => builder.parts.tail,
@@ -45,34 +45,34 @@ fn length(builder: &Builder, end: End) -> f64 {
 /// head of a screw from above is sunk. `None` for a coupler that carries no decorative part.
 pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
     let (end, hand) = end_and_hand(servo);
-    let at = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
-    match (length(builder, end) > 0.0, end, hand) {
-        (true, End::Tail, 0) => Some([builder.hole(at), builder.sink(at)]),
-        (true, _, 1) => Some([builder.thread(at), builder.thread(at)]),
+    let position = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+    match (decoration_length(builder, end) > 0.0, end, hand) {
+        (true, End::Tail, 0) => Some([builder.hole(position), builder.sink(position)]),
+        (true, _, 1) => Some([builder.thread(position), builder.thread(position)]),
         _ => None,
     }
 }
 
 pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
-    let length = length(builder, end);
+    let length = decoration_length(builder, end);
     let neutral = builder.robot.lizard().solve(&builder.robot.neutral());
     let (true, Ok(neutral)) = (length > 0.0, neutral) else {
         return EndDecoration::default();
     };
     let [left, right] = end.servos();
-    let (below, name, upper) = match end {
+    let (below, name, upper_part) = match end {
         End::Head => {
-            let shape = head(builder, right, &neutral, length);
+            let shape = head_part(builder, right, &neutral, length);
             (0.0, "head plate".to_owned(), shape)
         }
         End::Tail => {
-            let shape = tail(builder, left, &neutral, length);
+            let shape = tail_part(builder, left, &neutral, length);
             add_under_lower_link(builder, left, shape);
-            let shape = tail(builder, right, &neutral, length);
+            let shape = tail_part(builder, right, &neutral, length);
             (THICKNESS, format!("tail {}", names(right).0), shape)
         }
     };
-    add_on_upper_link(builder, right, &name, upper);
+    add_on_upper_link(builder, right, &name, upper_part);
     EndDecoration {
         below,
         above: THICKNESS,
@@ -84,26 +84,32 @@ pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
 type FlatPart = (Vec<Shape>, Vec<Shape>);
 
 /// An end's point, and the direction that points outward at neutral, both in a coupler's frame.
-fn outward(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
+fn point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     let (end, hand) = end_and_hand(servo);
     let bars = neutral.end(end);
-    let along = end.mirror([bars.left_coupler, bars.right_coupler][hand]);
-    let ahead = Vector::new(0.0, end.sign());
+    let coupler_direction = end.mirror([bars.left_coupler, bars.right_coupler][hand]);
+    let chassis_direction = Vector::new(0.0, end.sign());
     let point = Vector::new(coupler_length(builder.robot, servo), 0.0);
-    [point, Vector::new(ahead.dot(along), along.cross(ahead))]
+    [
+        point,
+        Vector::new(
+            chassis_direction.dot(coupler_direction),
+            coupler_direction.cross(chassis_direction),
+        ),
+    ]
 }
 
-fn rotate(direction: Vector, by: f64) -> Vector {
-    let by = Vector::direction(by);
-    direction * by.x + direction.rotated_left() * by.y
+fn rotate(direction: Vector, angle_deg: f64) -> Vector {
+    let turn = Vector::direction(angle_deg);
+    direction * turn.x + direction.rotated_left() * turn.y
 }
 
-fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
-    let [point, straight] = outward(builder, servo, neutral);
+fn tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+    let [point, straight_direction] = point_and_direction(builder, servo, neutral);
     // The left tail link points to the robot's left, the right one to its right.
     let (_, hand) = end_and_hand(servo);
-    let outward = rotate(
-        straight,
+    let link_direction = rotate(
+        straight_direction,
         if hand == 0 {
             -TAIL_LINK_ANGLE
         } else {
@@ -111,38 +117,47 @@ fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
         },
     );
     let half = builder.half_bar();
-    let wide = outward.rotated_left() * (half - 1.5);
-    let second = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
-    let corners = [point + wide, point - wide, point + outward * (length - 1.5)];
-    let add = vec![Shape::bar(second, point, half), Shape::hull(&corners, 1.5)];
-    (add, vec![builder.hole(point)])
+    let side_offset = link_direction.rotated_left() * (half - 1.5);
+    let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+    let corners = [
+        point + side_offset,
+        point - side_offset,
+        point + link_direction * (length - 1.5),
+    ];
+    let filled = vec![
+        Shape::bar(second_screw, point, half),
+        Shape::hull(&corners, 1.5),
+    ];
+    (filled, vec![builder.hole(point)])
 }
 
-fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+fn head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
     /// Radius of the corners, mm.
-    const ROUND: f64 = 7.0;
+    const CORNER_RADIUS: f64 = 7.0;
     /// Radius of an eye, mm.
-    const EYE: f64 = 2.5;
-    let [point, way] = outward(builder, servo, neutral);
-    let at = |ahead: f64, left: f64| point + way * ahead + way.rotated_left() * left;
-    let second = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
-    let wide = 0.24 * length;
+    const EYE_RADIUS: f64 = 2.5;
+    let [point, direction] = point_and_direction(builder, servo, neutral);
+    let point_at =
+        |ahead: f64, left: f64| point + direction * ahead + direction.rotated_left() * left;
+    let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+    let half_width = 0.24 * length;
     let [cheek, neck] = [0.34 * length, -0.1 * length];
-    let snout = (length - ROUND, 0.0);
+    let snout = (length - CORNER_RADIUS, 0.0);
     let sides = [
-        (cheek, wide),
-        (cheek, -wide),
-        (neck, 0.4 * wide),
-        (neck, -0.4 * wide),
+        (cheek, half_width),
+        (cheek, -half_width),
+        (neck, 0.4 * half_width),
+        (neck, -0.4 * half_width),
     ];
     let corners = sides.into_iter().chain([snout]);
-    let corners: Vec<_> = corners.map(|(ahead, left)| at(ahead, left)).collect();
-    let face = Shape::hull(&corners, ROUND);
-    let eyes = [wide, -wide].map(|left| Shape::disc(at(0.42 * length, left), EYE));
+    let corners: Vec<_> = corners.map(|(ahead, left)| point_at(ahead, left)).collect();
+    let face = Shape::hull(&corners, CORNER_RADIUS);
+    let eyes = [half_width, -half_width]
+        .map(|left| Shape::disc(point_at(0.42 * length, left), EYE_RADIUS));
     let mut cut = vec![builder.hole(point)];
     cut.extend(eyes);
-    let add = vec![Shape::bar(second, point, builder.half_bar()), face];
-    (add, cut)
+    let filled = vec![Shape::bar(second_screw, point, builder.half_bar()), face];
+    (filled, cut)
 }
 
 /// The position of the second screw in a coupler's frame.
@@ -153,27 +168,33 @@ fn second_screw_position(builder: &Builder, servo: usize) -> Vector {
     )
 }
 
-fn add_on_upper_link(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): FlatPart) {
+fn add_on_upper_link(builder: &mut Builder, servo: usize, name: &str, (filled, mut cut): FlatPart) {
     let low = builder.stack.upper_coupler[1];
     cut.push(builder.hole(second_screw_position(builder, servo)));
     let z = [low, low + THICKNESS];
-    builder.add_printed(name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
+    builder.add_printed(name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
     add_screw(builder, name, servo, z[1]);
 }
 
-fn add_under_lower_link(builder: &mut Builder, servo: usize, (add, mut cut): FlatPart) {
+fn add_under_lower_link(builder: &mut Builder, servo: usize, (filled, mut cut): FlatPart) {
     let high = builder.stack.lower_coupler[0];
     cut.push(builder.thread(second_screw_position(builder, servo)));
     let z = [high - THICKNESS, high];
     let name = format!("tail {}", names(servo).0);
-    builder.add_printed(&name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
+    builder.add_printed(&name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
     // The upper coupler turns over the screw's head, which therefore is sunk.
     let seat = builder.stack.lower_coupler[1] - builder.parts.screw.head_height - PLAY;
     add_screw(builder, &name, servo, seat);
 }
 
-fn add_screw(builder: &mut Builder, of: &str, servo: usize, head: f64) {
+fn add_screw(builder: &mut Builder, part_name: &str, servo: usize, head: f64) {
     let position = second_screw_position(builder, servo);
-    let bolt = Bolt::new(of, Mount::Coupler(servo), position, head, Direction::Down);
-    builder.add_screw(&bolt, SCREW);
+    let bolt = Bolt::new(
+        part_name,
+        Mount::Coupler(servo),
+        position,
+        head,
+        Direction::Down,
+    );
+    builder.add_screw(&bolt, SCREW_LENGTH);
 }

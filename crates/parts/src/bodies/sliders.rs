@@ -65,15 +65,15 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let arm = Shape::bar(pin, Vector::new(half, lengths.beside), half - 0.02);
     // The bore is open at both ends, so the cut is longer than the rod can reach.
     let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore);
-    let open = Shape::rectangle(middle, size, 0.0);
+    let open_bore = Shape::rectangle(middle, size, 0.0);
     let eye = [Shape::disc(pin, half), arm, case.clone()];
     let hole = builder.hole(pin);
     let (low, top) = (stack.sleeve[0], stack.lower_coupler[1]);
     let [begin, end] = stack.bore;
     let mut prisms = vec![
         Prism::new(eye.clone(), [hole.clone()], [low, begin]),
-        Prism::new(eye, [hole, open.clone()], [begin, top]),
-        Prism::new([case.clone()], [open], [top, end]),
+        Prism::new(eye, [hole, open_bore.clone()], [begin, top]),
+        Prism::new([case.clone()], [open_bore], [top, end]),
         Prism::solid([case], [end, stack.sleeve[1]]),
     ];
     prisms.retain(Prism::has_height);
@@ -88,8 +88,8 @@ fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD), 1.0);
     // The bend lies ahead of the pin, so that the sleeve may come near the pin.
     let bend = Shape::bar(pin, Vector::new(1.0, lengths.beside), half - 0.02);
-    let add = [Shape::disc(pin, half), bend, bar];
-    let prism = Prism::new(add, [builder.hole(pin)], builder.stack.rod);
+    let filled = [Shape::disc(pin, half), bend, bar];
+    let prism = Prism::new(filled, [builder.hole(pin)], builder.stack.rod);
     builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }
 
@@ -97,16 +97,34 @@ fn add_pins(builder: &mut Builder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
     let layout = builder.layout;
-    let arm = |servo: usize| Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
-    let [sleeve, rod] = ["sleeve", "rod"].map(|part| format!("{part} {side}"));
+    let arm_tip_of = |servo: usize| Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
+    let [sleeve, rod] = ["sleeve", "rod"].map(|prefix| format!("{prefix} {side}"));
     let name = format!("arm {}", names(rear).0);
     let mount = Mount::Link(rear);
-    builder.add_held_joint(&name, mount, arm(rear), stack.lower_coupler[1], &[&sleeve]);
+    builder.add_held_joint(
+        &name,
+        mount,
+        arm_tip_of(rear),
+        stack.lower_coupler[1],
+        &[&sleeve],
+    );
     let (name, _) = names(front);
-    let (at, mount) = (arm(front), Mount::Link(front));
-    let under = [stack.link[1], stack.rod[0]];
-    builder.add_spacer(format!("arm spacer {name}"), mount, at, under, &[&rod]);
-    builder.add_held_joint(&format!("arm {name}"), mount, at, stack.rod[1], &[&rod]);
+    let (position, mount) = (arm_tip_of(front), Mount::Link(front));
+    let spacer_z = [stack.link[1], stack.rod[0]];
+    builder.add_spacer(
+        format!("arm spacer {name}"),
+        mount,
+        position,
+        spacer_z,
+        &[&rod],
+    );
+    builder.add_held_joint(
+        &format!("arm {name}"),
+        mount,
+        position,
+        stack.rod[1],
+        &[&rod],
+    );
 }
 
 /// The shortest and the longest distance between a slider's pins, mm.

@@ -22,7 +22,7 @@ use crate::layers::shape::Shape;
 
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        let strut = body(builder, servo, builder.has_slotted_struts());
+        let strut = strut_body(builder, servo, builder.has_slotted_struts());
         builder.bodies.push(strut);
         if builder.has_slotted_struts() {
             add_spring(builder, servo);
@@ -33,52 +33,55 @@ pub fn add(builder: &mut Builder) {
 /// The struts of the other kind, which can replace the robot's own.
 pub fn alternatives(builder: &Builder) -> Vec<Body> {
     (0..4)
-        .map(|servo| body(builder, servo, !builder.has_slotted_struts()))
+        .map(|servo| strut_body(builder, servo, !builder.has_slotted_struts()))
         .collect()
 }
 
-fn body(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
+fn strut_body(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
     let (_, leg) = names(servo);
     Body {
         name: names::strut(is_slotted, leg),
         kind: Kind::Printed,
         mount: Mount::Strut(servo),
         prisms: match is_slotted {
-            true => with_slot(builder, servo),
+            true => slotted_prisms(builder, servo),
             false => vec![rigid_prism(builder, servo)],
         },
         allowed_contacts: vec![format!("crank {leg}")],
     }
 }
 
-fn at(x: f64) -> Vector {
+fn point_at(x: f64) -> Vector {
     Vector::new(x, 0.0)
 }
 
 /// Half the width of the channel in which spring, hooks and screw heads lie, mm.
-fn channel(builder: &Builder) -> f64 {
+fn channel_half_width(builder: &Builder) -> f64 {
     let parts = builder.parts;
     let spring = parts.spring.outer / 2.0 + 1.5 * parts.fit;
     (parts.screw.head / 2.0).max(spring) + parts.fit
 }
 
-fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
-    let (stack, channel) = (builder.stack, channel(builder));
+fn slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
+    let (stack, channel) = (builder.stack, channel_half_width(builder));
     let length = builder.layout.legs[servo].strut_length;
-    let whole = |half: f64| Shape::bar(at(0.0), at(length + SLOT), half);
-    let outer = vec![whole(channel + builder.parts.wall)];
-    let hole = builder.hole(at(0.0));
-    let slot = Shape::bar(at(length), at(length + SLOT), hole.radius);
+    let whole_bar_of = |half: f64| Shape::bar(point_at(0.0), point_at(length + SLOT), half);
+    let outer = vec![whole_bar_of(channel + builder.parts.wall)];
+    let hole = builder.hole(point_at(0.0));
+    let slot = Shape::bar(point_at(length), point_at(length + SLOT), hole.radius);
     vec![
         Prism::new(outer.clone(), [hole, slot], stack.strut),
-        Prism::new(outer, [whole(channel)], stack.recess),
+        Prism::new(outer, [whole_bar_of(channel)], stack.recess),
     ]
 }
 
 fn rigid_prism(builder: &Builder, servo: usize) -> Prism {
-    let [from, to] = [at(0.0), at(builder.layout.legs[servo].strut_length)];
-    let bar = Shape::bar(from, to, channel(builder) + builder.parts.wall);
-    let holes = [from, to].map(|at| builder.hole(at));
+    let [from, to] = [
+        point_at(0.0),
+        point_at(builder.layout.legs[servo].strut_length),
+    ];
+    let bar = Shape::bar(from, to, channel_half_width(builder) + builder.parts.wall);
+    let holes = [from, to].map(|position| builder.hole(position));
     Prism::new([bar], holes, builder.stack.rigid)
 }
 
@@ -93,7 +96,7 @@ fn add_spring(builder: &mut Builder, servo: usize) {
         builder.robot.mounted_spring_length() - 2.0 * hook,
         parts.spring.outer,
     );
-    let coil = Shape::rectangle(at(length / 2.0), size, 0.0);
+    let coil = Shape::rectangle(point_at(length / 2.0), size, 0.0);
     let coil = Prism::solid([coil], [stack.coil - radius, stack.coil + radius]);
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
     builder.add_body(spring, Kind::Spring, mount, [coil]);

@@ -18,74 +18,82 @@ use crate::part::Part;
 /// Number of columns.
 const COLUMNS: u32 = 5;
 /// Difference of the fit from column to column, mm.
-const STEP: f64 = 0.1;
+const FIT_STEP: f64 = 0.1;
 /// Thickness of the coupon, mm.
-const THICK: f64 = 4.0;
+const THICKNESS: f64 = 4.0;
 /// Thickness of the floor of the coupon's pockets, mm.
-const FLOOR: f64 = 1.8;
+const FLOOR_THICKNESS: f64 = 1.8;
 /// Length of a piece of a sleeve, mm.
-const SLEEVE: f64 = 10.0;
+const SLEEVE_LENGTH: f64 = 10.0;
 /// Length of the piece of rod to try in a sleeve, mm.
-const GAUGE: f64 = 30.0;
+const GAUGE_LENGTH: f64 = 30.0;
 
 /// The coupon, and a piece of rod to try in its sleeves.
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
-    let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;
+    let pitch = servo.width + 2.0 * FIT_STEP * f64::from(COLUMNS) + 4.0;
     // From the lower edge up: opening, pocket, hole with dots, sleeve.
-    let max = STEP * f64::from(COLUMNS);
-    let opening = 3.0 + LEAD[1] + max + servo.length / 2.0;
-    let pocket = opening + servo.length / 2.0 + max + 3.0 + horn.hub / 2.0;
-    let hole = pocket + horn.arm + 5.0;
-    let sleeve = hole + 6.0 + SLEEVE / 2.0;
-    let top = sleeve + SLEEVE / 2.0 + 2.0;
-    let wide = pitch * f64::from(COLUMNS);
-    let at = Vector::new;
-    let plate = Shape::rectangle(at(wide / 2.0, top / 2.0), at(wide, top), 2.0);
-    let (mut floor, mut below, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
+    let max_fit = FIT_STEP * f64::from(COLUMNS);
+    let opening_y = 3.0 + LEAD[1] + max_fit + servo.length / 2.0;
+    let pocket_y = opening_y + servo.length / 2.0 + max_fit + 3.0 + horn.hub / 2.0;
+    let hole_y = pocket_y + horn.arm + 5.0;
+    let sleeve_y = hole_y + 6.0 + SLEEVE_LENGTH / 2.0;
+    let top_y = sleeve_y + SLEEVE_LENGTH / 2.0 + 2.0;
+    let width = pitch * f64::from(COLUMNS);
+    let vector = Vector::new;
+    let plate = Shape::rectangle(vector(width / 2.0, top_y / 2.0), vector(width, top_y), 2.0);
+    let (mut floor_cuts, mut upper_cuts, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
     let mut roofs = Vec::new();
     for column in 0..COLUMNS {
-        let fit = STEP * f64::from(column);
+        let fit = FIT_STEP * f64::from(column);
         let x = pitch * (f64::from(column) + 0.5);
-        let case = at(servo.width + 2.0 * fit, servo.length + 2.0 * fit);
-        let through = [
-            Shape::disc(at(x - 3.0, hole), (parts.screw.diameter + fit) / 2.0),
-            Shape::rectangle(at(x, opening), case, 0.0),
-            notch(servo, at(x, opening), fit, -1.0),
+        let case = vector(servo.width + 2.0 * fit, servo.length + 2.0 * fit);
+        let through_holes = [
+            Shape::disc(vector(x - 3.0, hole_y), (parts.screw.diameter + fit) / 2.0),
+            Shape::rectangle(vector(x, opening_y), case, 0.0),
+            notch(servo, vector(x, opening_y), fit, -1.0),
         ];
-        floor.extend(through.iter().cloned());
-        below.extend(through);
-        floor.push(Shape::disc(at(x, pocket), horn.hub / 2.0 + fit));
+        floor_cuts.extend(through_holes.iter().cloned());
+        upper_cuts.extend(through_holes);
+        floor_cuts.push(Shape::disc(vector(x, pocket_y), horn.hub / 2.0 + fit));
         let upright = Placement {
-            origin: at(x, pocket),
-            x_axis: at(0.0, 1.0),
+            origin: vector(x, pocket_y),
+            x_axis: vector(0.0, 1.0),
         };
-        let arm = arm(horn, POCKET * fit).into_iter();
-        below.extend(arm.map(|shape| shape.placed(&upright)));
+        let arm_shapes = arm(horn, POCKET * fit).into_iter();
+        upper_cuts.extend(arm_shapes.map(|shape| shape.placed(&upright)));
         for dot in 0..=column {
-            let right = x + 1.6 + 1.6 * f64::from(dot % 3);
-            let place = at(right, hole + 1.6 - 3.2 * f64::from(dot / 3));
-            below.push(Shape::disc(place, 0.5));
+            let dot_x = x + 1.6 + 1.6 * f64::from(dot % 3);
+            let dot_position = vector(dot_x, hole_y + 1.6 - 3.2 * f64::from(dot / 3));
+            upper_cuts.push(Shape::disc(dot_position, 0.5));
         }
         let bore = ROD + 2.0 * fit;
         let outer = bore + 2.0 * parts.wall;
-        walls.push(Shape::rectangle(at(x, sleeve), at(outer, SLEEVE), 0.5));
-        bores.push(Shape::rectangle(at(x, sleeve), at(bore, 2.0 * SLEEVE), 0.0));
-        roofs.push(THICK + parts.thickness + 2.0 * fit);
+        walls.push(Shape::rectangle(
+            vector(x, sleeve_y),
+            vector(outer, SLEEVE_LENGTH),
+            0.5,
+        ));
+        bores.push(Shape::rectangle(
+            vector(x, sleeve_y),
+            vector(bore, 2.0 * SLEEVE_LENGTH),
+            0.0,
+        ));
+        roofs.push(THICKNESS + parts.thickness + 2.0 * fit);
     }
     let mut prisms = vec![
-        Prism::new([plate.clone()], floor, [0.0, FLOOR]),
-        Prism::new([plate], below, [FLOOR, THICK]),
+        Prism::new([plate.clone()], floor_cuts, [0.0, FLOOR_THICKNESS]),
+        Prism::new([plate], upper_cuts, [FLOOR_THICKNESS, THICKNESS]),
     ];
     // Each sleeve is two fits higher than the previous one, so its roof begins higher: each layer
     // has one bore less.
-    let mut low = THICK;
+    let mut low = THICKNESS;
     for (column, roof) in roofs.into_iter().enumerate() {
         prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));
         low = roof;
     }
     prisms.push(Prism::solid(walls, [low, low + 1.3]));
-    let gauge = Shape::rectangle(at(0.0, 0.0), at(GAUGE, ROD), 1.0);
+    let gauge = Shape::rectangle(vector(0.0, 0.0), vector(GAUGE_LENGTH, ROD), 1.0);
     let gauge = Prism::solid([gauge], [0.0, parts.thickness]);
     [
         Part::single("coupon", prisms),

@@ -12,9 +12,9 @@ use crate::layers::outline::Loop;
 pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
     let [low, high] = extent(sheet);
-    let (name, thick, half) = (&sheet.name, sheet.thickness, kerf / 2.0);
+    let (name, thickness, half_kerf) = (&sheet.name, sheet.thickness, kerf / 2.0);
     file.add(999, format!(
-        "{name}: mm, 1:1, {thick:.2} mm thick; lines are the part's edge, cut {half:.2} mm outside (kerf {kerf} mm)"
+        "{name}: mm, 1:1, {thickness:.2} mm thick; lines are the part's edge, cut {half_kerf:.2} mm outside (kerf {kerf} mm)"
     ));
     file.add_all(&[
         (0, "SECTION"),

@@ -30,26 +30,26 @@ impl Mesh {
     /// # Panics
     /// Never for a closed surface.
     pub fn of(solid: &Solid) -> Self {
-        let mut maker = MeshBuilder {
+        let mut builder = MeshBuilder {
             solid,
             mesh: Self::default(),
             corner_indices: BTreeMap::new(),
             lines: Vec::new(),
         };
         for edge in 0..solid.edges.len() {
-            let line = maker.divide_edge(edge);
-            maker.lines.push(line);
+            let line = builder.divide_edge(edge);
+            builder.lines.push(line);
         }
         for face in &solid.faces {
             match face.surface {
-                Surface::Top(_) => maker.add_flat(face, false),
-                Surface::Bottom(_) => maker.add_flat(face, true),
+                Surface::Top(_) => builder.add_flat(face, false),
+                Surface::Bottom(_) => builder.add_flat(face, true),
                 Surface::Wall(side, end) | Surface::Slope(side, end, ..) => {
-                    maker.add_wall(face, side, end);
+                    builder.add_wall(face, side, end);
                 }
             }
         }
-        maker.mesh
+        builder.mesh
     }
 
     /// The volume, mm^3.
@@ -69,8 +69,8 @@ impl Mesh {
                 *sides.entry(side).or_insert(0) += 1;
             }
         }
-        let mut all = sides.iter();
-        all.all(|(&(a, b), count)| *count == 1 && sides.get(&(b, a)) == Some(&1))
+        let mut side_counts = sides.iter();
+        side_counts.all(|(&(a, b), count)| *count == 1 && sides.get(&(b, a)) == Some(&1))
     }
 }
 
@@ -84,14 +84,14 @@ struct MeshBuilder<'a> {
 }
 
 impl MeshBuilder<'_> {
-    fn corner(&mut self, (point, level): (usize, usize)) -> usize {
-        let (at, z) = (self.solid.points[point], self.solid.heights[level]);
+    fn corner_index(&mut self, (point, level): (usize, usize)) -> usize {
+        let (position, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;
         *self
             .corner_indices
             .entry((point, level))
             .or_insert_with(|| {
-                corners.push([at.x, at.y, z]);
+                corners.push([position.x, position.y, z]);
                 corners.len() - 1
             })
     }
@@ -99,27 +99,27 @@ impl MeshBuilder<'_> {
     fn divide_edge(&mut self, edge: usize) -> Vec<usize> {
         let edge = self.solid.edges[edge];
         let [from, to] = edge.ends;
-        let (first, last) = (self.corner(from), self.corner(to));
+        let (first, last) = (self.corner_index(from), self.corner_index(to));
         let side = Segment {
             from: self.solid.points[from.0],
             bulge: edge.bulge,
         };
         let mut line = vec![first];
-        let count = |radius: f64, angle: f64| {
+        let chord_count_of = |radius: f64, angle: f64| {
             let chord = 2.0 * libm::acos((1.0 - MAX_CHORD_ERROR / radius).clamp(-1.0, 1.0));
             (angle / chord.min(MAX_CHORD_ANGLE)).ceil() as u32
         };
         let z = self.solid.heights[from.1];
-        for at in side.along(self.solid.points[to.0], count) {
+        for position in side.along(self.solid.points[to.0], chord_count_of) {
             line.push(self.mesh.corners.len());
-            self.mesh.corners.push([at.x, at.y, z]);
+            self.mesh.corners.push([position.x, position.y, z]);
         }
         line.push(last);
         line
     }
 
     /// The corners of a sequence of edges, without the last corner.
-    fn trail(&self, edges: &[(usize, bool)]) -> Vec<usize> {
+    fn trail_of(&self, edges: &[(usize, bool)]) -> Vec<usize> {
         let mut trail = Vec::new();
         for &(edge, forward) in edges {
             let line = &self.lines[edge];
@@ -135,62 +135,62 @@ impl MeshBuilder<'_> {
         let mut corners: Vec<usize> = Vec::new();
         let mut starts = Vec::new();
         for edges in &face.loops {
-            let trail = self.trail(edges);
+            let trail = self.trail_of(edges);
             if !corners.is_empty() {
                 starts.push(corners.len());
             }
             corners.extend(trail);
         }
-        let place = |&corner: &usize| {
+        let corner_position_of = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
             (corner, Vector::new(if is_below { -x } else { x }, y))
         };
-        let known: Vec<_> = corners.iter().map(place).collect();
-        let flat: Vec<f64> = known
+        let positions: Vec<_> = corners.iter().map(corner_position_of).collect();
+        let coordinates: Vec<f64> = positions
             .iter()
-            .flat_map(|(_, corner_index)| [corner_index.x, corner_index.y])
+            .flat_map(|(_, position)| [position.x, position.y])
             .collect();
-        let found = earcutr::earcut(&flat, &starts, 2).expect("a loop has points");
-        let triangle = |three: &[usize]| {
-            let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| known[three[i]]);
+        let indices = earcutr::earcut(&coordinates, &starts, 2).expect("a loop has points");
+        let triangle_of = |corner_indices: &[usize]| {
+            let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| positions[corner_indices[i]]);
             match (q - p).cross(r - p) < 0.0 {
                 true => [a, c, b],
                 false => [a, b, c],
             }
         };
-        let mut triangles: Vec<_> = found.chunks_exact(3).map(triangle).collect();
-        split_at_corners(&mut triangles, &known);
+        let mut triangles: Vec<_> = indices.chunks_exact(3).map(triangle_of).collect();
+        split_at_corners(&mut triangles, &positions);
         self.mesh.triangles.extend(triangles);
     }
 
     fn add_wall(&mut self, face: &Face, side: Segment, end: Vector) {
-        let level = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
+        let levels_of = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
         let edges = &face.loops[0];
-        let upright = |&(edge, _): &(usize, bool)| {
-            let [low, high] = level(edge);
+        let is_upright = |&(edge, _): &(usize, bool)| {
+            let [low, high] = levels_of(edge);
             low != high
         };
-        let first = edges.iter().position(upright).unwrap_or(0);
-        let mut low = self.trail(&edges[..first]);
-        low.push(self.first_or_last_corner(edges[first], false));
-        let mut high = self.trail(&edges[first + 1..edges.len() - 1]);
+        let first_upright = edges.iter().position(is_upright).unwrap_or(0);
+        let mut low = self.trail_of(&edges[..first_upright]);
+        low.push(self.first_or_last_corner(edges[first_upright], false));
+        let mut high = self.trail_of(&edges[first_upright + 1..edges.len() - 1]);
         high.push(self.first_or_last_corner(edges[edges.len() - 1], false));
         high.reverse();
-        let along = |&corner: &usize| {
+        let position_of = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
             position_along(side, end, Vector::new(x, y))
         };
-        let distances = |chain: &[usize]| {
-            let mut ways: Vec<f64> = chain.iter().map(along).collect();
-            ways[0] = 0.0;
-            ways
+        let distances_of = |chain: &[usize]| {
+            let mut distances: Vec<f64> = chain.iter().map(position_of).collect();
+            distances[0] = 0.0;
+            distances
         };
-        let (low_ways, high_ways) = (distances(&low), distances(&high));
+        let (low_distances, high_distances) = (distances_of(&low), distances_of(&high));
         let (mut i, mut j) = (0, 0);
         let mut triangles = Vec::new();
         while i + 1 < low.len() || j + 1 < high.len() {
-            let is_low_next =
-                j + 1 == high.len() || (i + 1 < low.len() && low_ways[i + 1] <= high_ways[j + 1]);
+            let is_low_next = j + 1 == high.len()
+                || (i + 1 < low.len() && low_distances[i + 1] <= high_distances[j + 1]);
             if is_low_next {
                 triangles.push([low[i], low[i + 1], high[j]]);
                 i += 1;
@@ -216,45 +216,49 @@ impl MeshBuilder<'_> {
 /// Divides triangles at the corners that lie on their sides. The triangulation leaves out points on a straight
 /// line, but walls and other triangles have corners at these points.
 fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
-    let mut done = 0;
-    while done < triangles.len() {
-        let triangle = triangles[done];
-        let found = (0..3).find_map(|i| {
+    let mut index = 0;
+    while index < triangles.len() {
+        let triangle = triangles[index];
+        let split = (0..3).find_map(|i| {
             let [a, b, c] = [0, 1, 2].map(|k| triangle[(i + k) % 3]);
-            let within = corners_between(corners, a, b);
-            (!within.is_empty()).then_some((a, within, b, c))
+            let inner_corners = corners_between(corners, a, b);
+            (!inner_corners.is_empty()).then_some((a, inner_corners, b, c))
         });
-        let Some((a, within, b, c)) = found else {
-            done += 1;
+        let Some((a, inner_corners, b, c)) = split else {
+            index += 1;
             continue;
         };
-        triangles.swap_remove(done);
-        if within.contains(&c) {
+        triangles.swap_remove(index);
+        if inner_corners.contains(&c) {
             // The triangle has no area, and its neighbours touch each other without it.
             continue;
         }
-        let chain = [&[a][..], &within, &[b]].concat();
+        let chain = [&[a][..], &inner_corners, &[b]].concat();
         triangles.extend(chain.windows(2).map(|pair| [pair[0], pair[1], c]));
     }
 }
 
 /// The corners on the line between two others, in order; the two are not included.
 fn corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
-    let find = |which: usize| corners.iter().find(|(corner, _)| *corner == which);
-    let (Some(&(_, from)), Some(&(_, to))) = (find(a), find(b)) else {
+    let position_of = |index: usize| corners.iter().find(|(corner, _)| *corner == index);
+    let (Some(&(_, from)), Some(&(_, to))) = (position_of(a), position_of(b)) else {
         return Vec::new();
     };
-    let (long, line) = ((to - from).length(), to - from);
-    let along = |&(corner, at): &(usize, Vector)| {
-        let along = (at - from).dot(line) / long;
-        let beside = line.cross(at - from) / long;
-        let within = beside.abs() < 1e-7 && along > 0.0 && along < long;
-        within.then_some((along, corner))
+    let (length, line) = ((to - from).length(), to - from);
+    let distance_and_corner_of = |&(corner, position): &(usize, Vector)| {
+        let distance = (position - from).dot(line) / length;
+        let offset = line.cross(position - from) / length;
+        let is_within = offset.abs() < 1e-7 && distance > 0.0 && distance < length;
+        is_within.then_some((distance, corner))
     };
-    let others = corners
+    let other_corners = corners
         .iter()
         .filter(|(corner, _)| *corner != a && *corner != b);
-    let mut found: Vec<(f64, usize)> = others.filter_map(along).collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, corner)| corner).collect()
+    let mut sorted_corners: Vec<(f64, usize)> =
+        other_corners.filter_map(distance_and_corner_of).collect();
+    sorted_corners.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sorted_corners
+        .into_iter()
+        .map(|(_, corner)| corner)
+        .collect()
 }

@@ -42,9 +42,9 @@ impl File {
 /// Returns [`BuildProblem::Surface`] for a part whose layers do not form a closed surface.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildProblem> {
     let solid = Solid::of(&part.prisms);
-    let printed = Solid::of(&part.printed_layers().0);
-    let mesh = match printed.is_closed() {
-        true => Mesh::of(&printed),
+    let printed_solid = Solid::of(&part.printed_layers().0);
+    let mesh = match printed_solid.is_closed() {
+        true => Mesh::of(&printed_solid),
         false => return Err(BuildProblem::Surface(part.name.clone())),
     };
     if !solid.is_closed() || !mesh.is_closed() {

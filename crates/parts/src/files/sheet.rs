@@ -39,18 +39,21 @@ impl Layer {
 /// The sheets of a part; empty if it cannot be cut.
 pub fn sheets(part: &Part) -> Vec<Sheet> {
     let outlines: Vec<_> = part.prisms.iter().map(Outline::of).collect();
-    let outer = |outline: &Outline| -> Vec<Loop> {
+    let outer_loops_of = |outline: &Outline| -> Vec<Loop> {
         let pieces = outline.pieces.iter();
         pieces.filter_map(|piece| piece.first().cloned()).collect()
     };
     let low = part.prisms.first().map_or(0.0, |prism| prism.z[0]);
     let high = part.prisms.last().map_or(0.0, |prism| prism.z[1]);
-    let first = outer(&outlines[0]);
-    if outlines.iter().all(|outline| outer(outline) == first) {
+    let first_loops = outer_loops_of(&outlines[0]);
+    if outlines
+        .iter()
+        .all(|outline| outer_loops_of(outline) == first_loops)
+    {
         return vec![Sheet {
             name: part.name.clone(),
             thickness: high - low,
-            layers: pockets(&part.prisms, &outlines, [low, high]),
+            layers: pocket_layers(&part.prisms, &outlines, [low, high]),
         }];
     }
     if part.name != "plate" && part.name != "deck" {
@@ -66,9 +69,9 @@ pub fn sheets(part: &Part) -> Vec<Sheet> {
 }
 
 /// The layers of a drawing for a part whose layers all have the same outer outline: outline, holes and pockets.
-fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
-    let outer = outlines[0].pieces.iter().filter_map(|piece| piece.first());
-    let mut layers = vec![Layer::cut(outer.cloned().collect())];
+fn pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
+    let outer_loops = outlines[0].pieces.iter().filter_map(|piece| piece.first());
+    let mut layers = vec![Layer::cut(outer_loops.cloned().collect())];
     for (index, outline) in outlines.iter().enumerate() {
         let holes = outline.pieces.iter().flat_map(|piece| piece.iter().skip(1));
         for hole in holes {
@@ -76,14 +79,17 @@ fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec
             if layers.iter().any(|layer| layer.loops.contains(hole)) {
                 continue;
             }
-            let open = |other: &Outline| is_open(other, hole);
-            let name = if outlines.iter().all(open) {
+            let is_open_in = |other: &Outline| is_open(other, hole);
+            let name = if outlines.iter().all(is_open_in) {
                 "CUT".to_owned()
-            } else if outlines[index..].iter().all(open) {
+            } else if outlines[index..].iter().all(is_open_in) {
                 format!("POCKET_{:.2}_TOP", high - prisms[index].z[0])
             } else {
-                let from_below = outlines.iter().take_while(|other| open(other)).count();
-                let depth = prisms[from_below.max(index + 1) - 1].z[1] - low;
+                let open_layer_count = outlines
+                    .iter()
+                    .take_while(|other| is_open_in(other))
+                    .count();
+                let depth = prisms[open_layer_count.max(index + 1) - 1].z[1] - low;
                 format!("POCKET_{depth:.2}_BOTTOM")
             };
             match layers.iter_mut().find(|layer| layer.name == name) {
@@ -104,10 +110,10 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
     let middle = sum * (1.0 / hole.sides.len() as f64);
     // The probed points lie slightly within the line, so that a hole of the same size counts as open.
-    let within = |point: Vector| middle + (point - middle) * 0.999;
+    let shrink = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.sides_with_end_points();
     let mut probes = ends.flat_map(|(side, to)| [side.from, side.middle(to)]);
-    probes.all(|point| !outline.contains(within(point)))
+    probes.all(|point| !outline.contains(shrink(point)))
 }
 
 /// The smallest and the largest x and y of a sheet, with the arcs divided finely, mm.

@@ -74,28 +74,28 @@ struct Piece {
 impl Solid {
     /// The surface of a stack of layers, from the lowest to the highest.
     pub fn of(prisms: &[Prism]) -> Self {
-        let cut_at = |share| {
-            let cut = |prism: &Prism| Outline::of(&prism.cross_section(share));
-            prisms.iter().map(cut).collect::<Vec<_>>()
+        let outlines_at = |share| {
+            let outline_of = |prism: &Prism| Outline::of(&prism.cross_section(share));
+            prisms.iter().map(outline_of).collect::<Vec<_>>()
         };
-        let (bottoms, tops) = (cut_at(0.0), cut_at(1.0));
+        let (bottoms, tops) = (outlines_at(0.0), outlines_at(1.0));
         let mut builder = SolidBuilder::default();
         let top = prisms.last().map(|last| last.z[1]);
         let heights = prisms.iter().map(|prism| prism.z[0]).chain(top);
         builder.solid.heights = heights.collect();
-        let nothing = Outline::default();
-        let mut below: Vec<Vec<Piece>> = Vec::new();
+        let empty_outline = Outline::default();
+        let mut pieces_below: Vec<Vec<Piece>> = Vec::new();
         for level in 0..=prisms.len() {
-            let lower = level.checked_sub(1).map_or(&nothing, |k| &tops[k]);
-            let upper = bottoms.get(level).unwrap_or(&nothing);
+            let lower = level.checked_sub(1).map_or(&empty_outline, |k| &tops[k]);
+            let upper = bottoms.get(level).unwrap_or(&empty_outline);
             let lower_pieces = builder.split_outline(level, lower, upper);
             let upper_pieces = builder.split_outline(level, upper, lower);
             builder.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
             if let Some(layer) = level.checked_sub(1) {
                 let outlines = [&bottoms[layer], &tops[layer]];
-                builder.add_walls(level, outlines, &below, &lower_pieces);
+                builder.add_walls(level, outlines, &pieces_below, &lower_pieces);
             }
-            below = upper_pieces;
+            pieces_below = upper_pieces;
         }
         builder.solid.volume = prisms.iter().map(outline::volume).sum();
         builder.solid
@@ -116,8 +116,8 @@ type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
 #[derive(Default)]
 struct SolidBuilder {
-    /// Index of the edge by height, two points and the middle of the piece.
     solid: Solid,
+    /// Index of the edge by height, two points and the middle of the piece.
     edge_of: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
@@ -126,8 +126,9 @@ struct SolidBuilder {
 }
 
 fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
-    let near = |other: &Vector| (*other - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
-    points.iter().position(near).unwrap_or_else(|| {
+    let is_near =
+        |other: &Vector| (*other - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
+    points.iter().position(is_near).unwrap_or_else(|| {
         points.push(point);
         points.len() - 1
     })
@@ -141,7 +142,7 @@ impl SolidBuilder {
         outline: &Outline,
         other: &Outline,
     ) -> Vec<Vec<Piece>> {
-        let others: Vec<_> = other
+        let other_sides: Vec<_> = other
             .loops()
             .flat_map(Loop::sides_with_end_points)
             .collect();
@@ -153,33 +154,33 @@ impl SolidBuilder {
             .into_iter()
             .map(|(side, to)| {
                 let mut cuts = vec![side.from, to];
-                for (across, end) in &others {
-                    add_intersections(side, to, *across, *end, &mut cuts);
+                for (other_side, other_end) in &other_sides {
+                    add_intersections(side, to, *other_side, *other_end, &mut cuts);
                 }
                 let points = &mut self.solid.points;
                 let progress_and_index =
-                    |cut| (position_along(side, to, cut), find_or_add(points, cut));
-                let mut along: Vec<(f64, usize)> =
+                    |point| (position_along(side, to, point), find_or_add(points, point));
+                let mut positions: Vec<(f64, usize)> =
                     cuts.into_iter().map(progress_and_index).collect();
-                along[0].0 = 0.0;
-                along[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
-                along.sort_by(|a, b| a.0.total_cmp(&b.0));
-                along.dedup_by_key(|(_, point)| *point);
-                let is_whole = along.len() == 2;
-                let piece = |pair: &[(f64, usize)]| {
+                positions[0].0 = 0.0;
+                positions[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
+                positions.sort_by(|a, b| a.0.total_cmp(&b.0));
+                positions.dedup_by_key(|(_, point)| *point);
+                let is_whole = positions.len() == 2;
+                let piece_of = |pair: &[(f64, usize)]| {
                     let [(start, from), (end, to)] = [pair[0], pair[1]];
                     let bulge = match is_whole {
                         true => side.bulge,
                         false => bulge_of(end - start, side.bulge),
                     };
-                    self.piece(level, from, to, bulge)
+                    self.add_piece(level, from, to, bulge)
                 };
-                along.windows(2).map(piece).collect()
+                positions.windows(2).map(piece_of).collect()
             })
             .collect()
     }
 
-    fn piece(&mut self, level: usize, from: usize, to: usize, bulge: f64) -> Piece {
+    fn add_piece(&mut self, level: usize, from: usize, to: usize, bulge: f64) -> Piece {
         let points = &self.solid.points;
         let side = Segment {
             from: points[from],
@@ -214,10 +215,10 @@ impl SolidBuilder {
 
     /// The outline of `a` less `b`, as pieces with the material on their left.
     fn difference(&self, a: Cut, b: Cut) -> Vec<Piece> {
-        let find = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
+        let find_in_b = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
         let mut outline = Vec::new();
         for piece in a.1.iter().flatten() {
-            let is_kept = match find(piece.edge) {
+            let is_kept = match find_in_b(piece.edge) {
                 Some(same) => same.is_forward != piece.is_forward,
                 None => !b.0.contains(self.middles[piece.middle]),
             };
@@ -241,36 +242,39 @@ impl SolidBuilder {
 
     /// Adds faces with these pieces as their edges. Seen from below, each loop runs in the opposite direction.
     fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_below: bool) {
-        let mut outer: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
+        let mut outer_faces: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
-        while let Some(first) = pieces.pop() {
-            let mut trail = vec![first];
-            let mut point = first.to;
-            while point != first.from
-                && let Some(next) = pieces.iter().position(|piece| piece.from == point)
+        while let Some(first_piece) = pieces.pop() {
+            let mut trail = vec![first_piece];
+            let mut point = first_piece.to;
+            while point != first_piece.from
+                && let Some(next_piece) = pieces.iter().position(|piece| piece.from == point)
             {
-                let next = pieces.swap_remove(next);
-                point = next.to;
-                trail.push(next);
+                let next_piece = pieces.swap_remove(next_piece);
+                point = next_piece.to;
+                trail.push(next_piece);
             }
             let outline = self.loop_of(&trail);
             let area = outline.area();
             if area > 0.0 {
                 let pieces = vec![vec![outline]];
-                outer.push((area, Outline { pieces }, vec![trail]));
+                outer_faces.push((area, Outline { pieces }, vec![trail]));
             } else {
                 holes.push(trail);
             }
         }
-        outer.sort_by(|a, b| a.0.total_cmp(&b.0));
+        outer_faces.sort_by(|a, b| a.0.total_cmp(&b.0));
         for hole in holes {
-            let inside = self.middles[hole[0].middle];
-            if let Some(face) = outer.iter_mut().find(|face| face.1.contains(inside)) {
+            let inner_point = self.middles[hole[0].middle];
+            if let Some(face) = outer_faces
+                .iter_mut()
+                .find(|face| face.1.contains(inner_point))
+            {
                 face.2.push(hole);
             }
         }
-        for (_, _, loops) in outer {
-            let edges = |mut trail: Vec<Piece>| {
+        for (_, _, loops) in outer_faces {
+            let edges_of = |mut trail: Vec<Piece>| {
                 if is_below {
                     trail.reverse();
                 }
@@ -279,20 +283,20 @@ impl SolidBuilder {
                     .map(|piece| (piece.edge, piece.is_forward != is_below))
                     .collect()
             };
-            let loops = loops.into_iter().map(edges).collect();
+            let loops = loops.into_iter().map(edges_of).collect();
             self.solid.faces.push(Face { surface, loops });
         }
     }
 
     fn loop_of(&self, trail: &[Piece]) -> Loop {
-        let side = |piece: &Piece| {
+        let segment_of = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
             Segment {
                 from: self.solid.points[piece.from],
                 bulge: if piece.is_forward { bulge } else { -bulge },
             }
         };
-        let sides = trail.iter().map(side).collect();
+        let sides = trail.iter().map(segment_of).collect();
         Loop { sides }
     }
 
@@ -304,18 +308,21 @@ impl SolidBuilder {
         low: &[Vec<Piece>],
         high: &[Vec<Piece>],
     ) {
-        let sides = |outline: &Outline| {
+        let sides_of = |outline: &Outline| {
             let ends = outline.loops().flat_map(Loop::sides_with_end_points);
             ends.collect::<Vec<_>>()
         };
-        let sides = sides(bottom).into_iter().zip(sides(top));
-        for ((low, high), ((side, end), (above, above_end))) in low.iter().zip(high).zip(sides) {
-            let ends = |pieces: &[Piece]| Some((pieces.first()?.from, pieces.last()?.to));
-            let (Some((from, to)), Some((high_from, high_to))) = (ends(low), ends(high)) else {
+        let sides = sides_of(bottom).into_iter().zip(sides_of(top));
+        for ((low, high), ((side, end), (upper_side, upper_end))) in low.iter().zip(high).zip(sides)
+        {
+            let end_points_of = |pieces: &[Piece]| Some((pieces.first()?.from, pieces.last()?.to));
+            let (Some((from, to)), Some((high_from, high_to))) =
+                (end_points_of(low), end_points_of(high))
+            else {
                 continue;
             };
-            let uprights = low.iter().map(|piece| (piece.edge, piece.is_forward));
-            let mut edges: Vec<_> = uprights.collect();
+            let low_edges = low.iter().map(|piece| (piece.edge, piece.is_forward));
+            let mut edges: Vec<_> = low_edges.collect();
             edges.push((self.find_or_add_upright([to, high_to], level), true));
             edges.extend(
                 high.iter()
@@ -323,7 +330,7 @@ impl SolidBuilder {
                     .map(|piece| (piece.edge, !piece.is_forward)),
             );
             edges.push((self.find_or_add_upright([from, high_from], level), false));
-            let surface = match above.arc(above_end) {
+            let surface = match upper_side.arc(upper_end) {
                 Some((_, radius)) if from != high_from => {
                     Surface::Slope(side, end, level - 1, radius)
                 }
@@ -366,11 +373,11 @@ pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     }
 }
 
-/// The bulge of an arc of `angle`, rad, that turns in the direction of the bulge `like`; 0 if `like` is 0.
-fn bulge_of(angle: f64, like: f64) -> f64 {
-    match like == 0.0 {
+/// The bulge of an arc of `angle`, rad, that turns in the direction of `model_bulge`; 0 if `model_bulge` is 0.
+fn bulge_of(angle: f64, model_bulge: f64) -> f64 {
+    match model_bulge == 0.0 {
         true => 0.0,
-        false => libm::tan(angle / 4.0) * like.signum(),
+        false => libm::tan(angle / 4.0) * model_bulge.signum(),
     }
 }
 
@@ -380,14 +387,14 @@ fn add_intersections(
     a_end: Vector,
     b: Segment,
     b_end: Vector,
-    meetings: &mut Vec<Vector>,
+    intersections: &mut Vec<Vector>,
 ) {
-    let end = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
+    let vertex_at = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
     let points = match pline_seg_intr(
         a.vertex(),
-        end(a_end),
+        vertex_at(a_end),
         b.vertex(),
-        end(b_end),
+        vertex_at(b_end),
         SAME_POINT_MM,
     ) {
         PlineSegIntr::NoIntersect => [None, None],
@@ -399,7 +406,7 @@ fn add_intersections(
         | PlineSegIntr::OverlappingArcs { point1, point2 } => [Some(point1), Some(point2)],
     };
     let points = points.into_iter().flatten();
-    meetings.extend(points.map(|point| Vector::new(point.x, point.y)));
+    intersections.extend(points.map(|point| Vector::new(point.x, point.y)));
 }
 
 #[cfg(test)]
@@ -407,19 +414,19 @@ mod tests {
     use super::*;
     use crate::layers::shape::Shape;
 
-    fn at(x: f64, y: f64) -> Vector {
+    fn vector(x: f64, y: f64) -> Vector {
         Vector::new(x, y)
     }
 
-    fn prism(add: Vec<Shape>, cut: Vec<Shape>, z: [f64; 2]) -> Prism {
-        Prism::new(add, cut, z)
+    fn prism_of(filled: Vec<Shape>, cut: Vec<Shape>, z: [f64; 2]) -> Prism {
+        Prism::new(filled, cut, z)
     }
 
     #[test]
     fn a_plate_with_a_hole_has_eight_faces() {
-        let plate = prism(
-            vec![Shape::rectangle(at(0.0, 0.0), at(20.0, 10.0), 0.0)],
-            vec![Shape::disc(at(1.0, 1.0), 2.0)],
+        let plate = prism_of(
+            vec![Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 0.0)],
+            vec![Shape::disc(vector(1.0, 1.0), 2.0)],
             [0.0, 3.0],
         );
         let solid = Solid::of(&[plate]);
@@ -432,14 +439,14 @@ mod tests {
     #[test]
     fn layers_whose_outlines_run_together_share_their_edges() {
         // A sleeve: floor, two walls, roof.
-        let case = Shape::rectangle(at(0.0, 0.0), at(40.0, 10.0), 1.0);
-        let bore = Shape::rectangle(at(0.0, 0.0), at(60.0, 6.0), 0.0);
-        let eye = Shape::disc(at(-15.0, -6.0), 4.0);
+        let case = Shape::rectangle(vector(0.0, 0.0), vector(40.0, 10.0), 1.0);
+        let bore = Shape::rectangle(vector(0.0, 0.0), vector(60.0, 6.0), 0.0);
+        let eye = Shape::disc(vector(-15.0, -6.0), 4.0);
         let sleeve = [
-            prism(vec![case.clone(), eye.clone()], vec![], [0.0, 1.0]),
-            prism(vec![case.clone(), eye], vec![bore.clone()], [1.0, 3.0]),
-            prism(vec![case.clone()], vec![bore], [3.0, 5.0]),
-            prism(vec![case], vec![], [5.0, 6.0]),
+            prism_of(vec![case.clone(), eye.clone()], vec![], [0.0, 1.0]),
+            prism_of(vec![case.clone(), eye], vec![bore.clone()], [1.0, 3.0]),
+            prism_of(vec![case.clone()], vec![bore], [3.0, 5.0]),
+            prism_of(vec![case], vec![], [5.0, 6.0]),
         ];
         let solid = Solid::of(&sleeve);
         assert!(solid.is_closed());

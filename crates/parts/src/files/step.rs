@@ -43,7 +43,7 @@ fn format_real(number: f64) -> String {
     if text == "-0." { "0." } else { text }.to_owned()
 }
 
-fn list(ids: &[usize]) -> String {
+fn list_text(ids: &[usize]) -> String {
     let ids: Vec<_> = ids.iter().map(|id| format!("#{id}")).collect();
     format!("({})", ids.join(","))
 }
@@ -77,13 +77,13 @@ impl StepWriter {
         let mut edges = Vec::new();
         for edge in &solid.edges {
             let ends = edge.ends.map(|(point, level)| {
-                let (at, z) = (solid.points[point], solid.heights[level]);
-                [at.x, at.y, z]
+                let (position, z) = (solid.points[point], solid.heights[level]);
+                [position.x, position.y, z]
             });
             let [from, to] = [0, 1].map(|i| {
                 *corners.entry(edge.ends[i]).or_insert_with(|| {
-                    let at = self.add_triple("CARTESIAN_POINT", ends[i]);
-                    self.add(&format!("VERTEX_POINT('',#{at})"))
+                    let point_id = self.add_triple("CARTESIAN_POINT", ends[i]);
+                    self.add(&format!("VERTEX_POINT('',#{point_id})"))
                 })
             });
             let curve = self.add_curve(ends, edge.bulge);
@@ -94,20 +94,21 @@ impl StepWriter {
             .iter()
             .map(|face| self.add_face(solid, face, &edges));
         let faces: Vec<_> = faces.collect();
-        let shell = self.add(&format!("CLOSED_SHELL('',{})", list(&faces)));
+        let shell = self.add(&format!("CLOSED_SHELL('',{})", list_text(&faces)));
         self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell})"))
     }
 
     fn add_face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
-        let logical = |value: bool| if value { "T" } else { "F" };
+        let logical_text = |value: bool| if value { "T" } else { "F" };
         let mut bounds = Vec::new();
         for edge_loop in &face.loops {
-            let mut oriented = Vec::new();
-            for &(edge, forward) in edge_loop {
-                let (edge, orientation) = (edges[edge], logical(forward));
-                oriented.push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},.{orientation}.)")));
+            let mut oriented_edges = Vec::new();
+            for &(edge, is_forward) in edge_loop {
+                let (edge, orientation) = (edges[edge], logical_text(is_forward));
+                oriented_edges
+                    .push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},.{orientation}.)")));
             }
-            let edge_loop = self.add(&format!("EDGE_LOOP('',{})", list(&oriented)));
+            let edge_loop = self.add(&format!("EDGE_LOOP('',{})", list_text(&oriented_edges)));
             let kind = match bounds.is_empty() {
                 true => "FACE_OUTER_BOUND",
                 false => "FACE_BOUND",
@@ -115,7 +116,7 @@ impl StepWriter {
             bounds.push(self.add(&format!("{kind}('',#{edge_loop},.T.)")));
         }
         let (surface, sense) = self.add_surface(solid, face.surface);
-        let (bounds, sense) = (list(&bounds), logical(sense));
+        let (bounds, sense) = (list_text(&bounds), logical_text(sense));
         self.add(&format!("ADVANCED_FACE('',{bounds},#{surface},.{sense}.)"))
     }
 
@@ -125,14 +126,18 @@ impl StepWriter {
             bulge,
         };
         if let Some((centre, radius)) = side.arc(Vector::new(to[0], to[1])) {
-            let (at, up) = ([centre.x, centre.y, from[2]], [0.0, 0.0, bulge.signum()]);
-            let frame = self.add_frame(at, up, [1.0, 0.0, 0.0]);
+            let (origin, axis) = ([centre.x, centre.y, from[2]], [0.0, 0.0, bulge.signum()]);
+            let frame = self.add_frame(origin, axis, [1.0, 0.0, 0.0]);
             return self.add(&format!("CIRCLE('',#{frame},{})", format_real(radius)));
         }
         let direction = [0, 1, 2].map(|i| to[i] - from[i]);
-        let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let length = direction
+            .iter()
+            .map(|component| component * component)
+            .sum::<f64>()
+            .sqrt();
         let origin = self.add_triple("CARTESIAN_POINT", from);
-        let direction = self.add_triple("DIRECTION", direction.map(|part| part / length));
+        let direction = self.add_triple("DIRECTION", direction.map(|component| component / length));
         let vector = self.add(&format!("VECTOR('',#{direction},1.)"));
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
@@ -141,40 +146,45 @@ impl StepWriter {
     fn add_surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
-                let up = match surface {
+                let z_direction = match surface {
                     Surface::Top(_) => 1.0,
                     _ => -1.0,
                 };
-                let at = [0.0, 0.0, solid.heights[level]];
-                let frame = self.add_frame(at, [0.0, 0.0, up], [1.0, 0.0, 0.0]);
+                let origin = [0.0, 0.0, solid.heights[level]];
+                let frame = self.add_frame(origin, [0.0, 0.0, z_direction], [1.0, 0.0, 0.0]);
                 (self.add(&format!("PLANE('',#{frame})")), true)
             }
-            Surface::Slope(side, end, level, above) => {
+            Surface::Slope(side, end, level, upper_radius) => {
                 let (centre, radius) = side.arc(end).expect("a slope is round");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
                 // The angle of a cone in STEP is positive, so a cone that narrows upward gets a frame that points
                 // down.
-                let narrows = radius > above;
-                let up = if narrows { -1.0 } else { 1.0 };
-                let frame =
-                    self.add_frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
-                let angle = libm::atan((above - radius).abs() / (high - low));
+                let is_narrowing = radius > upper_radius;
+                let z_direction = if is_narrowing { -1.0 } else { 1.0 };
+                let frame = self.add_frame(
+                    [centre.x, centre.y, low],
+                    [0.0, 0.0, z_direction],
+                    [1.0, 0.0, 0.0],
+                );
+                let angle = libm::atan((upper_radius - radius).abs() / (high - low));
                 let (radius, angle) = (format_real(radius), format_real(angle));
                 let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");
                 (self.add(&cone), side.bulge > 0.0)
             }
             Surface::Wall(side, end) => match side.arc(end) {
                 Some((centre, radius)) => {
-                    let at = [centre.x, centre.y, 0.0];
-                    let frame = self.add_frame(at, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-                    let round = format!("CYLINDRICAL_SURFACE('',#{frame},{})", format_real(radius));
-                    (self.add(&round), side.bulge > 0.0)
+                    let origin = [centre.x, centre.y, 0.0];
+                    let frame = self.add_frame(origin, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+                    let cylinder =
+                        format!("CYLINDRICAL_SURFACE('',#{frame},{})", format_real(radius));
+                    (self.add(&cylinder), side.bulge > 0.0)
                 }
                 None => {
-                    let along = (end - side.from) * (1.0 / (end - side.from).length());
-                    let [at, out, along] = [side.from, along.rotated_right(), along]
-                        .map(|point| [point.x, point.y, 0.0]);
-                    let frame = self.add_frame(at, out, along);
+                    let direction = (end - side.from) * (1.0 / (end - side.from).length());
+                    let [origin, normal, direction] =
+                        [side.from, direction.rotated_right(), direction]
+                            .map(|point| [point.x, point.y, 0.0]);
+                    let frame = self.add_frame(origin, normal, direction);
                     (self.add(&format!("PLANE('',#{frame})")), true)
                 }
             },
@@ -183,27 +193,27 @@ impl StepWriter {
 
     /// Adds the product's entities, which readers require, and its units.
     fn add_product(&mut self, name: &str, solid: usize) {
-        let context = self.last_id + 1;
+        let first_id = self.last_id + 1;
         // `#+3` is the third entity of the list, `#NAME` the part's name.
         for entity in PRODUCT.lines() {
             let mut entity = entity.replace("#NAME", name);
             for number in (0..12).rev() {
-                let (local, id) = (
+                let (local_id, id) = (
                     format!("#+{}", number + 1),
-                    format!("#{}", context + number),
+                    format!("#{}", first_id + number),
                 );
-                entity = entity.replace(&local, &id);
+                entity = entity.replace(&local_id, &id);
             }
             self.add(&entity);
         }
-        let (shape, space) = (context + PRODUCT_SHAPE, self.last_id);
+        let (shape_id, context_id) = (first_id + PRODUCT_SHAPE, self.last_id);
         let frame = self.add_frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
         let parts = format!("(#{frame},#{solid})");
-        let body = self.add(&format!(
-            "ADVANCED_BREP_SHAPE_REPRESENTATION('',{parts},#{space})"
+        let body_id = self.add(&format!(
+            "ADVANCED_BREP_SHAPE_REPRESENTATION('',{parts},#{context_id})"
         ));
         self.add(&format!(
-            "SHAPE_DEFINITION_REPRESENTATION(#{shape},#{body})"
+            "SHAPE_DEFINITION_REPRESENTATION(#{shape_id},#{body_id})"
         ));
     }
 }

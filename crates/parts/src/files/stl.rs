@@ -12,12 +12,22 @@ pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
         let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
         let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
         let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
-        let length = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
-        let unit = normal.map(|part| if length > 0.0 { part / length } else { 0.0 });
-        for corner in [unit, a, b, c] {
-            for part in corner {
+        let length = normal
+            .iter()
+            .map(|component| component * component)
+            .sum::<f64>()
+            .sqrt();
+        let unit_normal = normal.map(|component| {
+            if length > 0.0 {
+                component / length
+            } else {
+                0.0
+            }
+        });
+        for corner in [unit_normal, a, b, c] {
+            for component in corner {
                 // Adding 0 turns -0 into 0, so that equal meshes give equal bytes.
-                bytes.extend((part as f32 + 0.0).to_le_bytes());
+                bytes.extend((component as f32 + 0.0).to_le_bytes());
             }
         }
         bytes.extend([0, 0]);

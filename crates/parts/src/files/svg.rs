@@ -16,23 +16,27 @@ const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
-    let page = |position: Vector| (position.x - low.x + MARGIN, high.y - position.y + MARGIN);
-    let (name, thick, half) = (&sheet.name, sheet.thickness, kerf / 2.0);
+    let page_point_of =
+        |position: Vector| (position.x - low.x + MARGIN, high.y - position.y + MARGIN);
+    let (name, thickness, half_kerf) = (&sheet.name, sheet.thickness, kerf / 2.0);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \
          viewBox=\"0 0 {width:.3} {height:.3}\">\n\
-         <desc>{name}: 1:1 in mm, {thick:.2} mm thick. Lines are the edge of the part; a cutter goes {half:.2} mm \
+         <desc>{name}: 1:1 in mm, {thickness:.2} mm thick. Lines are the edge of the part; a cutter goes {half_kerf:.2} mm \
          outside of them (kerf {kerf} mm).</desc>\n"
     );
     for (Layer { name, loops }, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
         let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
         let _ = writeln!(text, "<g id=\"{name}\" {style}>");
         for line in loops {
-            let _ = match line.circle().map(|(centre, radius)| (page(centre), radius)) {
+            let _ = match line
+                .circle()
+                .map(|(centre, radius)| (page_point_of(centre), radius))
+            {
                 Some(((x, y), r)) => {
                     writeln!(text, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
                 }
-                None => writeln!(text, "<path d=\"{}\"/>", path(line, page)),
+                None => writeln!(text, "<path d=\"{}\"/>", path_data(line, page_point_of)),
             };
         }
         text.push_str("</g>\n");
@@ -42,14 +46,14 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
 }
 
 /// A loop as the data of a path.
-fn path(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
+fn path_data(line: &Loop, page_point_of: impl Fn(Vector) -> (f64, f64)) -> String {
     let mut data = String::new();
     for (number, (side, to)) in line.sides_with_end_points().enumerate() {
-        let (x, y) = page(side.from);
+        let (x, y) = page_point_of(side.from);
         if number == 0 {
             let _ = write!(data, "M{x:.6} {y:.6}");
         }
-        let (x, y) = page(to);
+        let (x, y) = page_point_of(to);
         let _ = match side.arc(to) {
             // The page's y axis points down, so a left turn has the sweep flag 0.
             Some((_, radius)) => write!(

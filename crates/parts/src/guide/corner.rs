@@ -22,9 +22,9 @@ impl Assembly {
         let is_own = |body: &str| {
             let body = self.body(body);
             body.is_some_and(|body| {
-                let moves = !matches!(body.mount, Mount::Coupler(_));
-                let suffix = [name, leg].iter().any(|suffix| body.name.ends_with(suffix));
-                moves && suffix && body.kind.is_printed()
+                let is_no_coupler = !matches!(body.mount, Mount::Coupler(_));
+                let has_suffix = [name, leg].iter().any(|suffix| body.name.ends_with(suffix));
+                is_no_coupler && has_suffix && body.kind.is_printed()
             })
         };
         for mut part in self.parts() {

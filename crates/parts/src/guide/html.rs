@@ -24,40 +24,40 @@ pub fn html(markdown: &str) -> String {
          img{max-width:100%}td,th{padding:.1rem .7rem;border-bottom:1px solid #ddd;text-align:left}\
          pre{background:#f4f4f4;padding:.6rem}</style>\n",
     );
-    let (mut in_table, mut in_code) = (false, false);
+    let (mut is_in_table, mut is_in_code) = (false, false);
     for line in markdown.lines() {
         if line.starts_with("```") {
-            page.push_str(if in_code { "</pre>\n" } else { "<pre>" });
-            in_code = !in_code;
-        } else if in_code {
+            page.push_str(if is_in_code { "</pre>\n" } else { "<pre>" });
+            is_in_code = !is_in_code;
+        } else if is_in_code {
             let _ = writeln!(page, "{}", escape(line));
         } else if let Some(cells) = line.strip_prefix('|') {
             if cells.starts_with("---") {
                 continue;
             }
-            let cell = if in_table { "td" } else { "th" };
-            page.push_str(if in_table { "<tr>" } else { "<table>\n<tr>" });
-            in_table = true;
+            let cell = if is_in_table { "td" } else { "th" };
+            page.push_str(if is_in_table { "<tr>" } else { "<table>\n<tr>" });
+            is_in_table = true;
             for text in cells.trim_end_matches('|').split('|') {
                 let _ = write!(page, "<{cell}>{}</{cell}>", escape(text.trim()));
             }
             page.push_str("</tr>\n");
         } else {
-            if in_table {
+            if is_in_table {
                 page.push_str("</table>\n");
-                in_table = false;
+                is_in_table = false;
             }
             if let Some(title) = line.strip_prefix("## ") {
                 let _ = writeln!(page, "<h2>{}</h2>", escape(title));
             } else if let Some(title) = line.strip_prefix("# ") {
                 let _ = writeln!(page, "<h1>{}</h1>", escape(title));
-            } else if let Some((words, file)) = line
+            } else if let Some((alt_text, file)) = line
                 .strip_prefix("![")
                 .and_then(|rest| rest.strip_suffix(')'))
                 .and_then(|rest| rest.split_once("]("))
             {
-                let words = escape(words);
-                let _ = writeln!(page, "<p><img src=\"{file}\" alt=\"{words}\"></p>");
+                let alt_text = escape(alt_text);
+                let _ = writeln!(page, "<p><img src=\"{file}\" alt=\"{alt_text}\"></p>");
             } else if !line.is_empty() {
                 let _ = writeln!(page, "<p>{}</p>", escape(line));
             }
@@ -76,7 +76,7 @@ mod tests {
         let page = html(
             "# A\n\n| a | b |\n|---|---|\n| 1 | x < y |\n\n![p](q.svg)\nrun `z`\n```toml\nk = 1\n```\n",
         );
-        for part in [
+        for fragment in [
             "<h1>A</h1>",
             "<tr><th>a</th><th>b</th></tr>",
             "<td>x &lt; y</td>",
@@ -85,7 +85,7 @@ mod tests {
             "<p>run <code>z</code></p>",
             "<pre>k = 1\n</pre>",
         ] {
-            assert!(page.contains(part), "{part} in {page}");
+            assert!(page.contains(fragment), "{fragment} in {page}");
         }
     }
 }

@@ -11,7 +11,7 @@ const MARGIN: f64 = 12.0;
 /// Space for labels on each side of a picture, pixels.
 const LABEL_MARGIN: f64 = 165.0;
 /// Height of a line of a label, pixels.
-const LINE: f64 = 16.0;
+const LINE_HEIGHT: f64 = 16.0;
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
 /// A line through points on the page.
@@ -67,7 +67,7 @@ pub(super) struct Ink {
 impl Ink {
     /// Draws a polygon over everything drawn so far; loops within its outer loop are holes.
     pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], has_edge: bool) {
-        let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
+        let [r, g, b] = colour.map(|channel| channel.clamp(0.0, 255.0).round() as u8);
         self.shapes
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
     }
@@ -75,33 +75,33 @@ impl Ink {
     /// The picture as SVG, `width` pixels wide, with labels at their points on the page.
     pub(super) fn finish(self, width: f64, frame: &Frame, names: &[Name]) -> String {
         let (low, high) = (frame.low, frame.high);
-        let side = match names.iter().any(|(_, label)| label.is_beside) {
+        let side_margin = match names.iter().any(|(_, label)| label.is_beside) {
             true => LABEL_MARGIN,
             false => 0.0,
         };
-        let room = width - 2.0 * (MARGIN + side);
-        let scale = room / (high.0 - low.0);
+        let drawing_width = width - 2.0 * (MARGIN + side_margin);
+        let scale = drawing_width / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
-        let x0 = MARGIN + side;
+        let x0 = MARGIN + side_margin;
         // Each colour is named once, and points are given in whole tenths of a pixel from the
         // previous one. That makes the text four times shorter.
         let mut styles: Vec<(&str, bool)> = Vec::new();
         let mut paths = String::new();
-        let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
-        for (colour, loops, edge) in &self.shapes {
-            let style = (colour.as_str(), *edge);
+        let tenths_of = |x: f64, offset: f64| (10.0 * (x * scale + offset)).round() as i64;
+        for (colour, loops, has_edge) in &self.shapes {
+            let style = (colour.as_str(), *has_edge);
             let style_index = styles.iter().position(|other| *other == style);
             let class = style_index.unwrap_or(styles.len());
             if style_index.is_none() {
                 styles.push(style);
             }
             let mut data = String::new();
-            let mut at = (0, 0);
+            let mut position = (0, 0);
             for line in loops {
                 let mut start = None;
                 for (x, y) in line {
-                    let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
-                    let (x, y) = (to.0 - at.0, to.1 - at.1);
+                    let point = (tenths_of(x - low.0, x0), tenths_of(y - low.1, MARGIN));
+                    let (x, y) = (point.0 - position.0, point.1 - position.1);
                     // After the first point each pair is a relative line, and a minus sign separates numbers.
                     let _ = match (start, x < 0) {
                         (None, _) => write!(data, "m{x}"),
@@ -110,11 +110,11 @@ impl Ink {
                         (Some(_), false) => write!(data, " {x}"),
                     };
                     let _ = write!(data, "{}{y}", if y < 0 { "" } else { " " });
-                    start.get_or_insert(to);
-                    at = to;
+                    start.get_or_insert(point);
+                    position = point;
                 }
                 data.push('z');
-                at = start.unwrap_or(at);
+                position = start.unwrap_or(position);
             }
             let _ = writeln!(paths, "<path class=\"c{class}\" d=\"{data}\"/>");
         }
@@ -122,10 +122,10 @@ impl Ink {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              width=\"{width}\" height=\"{height}\">\n<style>\n"
         );
-        for (class, (colour, edge)) in styles.into_iter().enumerate() {
+        for (class, (colour, has_edge)) in styles.into_iter().enumerate() {
             // A wall's own colour as a hair line closes the seams between walls.
-            let (stroke, thick) = if edge { ("#333", 5) } else { (colour, 4) };
-            let style = format!("fill:{colour};stroke:{stroke};stroke-width:{thick}");
+            let (stroke, stroke_width) = if has_edge { ("#333", 5) } else { (colour, 4) };
+            let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
             let _ = writeln!(text, ".c{class}{{{style}}}");
         }
         let _ = write!(
@@ -134,23 +134,31 @@ impl Ink {
              <g transform=\"scale(.1)\" fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
         );
         text.push_str("</g>\n");
-        let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
-        let shown: Vec<_> = names.iter().filter(|(at, _)| frame.contains(*at)).collect();
-        for (at, Label { text: name, .. }) in shown.iter().filter(|(_, label)| !label.is_beside) {
-            let (x, y) = page(*at);
+        let page_point_of =
+            |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
+        let shown_names: Vec<_> = names
+            .iter()
+            .filter(|(point, _)| frame.contains(*point))
+            .collect();
+        for (point, Label { text: name, .. }) in
+            shown_names.iter().filter(|(_, label)| !label.is_beside)
+        {
+            let (x, y) = page_point_of(*point);
             let _ = writeln!(
                 text,
                 "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT} font-weight=\"bold\" \
                  stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{name}</text>"
             );
         }
-        for left in [true, false] {
+        for is_left in [true, false] {
             let middle = width / 2.0;
-            let on_this_side = shown.iter().filter(|(_, label)| label.is_beside);
-            let places = on_this_side.map(|(at, label)| (page(*at), *label));
-            let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
+            let beside_names = shown_names.iter().filter(|(_, label)| label.is_beside);
+            let placed_names = beside_names.map(|(point, label)| (page_point_of(*point), *label));
+            let mut column: Vec<_> = placed_names
+                .filter(|((x, _), _)| (*x < middle) == is_left)
+                .collect();
             column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
-            write_column(&mut text, &column, left, width, height);
+            write_column(&mut text, &column, is_left, width, height);
         }
         text.push_str("</svg>\n");
         text
@@ -160,29 +168,33 @@ impl Ink {
 /// Writes a column of labels on one side of the picture, each with a line to its point.
 fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, height: f64) {
     let count = column.len() as f64;
-    let mut min = LINE;
+    let mut min_y = LINE_HEIGHT;
     for (number, ((x, y), label)) in column.iter().enumerate() {
-        let max = height - (count - number as f64) * LINE + 8.0;
-        let point = (y + 4.0).min(max).max(min);
-        min = point + LINE;
+        let max_y = height - (count - number as f64) * LINE_HEIGHT + 8.0;
+        let text_y = (y + 4.0).min(max_y).max(min_y);
+        min_y = text_y + LINE_HEIGHT;
         let (edge, end, anchor) = match is_left {
             true => (8.0, LABEL_MARGIN - 4.0, "start"),
             false => (width - 8.0, width - LABEL_MARGIN + 4.0, "end"),
         };
         // The line begins about where the text ends.
-        let words = 6.4 * label.text.chars().count() as f64;
-        let from = if is_left { edge + words } else { edge - words };
-        let from = if is_left {
-            from.min(end)
+        let text_width = 6.4 * label.text.chars().count() as f64;
+        let line_start = if is_left {
+            edge + text_width
         } else {
-            from.max(end)
+            edge - text_width
+        };
+        let line_start = if is_left {
+            line_start.min(end)
+        } else {
+            line_start.max(end)
         };
         let _ = writeln!(
             text,
-            "<path d=\"M{from:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
+            "<path d=\"M{line_start:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
              <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
-             <text x=\"{edge}\" y=\"{point:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
-            point - 4.0,
+             <text x=\"{edge}\" y=\"{text_y:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+            text_y - 4.0,
             label.text
         );
     }

@@ -45,14 +45,14 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
         if let Some(name) = display_name(body, parts) {
-            let screw = !body.kind.is_printed();
+            let is_bought = !body.kind.is_printed();
             // Shorter names come first: M3 x 8 before M3 x 12.
-            *counts.entry((screw, name.len(), name)).or_default() += 1;
+            *counts.entry((is_bought, name.len(), name)).or_default() += 1;
         }
     }
     let counts = counts.into_iter();
-    let words = counts.map(|((_, _, name), count)| format!("{count} x {name}"));
-    words.collect()
+    let texts = counts.map(|((_, _, name), count)| format!("{count} x {name}"));
+    texts.collect()
 }
 
 /// Labels for the new bodies in a picture: each name once, at the body nearest to the front
@@ -60,20 +60,23 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
 pub fn names(
     assembly: &Assembly,
     parts: &[Part],
-    drawn: &[PictureBody],
+    picture_bodies: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
     let mut labels_by_name: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
-    for PictureBody { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.is_grey) {
+    for PictureBody { body, lift, .. } in picture_bodies
+        .iter()
+        .filter(|picture_body| !picture_body.is_grey)
+    {
         let (Some(name), Some(prism)) = (display_name(body, parts), body.prisms.last()) else {
             continue;
         };
-        let at = assembly
+        let position = assembly
             .place(body.mount, pose)
             .map(prism.filled_shapes[0].middle());
-        let distance = (at - Vector::new(-60.0, 80.0)).length();
+        let distance = (position - Vector::new(-60.0, 80.0)).length();
         let label = Label {
-            at,
+            at: position,
             z: (body.z()[0] + body.z()[1]) / 2.0 + lift,
             text: name.clone(),
             is_beside: true,
@@ -97,20 +100,20 @@ pub fn names(
 pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// Height of the links, mm.
     const LINK_HEIGHT: f64 = 18.0;
-    let label = |position: Vector, text: &str| Label {
+    let label_at = |position: Vector, text: &str| Label {
         at: position,
         z: LINK_HEIGHT,
         text: text.to_owned(),
         is_beside: false,
     };
     // The label is on the link and not at the shaft, which the board may hide.
-    let on_link = |servo: usize| {
-        let out = Vector::new(0.7 * assembly.layout().crank[servo], 0.0);
-        assembly.place(Mount::Link(servo), pose).map(out)
+    let point_on_link = |servo: usize| {
+        let link_point = Vector::new(0.7 * assembly.layout().crank[servo], 0.0);
+        assembly.place(Mount::Link(servo), pose).map(link_point)
     };
-    let servos = (0..4).map(|servo| label(on_link(servo), NAMES[servo]));
-    let end = assembly.layout().plate.half.y + 16.0;
-    let ends = [(end, "HEAD"), (-end, "TAIL")];
-    let ends = ends.map(|(y, name)| label(Vector::new(0.0, y), name));
+    let servos = (0..4).map(|servo| label_at(point_on_link(servo), NAMES[servo]));
+    let end_y = assembly.layout().plate.half.y + 16.0;
+    let ends = [(end_y, "HEAD"), (-end_y, "TAIL")];
+    let ends = ends.map(|(y, name)| label_at(Vector::new(0.0, y), name));
     servos.chain(ends).collect()
 }

@@ -46,13 +46,13 @@ roof: that is a bridge of 6.4 mm, which needs none.";
 /// Title of the step in which pads are put on their screws.
 const BENCH_TITLE: &str = "Legs, on the bench";
 /// Text added to the step of the pads for pads with a strip.
-const STRIP: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
+const STRIP_TEXT: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
 Take all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
 /// Title of the step after which each pad keeps its place.
-const LEVEL: &str = "Level the feet";
+const LEVEL_TITLE: &str = "Level the feet";
 /// Text added to the step that levels the feet, for pads with a grain.
-const GRAIN: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
+const GRAIN_TEXT: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
 from head to tail. docs/gaits.md says more about pads with a grain.";
 /// Text added to the step that levels the feet, for pads with a strip.
 const NOTCH_TEXT: &str =
@@ -65,46 +65,50 @@ const NOTCH_TEXT: &str =
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, BuildProblem> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;
-    for (title, words, is_meant) in [
-        (BENCH_TITLE, STRIP, has_strip),
+    for (title, text, is_meant) in [
+        (BENCH_TITLE, STRIP_TEXT, has_strip),
         (
-            LEVEL,
-            GRAIN,
+            LEVEL_TITLE,
+            GRAIN_TEXT,
             has_strip || assembly.robot().ground().ratio > 1.0,
         ),
-        (LEVEL, NOTCH_TEXT, has_strip),
+        (LEVEL_TITLE, NOTCH_TEXT, has_strip),
     ] {
         let step = steps.iter_mut().find(|step| step.title == title);
         let step = step.expect("a step with this title");
         if is_meant {
-            step.words += words;
+            step.words += text;
         }
     }
     let access_poses = assembly.access_poses(&steps)?;
     let parts = assembly.parts();
     let mut files = Vec::new();
     let bodies = assembly.bodies().iter();
-    let all: Vec<_> = bodies
+    let picture_bodies: Vec<_> = bodies
         .map(|body| PictureBody::at_place(body, false))
         .collect();
     let names = legend::places(assembly, pose);
-    let robot = picture(assembly, &all, pose, &View::default(), &names);
+    let robot = picture(assembly, &picture_bodies, pose, &View::default(), &names);
     files.push(File::text("guide/robot.svg".to_owned(), robot));
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
         drilling_text(&parts)
     );
     let _ = writeln!(text, "## What is needed\n\n{bill}");
-    let mut before: Vec<&Body> = Vec::new();
+    let mut added_bodies: Vec<&Body> = Vec::new();
     for (number, step) in (1..).zip(&steps) {
-        let is_already_on = |body: &Body| before.iter().any(|old| old.name == body.name);
-        let adds = |body: &&Body| step.adds(body) && !is_already_on(body);
-        let new: Vec<&Body> = assembly.bodies().iter().filter(adds).collect();
+        let is_already_on = |body: &Body| added_bodies.iter().any(|old| old.name == body.name);
+        let is_new = |body: &&Body| step.adds(body) && !is_already_on(body);
+        let new_bodies: Vec<&Body> = assembly.bodies().iter().filter(is_new).collect();
         let _ = writeln!(text, "## {number}. {}\n\n{}\n", step.title, step.words);
-        if new.is_empty() {
+        if new_bodies.is_empty() {
             continue;
         }
-        let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
+        let _ = writeln!(
+            text,
+            "Take {}.\n",
+            legend::counted(&new_bodies, &parts).join("; ")
+        );
         let poses_here = access_poses
             .iter()
             .filter(|access_pose| access_pose.step == number);
@@ -112,7 +116,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             .stages
             .iter()
             .any(|stage| stage.turning_place == TurningPlace::Bench);
-        let turns = poses_here.map(|aside| turns_in_words(assembly, aside, at_bench));
+        let turns = poses_here.map(|access_pose| turns_in_words(assembly, access_pose, at_bench));
         let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
             let _ = writeln!(
@@ -126,16 +130,16 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             parts: &parts,
             pose,
             step,
-            before: &before,
-            new: &new,
+            before: &added_bodies,
+            new: &new_bodies,
         };
-        for (kind, words, drawing) in scene.pictures() {
-            let name = format!("step-{number}-{kind}.svg");
-            let _ = writeln!(text, "![{}, {words}]({name})", step.title);
+        for (view_name, caption, drawing) in scene.pictures() {
+            let name = format!("step-{number}-{view_name}.svg");
+            let _ = writeln!(text, "![{}, {caption}]({name})", step.title);
             files.push(File::text(format!("guide/{name}"), drawing));
         }
         text.push('\n');
-        before.extend(new);
+        added_bodies.extend(new_bodies);
     }
     files.push(File::text("guide/guide.html".to_owned(), html(&text)));
     files.push(File::text("guide/guide.md".to_owned(), text));
@@ -144,12 +148,12 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
 
 /// The guide's text about holes that have to be drilled.
 fn drilling_text(parts: &[Part]) -> String {
-    let holes = |part: &Part| match part.printed_layers().1 {
+    let hole_text_of = |part: &Part| match part.printed_layers().1 {
         0 => None,
         1 => Some(format!("a hole in each {}", part.name)),
         count => Some(format!("{count} holes in each {}", part.name)),
     };
-    let list: Vec<_> = parts.iter().filter_map(holes).collect();
+    let list: Vec<_> = parts.iter().filter_map(hole_text_of).collect();
     format!(
         "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER_MM} mm; open it with a drill of 3 mm, \
          or a screw: {}. Parts that are alike but for left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
@@ -174,7 +178,7 @@ impl Scene<'_> {
             width: PICTURE_WIDTH,
             ..View::default()
         };
-        let below = |azimuth: f64, view: View| View {
+        let view_from_below = |azimuth: f64, view: View| View {
             from_below: true,
             azimuth,
             ..view
@@ -186,40 +190,73 @@ impl Scene<'_> {
             ..view
         };
         type BodyFilter = fn(&Body) -> bool;
-        let (all, at_corner): (BodyFilter, BodyFilter) = (|_| true, is_at_corner);
+        let (all_bodies, corner_bodies): (BodyFilter, BodyFilter) = (|_| true, is_at_corner);
         let extra = match self.step.extra_view {
             ExtraView::None => None,
-            ExtraView::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
-            ExtraView::CornerBelow => {
-                let words = "the front left corner from below";
-                Some(("below", words, below(30.0, corner), 0.5, at_corner))
+            ExtraView::Corner => {
+                Some(("near", "the front left corner", corner, 0.6, corner_bodies))
             }
-            ExtraView::Below => Some(("below", "from below", below(300.0, view), 0.0, all)),
+            ExtraView::CornerBelow => {
+                let caption = "the front left corner from below";
+                Some((
+                    "below",
+                    caption,
+                    view_from_below(30.0, corner),
+                    0.5,
+                    corner_bodies,
+                ))
+            }
+            ExtraView::Below => Some((
+                "below",
+                "from below",
+                view_from_below(300.0, view),
+                0.0,
+                all_bodies,
+            )),
         };
-        let mut pictures = vec![("exploded", "apart", self.picture(&view, LIFT, true, all))];
-        pictures.extend(extra.map(|(kind, words, view, lift, which)| {
-            (kind, words, self.picture(&view, lift * LIFT, true, which))
+        let mut pictures = vec![(
+            "exploded",
+            "apart",
+            self.picture(&view, LIFT, true, all_bodies),
+        )];
+        pictures.extend(extra.map(|(view_name, caption, view, lift, filter)| {
+            (
+                view_name,
+                caption,
+                self.picture(&view, lift * LIFT, true, filter),
+            )
         }));
-        pictures.push(("done", "done", self.picture(&view, 0.0, false, all)));
+        pictures.push(("done", "done", self.picture(&view, 0.0, false, all_bodies)));
         pictures
     }
 
-    fn picture(&self, view: &View, lift: f64, has_names: bool, which: fn(&Body) -> bool) -> String {
-        let old = self
+    fn picture(
+        &self,
+        view: &View,
+        lift: f64,
+        has_names: bool,
+        is_highlighted: fn(&Body) -> bool,
+    ) -> String {
+        let old_bodies = self
             .before
             .iter()
             .map(|body| PictureBody::at_place(body, true));
-        let new = self.new.iter().map(|&body| PictureBody {
+        let new_bodies = self.new.iter().map(|&body| PictureBody {
             body,
             lift: lift * (self.step.lift)(body),
-            is_grey: !which(body),
+            is_grey: !is_highlighted(body),
         });
-        let drawn: Vec<_> = old.chain(new).collect();
+        let drawn_bodies: Vec<_> = old_bodies.chain(new_bodies).collect();
         let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
         if has_names {
-            labels.extend(legend::names(self.assembly, self.parts, &drawn, self.pose));
+            labels.extend(legend::names(
+                self.assembly,
+                self.parts,
+                &drawn_bodies,
+                self.pose,
+            ));
         }
-        picture(self.assembly, &drawn, self.pose, view, &labels)
+        picture(self.assembly, &drawn_bodies, self.pose, view, &labels)
     }
 }
 
@@ -235,24 +272,30 @@ fn is_at_corner(body: &Body) -> bool {
 }
 
 /// The guide's text about links to turn out of the way.
-fn turns_in_words(assembly: &Assembly, aside: &AccessPose, is_at_bench: bool) -> String {
+fn turns_in_words(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
-    let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
-    let turns = turns.filter(|(_, by)| by.abs() > 0.5).map(|(servo, by)| {
-        let direction = if by > 0.0 {
-            "counter-clockwise"
-        } else {
-            "clockwise"
-        };
-        let (name, leg) = names(servo);
-        let subject = match is_at_bench {
-            true => format!("crank and follower {leg}"),
-            false => format!("link {name} with its leg"),
-        };
-        format!("{subject} by {:.0} deg {direction}", by.abs())
-    });
+    let turns = (0..4).map(|servo| (servo, access_pose.pose[servo] - neutral[servo]));
+    let turns = turns
+        .filter(|(_, angle_deg)| angle_deg.abs() > 0.5)
+        .map(|(servo, angle_deg)| {
+            let direction = if angle_deg > 0.0 {
+                "counter-clockwise"
+            } else {
+                "clockwise"
+            };
+            let (name, leg) = names(servo);
+            let subject = match is_at_bench {
+                true => format!("crank and follower {leg}"),
+                false => format!("link {name} with its leg"),
+            };
+            format!("{subject} by {:.0} deg {direction}", angle_deg.abs())
+        });
     let turns: Vec<_> = turns.collect();
-    format!("{} for {}", turns.join(" and "), aside.screws.join(", "))
+    format!(
+        "{} for {}",
+        turns.join(" and "),
+        access_pose.screws.join(", ")
+    )
 }
 
 #[cfg(test)]
@@ -263,10 +306,10 @@ mod tests {
     fn every_body_is_put_on_in_exactly_one_step() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
         let text = std::fs::read_to_string(path).expect("paper");
-        for (word, slotted) in [("strut", true), ("rigid", false)] {
-            let text = format!("{text}\n[leg.drive]\nkind = \"{word}\"");
+        for (kind, is_slotted) in [("strut", true), ("rigid", false)] {
+            let text = format!("{text}\n[leg.drive]\nkind = \"{kind}\"");
             let robot = lizard_robot::Robot::parse(&text).expect("paper");
-            let steps = steps(slotted);
+            let steps = steps(is_slotted);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();
                 assert_eq!(count, 1, "{}", body.name);

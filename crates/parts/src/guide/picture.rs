@@ -65,12 +65,12 @@ impl Default for View {
 /// Distance of the eye from the robot's middle, mm.
 const EYE_DISTANCE: f64 = 900.0;
 /// Largest angle of an arc that a chord spans, rad.
-const CHORD: f64 = 0.55;
+const MAX_CHORD_ANGLE: f64 = 0.55;
 /// Least height of a slice, mm.
-const SLICE: f64 = 0.45;
+const MIN_SLICE_HEIGHT: f64 = 0.45;
 /// Radius below which a hole is not drawn, since a screw fills it, mm; in a lifted body that is not grey, all holes
 /// are drawn.
-const HOLE: f64 = 1.75;
+const HIDDEN_HOLE_RADIUS: f64 = 1.75;
 
 /// Colours of servos A1 to A4 and of the bodies that they move: three of Okabe and Ito's, and a purple of Tol's.
 const SERVO_COLOURS: [[f64; 3]; 4] = [
@@ -102,11 +102,11 @@ impl Eye {
 
     /// Projects a point in space onto the page, mm before the page is scaled; y points down.
     fn project(&self, point: Vector, z: f64) -> (f64, f64) {
-        let (x, along) = (point.dot(self.right), point.dot(self.away));
-        let near = along * self.cos + z * self.sin;
-        let up = z * self.cos - along * self.sin;
-        let scale = EYE_DISTANCE / (EYE_DISTANCE - near);
-        (x * scale, -up * scale)
+        let (x, floor_depth) = (point.dot(self.right), point.dot(self.away));
+        let eye_depth = floor_depth * self.cos + z * self.sin;
+        let height = z * self.cos - floor_depth * self.sin;
+        let scale = EYE_DISTANCE / (EYE_DISTANCE - eye_depth);
+        (x * scale, -height * scale)
     }
 
     /// The position of the eye in plan view.
@@ -131,106 +131,113 @@ struct Layer {
 /// Draws bodies at a pose, with labels, as SVG.
 pub fn picture(
     assembly: &Assembly,
-    drawn: &[PictureBody],
+    picture_bodies: &[PictureBody],
     pose: &Solution,
     view: &View,
     labels: &[Label],
 ) -> String {
     let eye = Eye::new(view);
-    let mut layers = layers(assembly, drawn, pose);
+    let mut layers = layers_of(assembly, picture_bodies, pose);
     if view.from_below {
         for layer in &mut layers {
             layer.turn_over();
         }
     }
-    let heights = slices(&mut layers);
+    let heights = merge_heights(&mut layers);
     let mut ink = Ink::default();
     for slice in heights.windows(2) {
         let [low, high] = [slice[0], slice[1]];
-        let spans = |layer: &&Layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6;
-        let present = || layers.iter().filter(spans);
+        let covers_slice = |layer: &&Layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6;
+        let slice_layers = || layers.iter().filter(covers_slice);
         let mut walls: Vec<Wall> = Vec::new();
-        for layer in present() {
+        for layer in slice_layers() {
             for line in &layer.loops {
-                layer.walls(line, &eye, [low, high], &mut walls);
+                layer.add_walls(line, &eye, [low, high], &mut walls);
             }
         }
         walls.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, points, colour) in walls {
             ink.polygon(&[points], colour, false);
         }
-        for layer in present() {
+        for layer in slice_layers() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
-                let page = |line: &Vec<Vector>| {
+                let page_points_of = |line: &Vec<Vector>| {
                     line.iter().map(|point| eye.project(*point, high)).collect()
                 };
-                let loops: Vec<Trail> = layer.loops.iter().map(page).collect();
+                let loops: Vec<Trail> = layer.loops.iter().map(page_points_of).collect();
                 ink.polygon(&loops, layer.colour, true);
             }
         }
     }
     // The frame is around all bodies, or in a close view around those that are not grey.
-    let framed = layers
+    let framed_layers = layers
         .iter()
         .filter(|layer| !view.is_close_up || !layer.grey);
-    let points = framed.flat_map(|layer| {
-        let all = layer.loops.iter().flatten();
-        all.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
+    let points = framed_layers.flat_map(|layer| {
+        let line_points = layer.loops.iter().flatten();
+        line_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
     });
-    let place = |label: &Label| match view.from_below {
-        true => eye.project(turned_over(label.at), -label.z),
+    let page_point_of = |label: &Label| match view.from_below {
+        true => eye.project(turn_over_point(label.at), -label.z),
         false => eye.project(label.at, label.z),
     };
-    let names: Vec<_> = labels.iter().map(|label| (place(label), label)).collect();
+    let names: Vec<_> = labels
+        .iter()
+        .map(|label| (page_point_of(label), label))
+        .collect();
     ink.finish(view.width, &Frame::around(points, view.is_close_up), &names)
 }
 
 /// A point of the robot after it is turned over about its long axis.
-fn turned_over(point: Vector) -> Vector {
+fn turn_over_point(point: Vector) -> Vector {
     Vector::new(-point.x, point.y)
 }
 
-/// The heights at which layers begin or end. Heights nearer to each other than `SLICE`
+/// The heights at which layers begin or end. Heights nearer to each other than `MIN_SLICE_HEIGHT`
 /// become one, and the layers are moved to it.
-fn slices(layers: &mut [Layer]) -> Vec<f64> {
+fn merge_heights(layers: &mut [Layer]) -> Vec<f64> {
     let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
     heights.sort_by(f64::total_cmp);
-    heights.dedup_by(|b, a| *b - *a < SLICE);
+    heights.dedup_by(|b, a| *b - *a < MIN_SLICE_HEIGHT);
     for layer in layers {
         for z in &mut layer.z {
-            let below = heights.partition_point(|height| *height <= *z + 1e-9);
-            *z = heights[below.saturating_sub(1)];
+            let index = heights.partition_point(|height| *height <= *z + 1e-9);
+            *z = heights[index.saturating_sub(1)];
         }
     }
     heights
 }
 
-fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<Layer> {
+fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solution) -> Vec<Layer> {
     let mut layers = Vec::new();
     for PictureBody {
         body,
         lift,
-        is_grey: grey,
-    } in drawn
+        is_grey,
+    } in picture_bodies
     {
-        let place = assembly.place(body.mount, pose);
-        let colour = colour(body, *grey);
+        let placement = assembly.place(body.mount, pose);
+        let colour = colour_of(body, *is_grey);
         for prism in &body.prisms {
             let outline = Outline::of(prism);
-            let filled = |line: &&Loop| {
-                let hole = line.circle().filter(|_| *grey || *lift == 0.0);
-                !hole.is_some_and(|(_, radius)| radius < HOLE && line.area() < 0.0)
+            let is_drawn = |line: &&Loop| {
+                let circle = line.circle().filter(|_| *is_grey || *lift == 0.0);
+                !circle.is_some_and(|(_, radius)| radius < HIDDEN_HOLE_RADIUS && line.area() < 0.0)
             };
-            let placed = |line: &Loop| {
-                points(line)
+            let placed_points_of = |line: &Loop| {
+                points_of(line)
                     .into_iter()
-                    .map(|point| place.map(point))
+                    .map(|point| placement.map(point))
                     .collect()
             };
             layers.push(Layer {
                 colour,
-                grey: *grey,
-                loops: outline.loops().filter(filled).map(placed).collect(),
+                grey: *is_grey,
+                loops: outline
+                    .loops()
+                    .filter(is_drawn)
+                    .map(placed_points_of)
+                    .collect(),
                 z: prism.z.map(|z| z + lift),
             });
         }
@@ -239,11 +246,11 @@ fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<La
 }
 
 /// The points of a loop, with arcs divided into chords.
-fn points(line: &Loop) -> Vec<Vector> {
+fn points_of(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, to) in line.sides_with_end_points() {
         points.push(side.from);
-        points.extend(side.along(to, |_, angle| (angle / CHORD).ceil() as u32));
+        points.extend(side.along(to, |_, angle| (angle / MAX_CHORD_ANGLE).ceil() as u32));
     }
     points
 }
@@ -252,8 +259,8 @@ impl Layer {
     /// Turns the layer over about the robot's long axis; its lines keep the material on their left.
     fn turn_over(&mut self) {
         for line in &mut self.loops {
-            for at in line.iter_mut() {
-                *at = turned_over(*at);
+            for point in line.iter_mut() {
+                *point = turn_over_point(*point);
             }
             line.reverse();
         }
@@ -262,45 +269,49 @@ impl Layer {
     }
 
     /// Adds the walls of a loop that the eye sees; adjacent walls of equal shade become one.
-    fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
+    fn add_walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
         let n = line.len();
-        let shade = |i: usize| {
+        let shade_of = |i: usize| {
             let (a, b) = (line[i], line[(i + 1) % n]);
-            let out = (b - a).rotated_right();
-            let is_seen = out.dot(eye.position() - a) > 0.0;
-            let length = out.length();
+            let normal = (b - a).rotated_right();
+            let is_seen = normal.dot(eye.position() - a) > 0.0;
+            let length = normal.length();
             // The light comes from the eye's left.
-            let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * length.max(1e-9));
+            let light = (eye.away + eye.right * -0.8).dot(normal) / (1.3 * length.max(1e-9));
             is_seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
         };
         let mut i = 0;
         while i < n {
-            let Some(light) = shade(i) else {
+            let Some(light) = shade_of(i) else {
                 i += 1;
                 continue;
             };
             let mut chain = vec![line[i]];
-            while i < n && shade(i) == Some(light) {
+            while i < n && shade_of(i) == Some(light) {
                 chain.push(line[(i + 1) % n]);
                 i += 1;
             }
             let distances = chain.iter().map(|point| (eye.position() - *point).length());
-            let far = distances.sum::<f64>() / chain.len() as f64;
+            let distance = distances.sum::<f64>() / chain.len() as f64;
             let mut points: Vec<_> = chain.iter().map(|point| eye.project(*point, low)).collect();
             points.extend(chain.iter().rev().map(|point| eye.project(*point, high)));
-            let dark = 0.5 + 0.09 * f64::from(light);
-            walls.push((far, points, self.colour.map(|part| part * dark)));
+            let brightness = 0.5 + 0.09 * f64::from(light);
+            walls.push((
+                distance,
+                points,
+                self.colour.map(|channel| channel * brightness),
+            ));
         }
     }
 }
 
 /// The colour of a body.
-fn colour(body: &Body, is_grey: bool) -> [f64; 3] {
+fn colour_of(body: &Body, is_grey: bool) -> [f64; 3] {
     if is_grey {
         return [222.0, 222.0, 218.0];
     }
     match (body.kind, body.mount.servo()) {
-        (Kind::Printed, Some(servo)) => SERVO_COLOURS[servo].map(|part| 0.72 * part + 70.0),
+        (Kind::Printed, Some(servo)) => SERVO_COLOURS[servo].map(|channel| 0.72 * channel + 70.0),
         (Kind::Printed, None) if body.mount == Mount::Chassis => [236.0, 224.0, 190.0],
         (Kind::Printed, None) => [240.0, 228.0, 66.0],
         (Kind::Servo, _) => [70.0, 110.0, 200.0],

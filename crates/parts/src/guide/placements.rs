@@ -81,43 +81,43 @@ struct Flat {
 pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
     let steps = steps(assembly.robot().drive().strut().is_some());
-    let placed = |body| {
+    let placed_body_of = |body| {
         let (step, stage) = step_and_stage(&steps, body);
         let part = parts.iter().find(|part| part.bodies.contains(&body.name));
-        let place = assembly.place(body.mount, pose);
+        let placement = assembly.place(body.mount, pose);
         Placed {
             name: &body.name,
             kind: body.kind.word(),
             step,
             stage,
-            printed: part.map(|part| print(&place, body, part)),
-            screw: screw(assembly, &steps, &place, body),
+            printed: part.map(|part| print_of(&placement, body, part)),
+            screw: screw_of(assembly, &steps, &placement, body),
             solids: match part {
                 Some(_) => Vec::new(),
-                None => solids(&place, body),
+                None => solids_of(&placement, body),
             },
         }
     };
-    let list: Vec<Placed> = assembly.bodies().iter().map(placed).collect();
+    let list: Vec<Placed> = assembly.bodies().iter().map(placed_body_of).collect();
     serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
 }
 
-fn pair(point: Vector) -> [f64; 2] {
+fn pair_of(point: Vector) -> [f64; 2] {
     [point.x, point.y]
 }
 
-fn print(place: &Placement, body: &Body, part: &Part) -> Print {
+fn print_of(placement: &Placement, body: &Body, part: &Part) -> Print {
     let motion = part.print_to_body(body);
     let frame = motion.frame;
-    let origin = place.map(frame.origin);
-    let turn = place.x_axis * frame.x_axis.x + place.x_axis.rotated_left() * frame.x_axis.y;
-    let drill = part.closed_holes().into_iter().map(|at| {
-        let at = if part.is_turned_over {
-            at.mirrored()
+    let origin = placement.map(frame.origin);
+    let turn = placement.x_axis * frame.x_axis.x + placement.x_axis.rotated_left() * frame.x_axis.y;
+    let drill = part.closed_holes().into_iter().map(|hole| {
+        let hole = if part.is_turned_over {
+            hole.mirrored()
         } else {
-            at
+            hole
         };
-        pair(origin + turn * at.x + turn.rotated_left() * at.y)
+        pair_of(origin + turn * hole.x + turn.rotated_left() * hole.y)
     });
     Print {
         file: format!("stl/{}.stl", part.file()),
@@ -125,44 +125,49 @@ fn print(place: &Placement, body: &Body, part: &Part) -> Print {
         flipped: motion.flipped,
         lift: motion.lift,
         turn: turn.angle(),
-        at: pair(origin),
+        at: pair_of(origin),
         drill: drill.collect(),
     }
 }
 
-fn screw(assembly: &Assembly, steps: &[Step], place: &Placement, body: &Body) -> Option<Screw> {
+fn screw_of(
+    assembly: &Assembly,
+    steps: &[Step],
+    placement: &Placement,
+    body: &Body,
+) -> Option<Screw> {
     let (Kind::Screw(length) | Kind::HexScrew(length)) = body.kind else {
         return None;
     };
     let [low, high] = &body.prisms[..] else {
         return None;
     };
-    let turns = |step: &Step| step.stages.iter().any(|stage| (stage.turns)(body));
-    let steps_that_turn = (1..).zip(steps).filter(|(_, step)| turns(step));
+    let is_turned_in = |step: &Step| step.stages.iter().any(|stage| (stage.turns)(body));
+    let turning_steps = (1..).zip(steps).filter(|(_, step)| is_turned_in(step));
     Some(Screw {
-        at: pair(place.map(low.filled_shapes[0].middle())),
+        at: pair_of(placement.map(low.filled_shapes[0].middle())),
         head: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
         head_above: high.filled_shapes[0].width() > low.filled_shapes[0].width(),
-        turned: steps_that_turn.map(|(number, _)| number).collect(),
+        turned: turning_steps.map(|(number, _)| number).collect(),
     })
 }
 
-fn solids(place: &Placement, body: &Body) -> Vec<Prism> {
-    let flat = |shape: &Shape| Flat {
+fn solids_of(placement: &Placement, body: &Body) -> Vec<Prism> {
+    let flat_of = |shape: &Shape| Flat {
         radius: shape.radius,
         outline: shape
             .points
             .iter()
-            .map(|point| pair(place.map(*point)))
+            .map(|point| pair_of(placement.map(*point)))
             .collect(),
     };
     let layers = body.prisms.iter().flat_map(|prism| {
         prism.filled_shapes.iter().map(move |shape| Prism {
             z: prism.z,
-            shape: flat(shape),
-            holes: prism.cut_shapes.iter().map(flat).collect(),
+            shape: flat_of(shape),
+            holes: prism.cut_shapes.iter().map(flat_of).collect(),
         })
     });
     layers.collect()

@@ -10,8 +10,8 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body: a union of shapes less some holes, between two heights. Its walls are upright, or lean outward by the
-/// difference of its insets.
+/// A layer of a body: a union of shapes less some holes, between two heights. Its walls are upright, or lean outward
+/// by the difference of its insets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     /// Shapes whose union is filled, in the body's frame, mm.
@@ -26,11 +26,11 @@ pub struct Prism {
 
 impl Prism {
     /// A layer with holes.
-    pub fn new(add: impl Into<Vec<Shape>>, cut: impl Into<Vec<Shape>>, z: Span) -> Self {
-        let (add, cut) = (add.into(), cut.into());
+    pub fn new(filled: impl Into<Vec<Shape>>, holes: impl Into<Vec<Shape>>, z: Span) -> Self {
+        let (filled, holes) = (filled.into(), holes.into());
         Self {
-            filled_shapes: add,
-            cut_shapes: cut,
+            filled_shapes: filled,
+            cut_shapes: holes,
             z,
             inset: [0.0; 2],
         }
@@ -46,8 +46,8 @@ impl Prism {
     }
 
     /// A layer without holes.
-    pub fn solid(add: impl Into<Vec<Shape>>, z: Span) -> Self {
-        Self::new(add, [], z)
+    pub fn solid(filled: impl Into<Vec<Shape>>, z: Span) -> Self {
+        Self::new(filled, [], z)
     }
 
     /// True if the layer is thicker than a rounding error.
@@ -76,12 +76,12 @@ impl Prism {
             return Cow::Borrowed(self);
         }
         let inset = self.inset[0] + share * (self.inset[1] - self.inset[0]);
-        let smaller = |shape: &Shape| Shape {
+        let shrink = |shape: &Shape| Shape {
             points: shape.points.clone(),
             radius: shape.radius - inset,
         };
-        let add: Vec<Shape> = self.filled_shapes.iter().map(smaller).collect();
-        Cow::Owned(Self::new(add, self.cut_shapes.clone(), self.z))
+        let filled: Vec<Shape> = self.filled_shapes.iter().map(shrink).collect();
+        Cow::Owned(Self::new(filled, self.cut_shapes.clone(), self.z))
     }
 }
 
@@ -178,8 +178,8 @@ impl Mount {
     /// The servos that determine the mount's position, in servo order.
     pub fn servos(self) -> Vec<usize> {
         match self {
-            Self::Coupler(servo) => sorted(End::of_servo(servo).servos()),
-            Self::Sleeve(side) | Self::Rod(side) => sorted(side.servos()),
+            Self::Coupler(servo) => sort_pair(End::of_servo(servo).servos()),
+            Self::Sleeve(side) | Self::Rod(side) => sort_pair(side.servos()),
             _ => self.servo().into_iter().collect(),
         }
     }
@@ -198,7 +198,7 @@ impl Mount {
     }
 }
 
-fn sorted([a, b]: [usize; 2]) -> Vec<usize> {
+fn sort_pair([a, b]: [usize; 2]) -> Vec<usize> {
     vec![a.min(b), a.max(b)]
 }
 

@@ -17,8 +17,8 @@ pub const PITCH: f64 = 8.0;
 
 /// Batteries of two lithium cells that fit into the space of `[parts] battery`.
 pub const BATTERIES: [Example; 2] = [
-    Example::usual("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
-    Example::usual("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
+    Example::from_shops("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
+    Example::from_shops("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
 ];
 
 /// A product that fits into a reserved space; or a kind of product, if shops name no make.
@@ -33,12 +33,12 @@ pub struct Example {
 }
 
 impl Example {
-    const fn drawn(name: &'static str, size: [f64; 3]) -> Self {
+    const fn from_drawing(name: &'static str, size: [f64; 3]) -> Self {
         let drawn = true;
         Self { name, size, drawn }
     }
 
-    const fn usual(name: &'static str, size: [f64; 3]) -> Self {
+    const fn from_shops(name: &'static str, size: [f64; 3]) -> Self {
         let drawn = false;
         Self { name, size, drawn }
     }
@@ -46,9 +46,9 @@ impl Example {
 
 impl fmt::Display for Example {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let about = if self.drawn { "" } else { "~" };
+        let prefix = if self.drawn { "" } else { "~" };
         let [x, y, z] = self.size;
-        write!(f, "{}: {about}{x} x {y} x {z}", self.name)
+        write!(f, "{}: {prefix}{x} x {y} x {z}", self.name)
     }
 }
 
@@ -105,11 +105,11 @@ pub struct FittingFacts {
 }
 
 /// The two common makes of terminal strips with a pitch of 8 mm, cut to `ways` ways.
-const fn strips(ways: f64) -> [Example; 2] {
+const fn strip_examples(ways: f64) -> [Example; 2] {
     let length = ways * PITCH;
     [
-        Example::usual("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
-        Example::usual("Weidmueller MK 3", [17.0, length, 14.0]),
+        Example::from_shops("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
+        Example::from_shops("Weidmueller MK 3", [17.0, length, 14.0]),
     ]
 }
 
@@ -143,8 +143,8 @@ impl Fitting {
                 place: "under the deck, towards the head",
                 hold: "foam tape, and a cable tie through the deck's window",
                 examples: [
-                    Example::usual("Pololu D36V28F5", [17.8, 17.8, 8.9]),
-                    Example::usual("MP1584EN board", [17.0, 22.0, 4.0]),
+                    Example::from_shops("Pololu D36V28F5", [17.8, 17.8, 8.9]),
+                    Example::from_shops("MP1584EN board", [17.0, 22.0, 4.0]),
                 ],
             },
             Self::Capacitor => FittingFacts {
@@ -155,8 +155,8 @@ impl Fitting {
                 place: "under the plate, behind the strip for +5 V",
                 hold: "the same cable tie as the strip",
                 examples: [
-                    Example::drawn("Panasonic EEU-FR1A102, 10 V", [10.5, 18.0, 10.5]),
-                    Example::drawn("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.5, 18.0, 10.5]),
+                    Example::from_drawing("Panasonic EEU-FR1A102, 10 V", [10.5, 18.0, 10.5]),
+                    Example::from_drawing("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.5, 18.0, 10.5]),
                 ],
             },
             Self::Alarm => FittingFacts {
@@ -167,8 +167,8 @@ impl Fitting {
                 place: "under the deck, towards the tail",
                 hold: "foam tape, and a cable tie around the deck",
                 examples: [
-                    Example::usual("BX100 for 1 to 8 cells", [25.0, 40.0, 11.0]),
-                    Example::usual("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
+                    Example::from_shops("BX100 for 1 to 8 cells", [25.0, 40.0, 11.0]),
+                    Example::from_shops("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
                 ],
             },
             Self::Ground => FittingFacts {
@@ -178,7 +178,7 @@ impl Fitting {
                 what: "terminal strip, 12 ways, pitch 8 mm, for ground",
                 place: "under the plate, left",
                 hold: "two cable ties through the plate's slots",
-                examples: strips(12.0),
+                examples: strip_examples(12.0),
             },
             Self::Supply => FittingFacts {
                 name: "supply strip",
@@ -187,7 +187,7 @@ impl Fitting {
                 what: "terminal strip, 6 ways of the second strip, for +5 V",
                 place: "under the plate, right",
                 hold: "two cable ties through the plate's slots",
-                examples: strips(6.0),
+                examples: strip_examples(6.0),
             },
             Self::Signals => FittingFacts {
                 name: "signal strip",
@@ -196,7 +196,7 @@ impl Fitting {
                 what: "terminal strip, 5 ways of the second strip, for the signals",
                 place: "on the deck's left wing, rear half",
                 hold: "foam tape, and a cable tie through the wing's slots",
-                examples: strips(5.0),
+                examples: strip_examples(5.0),
             },
             Self::Plus => FittingFacts {
                 name: "plus way",
@@ -205,7 +205,7 @@ impl Fitting {
                 what: "terminal strip, the last way of the second strip, for 7.4 V",
                 place: "on the deck's right wing, between switch and fuse",
                 hold: "foam tape",
-                examples: strips(1.0),
+                examples: strip_examples(1.0),
             },
             Self::Resistor => FittingFacts {
                 name: "resistor",
@@ -215,8 +215,8 @@ impl Fitting {
                 place: "beside the signal strip, outside",
                 hold: "its own wires, screwed into the strip",
                 examples: [
-                    Example::drawn("Yageo CFR-25JB-52-10K, carbon film", [2.6, 6.8, 2.6]),
-                    Example::drawn("Yageo MFR-25FBF52-10K, metal film", [2.6, 6.8, 2.6]),
+                    Example::from_drawing("Yageo CFR-25JB-52-10K, carbon film", [2.6, 6.8, 2.6]),
+                    Example::from_drawing("Yageo MFR-25FBF52-10K, metal film", [2.6, 6.8, 2.6]),
                 ],
             },
             Self::Switch => FittingFacts {
@@ -227,8 +227,8 @@ impl Fitting {
                 place: "on the deck's right wing, rear end, lying on its side with the rocker outward",
                 hold: "foam tape, and a cable tie around the wing's end and through its slot",
                 examples: [
-                    Example::usual("KCD1-101, 6 A at 250 V AC", [25.0, 21.0, 15.0]),
-                    Example::usual("Marquardt 1801.1146", [26.0, 21.0, 15.0]),
+                    Example::from_shops("KCD1-101, 6 A at 250 V AC", [25.0, 21.0, 15.0]),
+                    Example::from_shops("Marquardt 1801.1146", [26.0, 21.0, 15.0]),
                 ],
             },
             Self::Fuse => FittingFacts {
@@ -239,8 +239,8 @@ impl Fitting {
                 place: "on the deck's right wing, front half",
                 hold: "foam tape, and a cable tie through the wing's slots",
                 examples: [
-                    Example::usual("holder for mini blade fuses (ATM)", [10.0, 40.0, 13.5]),
-                    Example::usual("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
+                    Example::from_shops("holder for mini blade fuses (ATM)", [10.0, 40.0, 13.5]),
+                    Example::from_shops("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
                 ],
             },
             Self::Plug => FittingFacts {
@@ -251,8 +251,8 @@ impl Fitting {
                 place: "on the plate, before the battery, on edge",
                 hold: "foam tape on the battery's end",
                 examples: [
-                    Example::usual("Amass XT30U pair", [26.0, 5.2, 10.2]),
-                    Example::usual("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
+                    Example::from_shops("Amass XT30U pair", [26.0, 5.2, 10.2]),
+                    Example::from_shops("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
                 ],
             },
             Self::RoundPlug => FittingFacts {
@@ -263,8 +263,8 @@ impl Fitting {
                 place: "in the UNO's round socket",
                 hold: "the socket; its wires in a cable tie at the deck",
                 examples: [
-                    Example::usual("moulded, with cable", [10.0, 36.0, 10.0]),
-                    Example::usual("with screw terminals", [14.0, 38.0, 12.5]),
+                    Example::from_shops("moulded, with cable", [10.0, 36.0, 10.0]),
+                    Example::from_shops("with screw terminals", [14.0, 38.0, 12.5]),
                 ],
             },
             Self::Strap => FittingFacts {
@@ -275,8 +275,11 @@ impl Fitting {
                 place: "around battery and plate, through the slots beside the battery",
                 hold: "itself",
                 examples: [
-                    Example::usual("hook-and-loop cable strap", [16.0, 150.0, 1.5]),
-                    Example::usual("non-slip battery strap, cut to length", [16.0, 150.0, 1.5]),
+                    Example::from_shops("hook-and-loop cable strap", [16.0, 150.0, 1.5]),
+                    Example::from_shops(
+                        "non-slip battery strap, cut to length",
+                        [16.0, 150.0, 1.5],
+                    ),
                 ],
             },
             Self::Radio => FittingFacts {
@@ -287,8 +290,8 @@ impl Fitting {
                 place: "on the deck's left wing, front half",
                 hold: "foam tape",
                 examples: [
-                    Example::drawn("HM-10, bare board", [13.0, 27.0, 2.2]),
-                    Example::usual("HC-05 or HM-10 on a carrier", [16.0, 37.0, 7.0]),
+                    Example::from_drawing("HM-10, bare board", [13.0, 27.0, 2.2]),
+                    Example::from_shops("HC-05 or HM-10 on a carrier", [16.0, 37.0, 7.0]),
                 ],
             },
         }

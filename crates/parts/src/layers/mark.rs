@@ -25,7 +25,7 @@ const MIN_BORDER: f64 = 0.7;
 const STEP: f64 = 0.8;
 
 /// The lines of a digit, each by its two end points, in a unit square.
-fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
+fn digit_lines(digit: char) -> &'static [[(f64, f64); 2]] {
     const TOP: [(f64, f64); 2] = [(0.0, 1.0), (1.0, 1.0)];
     const MIDDLE: [(f64, f64); 2] = [(0.0, 0.5), (1.0, 0.5)];
     const BOTTOM: [(f64, f64); 2] = [(0.0, 0.0), (1.0, 0.0)];
@@ -44,14 +44,15 @@ fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
 
 /// The lines of a mark whose lower left corner is at a position.
 pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
-    let [wide, high] = DIGIT;
+    let [width, height] = DIGIT;
     let mut strokes = Vec::new();
     for (index, digit) in text.chars().enumerate() {
         let left = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
-        let point = |(x, y): (f64, f64)| left + Vector::new(x * wide, y * high);
-        let bars = lines(digit).iter();
-        strokes
-            .extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE_HALF_WIDTH)));
+        let point_of = |(x, y): (f64, f64)| left + Vector::new(x * width, y * height);
+        let bars = digit_lines(digit).iter();
+        strokes.extend(
+            bars.map(|[from, to]| Shape::bar(point_of(*from), point_of(*to), LINE_HALF_WIDTH)),
+        );
     }
     strokes
 }
@@ -70,19 +71,19 @@ pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
         if high - low < 2.0 * MARK_DEPTH {
             continue;
         }
-        let covered = |point| {
+        let is_covered = |point| {
             outlines
                 .get(layer + 1)
-                .is_some_and(|above| above.contains(point))
+                .is_some_and(|upper_outline| upper_outline.contains(point))
         };
-        let free = |point: Vector| outlines[layer].contains(point) && !covered(point);
-        let Some(at) = find_position(&outlines[layer], text, free) else {
+        let is_free = |point: Vector| outlines[layer].contains(point) && !is_covered(point);
+        let Some(position) = find_position(&outlines[layer], text, is_free) else {
             continue;
         };
         let mut layers = prisms.to_vec();
         let lower = prism.at_heights([low, high - MARK_DEPTH]);
         let mut upper = prism.at_heights([high - MARK_DEPTH, high]);
-        upper.cut_shapes.extend(strokes(text, at));
+        upper.cut_shapes.extend(strokes(text, position));
         layers.splice(layer..=layer, [lower, upper]);
         return Some(layers);
     }
@@ -91,20 +92,24 @@ pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
 
 /// Lower left corner of a position in an outline that has room for a mark; `None` if there
 /// is no room.
-fn find_position(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
+fn find_position(
+    outline: &Outline,
+    text: &str,
+    is_free: impl Fn(Vector) -> bool,
+) -> Option<Vector> {
     let ends = outline.loops().flat_map(Loop::sides_with_end_points);
     let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));
-    let [wide, tall] = size(text);
+    let [width, height] = size(text);
     let margin = LINE_HALF_WIDTH + MIN_BORDER;
-    let steps = |from: f64, to: f64, step: f64| {
+    let positions_between = |from: f64, to: f64, step: f64| {
         let count = ((to - from) / step).ceil().max(0.0) as u32;
         (0..=count).map(move |i| (from + f64::from(i) * step).min(to))
     };
-    for x in steps(low.x + margin, high.x - margin - wide, STEP) {
-        for y in steps(low.y + margin, high.y - margin - tall, 0.5 * STEP) {
-            let mut columns = steps(x - margin, x + wide + margin, 0.6);
-            let rows = || steps(y - margin, y + tall + margin, 0.6);
-            if columns.all(|px| rows().all(|py| free(Vector::new(px, py)))) {
+    for x in positions_between(low.x + margin, high.x - margin - width, STEP) {
+        for y in positions_between(low.y + margin, high.y - margin - height, 0.5 * STEP) {
+            let mut columns = positions_between(x - margin, x + width + margin, 0.6);
+            let rows = || positions_between(y - margin, y + height + margin, 0.6);
+            if columns.all(|px| rows().all(|py| is_free(Vector::new(px, py)))) {
                 return Some(Vector::new(x, y));
             }
         }

@@ -15,11 +15,11 @@ use crate::layers::shape::Shape;
 
 /// The smallest and the largest x and y of these points.
 pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
-    let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| Vector::new(end, end));
-    points.fold([low, high], |[low, high], at| {
+    let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|bound| Vector::new(bound, bound));
+    points.fold([low, high], |[low, high], point| {
         [
-            Vector::new(low.x.min(at.x), low.y.min(at.y)),
-            Vector::new(high.x.max(at.x), high.y.max(at.y)),
+            Vector::new(low.x.min(point.x), low.y.min(point.y)),
+            Vector::new(high.x.max(point.x), high.y.max(point.y)),
         ]
     })
 }
@@ -55,41 +55,42 @@ pub struct Outline {
 impl Outline {
     /// The outline of a layer.
     pub fn of(prism: &Prism) -> Self {
-        let (is_outer, gaps) = unite(prism.filled_shapes.iter().map(polyline));
+        let (outer_lines, gaps) = unite(prism.filled_shapes.iter().map(polyline_of));
         let (mut cuts, _) = unite(
             gaps.into_iter()
-                .chain(prism.cut_shapes.iter().map(polyline)),
+                .chain(prism.cut_shapes.iter().map(polyline_of)),
         );
-        let mut pieces = is_outer;
+        let mut pieces = outer_lines;
         // Cuts that open a piece change its outer loop; the others are holes.
         cuts.retain(|cut| {
             let mut is_opened = false;
-            let mut left = Vec::new();
+            let mut remaining_pieces = Vec::new();
             for piece in pieces.drain(..) {
-                let rest = piece.boolean(cut, BooleanOp::Not);
-                match rest.result_info {
+                let difference = piece.boolean(cut, BooleanOp::Not);
+                match difference.result_info {
                     BooleanResultInfo::Intersected | BooleanResultInfo::Overlapping => {
                         is_opened = true;
-                        left.extend(rest.pos_plines.into_iter().map(|part| part.pline));
+                        remaining_pieces
+                            .extend(difference.pos_plines.into_iter().map(|result| result.pline));
                     }
                     BooleanResultInfo::Pline1InsidePline2 => is_opened = true,
-                    _ => left.push(piece),
+                    _ => remaining_pieces.push(piece),
                 }
             }
-            pieces = left;
+            pieces = remaining_pieces;
             !is_opened
         });
-        let loops = |piece: Polyline<f64>| {
+        let loops_of = |piece: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
-                let inside = piece.boolean(*cut, BooleanOp::Not).result_info;
-                matches!(inside, BooleanResultInfo::Pline2InsidePline1)
+                let result_info = piece.boolean(*cut, BooleanOp::Not).result_info;
+                matches!(result_info, BooleanResultInfo::Pline2InsidePline1)
             });
             let holes = holes.map(|hole| Loop::of(hole, false));
             std::iter::once(Loop::of(&piece, true))
                 .chain(holes)
                 .collect()
         };
-        let pieces = pieces.into_iter().map(loops).collect();
+        let pieces = pieces.into_iter().map(loops_of).collect();
         Self { pieces }
     }
 
@@ -124,14 +125,14 @@ impl Loop {
         if (line.area() > 0.0) != is_outer {
             line.invert_direction_mut();
         }
-        let side = |vertex: PlineVertex<f64>| {
-            let straight = vertex.bulge.abs() < 1e-9;
+        let segment_of = |vertex: PlineVertex<f64>| {
+            let is_straight = vertex.bulge.abs() < 1e-9;
             Segment {
                 from: Vector::new(vertex.x, vertex.y),
-                bulge: if straight { 0.0 } else { vertex.bulge },
+                bulge: if is_straight { 0.0 } else { vertex.bulge },
             }
         };
-        let sides = line.iter_vertexes().map(side).collect();
+        let sides = line.iter_vertexes().map(segment_of).collect();
         Self { sides }
     }
 
@@ -146,10 +147,11 @@ impl Loop {
         let mut arcs = self.sides_with_end_points().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
         let is_same_circle = |arc: Option<(Vector, f64)>| {
-            let near = |(at, size): (Vector, f64)| {
-                (at - centre).length() < SAME_POINT_MM && (size - radius).abs() < SAME_POINT_MM
+            let is_near = |(other_centre, other_radius): (Vector, f64)| {
+                (other_centre - centre).length() < SAME_POINT_MM
+                    && (other_radius - radius).abs() < SAME_POINT_MM
             };
-            arc.is_some_and(near)
+            arc.is_some_and(is_near)
         };
         arcs.all(is_same_circle).then_some((centre, radius))
     }
@@ -167,17 +169,18 @@ impl Loop {
             // A triangle from the origin, and the arc's segment beside its chord.
             sum = sum + (a + b) * (a.cross(b) / 6.0);
             if let Some((centre, radius)) = side.arc(to) {
-                let half = 2.0 * libm::atan(side.bulge.abs());
-                let area = radius * radius * (half - libm::sin(half) * libm::cos(half));
+                let half_angle = 2.0 * libm::atan(side.bulge.abs());
+                let area =
+                    radius * radius * (half_angle - libm::sin(half_angle) * libm::cos(half_angle));
                 // Half the chord's length; with it, the distance of the segment's centroid from the centre is 2 r^3
                 // sin^3 / (3 area).
-                let reach = radius * libm::sin(half);
-                let out = 2.0 / 3.0 * (reach * reach * reach) / area;
+                let half_chord = radius * libm::sin(half_angle);
+                let centroid_distance = 2.0 / 3.0 * (half_chord * half_chord * half_chord) / area;
                 let chord = (b - a) * (1.0 / (b - a).length());
                 // A left turn bulges out to the right of its chord.
-                let beyond = chord.rotated_right() * side.bulge.signum();
-                let far = centre + beyond * out;
-                sum = sum + far * (area * side.bulge.signum());
+                let outward_direction = chord.rotated_right() * side.bulge.signum();
+                let centroid = centre + outward_direction * centroid_distance;
+                sum = sum + centroid * (area * side.bulge.signum());
             }
         }
         sum
@@ -227,11 +230,11 @@ impl Segment {
         let angle = 4.0 * libm::atan(self.bulge);
         let count = count(radius, angle.abs());
         let arm = self.from - centre;
-        let point = |i: u32| {
+        let point_at = |i: u32| {
             let angle = angle * f64::from(i) / f64::from(count);
             centre + arm * libm::cos(angle) + arm.rotated_left() * libm::sin(angle)
         };
-        (1..count).map(point).collect()
+        (1..count).map(point_at).collect()
     }
 }
 
@@ -241,30 +244,33 @@ type Lines = Vec<Polyline<f64>>;
 fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Lines, Lines) {
     let (mut pieces, mut gaps) = (Lines::new(), Lines::new());
     for outline in outlines {
-        let mut joined = outline.clone();
-        let mut apart = Vec::new();
-        let mut enclosed = Vec::new();
+        let mut union_line = outline.clone();
+        let mut separate_pieces = Vec::new();
+        let mut enclosed_gaps = Vec::new();
         for piece in pieces {
-            let mut union = piece.boolean(&joined, BooleanOp::Or);
-            let disjoint = matches!(union.result_info, BooleanResultInfo::Disjoint);
-            if disjoint || union.pos_plines.len() != 1 {
-                apart.push(piece);
+            let mut union = piece.boolean(&union_line, BooleanOp::Or);
+            let is_disjoint = matches!(union.result_info, BooleanResultInfo::Disjoint);
+            if is_disjoint || union.pos_plines.len() != 1 {
+                separate_pieces.push(piece);
             } else {
-                joined = union.pos_plines.remove(0).pline;
-                enclosed.extend(union.neg_plines.into_iter().map(|gap| gap.pline));
+                union_line = union.pos_plines.remove(0).pline;
+                enclosed_gaps.extend(union.neg_plines.into_iter().map(|gap| gap.pline));
             }
         }
-        let rest = |gap: Polyline<f64>| gap.boolean(&outline, BooleanOp::Not).pos_plines;
-        let left = gaps.into_iter().flat_map(rest).map(|part| part.pline);
-        gaps = left.chain(enclosed).collect();
-        apart.push(joined);
-        pieces = apart;
+        let remainder_of = |gap: Polyline<f64>| gap.boolean(&outline, BooleanOp::Not).pos_plines;
+        let remaining_gaps = gaps
+            .into_iter()
+            .flat_map(remainder_of)
+            .map(|result| result.pline);
+        gaps = remaining_gaps.chain(enclosed_gaps).collect();
+        separate_pieces.push(union_line);
+        pieces = separate_pieces;
     }
     (pieces, gaps)
 }
 
 /// The outline of one shape, counter-clockwise.
-fn polyline(shape: &Shape) -> Polyline<f64> {
+fn polyline_of(shape: &Shape) -> Polyline<f64> {
     let Shape { points, radius } = shape;
     let mut line = Polyline::new_closed();
     let n = points.len();
@@ -273,15 +279,19 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
         line.add(points[0].x + radius, points[0].y, 1.0);
         return line;
     }
-    let unit = |from: Vector, to: Vector| (to - from) * (1.0 / (to - from).length());
+    let direction_between = |from: Vector, to: Vector| (to - from) * (1.0 / (to - from).length());
     for i in 0..n {
-        let (before, at, after) = (points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
-        let (incoming, outgoing) = (unit(before, at), unit(at, after));
+        let (previous, corner, next) = (points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
+        let (incoming, outgoing) = (
+            direction_between(previous, corner),
+            direction_between(corner, next),
+        );
         if *radius == 0.0 {
-            line.add(at.x, at.y, 0.0);
+            line.add(corner.x, corner.y, 0.0);
             continue;
         }
-        let [begin, end] = [incoming, outgoing].map(|way| at + way.rotated_right() * *radius);
+        let [begin, end] =
+            [incoming, outgoing].map(|direction| corner + direction.rotated_right() * *radius);
         // Tangent of a quarter of the turn: the half-angle formula, applied twice.
         let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
         let bulge = if n == 2 {
@@ -298,11 +308,11 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
 
 /// The volume of a layer, mm^3.
 pub(crate) fn volume(prism: &Prism) -> f64 {
-    let area = |share| Outline::of(&prism.cross_section(share)).area();
+    let area_at = |share| Outline::of(&prism.cross_section(share)).area();
     let mean = match prism.inset[0] == prism.inset[1] {
-        true => area(0.0),
+        true => area_at(0.0),
         // Simpson's rule, exact for the area of a cone.
-        false => (area(0.0) + 4.0 * area(0.5) + area(1.0)) / 6.0,
+        false => (area_at(0.0) + 4.0 * area_at(0.5) + area_at(1.0)) / 6.0,
     };
     mean * (prism.z[1] - prism.z[0])
 }
@@ -313,19 +323,19 @@ mod tests {
 
     use super::*;
 
-    fn at(x: f64, y: f64) -> Vector {
+    fn vector(x: f64, y: f64) -> Vector {
         Vector::new(x, y)
     }
 
-    fn outline(add: Vec<Shape>, cut: Vec<Shape>) -> Outline {
+    fn outline_of(filled: Vec<Shape>, cut: Vec<Shape>) -> Outline {
         let z = [0.0, 1.0];
-        Outline::of(&Prism::new(add, cut, z))
+        Outline::of(&Prism::new(filled, cut, z))
     }
 
     #[test]
     fn a_bar_with_two_holes_has_their_area_and_their_circles() {
-        let (a, b) = (at(0.0, 0.0), at(30.0, 10.0));
-        let bar = outline(
+        let (a, b) = (vector(0.0, 0.0), vector(30.0, 10.0));
+        let bar = outline_of(
             vec![Shape::bar(a, b, 4.5)],
             vec![Shape::disc(a, 1.6), Shape::disc(b, 1.6)],
         );
@@ -335,32 +345,39 @@ mod tests {
         assert_eq!(circles.len(), 2);
         assert!((circles[1].0 - b).length() < 1e-9 && (circles[1].1 - 1.6).abs() < 1e-9);
         let middle = bar.moment() * (1.0 / bar.area());
-        assert!((middle - at(15.0, 5.0)).length() < 1e-9, "{middle:?}");
-        assert!(bar.contains(at(15.0, 5.0)) && !bar.contains(a) && !bar.contains(at(0.0, 9.0)));
+        assert!((middle - vector(15.0, 5.0)).length() < 1e-9, "{middle:?}");
+        assert!(
+            bar.contains(vector(15.0, 5.0)) && !bar.contains(a) && !bar.contains(vector(0.0, 9.0))
+        );
     }
 
     #[test]
     fn a_ring_of_bars_encloses_a_gap_that_a_later_shape_may_fill() {
-        let corners = [at(0.0, 0.0), at(20.0, 0.0), at(20.0, 20.0), at(0.0, 20.0)];
+        let corners = [
+            vector(0.0, 0.0),
+            vector(20.0, 0.0),
+            vector(20.0, 20.0),
+            vector(0.0, 20.0),
+        ];
         let bars: Vec<_> = (0..4)
             .map(|i| Shape::bar(corners[i], corners[(i + 1) % 4], 2.0 + 0.01 * i as f64))
             .collect();
-        let ring = outline(bars.clone(), Vec::new());
+        let ring = outline_of(bars.clone(), Vec::new());
         assert_eq!(ring.pieces.len(), 1);
         assert_eq!(ring.pieces[0].len(), 2);
-        assert!(!ring.contains(at(10.0, 10.0)) && ring.contains(at(10.0, 0.0)));
-        let across = Shape::bar(at(10.0, 0.0), at(10.0, 20.0), 1.0);
-        let filled = outline([&bars[..], &[across]].concat(), Vec::new());
+        assert!(!ring.contains(vector(10.0, 10.0)) && ring.contains(vector(10.0, 0.0)));
+        let crossing_bar = Shape::bar(vector(10.0, 0.0), vector(10.0, 20.0), 1.0);
+        let filled = outline_of([&bars[..], &[crossing_bar]].concat(), Vec::new());
         assert_eq!(filled.pieces[0].len(), 3);
-        assert!(filled.contains(at(10.0, 10.0)) && !filled.contains(at(5.0, 10.0)));
+        assert!(filled.contains(vector(10.0, 10.0)) && !filled.contains(vector(5.0, 10.0)));
     }
 
     #[test]
     fn a_slot_across_a_plate_leaves_two_pieces() {
-        let plate = Shape::rectangle(at(0.0, 0.0), at(20.0, 10.0), 1.0);
-        let slot = Shape::rectangle(at(0.0, 0.0), at(30.0, 2.0), 0.0);
-        let hole = Shape::disc(at(3.0, 3.0), 1.0);
-        let halves = outline(vec![plate], vec![slot, hole]);
+        let plate = Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 1.0);
+        let slot = Shape::rectangle(vector(0.0, 0.0), vector(30.0, 2.0), 0.0);
+        let hole = Shape::disc(vector(3.0, 3.0), 1.0);
+        let halves = outline_of(vec![plate], vec![slot, hole]);
         assert_eq!(halves.pieces.len(), 2);
         let area = 200.0 - (4.0 - PI) - 40.0 - PI;
         assert!((halves.area() - area).abs() < 1e-9);
@@ -369,10 +386,10 @@ mod tests {
 
     #[test]
     fn the_middle_of_half_a_disc_is_where_it_should_be() {
-        let disc = Shape::disc(at(5.0, 2.0), 3.0);
-        let below = Shape::rectangle(at(5.0, -8.0), at(20.0, 20.0), 0.0);
-        let half = outline(vec![disc], vec![below]);
+        let disc = Shape::disc(vector(5.0, 2.0), 3.0);
+        let lower_half = Shape::rectangle(vector(5.0, -8.0), vector(20.0, 20.0), 0.0);
+        let half = outline_of(vec![disc], vec![lower_half]);
         let middle = half.moment() * (1.0 / half.area());
-        assert!((middle - at(5.0, 2.0 + 4.0 * 3.0 / (3.0 * PI))).length() < 1e-9);
+        assert!((middle - vector(5.0, 2.0 + 4.0 * 3.0 / (3.0 * PI))).length() < 1e-9);
     }
 }

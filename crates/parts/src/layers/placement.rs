@@ -20,8 +20,8 @@ impl Placement {
 
     /// Converts a point from the frame in which this placement is given to the body's frame, mm.
     pub fn unmap(&self, point: Vector) -> Vector {
-        let from = point - self.origin;
-        Vector::new(from.dot(self.x_axis), self.x_axis.cross(from))
+        let offset = point - self.origin;
+        Vector::new(offset.dot(self.x_axis), self.x_axis.cross(offset))
     }
 }
 
@@ -33,10 +33,10 @@ impl<T: Real> Placement<T> {
 
     /// Converts this placement to another body's frame. Both are given in the chassis frame.
     pub fn relative_to(&self, frame: &Self) -> Self {
-        let in_frame = |v: Vector<T>| Vector::new(v.dot(frame.x_axis), frame.x_axis.cross(v));
+        let to_frame = |v: Vector<T>| Vector::new(v.dot(frame.x_axis), frame.x_axis.cross(v));
         Self {
-            origin: in_frame(self.origin - frame.origin),
-            x_axis: in_frame(self.x_axis),
+            origin: to_frame(self.origin - frame.origin),
+            x_axis: to_frame(self.x_axis),
         }
     }
 }

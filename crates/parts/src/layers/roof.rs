@@ -24,12 +24,12 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
     for (number, pair) in prisms.windows(2).enumerate() {
-        let below = Outline::of(&pair[0]);
-        let above = &prisms[number + 1];
-        let low = above.z[0];
+        let outline_below = Outline::of(&pair[0]);
+        let layer_above = &prisms[number + 1];
+        let low = layer_above.z[0];
         let high = first_layer_top(low);
-        for hole in &above.cut_shapes {
-            if !begins_in_air(hole, above, &below) {
+        for hole in &layer_above.cut_shapes {
+            if !begins_in_air(hole, layer_above, &outline_below) {
                 continue;
             }
             count += 1;
@@ -47,8 +47,8 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
 /// Top of the first printed layer above a height. A slicer samples each layer in its
 /// middle.
 fn first_layer_top(low: f64) -> f64 {
-    let first = ((low - LAYER_MM / 2.0 + SAME_HEIGHT_MM) / LAYER_MM).floor() + 1.0;
-    LAYER_MM * (first + 1.0)
+    let layer_index = ((low - LAYER_MM / 2.0 + SAME_HEIGHT_MM) / LAYER_MM).floor() + 1.0;
+    LAYER_MM * (layer_index + 1.0)
 }
 
 /// Cuts a layer in two at a height. Returns the layer alone if the height is outside it or at its bottom or top.
@@ -67,25 +67,25 @@ fn split(layer: &Prism, height: f64) -> Vec<Prism> {
 pub fn unsupported_hole_centres(prisms: &[Prism]) -> Vec<Vector> {
     let mut middles = Vec::new();
     for pair in prisms.windows(2) {
-        let below = Outline::of(&pair[0]);
+        let outline_below = Outline::of(&pair[0]);
         let holes = pair[1].cut_shapes.iter();
-        let in_air = holes.filter(|hole| begins_in_air(hole, &pair[1], &below));
-        middles.extend(in_air.map(Shape::middle));
+        let hanging_holes = holes.filter(|hole| begins_in_air(hole, &pair[1], &outline_below));
+        middles.extend(hanging_holes.map(Shape::middle));
     }
     middles
 }
 
 /// True if there is material all around a hole, and none below that material.
-fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
+fn begins_in_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
     let outline = Outline::of(prism);
     let edge = Shape {
         points: hole.points.clone(),
         radius: hole.radius + SUPPORT_DISTANCE_MM,
     };
-    let alone = Outline::of(&Prism::solid([edge], prism.z));
-    let mut points = alone.loops().flat_map(Loop::sides_with_end_points);
-    let in_air = |point: Vector| outline.contains(point) && !below.contains(point);
-    points.all(|(side, to)| in_air(side.from) && in_air(side.middle(to)))
+    let edge_outline = Outline::of(&Prism::solid([edge], prism.z));
+    let mut points = edge_outline.loops().flat_map(Loop::sides_with_end_points);
+    let is_in_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
+    points.all(|(side, to)| is_in_air(side.from) && is_in_air(side.middle(to)))
 }
 
 #[cfg(test)]
@@ -97,8 +97,10 @@ mod tests {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
             let high = first_layer_top(low);
             // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.
-            let seen = (0..100).map(|i| 0.1 + LAYER_MM * f64::from(i));
-            let count = seen.filter(|z| low + 1e-9 < *z && *z < high - 1e-9).count();
+            let sample_heights = (0..100).map(|i| 0.1 + LAYER_MM * f64::from(i));
+            let count = sample_heights
+                .filter(|z| low + 1e-9 < *z && *z < high - 1e-9)
+                .count();
             assert_eq!(count, 1, "{low} {high}");
             assert!(high - low < 0.31 && high - low > 0.09, "{low} {high}");
         }

@@ -55,11 +55,11 @@ impl Shape {
 
     /// The convex hull of any points.
     pub fn hull(points: &[Vector], radius: f64) -> Self {
-        let mut sorted = points.to_vec();
-        sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-        sorted.dedup();
+        let mut sorted_points = points.to_vec();
+        sorted_points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        sorted_points.dedup();
         // Andrew's monotone chain: the lower half, then the upper one.
-        let half = |points: &mut dyn Iterator<Item = &Vector>| {
+        let half_chain_of = |points: &mut dyn Iterator<Item = &Vector>| {
             let mut chain: Vec<Vector> = Vec::new();
             for &point in points {
                 while let [.., a, b] = chain[..]
@@ -71,9 +71,9 @@ impl Shape {
             }
             chain
         };
-        let mut chain = half(&mut sorted.iter());
-        let upper = half(&mut sorted.iter().rev());
-        if sorted.len() > 1 {
+        let mut chain = half_chain_of(&mut sorted_points.iter());
+        let upper = half_chain_of(&mut sorted_points.iter().rev());
+        if sorted_points.len() > 1 {
             chain.pop();
             chain.extend(&upper[..upper.len() - 1]);
         }
@@ -97,14 +97,18 @@ impl Shape {
 
     /// The largest distance between two points of the shape, mm.
     pub fn width(&self) -> f64 {
-        let largest = self.points.iter().map(|&point| self.farthest(point));
-        largest.fold(0.0, f64::max) + self.radius
+        let distances = self.points.iter().map(|&point| self.farthest(point));
+        distances.fold(0.0, f64::max) + self.radius
     }
 
     /// The shape moved to a place.
-    pub fn placed(&self, place: &Placement) -> Self {
+    pub fn placed(&self, placement: &Placement) -> Self {
         Self {
-            points: self.points.iter().map(|&point| place.map(point)).collect(),
+            points: self
+                .points
+                .iter()
+                .map(|&point| placement.map(point))
+                .collect(),
             radius: self.radius,
         }
     }
@@ -121,51 +125,55 @@ impl Shape {
     /// length of the shortest shift that parts them. If a point moves by some length, the
     /// distance changes by no more than that length.
     pub fn distance(&self, other: &Self) -> f64 {
-        let mut between = f64::INFINITY;
+        let mut distance = f64::INFINITY;
         if self.contains(other.points[0]) || other.contains(self.points[0]) {
-            between = 0.0;
+            distance = 0.0;
         } else {
             for (a, b) in self.edges() {
                 for (c, d) in other.edges() {
-                    between = between.min(segment_distance(a, b, c, d));
+                    distance = distance.min(segment_distance(a, b, c, d));
                 }
             }
         }
-        if between == 0.0 {
-            let deep = self
+        if distance == 0.0 {
+            let separation = self
                 .max_side_separation(other)
                 .max(other.max_side_separation(self));
             // Two discs have no sides.
-            between = if deep.is_finite() { deep.min(0.0) } else { 0.0 };
+            distance = if separation.is_finite() {
+                separation.min(0.0)
+            } else {
+                0.0
+            };
         }
-        between - self.radius - other.radius
+        distance - self.radius - other.radius
     }
 
     /// Depth of this shape within a hole, mm; below 0 if it sticks out. The result is a lower
     /// bound for every displacement of its points by up to `max_displacement` along x and y.
     pub fn depth_in(&self, hole: &Self, max_displacement: Vector) -> f64 {
-        let sharp = Self {
+        let sharp_hole = Self {
             points: hole.points.clone(),
             radius: 0.0,
         };
-        let air = hole.radius - self.radius;
-        let out = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp);
-        let outermost = self
+        let clearance = hole.radius - self.radius;
+        let outside_distance_of = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp_hole);
+        let max_outside = self
             .points
             .iter()
-            .map(out)
+            .map(outside_distance_of)
             .fold(f64::NEG_INFINITY, f64::max);
-        let general_bound = air - outermost - max_displacement.length();
+        let general_bound = clearance - max_outside - max_displacement.length();
         // A sharper bound for a long hole with a shape that slides along it.
-        let lines = hole.side_lines().flat_map(|(from, out)| {
-            let stray = out.x.abs() * max_displacement.x + out.y.abs() * max_displacement.y;
+        let lines = hole.side_lines().flat_map(|(from, normal)| {
+            let stray = normal.x.abs() * max_displacement.x + normal.y.abs() * max_displacement.y;
             self.points
                 .iter()
-                .map(move |&point| out.dot(point - from) + stray)
+                .map(move |&point| normal.dot(point - from) + stray)
         });
-        let outermost = lines.fold(f64::NEG_INFINITY, f64::max);
-        if hole.points.len() > 2 && outermost <= 0.0 {
-            general_bound.max(air - outermost)
+        let max_outside = lines.fold(f64::NEG_INFINITY, f64::max);
+        if hole.points.len() > 2 && max_outside <= 0.0 {
+            general_bound.max(clearance - max_outside)
         } else {
             general_bound
         }
@@ -188,11 +196,11 @@ impl Shape {
     /// least distance in front of the side's line, and of these the largest. Minus infinity for a disc, which has no
     /// sides.
     fn max_side_separation(&self, other: &Self) -> f64 {
-        let beyond = self.side_lines().map(|(from, out)| {
-            let depths = other.points.iter().map(|&point| out.dot(point - from));
+        let separations = self.side_lines().map(|(from, normal)| {
+            let depths = other.points.iter().map(|&point| normal.dot(point - from));
             depths.fold(f64::INFINITY, f64::min)
         });
-        beyond.fold(f64::NEG_INFINITY, f64::max)
+        separations.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// True if a point is in the polygon or on its edge; always false for discs and bars.
@@ -210,90 +218,95 @@ impl Shape {
 
 /// The distance between two line segments, mm.
 fn segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
-    let side = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
-    let crosses = side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
-    if crosses {
+    let side_of = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
+    let is_crossing =
+        side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0;
+    if is_crossing {
         return 0.0;
     }
-    let first = segment_point_distance(a, c, d).min(segment_point_distance(b, c, d));
-    first
+    let end_distance = segment_point_distance(a, c, d).min(segment_point_distance(b, c, d));
+    end_distance
         .min(segment_point_distance(c, a, b))
         .min(segment_point_distance(d, a, b))
 }
 
 /// The distance between a point and a line segment, mm.
 fn segment_point_distance(point: Vector, from: Vector, to: Vector) -> f64 {
-    let along = to - from;
-    let square = along.length_squared();
-    let share = match square > 0.0 {
-        true => ((point - from).dot(along) / square).clamp(0.0, 1.0),
+    let line = to - from;
+    let length_squared = line.length_squared();
+    let share = match length_squared > 0.0 {
+        true => ((point - from).dot(line) / length_squared).clamp(0.0, 1.0),
         false => 0.0,
     };
-    (point - from - along * share).length()
+    (point - from - line * share).length()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn at(x: f64, y: f64) -> Vector {
+    fn vector(x: f64, y: f64) -> Vector {
         Vector::new(x, y)
     }
 
     #[test]
     fn the_gap_of_discs_and_bars_is_the_distance_of_their_middles_less_their_radii() {
-        let disc = Shape::disc(at(10.0, 3.0), 2.0);
-        let bar = Shape::bar(at(0.0, 0.0), at(20.0, 0.0), 0.5);
+        let disc = Shape::disc(vector(10.0, 3.0), 2.0);
+        let bar = Shape::bar(vector(0.0, 0.0), vector(20.0, 0.0), 0.5);
         assert_eq!(disc.distance(&bar), 0.5);
         assert_eq!(bar.distance(&disc), 0.5);
-        let beyond = Shape::disc(at(23.0, 4.0), 1.0);
-        assert_eq!(bar.distance(&beyond), 3.5);
+        let far_disc = Shape::disc(vector(23.0, 4.0), 1.0);
+        assert_eq!(bar.distance(&far_disc), 3.5);
     }
 
     #[test]
     fn shapes_inside_or_across_a_polygon_overlap_it() {
-        let plate = Shape::rectangle(at(0.0, 0.0), at(10.0, 8.0), 0.0);
-        assert_eq!(plate.distance(&Shape::disc(at(1.0, 1.0), 0.5)), -3.5);
-        let across = Shape::bar(at(-20.0, 0.0), at(20.0, 0.0), 1.0);
-        assert_eq!(plate.distance(&across), -5.0);
-        assert_eq!(across.distance(&plate), -5.0);
-        let aside = Shape::rectangle(at(9.0, 1.0), at(10.0, 8.0), 0.0);
-        assert_eq!(plate.distance(&aside), -1.0);
-        let upright = Shape::bar(at(3.0, -9.0), at(3.0, 2.0), 1.0);
-        assert_eq!(across.distance(&upright), -4.0);
-        let disc = |radius: f64| Shape::disc(at(1.0, 0.0), radius);
-        assert_eq!(disc(2.0).distance(&disc(3.0)), -5.0);
-        assert_eq!(plate.distance(&Shape::disc(at(8.0, 0.0), 1.0)), 2.0);
-        assert_eq!(plate.distance(&Shape::disc(at(8.0, 8.0), 1.0)), 4.0);
+        let plate = Shape::rectangle(vector(0.0, 0.0), vector(10.0, 8.0), 0.0);
+        assert_eq!(plate.distance(&Shape::disc(vector(1.0, 1.0), 0.5)), -3.5);
+        let crossing_bar = Shape::bar(vector(-20.0, 0.0), vector(20.0, 0.0), 1.0);
+        assert_eq!(plate.distance(&crossing_bar), -5.0);
+        assert_eq!(crossing_bar.distance(&plate), -5.0);
+        let side_plate = Shape::rectangle(vector(9.0, 1.0), vector(10.0, 8.0), 0.0);
+        assert_eq!(plate.distance(&side_plate), -1.0);
+        let upright_bar = Shape::bar(vector(3.0, -9.0), vector(3.0, 2.0), 1.0);
+        assert_eq!(crossing_bar.distance(&upright_bar), -4.0);
+        let disc_of = |radius: f64| Shape::disc(vector(1.0, 0.0), radius);
+        assert_eq!(disc_of(2.0).distance(&disc_of(3.0)), -5.0);
+        assert_eq!(plate.distance(&Shape::disc(vector(8.0, 0.0), 1.0)), 2.0);
+        assert_eq!(plate.distance(&Shape::disc(vector(8.0, 8.0), 1.0)), 4.0);
     }
 
     #[test]
     fn a_pin_in_its_hole_has_the_air_that_is_left() {
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
-        let still = at(0.0, 0.0);
-        let slot = Shape::bar(at(0.0, 0.0), at(5.0, 0.0), 1.6);
-        let pin = |x: f64, y: f64| Shape::disc(at(x, y), 1.5).depth_in(&slot, still);
-        near(pin(5.0, 0.0), 0.1);
-        near(pin(2.0, 0.05), 0.05);
-        near(pin(6.0, 0.0), -0.9);
-        let bore = Shape::rectangle(at(0.0, 0.0), at(50.0, 6.4), 0.0);
-        let rod = Shape::rectangle(at(1.0, 0.0), at(40.0, 6.0), 1.0);
-        near(rod.depth_in(&bore, still), 0.2);
+        let assert_near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        let no_shift = vector(0.0, 0.0);
+        let slot = Shape::bar(vector(0.0, 0.0), vector(5.0, 0.0), 1.6);
+        let pin_depth_at =
+            |x: f64, y: f64| Shape::disc(vector(x, y), 1.5).depth_in(&slot, no_shift);
+        assert_near(pin_depth_at(5.0, 0.0), 0.1);
+        assert_near(pin_depth_at(2.0, 0.05), 0.05);
+        assert_near(pin_depth_at(6.0, 0.0), -0.9);
+        let bore = Shape::rectangle(vector(0.0, 0.0), vector(50.0, 6.4), 0.0);
+        let rod = Shape::rectangle(vector(1.0, 0.0), vector(40.0, 6.0), 1.0);
+        assert_near(rod.depth_in(&bore, no_shift), 0.2);
         // A shift along the bore keeps the clearance until the rod gets close to the bore's end; a shift across
         // reduces it by the whole shift.
-        near(rod.depth_in(&bore, at(3.0, 0.1)), 0.1);
-        near(rod.depth_in(&bore, at(3.9, 0.0)), 0.1);
-        assert!(bore.depth_in(&rod, still) < 0.0);
+        assert_near(rod.depth_in(&bore, vector(3.0, 0.1)), 0.1);
+        assert_near(rod.depth_in(&bore, vector(3.9, 0.0)), 0.1);
+        assert!(bore.depth_in(&rod, no_shift) < 0.0);
     }
 
     #[test]
     fn a_hull_drops_what_lies_within_and_turns_counter_clockwise() {
         let corners = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (1.0, 0.2), (1.0, 0.0)];
-        let hull = Shape::hull(&corners.map(|(x, y)| at(x, y)), 0.0);
-        assert_eq!(hull.points, [at(0.0, 0.0), at(2.0, 0.0), at(1.0, 1.0)]);
-        let point = Shape::hull(&[at(1.0, 2.0); 3], 1.0);
-        assert_eq!(point, Shape::disc(at(1.0, 2.0), 1.0));
-        let bar = Shape::hull(&[at(0.0, 0.0), at(4.0, 0.0), at(2.0, 0.0)], 1.0);
-        assert_eq!(bar, Shape::bar(at(0.0, 0.0), at(4.0, 0.0), 1.0));
+        let hull = Shape::hull(&corners.map(|(x, y)| vector(x, y)), 0.0);
+        assert_eq!(
+            hull.points,
+            [vector(0.0, 0.0), vector(2.0, 0.0), vector(1.0, 1.0)]
+        );
+        let point = Shape::hull(&[vector(1.0, 2.0); 3], 1.0);
+        assert_eq!(point, Shape::disc(vector(1.0, 2.0), 1.0));
+        let bar = Shape::hull(&[vector(0.0, 0.0), vector(4.0, 0.0), vector(2.0, 0.0)], 1.0);
+        assert_eq!(bar, Shape::bar(vector(0.0, 0.0), vector(4.0, 0.0), 1.0));
     }
 }

@@ -23,24 +23,24 @@ pub const PLAY: f64 = 0.2;
 /// Height of a hexagonal head, mm (ISO 4017).
 pub const HEX_HEAD_HEIGHT: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
-const SEAT: f64 = 2.6;
+const SEAT_HEIGHT: f64 = 2.6;
 /// Height of a leg's bearing on the plate, mm. The foot is six times as far away: play of 0.2 mm in the bearing
 /// moves it by 1.2 mm.
-const BEARING: f64 = 8.5;
+const BEARING_HEIGHT: f64 = 8.5;
 /// From the underside of a leg's crank to the tip of its anchor's screw, mm.
 const ANCHOR_TIP_GAP: f64 = 0.1;
 /// Least thickness above a nut that is sunk into a part, mm.
-const OVER_NUT: f64 = 1.2;
+const MIN_NUT_COVER: f64 = 1.2;
 /// Thickness of a strut's floor under its spring, mm.
 const STRUT_FLOOR_THICKNESS: f64 = 1.6;
 /// Gap between a strut's floor and its spring, mm.
-const OVER_FLOOR: f64 = 0.15;
+const FLOOR_GAP: f64 = 0.15;
 /// Gap above a spring's hook, mm.
-const OVER_HOOK: f64 = 0.5;
+const HOOK_GAP: f64 = 0.5;
 /// Gap between a strut and the screw head that holds it down, mm.
-const OVER_STRUT: f64 = 0.3;
+const STRUT_HEAD_GAP: f64 = 0.3;
 /// Thickness of a link under the horn's arm, mm.
-const UNDER_HORN: f64 = 1.8;
+const HORN_FLOOR_THICKNESS: f64 = 1.8;
 /// Thickness of a sleeve's floor and roof, mm.
 const SLEEVE_WALL_THICKNESS: f64 = 1.3;
 /// The leaf that carries a foot: five layers of a printer, mm.
@@ -49,9 +49,9 @@ pub const LEAF: f64 = 1.0;
 pub const PAD_LIP: f64 = 0.8;
 /// Gap between a pad and its leaf, mm: the height by which a foot's screw can raise the foot,
 /// and the width of the hex key that measures the gap. The screw can lower a foot by more.
-const RAISE: f64 = 2.0;
+const MAX_FOOT_RAISE: f64 = 2.0;
 /// Thickness above the nut of a foot's screw, mm.
-const OVER_FOOT_NUT: f64 = 1.6;
+const FOOT_NUT_COVER: f64 = 1.6;
 
 /// The heights of all layers of the robot, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,43 +115,50 @@ pub struct Stack {
 impl Stack {
     /// Computes the heights of a robot from its parts.
     pub fn new(parts: &Parts) -> Self {
-        let (t, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
-        let above = |below: Span, height: f64| [below[1] + gap, below[1] + gap + height];
+        let (thickness, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
+        let span_above =
+            |lower_span: Span, height: f64| [lower_span[1] + gap, lower_span[1] + gap + height];
         let plate = [-parts.plate, 0.0];
-        let seat = [0.0, SEAT];
-        let crank = [gap, gap + t.max(screw.nut_height + 1.0)];
-        let bearing = [crank[1], crank[0] + BEARING];
+        let seat = [0.0, SEAT_HEIGHT];
+        let crank = [gap, gap + thickness.max(screw.nut_height + 1.0)];
+        let bearing = [crank[1], crank[0] + BEARING_HEIGHT];
         let strut_low = crank[1] + 1.5;
         let strut = [strut_low, strut_low + STRUT_FLOOR_THICKNESS];
-        let coil = strut[1] + OVER_FLOOR + parts.spring.outer / 2.0;
+        let coil = strut[1] + FLOOR_GAP + parts.spring.outer / 2.0;
         // The anchor's screw must not touch the plate under its crank.
         let tip = crank[0] + ANCHOR_TIP_GAP;
-        let on_hook = tip + screw_length(coil + parts.spring.wire / 2.0 + OVER_HOOK - tip);
-        let walls = on_hook - OVER_STRUT;
+        let anchor_head_face = tip + screw_length(coil + parts.spring.wire / 2.0 + HOOK_GAP - tip);
+        let wall_top = anchor_head_face - STRUT_HEAD_GAP;
         // The underside of the horn's arm on the shaft.
-        let hub = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
-        let arm = hub + parts.horn.height - parts.horn.thickness;
-        let link = [arm - UNDER_HORN, arm - UNDER_HORN + t];
-        let lower = above(link, t);
-        let upper = above(lower, t);
-        let bore_low = lower[0] + SLEEVE_WALL_THICKNESS;
-        let bore = [bore_low, bore_low + t + 2.0 * parts.fit];
+        let hub_z = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
+        let arm_z = hub_z + parts.horn.height - parts.horn.thickness;
+        let link = [
+            arm_z - HORN_FLOOR_THICKNESS,
+            arm_z - HORN_FLOOR_THICKNESS + thickness,
+        ];
+        let lower_coupler = span_above(link, thickness);
+        let upper_coupler = span_above(lower_coupler, thickness);
+        let bore_low = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
+        let bore = [bore_low, bore_low + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
+        let slider_top = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
             + link[0]
             + HEX_HEAD_HEIGHT;
         let deck = STANDOFFS
             .into_iter()
-            .find(|length| *length >= slider + gap)
-            .unwrap_or(slider + gap);
-        let leg_coupler = [-t - gap, 0.0];
+            .find(|length| *length >= slider_top + gap)
+            .unwrap_or(slider_top + gap);
+        let leg_coupler = [-thickness - gap, 0.0];
         let pad = [-parts.height, parts.pad.height - parts.height];
-        let leaf = pad[1] + RAISE;
+        let leaf_low = pad[1] + MAX_FOOT_RAISE;
         Self {
             floor: -parts.height,
             pad,
-            leaf: [leaf, leaf + LEAF],
-            boss_of_foot: [leaf + LEAF, leaf + screw.nut_height + OVER_FOOT_NUT],
+            leaf: [leaf_low, leaf_low + LEAF],
+            boss_of_foot: [
+                leaf_low + LEAF,
+                leaf_low + screw.nut_height + FOOT_NUT_COVER,
+            ],
             leg_coupler,
             plate,
             seat,
@@ -160,17 +167,17 @@ impl Stack {
             bearing,
             anchor: [crank[1], strut[0] - PLAY],
             strut,
-            recess: [strut[1], walls],
+            recess: [strut[1], wall_top],
             coil,
-            anchor_head_face: on_hook,
+            anchor_head_face,
             hex_head_face: link[0] + HEX_HEAD_HEIGHT,
-            rigid: [strut[0], walls],
+            rigid: [strut[0], wall_top],
             link,
-            horn: [arm, link[1]],
+            horn: [arm_z, link[1]],
             head_recess: [link[1] - screw.head_height - PLAY, link[1]],
-            lower_coupler: lower,
-            upper_coupler: upper,
-            sleeve: [lower[0], bore[1] + SLEEVE_WALL_THICKNESS],
+            lower_coupler,
+            upper_coupler,
+            sleeve: [lower_coupler[0], bore[1] + SLEEVE_WALL_THICKNESS],
             bore,
             rod,
             deck: [deck, deck + parts.plate],
@@ -192,7 +199,7 @@ impl Stack {
 
     /// True if a leg's crank is thick enough above the nut that is sunk into it.
     pub fn holds_nut(&self, parts: &Parts) -> bool {
-        self.anchor[1] - self.anchor_nut(parts).0 >= OVER_NUT
+        self.anchor[1] - self.anchor_nut(parts).0 >= MIN_NUT_COVER
     }
 }
 
@@ -206,5 +213,7 @@ pub fn screw_length(min: f64) -> f64 {
 
 /// True if shops have a screw of this length, mm.
 pub fn is_sold(length: f64) -> bool {
-    SCREWS.iter().any(|sold| (sold - length).abs() < 1e-9)
+    SCREWS
+        .iter()
+        .any(|stock_length| (stock_length - length).abs() < 1e-9)
 }

@@ -18,30 +18,30 @@ pub(crate) struct LoopJoint {
 }
 
 /// Returns all cut joints: those of head and tail, of the sliders, of the legs' parallelograms and of the struts.
-pub(crate) fn cut_joints(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
+pub(crate) fn cut_joints(assembly: &Assembly, is_slotted: bool) -> Vec<LoopJoint> {
     let (lizard, layout) = (assembly.robot().lizard(), assembly.layout());
-    let mut all = Vec::new();
+    let mut joints = Vec::new();
     // Each point is on the x axis of the first body.
-    let mut close = |name: String, bodies: [Node; 2], x: f64| {
+    let mut add_joint = |name: String, bodies: [Node; 2], x: f64| {
         let at = Vector::new(x, 0.0);
-        all.push(LoopJoint { name, bodies, at });
+        joints.push(LoopJoint { name, bodies, at });
     };
     for end in End::ALL {
         let couplers = end
             .servos()
             .map(|servo| Node::OnMount(Mount::Coupler(servo)));
-        close(format!("end {end}"), couplers, lizard.end(end).coupler_left);
+        add_joint(format!("end {end}"), couplers, lizard.end(end).coupler_left);
     }
     for side in Side::ALL {
         let [front, _] = side.servos();
         let bodies = [Mount::Rod(side), Mount::Link(front)].map(Node::OnMount);
-        close(format!("slider {side}"), bodies, 0.0);
+        add_joint(format!("slider {side}"), bodies, 0.0);
     }
     for servo in 0..4 {
         let leg = lizard_robot::servo::LEGS[servo];
         let bodies = [Mount::Foot(servo), Mount::Follower(servo)].map(Node::OnMount);
-        close(format!("follower joint {leg}"), bodies, lizard.leg.coupler);
-        let strut = match slotted {
+        add_joint(format!("follower joint {leg}"), bodies, lizard.leg.coupler);
+        let strut = match is_slotted {
             true => Node::Slot(servo),
             false => Node::OnMount(Mount::Strut(servo)),
         };
@@ -49,7 +49,7 @@ pub(crate) fn cut_joints(assembly: &Assembly, slotted: bool) -> Vec<LoopJoint> {
             [strut, Node::OnMount(Mount::Crank(servo))],
             layout.legs[servo].strut_length,
         );
-        close(format!("leg anchor {leg}"), bodies, length);
+        add_joint(format!("leg anchor {leg}"), bodies, length);
     }
-    all
+    joints
 }

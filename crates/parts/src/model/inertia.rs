@@ -27,12 +27,13 @@ impl Inertia {
                 + a[2] * (b[0] * c[1] - b[1] * c[0]))
                 / 6.0;
             sum.mass += volume;
-            let all = [0, 1, 2].map(|i| a[i] + b[i] + c[i]);
+            let corner_sum = [0, 1, 2].map(|i| a[i] + b[i] + c[i]);
             for i in 0..3 {
-                sum.first_moments[i] += volume * all[i] / 4.0;
+                sum.first_moments[i] += volume * corner_sum[i] / 4.0;
                 for j in 0..3 {
                     let products = a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
-                    sum.second_moments[i][j] += volume * (all[i] * all[j] + products) / 20.0;
+                    sum.second_moments[i][j] +=
+                        volume * (corner_sum[i] * corner_sum[j] + products) / 20.0;
                 }
             }
         }
@@ -50,22 +51,24 @@ impl Inertia {
     /// The moments of the body after its density is multiplied by a factor.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
-        self.first_moments = self.first_moments.map(|part| part * factor);
-        self.second_moments = self.second_moments.map(|row| row.map(|part| part * factor));
+        self.first_moments = self.first_moments.map(|component| component * factor);
+        self.second_moments = self
+            .second_moments
+            .map(|row| row.map(|component| component * factor));
         self
     }
 
     /// The moments of the body after it is moved by an offset, mm.
-    pub fn moved(mut self, by: [f64; 3]) -> Self {
+    pub fn moved(mut self, offset: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
                 self.second_moments[i][j] +=
-                    by[i] * self.first_moments[j] + self.first_moments[i] * by[j];
-                self.second_moments[i][j] += self.mass * by[i] * by[j];
+                    offset[i] * self.first_moments[j] + self.first_moments[i] * offset[j];
+                self.second_moments[i][j] += self.mass * offset[i] * offset[j];
             }
         }
-        for (first, by) in self.first_moments.iter_mut().zip(by) {
-            *first += self.mass * by;
+        for (first_moment, offset) in self.first_moments.iter_mut().zip(offset) {
+            *first_moment += self.mass * offset;
         }
         self
     }
@@ -84,16 +87,21 @@ impl Inertia {
 
     /// The mass centre, mm.
     pub fn centre(&self) -> [f64; 3] {
-        self.first_moments.map(|part| part / self.mass)
+        self.first_moments.map(|component| component / self.mass)
     }
 
     /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz. The products have the sign that they have
     /// in the inertia tensor.
     pub fn tensor(&self) -> [f64; 6] {
-        let at = self.centre();
-        let about = |i: usize, j: usize| self.second_moments[i][j] - self.mass * at[i] * at[j];
-        let [x, y, z] = [0, 1, 2].map(|i| about(i, i));
-        let [xy, xz, yz] = [about(0, 1), about(0, 2), about(1, 2)];
+        let centre = self.centre();
+        let central_moment_of =
+            |i: usize, j: usize| self.second_moments[i][j] - self.mass * centre[i] * centre[j];
+        let [x, y, z] = [0, 1, 2].map(|i| central_moment_of(i, i));
+        let [xy, xz, yz] = [
+            central_moment_of(0, 1),
+            central_moment_of(0, 2),
+            central_moment_of(1, 2),
+        ];
         [y + z, x + z, x + y, -xy, -xz, -yz]
     }
 
@@ -102,7 +110,7 @@ impl Inertia {
         // kg m^2 per g mm^2.
         const MILLI_CUBED: f64 = 1e-9;
         self.tensor()
-            .map(|part| format!("{:.6e}", part * MILLI_CUBED))
+            .map(|component| format!("{:.6e}", component * MILLI_CUBED))
     }
 }
 
@@ -115,54 +123,71 @@ mod tests {
     use crate::layers::body::Prism;
     use crate::layers::shape::Shape;
 
-    fn prism(add: Shape, z: [f64; 2]) -> Inertia {
-        let (add, cut) = (vec![add], Vec::new());
-        Inertia::of(&Mesh::of(&Solid::of(&[Prism::new(add, cut, z)])))
+    fn inertia_of(filled: Shape, z: [f64; 2]) -> Inertia {
+        let (filled, cut) = (vec![filled], Vec::new());
+        Inertia::of(&Mesh::of(&Solid::of(&[Prism::new(filled, cut, z)])))
     }
 
     #[test]
     fn a_box_has_the_inertia_of_a_box() {
         let (middle, size) = (Vector::new(7.0, -3.0), Vector::new(20.0, 10.0));
-        let found = prism(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
-        assert!((found.mass - 800.0).abs() < 1e-9);
-        for (part, wanted) in found.centre().into_iter().zip([7.0, -3.0, 4.0]) {
-            assert!((part - wanted).abs() < 1e-9);
+        let inertia = inertia_of(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
+        assert!((inertia.mass - 800.0).abs() < 1e-9);
+        for (component, expected) in inertia.centre().into_iter().zip([7.0, -3.0, 4.0]) {
+            assert!((component - expected).abs() < 1e-9);
         }
         let third = 800.0 / 12.0;
-        let wanted = [third * 116.0, third * 416.0, third * 500.0, 0.0, 0.0, 0.0];
-        for (part, wanted) in found.tensor().into_iter().zip(wanted) {
-            assert!((part - wanted).abs() < 1e-6, "{part} {wanted}");
+        let expected = [third * 116.0, third * 416.0, third * 500.0, 0.0, 0.0, 0.0];
+        for (component, expected) in inertia.tensor().into_iter().zip(expected) {
+            assert!(
+                (component - expected).abs() < 1e-6,
+                "{component} {expected}"
+            );
         }
     }
 
     #[test]
     fn a_body_that_is_moved_is_the_same_body_elsewhere() {
-        let block = |x: f64, y: f64, z: f64| {
+        let block_at = |x: f64, y: f64, z: f64| {
             let (middle, size) = (Vector::new(x, y), Vector::new(20.0, 10.0));
-            prism(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
+            inertia_of(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
         };
-        let (moved, wanted) = (
-            block(7.0, -3.0, 2.0).moved([-9.0, 5.0, 1.0]),
-            block(-2.0, 2.0, 3.0),
+        let (moved_block, expected_block) = (
+            block_at(7.0, -3.0, 2.0).moved([-9.0, 5.0, 1.0]),
+            block_at(-2.0, 2.0, 3.0),
         );
-        let pairs = moved.centre().into_iter().zip(wanted.centre());
-        let pairs = pairs.chain(moved.tensor().into_iter().zip(wanted.tensor()));
-        for (part, wanted) in pairs {
-            assert!((part - wanted).abs() < 1e-6, "{part} {wanted}");
+        let pairs = moved_block
+            .centre()
+            .into_iter()
+            .zip(expected_block.centre());
+        let pairs = pairs.chain(
+            moved_block
+                .tensor()
+                .into_iter()
+                .zip(expected_block.tensor()),
+        );
+        for (component, expected) in pairs {
+            assert!(
+                (component - expected).abs() < 1e-6,
+                "{component} {expected}"
+            );
         }
     }
 
     #[test]
     fn two_halves_have_the_inertia_of_the_whole() {
-        let block = |x: f64, long: f64| {
-            let (middle, size) = (Vector::new(x, 1.0), Vector::new(long, 8.0));
-            prism(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
+        let block_of = |x: f64, length: f64| {
+            let (middle, size) = (Vector::new(x, 1.0), Vector::new(length, 8.0));
+            inertia_of(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
         };
-        let whole = block(5.0, 20.0);
-        let both = block(0.0, 10.0).plus(&block(10.0, 10.0)).scaled(0.5);
-        assert!((both.mass - whole.mass / 2.0).abs() < 1e-9);
-        for (part, wanted) in both.tensor().into_iter().zip(whole.tensor()) {
-            assert!((part - wanted / 2.0).abs() < 1e-6, "{part} {wanted}");
+        let whole_block = block_of(5.0, 20.0);
+        let two_halves = block_of(0.0, 10.0).plus(&block_of(10.0, 10.0)).scaled(0.5);
+        assert!((two_halves.mass - whole_block.mass / 2.0).abs() < 1e-9);
+        for (component, expected) in two_halves.tensor().into_iter().zip(whole_block.tensor()) {
+            assert!(
+                (component - expected / 2.0).abs() < 1e-6,
+                "{component} {expected}"
+            );
         }
     }
 }

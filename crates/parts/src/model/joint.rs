@@ -56,8 +56,8 @@ impl Writer<'_> {
     /// The smallest and largest change of a slider's length from neutral, mm.
     fn stroke(&self, side: Side) -> [f64; 2] {
         let limits = self.assembly.robot().limits();
-        let now = self.neutral.side(side).s;
-        [limits.stroke_min, limits.stroke_max].map(|end| end - now)
+        let neutral_travel = self.neutral.side(side).s;
+        [limits.stroke_min, limits.stroke_max].map(|limit| limit - neutral_travel)
     }
 
     /// Damping, N m s or N s/m, and dry friction, N m or N, of a body's joint.
@@ -65,7 +65,7 @@ impl Writer<'_> {
         let motors = &self.scene.motors;
         let resistance = match (self.driving_servo(node), node) {
             (Some(servo), _) => {
-                [motors.each[servo].damping(), motors.joints.drag].map(|of| of * MILLI)
+                [motors.each[servo].damping(), motors.joints.drag].map(|value| value * MILLI)
             }
             (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joints.slider],
             (None, Node::Pad(_)) => [self.leaf_spring()[1], 0.0],

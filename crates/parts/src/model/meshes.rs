@@ -10,8 +10,8 @@ use crate::model::pieces::Piece;
 /// The materials that occur among the parts of a body.
 pub(super) fn materials_of(pieces: &[Piece], node: Node) -> impl Iterator<Item = Material> {
     let is_present = move |material: &Material| {
-        let mut own = pieces.iter().filter(|piece| piece.node == node);
-        own.any(|piece| Material::of(piece.kind) == *material)
+        let mut node_pieces = pieces.iter().filter(|piece| piece.node == node);
+        node_pieces.any(|piece| Material::of(piece.kind) == *material)
     };
     Material::ALL.into_iter().filter(is_present)
 }
@@ -30,11 +30,11 @@ pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
             let is_own =
                 |piece: &&Piece| piece.node == node && Material::of(piece.kind) == material;
             for piece in pieces.iter().filter(is_own) {
-                let first = mesh.corners.len();
+                let first_corner = mesh.corners.len();
                 mesh.corners.extend(&piece.mesh.corners);
-                let moved = piece.mesh.triangles.iter();
+                let triangles = piece.mesh.triangles.iter();
                 mesh.triangles
-                    .extend(moved.map(|of| of.map(|corner| first + corner)));
+                    .extend(triangles.map(|triangle| triangle.map(|corner| first_corner + corner)));
             }
             files.push(File {
                 bytes: stl(&node.name(), &mesh),

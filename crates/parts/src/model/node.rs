@@ -35,11 +35,11 @@ pub(crate) enum Freedom {
 
 impl Node {
     /// Every body of the robot, each after its parent.
-    pub fn all(slotted: bool, play: bool) -> Vec<Self> {
-        let mut all = vec![Self::OnMount(Mount::Chassis)];
+    pub fn all(is_slotted: bool, has_play: bool) -> Vec<Self> {
+        let mut nodes = vec![Self::OnMount(Mount::Chassis)];
         for servo in 0..4 {
-            if play {
-                all.push(Self::Horn(servo));
+            if has_play {
+                nodes.push(Self::Horn(servo));
             }
             let mounts = [
                 Mount::Link,
@@ -49,24 +49,24 @@ impl Node {
                 Mount::Foot,
                 Mount::Strut,
             ];
-            all.extend(mounts.map(|mount| Self::OnMount(mount(servo))));
-            all.push(Self::Pad(servo));
-            if slotted {
-                all.push(Self::Slot(servo));
+            nodes.extend(mounts.map(|mount| Self::OnMount(mount(servo))));
+            nodes.push(Self::Pad(servo));
+            if is_slotted {
+                nodes.push(Self::Slot(servo));
             }
         }
         for side in Side::ALL {
-            all.extend([Mount::Sleeve(side), Mount::Rod(side)].map(Self::OnMount));
+            nodes.extend([Mount::Sleeve(side), Mount::Rod(side)].map(Self::OnMount));
         }
-        all
+        nodes
     }
 
     /// The node's parent; `None` for the chassis.
-    pub fn parent(self, play: bool) -> Option<Self> {
+    pub fn parent(self, has_play: bool) -> Option<Self> {
         let chassis = Self::OnMount(Mount::Chassis);
         Some(match self {
             Self::OnMount(Mount::Chassis) => return None,
-            Self::OnMount(Mount::Link(servo)) if play => Self::Horn(servo),
+            Self::OnMount(Mount::Link(servo)) if has_play => Self::Horn(servo),
             Self::Horn(_)
             | Self::OnMount(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => chassis,
             Self::OnMount(Mount::Foot(servo)) => Self::OnMount(Mount::Crank(servo)),
@@ -102,20 +102,20 @@ impl Node {
 
     /// The node's name, which is also the name of its joint to the parent.
     pub fn name(self) -> String {
-        let of = |what: &str, name: &str| format!("{what} {name}");
+        let name_of = |kind: &str, name: &str| format!("{kind} {name}");
         match self {
             Self::OnMount(Mount::Chassis) => "chassis".to_owned(),
-            Self::OnMount(Mount::Link(servo)) => of("link", NAMES[servo]),
-            Self::OnMount(Mount::Coupler(servo)) => of("coupler", NAMES[servo]),
-            Self::OnMount(Mount::Crank(servo)) => of("crank", LEGS[servo]),
-            Self::OnMount(Mount::Follower(servo)) => of("follower", LEGS[servo]),
-            Self::OnMount(Mount::Foot(servo)) => of("leg coupler", LEGS[servo]),
-            Self::OnMount(Mount::Strut(servo)) => of("strut", LEGS[servo]),
-            Self::OnMount(Mount::Sleeve(side)) => of("sleeve", side.name()),
-            Self::OnMount(Mount::Rod(side)) => of("rod", side.name()),
-            Self::Horn(servo) => of("horn", NAMES[servo]),
-            Self::Pad(servo) => of("foot", LEGS[servo]),
-            Self::Slot(servo) => of("slot", LEGS[servo]),
+            Self::OnMount(Mount::Link(servo)) => name_of("link", NAMES[servo]),
+            Self::OnMount(Mount::Coupler(servo)) => name_of("coupler", NAMES[servo]),
+            Self::OnMount(Mount::Crank(servo)) => name_of("crank", LEGS[servo]),
+            Self::OnMount(Mount::Follower(servo)) => name_of("follower", LEGS[servo]),
+            Self::OnMount(Mount::Foot(servo)) => name_of("leg coupler", LEGS[servo]),
+            Self::OnMount(Mount::Strut(servo)) => name_of("strut", LEGS[servo]),
+            Self::OnMount(Mount::Sleeve(side)) => name_of("sleeve", side.name()),
+            Self::OnMount(Mount::Rod(side)) => name_of("rod", side.name()),
+            Self::Horn(servo) => name_of("horn", NAMES[servo]),
+            Self::Pad(servo) => name_of("foot", LEGS[servo]),
+            Self::Slot(servo) => name_of("slot", LEGS[servo]),
         }
     }
 }
@@ -126,12 +126,12 @@ mod tests {
 
     #[test]
     fn each_body_comes_once_and_after_its_parent() {
-        for (slotted, play) in [(false, false), (true, false), (false, true), (true, true)] {
-            let all = Node::all(slotted, play);
-            for (index, node) in all.iter().enumerate() {
-                assert!(!all[..index].contains(node), "{node:?}");
-                match node.parent(play) {
-                    Some(parent) => assert!(all[..index].contains(&parent), "{node:?}"),
+        for (is_slotted, has_play) in [(false, false), (true, false), (false, true), (true, true)] {
+            let nodes = Node::all(is_slotted, has_play);
+            for (index, node) in nodes.iter().enumerate() {
+                assert!(!nodes[..index].contains(node), "{node:?}");
+                match node.parent(has_play) {
+                    Some(parent) => assert!(nodes[..index].contains(&parent), "{node:?}"),
                     None => assert_eq!(*node, Node::OnMount(Mount::Chassis)),
                 }
             }

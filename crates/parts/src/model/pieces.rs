@@ -18,7 +18,7 @@ use crate::unfit::BuildProblem;
 
 /// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to the leaf and
 /// the column.
-const POST: f64 = 8.0;
+const POST_RADIUS: f64 = 8.0;
 
 /// The layers of one part that move with one body of the model.
 pub(super) struct Piece {
@@ -31,17 +31,17 @@ pub(super) struct Piece {
 
 /// Computes the pieces of all parts, with the kind of struts that the scene has.
 pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, BuildProblem> {
-    let slotted = scene.pull.is_some();
+    let is_slotted = scene.pull.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
     let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
     // The scene may use the other kind of strut than the assembly does.
-    let swap = has_spring(assembly.bodies()) != slotted;
-    let own = assembly.bodies().iter();
-    let own = own.filter(|body| !(swap && is_strut(body)));
-    let other = assembly.alternatives().iter().filter(|_| swap);
-    let springs = (0..4).filter(|_| swap && slotted);
-    let mut pieces: Vec<Piece> = springs.map(|servo| spring(assembly, servo)).collect();
-    for body in own.chain(other) {
+    let is_swapped = has_spring(assembly.bodies()) != is_slotted;
+    let own_bodies = assembly.bodies().iter();
+    let own_bodies = own_bodies.filter(|body| !(is_swapped && is_strut(body)));
+    let other_bodies = assembly.alternatives().iter().filter(|_| is_swapped);
+    let springs = (0..4).filter(|_| is_swapped && is_slotted);
+    let mut pieces: Vec<Piece> = springs.map(|servo| spring_piece(assembly, servo)).collect();
+    for body in own_bodies.chain(other_bodies) {
         let grams = bill::grams(body, assembly);
         let volume = volume(&body.prisms);
         for (node, prisms) in split_by_node(assembly, scene, body) {
@@ -68,7 +68,7 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, B
 }
 
 /// The spring of a slotted strut that the assembly does not draw: a bar as wide as the coil, from screw to screw.
-fn spring(assembly: &Assembly, servo: usize) -> Piece {
+fn spring_piece(assembly: &Assembly, servo: usize) -> Piece {
     let coil = assembly.robot().parts().spring;
     let length = assembly.layout().legs[servo].strut_length;
     let radius = coil.outer / 2.0;
@@ -90,24 +90,31 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
 /// Sorts the layers of a body by the rigid body of the model with which they move. Only a foot's layers move with
 /// two of them.
 fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
-    let of = |node: Node| vec![(node, body.prisms.clone())];
+    let all_prisms_on = |node: Node| vec![(node, body.prisms.clone())];
     match body.mount {
         Mount::Foot(servo) => {
             let foot = assembly.layout().legs[servo].foot;
-            let post = |prism: &Prism| (middle(prism) - foot).length() < POST;
-            let (post, rest): (Vec<_>, Vec<_>) = body.prisms.iter().cloned().partition(post);
-            let all = [(Node::Pad(servo), post), (Node::OnMount(body.mount), rest)].into_iter();
-            let some = all.filter(|(_, prisms)| !prisms.is_empty());
-            some.collect()
+            let is_post = |prism: &Prism| (centroid_of(prism) - foot).length() < POST_RADIUS;
+            let (post_prisms, other_prisms): (Vec<_>, Vec<_>) =
+                body.prisms.iter().cloned().partition(is_post);
+            let groups = [
+                (Node::Pad(servo), post_prisms),
+                (Node::OnMount(body.mount), other_prisms),
+            ]
+            .into_iter();
+            let filled_groups = groups.filter(|(_, prisms)| !prisms.is_empty());
+            filled_groups.collect()
         }
-        Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => of(Node::Horn(servo)),
-        Mount::Strut(servo) if body.kind == Kind::Spring => of(Node::Slot(servo)),
-        mount => of(Node::OnMount(mount)),
+        Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => {
+            all_prisms_on(Node::Horn(servo))
+        }
+        Mount::Strut(servo) if body.kind == Kind::Spring => all_prisms_on(Node::Slot(servo)),
+        mount => all_prisms_on(Node::OnMount(mount)),
     }
 }
 
 /// The centroid of a layer, mm.
-fn middle(prism: &Prism) -> Vector {
+fn centroid_of(prism: &Prism) -> Vector {
     let outline = Outline::of(prism);
     outline.moment() * (1.0 / outline.area())
 }

@@ -115,29 +115,29 @@ impl Course {
     /// neutral, with the angles of the firmware's tables. The last `count` cycles are measured.
     #[must_use]
     pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32, count: u32) -> Self {
-        let angles = |seconds: f64| {
+        let angles_at = |seconds: f64| {
             let phase = (gait.phase(seconds) * 65536.0).round() as i64;
             gait.table_angles(phase.rem_euclid(65536) as u16)
         };
-        let sweeps = |angles: [f64; 4]| -> [f64; 4] {
+        let sweeps_of = |angles: [f64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| lizard_kinematics::wrap(angles[i] - robot.servos()[i].neutral))
         };
-        let start = sweeps(angles(0.0));
-        let begin = APPROACH_S + SETTLE_S;
+        let start_sweeps = sweeps_of(angles_at(0.0));
+        let begin_s = APPROACH_S + SETTLE_S;
         let period = gait.period();
-        let seconds = begin + f64::from(cycles) * period;
-        let targets = |frame: usize| {
-            let now = frame as f64 / FRAMES_PER_SECOND;
-            match now < begin {
-                true => start.map(|sweep| sweep * (now / APPROACH_S).min(1.0)),
-                false => sweeps(angles(now - begin)),
+        let seconds = begin_s + f64::from(cycles) * period;
+        let targets_at = |frame: usize| {
+            let time_s = frame as f64 / FRAMES_PER_SECOND;
+            match time_s < begin_s {
+                true => start_sweeps.map(|sweep| sweep * (time_s / APPROACH_S).min(1.0)),
+                false => sweeps_of(angles_at(time_s - begin_s)),
             }
         };
-        let last = (seconds * FRAMES_PER_SECOND).ceil() as usize;
+        let last_frame = (seconds * FRAMES_PER_SECOND).ceil() as usize;
         Self {
             gait: gait.name().to_owned(),
-            frames: (0..=last).map(targets).collect(),
-            measure_start: begin + f64::from(cycles - count) * period,
+            frames: (0..=last_frame).map(targets_at).collect(),
+            measure_start: begin_s + f64::from(cycles - count) * period,
             period,
             count,
         }

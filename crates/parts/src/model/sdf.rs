@@ -25,13 +25,13 @@ impl Writer<'_> {
         for node in self.nodes() {
             self.write_sdf_joint(node);
         }
-        for closed in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
-            let [first, second] = closed.bodies.map(Node::identifier);
+        for loop_joint in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
+            let [first, second] = loop_joint.bodies.map(Node::identifier);
             // A ball is enough: all axes are vertical already, and a hinge would constrain their direction twice.
-            self.write_sdf_connection(&closed.identifier(), "ball", &first, &second);
-            let at = metres([closed.at.x, closed.at.y, 0.0]);
+            self.write_sdf_connection(&loop_joint.identifier(), "ball", &first, &second);
+            let position = metres([loop_joint.at.x, loop_joint.at.y, 0.0]);
             let pose = format!(r#"pose relative_to="{first}""#);
-            self.xml.value(pose, format_args!("{at} 0 0 0"));
+            self.xml.value(pose, format_args!("{position} 0 0 0"));
             self.xml.close();
         }
     }
@@ -39,12 +39,12 @@ impl Writer<'_> {
     fn write_sdf_link(&mut self, node: Node, folder: &str) {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
-        let place = self.place_on_parent(node);
-        let turn = place.x_axis.angle().to_radians();
+        let placement = self.place_on_parent(node);
+        let turn = placement.x_axis.angle().to_radians();
         match self.parent(node) {
             Some(parent) => {
                 let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
-                self.write_pose(&pose, [place.origin.x, place.origin.y, 0.0], turn);
+                self.write_pose(&pose, [placement.origin.x, placement.origin.y, 0.0], turn);
             }
             // The model's x axis points ahead, its y axis to the left.
             None => self.write_pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
@@ -60,18 +60,18 @@ impl Writer<'_> {
         }
         self.xml.close();
         self.xml.close();
-        for look in meshes::materials_of(self.visible_pieces(), node) {
-            self.xml.open(format!(r#"visual name="{}""#, look.name));
+        for material in meshes::materials_of(self.visible_pieces(), node) {
+            self.xml.open(format!(r#"visual name="{}""#, material.name));
             self.xml.open("geometry");
             self.xml.open("mesh");
-            let file = format!("{folder}{}", meshes::mesh_file_name(node, look));
+            let file = format!("{folder}{}", meshes::mesh_file_name(node, material));
             self.xml.value("uri", escape_attribute(&file));
             self.xml.value("scale", "0.001 0.001 0.001");
             self.xml.close();
             self.xml.close();
             self.xml.open("material");
-            self.xml.value("ambient", look.colour);
-            self.xml.value("diffuse", look.colour);
+            self.xml.value("ambient", material.colour);
+            self.xml.value("diffuse", material.colour);
             self.xml.close();
             self.xml.close();
         }
@@ -135,7 +135,7 @@ impl Writer<'_> {
         self.xml.open("dynamics");
         self.xml.value("damping", damping);
         self.xml.value("friction", friction);
-        if let Some([reference, stiffness]) = self.spring(node) {
+        if let Some([reference, stiffness]) = self.spring_values(node) {
             self.xml.value("spring_reference", reference);
             self.xml.value("spring_stiffness", stiffness);
         }
@@ -146,7 +146,7 @@ impl Writer<'_> {
 
     /// The position at which the spring of a body's joint is relaxed, m, and the spring's stiffness, N/m; `None` for
     /// a joint without a spring.
-    fn spring(&self, node: Node) -> Option<[f64; 2]> {
+    fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.pull) {
             (Node::Pad(_), _) => Some([0.0, self.leaf_spring()[0]]),
             (Node::Slot(_), Some(Pull { force, rate })) => {
@@ -164,8 +164,9 @@ impl Writer<'_> {
         self.xml.value("child", child);
     }
 
-    fn write_pose(&mut self, element: &str, at: [f64; 3], turn: f64) {
-        let (at, turn) = (metres(at), round(turn));
-        self.xml.value(element, format_args!("{at} 0 0 {turn}"));
+    fn write_pose(&mut self, element: &str, position: [f64; 3], turn: f64) {
+        let (position, turn) = (metres(position), round(turn));
+        self.xml
+            .value(element, format_args!("{position} 0 0 {turn}"));
     }
 }

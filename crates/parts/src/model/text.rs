@@ -6,8 +6,10 @@ use std::fmt::{Display, Write};
 pub(super) const MILLI: f64 = 1e-3;
 
 /// Formats a position in mm as three numbers in metres.
-pub(super) fn metres(at: [f64; 3]) -> String {
-    at.map(|part| round(part * MILLI).to_string()).join(" ")
+pub(super) fn metres(position: [f64; 3]) -> String {
+    position
+        .map(|component| round(component * MILLI).to_string())
+        .join(" ")
 }
 
 /// Rounds a number to nine decimals, and turns -0 into 0.
@@ -38,32 +40,32 @@ pub(super) struct Xml {
 }
 
 impl Xml {
-    fn line(&mut self, text: impl Display) {
+    fn write_line(&mut self, text: impl Display) {
         let indent = self.open.len();
         let _ = writeln!(self.text, "{:indent$}{text}", "");
     }
 
     /// Writes the XML declaration, the first line of a document.
     pub fn declaration(&mut self) {
-        self.line(r#"<?xml version="1.0"?>"#);
+        self.write_line(r#"<?xml version="1.0"?>"#);
     }
 
     /// Writes an element without children.
     pub fn write_empty_element(&mut self, element: impl Display) {
-        self.line(format_args!("<{element}/>"));
+        self.write_line(format_args!("<{element}/>"));
     }
 
     /// Writes an element that holds a value.
     pub fn value(&mut self, element: impl Display, value: impl Display) {
         let element = element.to_string();
         let name = element.split(' ').next().unwrap_or_default();
-        self.line(format_args!("<{element}>{value}</{name}>"));
+        self.write_line(format_args!("<{element}>{value}</{name}>"));
     }
 
     /// Opens an element with children.
     pub fn open(&mut self, element: impl Display) {
         let element = element.to_string();
-        self.line(format_args!("<{element}>"));
+        self.write_line(format_args!("<{element}>"));
         let name = element.split(' ').next().unwrap_or_default();
         self.open.push(name.to_owned());
     }
@@ -71,7 +73,7 @@ impl Xml {
     /// Closes the innermost open element.
     pub fn close(&mut self) {
         if let Some(name) = self.open.pop() {
-            self.line(format_args!("</{name}>"));
+            self.write_line(format_args!("</{name}>"));
         }
     }
 

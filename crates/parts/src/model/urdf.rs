@@ -37,8 +37,8 @@ impl Writer<'_> {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
         }
-        for closed in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
-            self.write_coinciding_frames(&closed);
+        for loop_joint in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
+            self.write_coinciding_frames(&loop_joint);
         }
     }
 
@@ -55,16 +55,19 @@ impl Writer<'_> {
             r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
         ));
         self.xml.close();
-        for look in meshes::materials_of(self.visible_pieces(), node) {
+        for material in meshes::materials_of(self.visible_pieces(), node) {
             self.xml.open("visual");
             self.xml.open("geometry");
-            let file = escape_attribute(&format!("{folder}{}", meshes::mesh_file_name(node, look)));
+            let file = escape_attribute(&format!(
+                "{folder}{}",
+                meshes::mesh_file_name(node, material)
+            ));
             self.xml.write_empty_element(format!(
                 r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
             ));
             self.xml.close();
             self.xml
-                .write_empty_element(format!(r#"material name="{}""#, look.name));
+                .write_empty_element(format!(r#"material name="{}""#, material.name));
             self.xml.close();
         }
         if let Node::Pad(servo) = node {
@@ -89,15 +92,15 @@ impl Writer<'_> {
             (Freedom::Turns, None) => "continuous",
             (Freedom::SlidesAlongX, _) => "prismatic",
         };
-        let place = self.place_on_parent(node);
-        let (parent, up, turned) = match self.parent(node) {
+        let placement = self.place_on_parent(node);
+        let (parent, height, base_turn) = match self.parent(node) {
             Some(parent) => (parent.identifier(), 0.0, 0.0),
             None => (BASE.to_owned(), self.height(), -FRAC_PI_2),
         };
-        let turn = place.x_axis.angle().to_radians() + turned;
+        let turn = placement.x_axis.angle().to_radians() + base_turn;
         let name = self.joint_name(node);
         self.write_urdf_connection(&name, kind, &parent, &node.identifier());
-        self.write_origin([place.origin.x, place.origin.y, up], turn);
+        self.write_origin([placement.origin.x, placement.origin.y, height], turn);
         if kind != "fixed" {
             let axis = match node.freedom() {
                 Freedom::SlidesAlongX => "1 0 0",
@@ -142,24 +145,27 @@ impl Writer<'_> {
             .write_empty_element(format!(r#"child link="{child}""#));
     }
 
-    fn write_origin(&mut self, at: [f64; 3], turn: f64) {
-        let (at, turn) = (metres(at), round(turn));
+    fn write_origin(&mut self, position: [f64; 3], turn: f64) {
+        let (position, turn) = (metres(position), round(turn));
         self.xml
-            .write_empty_element(format!(r#"origin xyz="{at}" rpy="0 0 {turn}""#));
+            .write_empty_element(format!(r#"origin xyz="{position}" rpy="0 0 {turn}""#));
     }
 
     /// Writes the two frames of a joint that closes a loop, one on each body.
-    fn write_coinciding_frames(&mut self, closed: &LoopJoint) {
-        let [first, second] = closed.bodies;
-        let point = self.place(first).map(closed.at);
-        let on_second = self.place(second).unmap(point);
-        for (number, (node, at)) in [(first, closed.at), (second, on_second)].iter().enumerate() {
-            let frame = format!("closing_{}_{}", closed.identifier(), number + 1);
+    fn write_coinciding_frames(&mut self, loop_joint: &LoopJoint) {
+        let [first, second] = loop_joint.bodies;
+        let point = self.place(first).map(loop_joint.at);
+        let point_on_second = self.place(second).unmap(point);
+        for (number, (node, position)) in [(first, loop_joint.at), (second, point_on_second)]
+            .iter()
+            .enumerate()
+        {
+            let frame = format!("closing_{}_{}", loop_joint.identifier(), number + 1);
             self.xml
                 .write_empty_element(format!(r#"link name="{frame}""#));
             let joint = format!("{frame}_joint");
             self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);
-            self.write_origin([at.x, at.y, 0.0], 0.0);
+            self.write_origin([position.x, position.y, 0.0], 0.0);
             self.xml.close();
         }
     }

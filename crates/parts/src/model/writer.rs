@@ -69,12 +69,13 @@ impl<'a> Writer<'a> {
 
     /// The mass and the inertia of a body.
     pub(super) fn mass(&self, node: Node) -> Inertia {
-        let own = self.pieces.iter().filter(|piece| piece.node == node);
-        let drawn = own.fold(Inertia::default(), |sum, piece| sum.plus(&piece.inertia));
+        let node_pieces = self.pieces.iter().filter(|piece| piece.node == node);
+        let drawn_inertia =
+            node_pieces.fold(Inertia::default(), |sum, piece| sum.plus(&piece.inertia));
         match self.parent(node) {
-            Some(_) => drawn.scaled(self.scene.limb_mass_factor),
+            Some(_) => drawn_inertia.scaled(self.scene.limb_mass_factor),
             None => self
-                .chassis_mass(&drawn)
+                .chassis_mass(&drawn_inertia)
                 .plus(&Inertia::point(self.limbs_lost())),
         }
     }
@@ -89,24 +90,24 @@ impl<'a> Writer<'a> {
     /// The chassis, adjusted so that the whole robot has the mass and the mass centre of `[body]`. The mass of what
     /// is not drawn, such as wires, is put at the plate's middle; then the chassis is shifted to correct the mass
     /// centre.
-    fn chassis_mass(&self, drawn: &Inertia) -> Inertia {
+    fn chassis_mass(&self, drawn_inertia: &Inertia) -> Inertia {
         let body = self.assembly.robot().ground().body;
         let bill = Bill::of(self.assembly, &[], self.neutral);
         let bodies = self.assembly.bodies().iter();
-        let parts: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
+        let parts_mass: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
         // If `[body]` states less mass than the parts have, the chassis keeps at least half of its drawn mass.
-        let loose = (body.mass - parts).max(-drawn.mass / 2.0);
-        let chassis = drawn.plus(&Inertia::point(loose));
-        let [ahead, left] =
+        let undrawn_mass = (body.mass - parts_mass).max(-drawn_inertia.mass / 2.0);
+        let chassis = drawn_inertia.plus(&Inertia::point(undrawn_mass));
+        let [moment_ahead, moment_left] =
             [0, 1].map(|i| body.mass * body.centre[i] - bill.grams * bill.centre[i]);
-        chassis.moved([-left, ahead, 0.0].map(|moment| moment / chassis.mass))
+        chassis.moved([-moment_left, moment_ahead, 0.0].map(|moment| moment / chassis.mass))
     }
 
     /// Stiffness of a foot's leaf, N/m, and its damping, N s/m.
     pub(super) fn leaf_spring(&self) -> [f64; 2] {
         let stiffness = self.scene.stiffness / MILLI;
-        let quarter = self.assembly.robot().ground().body.mass * MILLI / 4.0;
-        let damping = DAMPING * 2.0 * (stiffness * quarter).sqrt();
+        let quarter_mass = self.assembly.robot().ground().body.mass * MILLI / 4.0;
+        let damping = DAMPING * 2.0 * (stiffness * quarter_mass).sqrt();
         [stiffness, damping].map(round)
     }
 

@@ -34,7 +34,7 @@ const SEARCH_ANGLES: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
 ];
 /// Number of angles per servo in the grid of poses that are searched if turning one servo is not enough.
-const STEPS: u32 = 9;
+const GRID_ANGLES: u32 = 9;
 
 /// An operation on a screw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,14 +127,14 @@ impl Bench<'_> {
             Kind::ServoScrew => SERVO_SCREW,
             _ => return None,
         };
-        let width = |i: usize| body.prisms[i].filled_shapes[0].width();
-        let last = body.prisms.len().checked_sub(1)?;
+        let width_of = |i: usize| body.prisms[i].filled_shapes[0].width();
+        let last_index = body.prisms.len().checked_sub(1)?;
         // A screw's head is its widest layer.
-        let head = (0..=last).max_by(|a, b| width(*a).total_cmp(&width(*b)))?;
-        let (is_above, prism) = (head == last, &body.prisms[head]);
-        let place = self.assembly.place(body.mount, self.pose);
+        let head_index = (0..=last_index).max_by(|a, b| width_of(*a).total_cmp(&width_of(*b)))?;
+        let (is_above, prism) = (head_index == last_index, &body.prisms[head_index]);
+        let placement = self.assembly.place(body.mount, self.pose);
         Some(Axis {
-            at: place.map(prism.filled_shapes[0].middle()),
+            at: placement.map(prism.filled_shapes[0].middle()),
             radius: prism.filled_shapes[0].width() / 2.0,
             length,
             head_height: prism.z[usize::from(is_above)],
@@ -143,15 +143,16 @@ impl Bench<'_> {
     }
 
     /// True if a body extends into a space.
-    fn fills(&self, body: &Body, room: &FreeSpace) -> bool {
+    fn fills(&self, body: &Body, space: &FreeSpace) -> bool {
         /// Overlap that still counts as touching, mm.
         const TOUCH: f64 = 1e-6;
-        let place = self.assembly.place(body.mount, self.pose);
-        let [low, high] = room.z;
+        let placement = self.assembly.place(body.mount, self.pose);
+        let [low, high] = space.z;
         let is_beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
-        let still = Vector::default();
-        let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
-        let encloses = |hole: &Shape| room.shape.depth_in(&hole.placed(&place), still) > -TOUCH;
+        let no_motion = Vector::default();
+        let meets = |shape: &Shape| space.shape.distance(&shape.placed(&placement)) < -TOUCH;
+        let encloses =
+            |hole: &Shape| space.shape.depth_in(&hole.placed(&placement), no_motion) > -TOUCH;
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
         prisms.any(|prism| {
             prism.filled_shapes.iter().any(meets) && !prism.cut_shapes.iter().any(encloses)
@@ -159,22 +160,22 @@ impl Bench<'_> {
     }
 
     /// The space that a nut needs on its screw.
-    fn nut_space(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> FreeSpace {
-        let place = self.assembly.place(nut.mount, self.pose);
-        let flats = nut.prisms[0].filled_shapes[0].placed(&place);
-        let corner = (flats.points[0] - axis.at).length();
+    fn nut_space(&self, nut: &Body, axis: &Axis, bodies_around: &[&Body]) -> FreeSpace {
+        let placement = self.assembly.place(nut.mount, self.pose);
+        let nut_outline = nut.prisms[0].filled_shapes[0].placed(&placement);
+        let corner_radius = (nut_outline.points[0] - axis.at).length();
         // The face that touches the part, and the outer face.
         let [low, high] = nut.z();
-        let (bears, end) = match axis.direction > 0.0 {
+        let (bearing_height, outer_height) = match axis.direction > 0.0 {
             true => (high, low),
             false => (low, high),
         };
         let encloses = |hole: &Shape| {
-            let depth = flats.depth_in(&hole.placed(&place), Vector::default());
+            let depth = nut_outline.depth_in(&hole.placed(&placement), Vector::default());
             hole.points.len() == 6 && depth > 0.0
         };
-        let mut fixed = around.iter().filter(|body| body.mount == nut.mount);
-        let is_sunk = fixed.any(|body| {
+        let mut mount_bodies = bodies_around.iter().filter(|body| body.mount == nut.mount);
+        let is_sunk = mount_bodies.any(|body| {
             body.prisms
                 .iter()
                 .any(|prism| prism.cut_shapes.iter().any(encloses))
@@ -182,20 +183,24 @@ impl Bench<'_> {
         let length = -axis.direction * SOCKET[1];
         match is_sunk {
             true => FreeSpace {
-                shape: flats,
-                ..axis.room(0.0, end, length)
+                shape: nut_outline,
+                ..axis.room(0.0, outer_height, length)
             },
-            false => axis.room(corner + SOCKET[0], bears, end - bears + length),
+            false => axis.room(
+                corner_radius + SOCKET[0],
+                bearing_height,
+                outer_height - bearing_height + length,
+            ),
         }
     }
 
-    /// The impossible operations on a screw when the bodies `new` are added, each with the name of the body in the
-    /// way.
+    /// The impossible operations on a screw when the bodies `new_bodies` are added, each with the name of the body in
+    /// the way.
     fn obstacles(
         &self,
         screw: &Body,
-        new: &[&Body],
-        around: &[&Body],
+        new_bodies: &[&Body],
+        bodies_around: &[&Body],
         is_turned_later: bool,
     ) -> Vec<(ScrewOperation, String)> {
         let Some(axis) = self.axis(screw) else {
@@ -205,40 +210,45 @@ impl Bench<'_> {
         let nut = nut.filter(|nut| nut.kind == Kind::Nut);
         let is_own = |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
         let is_in = |list: &[&Body], body: &Body| list.iter().any(|other| other.name == body.name);
-        let new_nut = nut.filter(|nut| is_in(new, nut));
-        let complete = is_in(around, screw) && nut.is_none_or(|nut| is_in(around, nut));
-        let is_new = is_in(new, screw);
-        let on_pad = screw.name.strip_prefix("screw height ");
-        let pad = on_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
+        let new_nut = nut.filter(|nut| is_in(new_bodies, nut));
+        let is_complete =
+            is_in(bodies_around, screw) && nut.is_none_or(|nut| is_in(bodies_around, nut));
+        let is_new = is_in(new_bodies, screw);
+        let leg_of_pad = screw.name.strip_prefix("screw height ");
+        let pad = leg_of_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
         let is_pad = |body: &Body| pad.is_some_and(|pad| pad.name == body.name);
-        let others = around.iter().filter(|body| !is_own(&body.name));
-        let others: Vec<&Body> = others.filter(|body| !is_pad(body)).copied().collect();
-        let mut rooms = Vec::new();
+        let other_bodies = bodies_around.iter().filter(|body| !is_own(&body.name));
+        let other_bodies: Vec<&Body> = other_bodies.filter(|body| !is_pad(body)).copied().collect();
+        let mut spaces = Vec::new();
         if is_new {
-            let room = axis.room(axis.radius, axis.head_height, axis.direction * axis.length);
-            rooms.push((ScrewOperation::Push, room));
+            let space = axis.room(axis.radius, axis.head_height, axis.direction * axis.length);
+            spaces.push((ScrewOperation::Push, space));
         }
         // A hexagonal head is held by its pocket.
-        let turns = !matches!(screw.kind, Kind::HexScrew(_));
+        let needs_turning = !matches!(screw.kind, Kind::HexScrew(_));
         // The pad of a height screw, if the hex key does not fit through the pad's hole.
-        let mut through = None;
-        if turns && complete && (is_new || new_nut.is_some() || is_turned_later) {
-            let key = |radius| axis.room(radius, axis.head_height, axis.direction * KEY[1]);
-            rooms.push((ScrewOperation::Turn, key(KEY[0])));
-            through = pad.filter(|pad| is_in(around, pad) && self.fills(pad, &key(HEX_KEY)));
+        let mut blocking_pad = None;
+        if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
+            let key_space = |radius| axis.room(radius, axis.head_height, axis.direction * KEY[1]);
+            spaces.push((ScrewOperation::Turn, key_space(KEY[0])));
+            blocking_pad =
+                pad.filter(|pad| is_in(bodies_around, pad) && self.fills(pad, &key_space(HEX_KEY)));
         }
         if let Some(nut) = new_nut {
-            rooms.push((ScrewOperation::Nut, self.nut_space(nut, &axis, &others)));
+            spaces.push((
+                ScrewOperation::Nut,
+                self.nut_space(nut, &axis, &other_bodies),
+            ));
         }
-        let blocked = |(operation, room): (ScrewOperation, FreeSpace)| {
-            let by = others.iter().find(|body| self.fills(body, &room))?;
-            Some((operation, by.name.clone()))
+        let obstacle_of = |(operation, space): (ScrewOperation, FreeSpace)| {
+            let obstacle = other_bodies.iter().find(|body| self.fills(body, &space))?;
+            Some((operation, obstacle.name.clone()))
         };
-        let through = through.map(|pad| (ScrewOperation::Turn, pad.name.clone()));
-        rooms
+        let pad_obstacle = blocking_pad.map(|pad| (ScrewOperation::Turn, pad.name.clone()));
+        spaces
             .into_iter()
-            .filter_map(blocked)
-            .chain(through)
+            .filter_map(obstacle_of)
+            .chain(pad_obstacle)
             .collect()
     }
 }
@@ -251,34 +261,35 @@ impl Assembly {
             pose,
         };
         let mut all_blocked = Vec::new();
-        let mut before: Vec<&Body> = Vec::new();
-        for (number, step) in (1..).zip(steps) {
-            let begin = before.len();
+        let mut bodies_so_far: Vec<&Body> = Vec::new();
+        for (step_number, step) in (1..).zip(steps) {
+            let first_of_step = bodies_so_far.len();
             for stage in &step.stages {
-                let is_already_on = |body: &Body| before.iter().any(|old| old.name == body.name);
-                let adds = |body: &&Body| (stage.adds)(body) && !is_already_on(body);
-                let new: Vec<_> = self.bodies().iter().filter(adds).collect();
-                before.extend(&new);
+                let is_already_on =
+                    |body: &Body| bodies_so_far.iter().any(|old| old.name == body.name);
+                let is_added = |body: &&Body| (stage.adds)(body) && !is_already_on(body);
+                let new_bodies: Vec<_> = self.bodies().iter().filter(is_added).collect();
+                bodies_so_far.extend(&new_bodies);
                 for screw in self.bodies() {
                     let is_on_same_servos =
                         |body: &&&Body| body.mount.servos() == screw.mount.servos();
-                    let around: Vec<_> = match stage.turning_place {
-                        TurningPlace::Robot => before.clone(),
-                        TurningPlace::Bench => before[begin..]
+                    let bodies_around: Vec<_> = match stage.turning_place {
+                        TurningPlace::Robot => bodies_so_far.clone(),
+                        TurningPlace::Bench => bodies_so_far[first_of_step..]
                             .iter()
                             .filter(is_on_same_servos)
                             .copied()
                             .collect(),
                     };
                     let is_turned_later = (stage.turns)(screw);
-                    let blocked = bench
-                        .obstacles(screw, &new, &around, is_turned_later)
+                    let obstacles = bench
+                        .obstacles(screw, &new_bodies, &bodies_around, is_turned_later)
                         .into_iter();
-                    all_blocked.extend(blocked.map(|(operation, by)| BlockedScrew {
-                        step: number,
+                    all_blocked.extend(obstacles.map(|(operation, obstacle)| BlockedScrew {
+                        step: step_number,
                         screw: screw.name.clone(),
                         operation,
-                        by,
+                        by: obstacle,
                     }));
                 }
             }
@@ -302,30 +313,30 @@ impl Assembly {
             return Ok(access_poses);
         }
         for pose in self.poses_near(neutral) {
-            let still = self.blocked(steps, &pose);
-            let reached = |obstacle: &mut BlockedScrew| {
+            let still_blocked = self.blocked(steps, &pose);
+            let is_reached = |obstacle: &mut BlockedScrew| {
                 let is_same_screw = |other: &BlockedScrew| {
                     other.step == obstacle.step && other.screw == obstacle.screw
                 };
-                !still.iter().any(is_same_screw)
+                !still_blocked.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();
-            for blocked in unreached.extract_if(.., reached) {
-                let of_step = |access_pose: &&mut AccessPose| {
-                    access_pose.step == blocked.step && access_pose.pose == angles
+            for blocked_screw in unreached.extract_if(.., is_reached) {
+                let is_same_pose = |access_pose: &&mut AccessPose| {
+                    access_pose.step == blocked_screw.step && access_pose.pose == angles
                 };
-                match access_poses.iter_mut().find(of_step) {
-                    Some(aside) if aside.screws.contains(&blocked.screw) => {}
-                    Some(aside) => aside.screws.push(blocked.screw),
+                match access_poses.iter_mut().find(is_same_pose) {
+                    Some(access_pose) if access_pose.screws.contains(&blocked_screw.screw) => {}
+                    Some(access_pose) => access_pose.screws.push(blocked_screw.screw),
                     None => access_poses.push(AccessPose {
-                        step: blocked.step,
-                        screws: vec![blocked.screw],
+                        step: blocked_screw.step,
+                        screws: vec![blocked_screw.screw],
                         pose: angles,
                     }),
                 }
             }
             if unreached.is_empty() {
-                access_poses.sort_by_key(|aside| aside.step);
+                access_poses.sort_by_key(|access_pose| access_pose.step);
                 return Ok(access_poses);
             }
         }
@@ -335,23 +346,26 @@ impl Assembly {
     /// Poses that the guard accepts: first those with one servo turned from neutral, the smallest angle first, and
     /// then the poses of a grid, the nearest to neutral first.
     fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
-        let from: [f64; 4] = neutral.into();
+        let neutral_angles: [f64; 4] = neutral.into();
         let mut poses = Vec::new();
         for turn in SEARCH_ANGLES {
             for (servo, turn) in (0..4).flat_map(|servo| [(servo, turn), (servo, -turn)]) {
-                let mut angles = from;
+                let mut angles = neutral_angles;
                 angles[servo] += turn;
                 poses.extend(self.robot().accepted(angles));
             }
         }
-        let distance = |solution: &Solution| {
+        let distance_from_neutral = |solution: &Solution| {
             let angles: [f64; 4] = solution.pose.into();
-            let turns = angles.iter().zip(from).map(|(a, b)| (a - b).abs());
+            let turns = angles
+                .iter()
+                .zip(neutral_angles)
+                .map(|(a, b)| (a - b).abs());
             turns.fold(0.0, f64::max)
         };
-        let mut others: Vec<_> = self.poses(STEPS).collect();
-        others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        poses.extend(others);
+        let mut grid_poses: Vec<_> = self.poses(GRID_ANGLES).collect();
+        grid_poses.sort_by(|a, b| distance_from_neutral(a).total_cmp(&distance_from_neutral(b)));
+        poses.extend(grid_poses);
         poses
     }
 }

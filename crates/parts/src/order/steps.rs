@@ -10,7 +10,7 @@
 use crate::layers::body::{Body, Kind, Mount};
 
 /// The instructions of all steps, each below its title.
-const WORDS: &str = include_str!("steps.md");
+const INSTRUCTIONS: &str = include_str!("steps.md");
 
 /// One step of the guide.
 pub struct Step {
@@ -67,17 +67,17 @@ impl Step {
 
 /// The numbers of the step and of the stage, each from 1, in which a body is added; zeros if no step adds it.
 pub(crate) fn step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
-    for (step, of) in (1..).zip(steps) {
-        if let Some(stage) = of.stages.iter().position(|stage| (stage.adds)(body)) {
-            return (step, stage + 1);
+    for (number, step) in (1..).zip(steps) {
+        if let Some(stage) = step.stages.iter().position(|stage| (stage.adds)(body)) {
+            return (number, stage + 1);
         }
     }
     (0, 0)
 }
 
 /// True if a body's name starts with one of the given texts.
-fn has_name_prefix(body: &Body, starts: &[&str]) -> bool {
-    starts.iter().any(|start| body.name.starts_with(start))
+fn has_name_prefix(body: &Body, prefixes: &[&str]) -> bool {
+    prefixes.iter().any(|prefix| body.name.starts_with(prefix))
 }
 
 /// A stage on the robot, without screws that are turned again.
@@ -90,23 +90,28 @@ fn bench_stage(adds: fn(&Body) -> bool) -> Stage {
     stage(TurningPlace::Bench, adds)
 }
 
-fn stage(at: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
+fn stage(turning_place: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
     let turns = |_: &Body| false;
     Stage {
-        turning_place: at,
+        turning_place,
         adds,
         turns,
     }
 }
 
 /// A step with the instructions from `steps.md` below its title.
-fn step(title: &'static str, lift: fn(&Body) -> f64, near: ExtraView, stages: Vec<Stage>) -> Step {
-    let mut sections = WORDS
+fn step(
+    title: &'static str,
+    lift: fn(&Body) -> f64,
+    extra_view: ExtraView,
+    stages: Vec<Stage>,
+) -> Step {
+    let mut sections = INSTRUCTIONS
         .split("## ")
         .filter_map(|section| section.split_once('\n'));
-    let words = sections.find(|(known, _)| *known == title);
-    let (_, words) = words.expect("each title is in steps.md");
-    let paragraphs = words.trim().split("\n\n");
+    let section = sections.find(|(headline, _)| *headline == title);
+    let (_, text) = section.expect("each title is in steps.md");
+    let paragraphs = text.trim().split("\n\n");
     let paragraphs = paragraphs.map(|paragraph| paragraph.replace('\n', " "));
     let words = paragraphs.collect::<Vec<_>>().join("\n\n");
     Step {
@@ -114,60 +119,61 @@ fn step(title: &'static str, lift: fn(&Body) -> f64, near: ExtraView, stages: Ve
         words,
         stages,
         lift,
-        extra_view: near,
+        extra_view,
     }
 }
 
 /// A step at the console, which adds no bodies.
-fn console(title: &'static str) -> Step {
+fn console_step(title: &'static str) -> Step {
     step(title, |_| 0.0, ExtraView::None, Vec::new())
 }
 
 /// The steps of a robot with slotted or with rigid struts.
 pub fn steps(is_slotted: bool) -> Vec<Step> {
     vec![
-        chassis(),
-        supply(),
-        board(),
-        console("Flash the board"),
-        links(),
-        console("Prove the signs"),
-        legs(),
-        legs_on_plate(),
-        struts(is_slotted),
-        sliders(),
-        ends(),
-        level(),
-        console("The first walk"),
-        console("A radio module, if you want one"),
-        console("A button and an obstacle switch, if you want them"),
+        chassis_step(),
+        supply_step(),
+        board_step(),
+        console_step("Flash the board"),
+        links_step(),
+        console_step("Prove the signs"),
+        legs_step(),
+        legs_on_plate_step(),
+        struts_step(is_slotted),
+        sliders_step(),
+        ends_step(),
+        level_step(),
+        console_step("The first walk"),
+        console_step("A radio module, if you want one"),
+        console_step("A button and an obstacle switch, if you want them"),
     ]
 }
 
-fn chassis() -> Step {
+fn chassis_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Printed | Kind::Screw(_) | Kind::Lead => 0.0,
         Kind::ServoScrew => 1.6,
         _ => 1.0,
     };
-    let all = robot_stage(|body| {
-        let below = body.name.starts_with("screw standoff") && body.name.ends_with("below");
-        let kinds = matches!(
+    let stage = robot_stage(|body| {
+        let is_lower_screw =
+            body.name.starts_with("screw standoff") && body.name.ends_with("below");
+        let has_added_kind = matches!(
             body.kind,
             Kind::Servo | Kind::ServoScrew | Kind::Standoff(_) | Kind::Lead
         );
-        body.name == "plate" || kinds || below
+        body.name == "plate" || has_added_kind || is_lower_screw
     });
-    step("Servos and standoffs", lift, ExtraView::Corner, vec![all])
+    step("Servos and standoffs", lift, ExtraView::Corner, vec![stage])
 }
 
-fn supply() -> Step {
+fn supply_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Battery => 1.0,
         Kind::Fitting(_) if body.name == "battery strap" => 0.0,
         _ => -0.7,
     };
-    let all = robot_stage(|body| {
+    let stage = robot_stage(|body| {
         let names = ["battery", "ground strip", "supply strip", "capacitor"];
         has_name_prefix(body, &names)
     });
@@ -175,11 +181,11 @@ fn supply() -> Step {
         "Strips, battery and capacitor",
         lift,
         ExtraView::Below,
-        vec![all],
+        vec![stage],
     )
 }
 
-fn board() -> Step {
+fn board_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Board => 1.3,
         Kind::Fitting(_) if has_name_prefix(body, &["converter", "alarm"]) => 0.3,
@@ -188,10 +194,11 @@ fn board() -> Step {
         Kind::Screw(_) => 1.1,
         _ => 0.8,
     };
-    let deck = robot_stage(|body| {
-        let above = body.name.starts_with("screw standoff") && body.name.ends_with("above");
-        let below = ["deck", "converter", "alarm"];
-        let wings = [
+    let deck_stage = robot_stage(|body| {
+        let is_upper_screw =
+            body.name.starts_with("screw standoff") && body.name.ends_with("above");
+        let names_on_deck = ["deck", "converter", "alarm"];
+        let names_on_wings = [
             "signal strip",
             "resistor",
             "place for",
@@ -199,32 +206,34 @@ fn board() -> Step {
             "plus way",
             "fuse",
         ];
-        has_name_prefix(body, &below) || has_name_prefix(body, &wings) || above
+        has_name_prefix(body, &names_on_deck)
+            || has_name_prefix(body, &names_on_wings)
+            || is_upper_screw
     });
-    let board = robot_stage(|body| has_name_prefix(body, &["board", "screw board"]));
+    let board_stage = robot_stage(|body| has_name_prefix(body, &["board", "screw board"]));
     step(
         "Deck, board and wires",
         lift,
         ExtraView::None,
-        vec![deck, board],
+        vec![deck_stage, board_stage],
     )
 }
 
-fn links() -> Step {
+fn links_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Horn => 1.3,
         Kind::HornScrew(_) => 1.7,
         Kind::Printed => 0.8,
         _ => 0.3,
     };
-    let all = bench_stage(|body| {
-        let horn = matches!(body.kind, Kind::Horn | Kind::HornScrew(_));
-        horn || has_name_prefix(body, &["link", "screw tip", "screw arm"])
+    let stage = bench_stage(|body| {
+        let is_horn = matches!(body.kind, Kind::Horn | Kind::HornScrew(_));
+        is_horn || has_name_prefix(body, &["link", "screw tip", "screw arm"])
     });
-    step("Horns and links", lift, ExtraView::Corner, vec![all])
+    step("Horns and links", lift, ExtraView::Corner, vec![stage])
 }
 
-fn legs() -> Step {
+fn legs_step() -> Step {
     let lift = |body: &Body| match body.mount {
         Mount::Foot(_) if body.name.starts_with("screw foot") => 0.6,
         Mount::Foot(_) if body.name.starts_with("leg coupler") => 0.0,
@@ -232,94 +241,99 @@ fn legs() -> Step {
         _ if body.name.starts_with("nut") && !body.name.contains("anchor") => 0.5,
         _ => 0.0,
     };
-    let joints = bench_stage(|body| {
-        let bars = ["leg coupler", "crank", "follower", "nut leg anchor"];
-        let joint = ["crank joint", "follower joint"].map(|joint| body.name.contains(joint));
-        has_name_prefix(body, &bars) || joint.contains(&true)
+    let joints_stage = bench_stage(|body| {
+        let names = ["leg coupler", "crank", "follower", "nut leg anchor"];
+        let is_joint = ["crank joint", "follower joint"].map(|joint| body.name.contains(joint));
+        has_name_prefix(body, &names) || is_joint.contains(&true)
     });
-    let foot = bench_stage(|body| matches!(body.mount, Mount::Foot(_)) && !is_height(body));
-    let height = bench_stage(is_height);
+    let foot_stage = bench_stage(|body| matches!(body.mount, Mount::Foot(_)) && !sets_height(body));
+    let height_stage = bench_stage(sets_height);
     step(
         "Legs, on the bench",
         lift,
         ExtraView::Corner,
-        vec![joints, foot, height],
+        vec![joints_stage, foot_stage, height_stage],
     )
 }
 
 /// True for a pad and for the screw in it, which sets the height of its foot.
-fn is_height(body: &Body) -> bool {
+fn sets_height(body: &Body) -> bool {
     body.kind == Kind::Pad || has_name_prefix(body, &["screw height"])
 }
 
-fn level() -> Step {
-    let turned = Stage {
+fn level_step() -> Step {
+    let stage = Stage {
         turns: |body| has_name_prefix(body, &["screw height"]),
         ..robot_stage(|_| false)
     };
-    step("Level the feet", |_| 0.0, ExtraView::None, vec![turned])
+    step("Level the feet", |_| 0.0, ExtraView::None, vec![stage])
 }
 
-fn legs_on_plate() -> Step {
+fn legs_on_plate_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Nut => -0.7,
         _ => 1.0,
     };
-    let all = robot_stage(|body| body.name.contains("pivot"));
-    step("Legs on the plate", lift, ExtraView::CornerBelow, vec![all])
+    let stage = robot_stage(|body| body.name.contains("pivot"));
+    step(
+        "Legs on the plate",
+        lift,
+        ExtraView::CornerBelow,
+        vec![stage],
+    )
 }
 
-fn struts(is_slotted: bool) -> Step {
+fn struts_step(is_slotted: bool) -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Screw(_) => 1.6,
         Kind::Nut => -0.4,
         Kind::Printed if body.name.starts_with("strut ring") => 0.5,
         _ => 0.3,
     };
-    let on_leg = robot_stage(|body| {
+    let leg_stage = robot_stage(|body| {
         matches!(body.mount, Mount::Strut(_)) || body.name.starts_with("screw leg anchor")
     });
-    let on_link =
+    let link_stage =
         robot_stage(|body| has_name_prefix(body, &["strut ring", "screw anchor", "nut anchor"]));
     let title = match is_slotted {
         true => "Struts and springs",
         false => "Struts",
     };
-    step(title, lift, ExtraView::Corner, vec![on_leg, on_link])
+    step(title, lift, ExtraView::Corner, vec![leg_stage, link_stage])
 }
 
-fn sliders() -> Step {
+fn sliders_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Nut => 1.4,
         Kind::Printed if body.name.starts_with("arm") => 0.3,
         _ => 0.8,
     };
-    let all = robot_stage(|body| {
-        let slider = matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_));
-        slider || has_name_prefix(body, &["arm spacer", "nut arm"])
+    let stage = robot_stage(|body| {
+        let is_slider = matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_));
+        is_slider || has_name_prefix(body, &["arm spacer", "nut arm"])
     });
-    step("Sliders", lift, ExtraView::None, vec![all])
+    step("Sliders", lift, ExtraView::None, vec![stage])
 }
 
-fn ends() -> Step {
+fn ends_step() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Nut => 1.6,
         Kind::Screw(_) => 0.4,
         Kind::Printed if body.name.starts_with("tip") => 0.3,
         _ => 0.9,
     };
-    let couplers = bench_stage(|body| {
-        let carried = ["head plate", "tail ", "screw head plate", "screw tail "];
-        has_name_prefix(body, &["coupler"]) || has_name_prefix(body, &carried)
+    let couplers_stage = bench_stage(|body| {
+        let carried_names = ["head plate", "tail ", "screw head plate", "screw tail "];
+        has_name_prefix(body, &["coupler"]) || has_name_prefix(body, &carried_names)
     });
-    let joints = robot_stage(|body| {
+    let joints_stage = robot_stage(|body| {
         matches!(body.mount, Mount::Coupler(_)) || has_name_prefix(body, &["tip spacer", "nut tip"])
     });
-    let plug = robot_stage(|body| has_name_prefix(body, &["round plug"]));
+    let plug_stage = robot_stage(|body| has_name_prefix(body, &["round plug"]));
     step(
         "Head and tail",
         lift,
         ExtraView::None,
-        vec![couplers, joints, plug],
+        vec![couplers_stage, joints_stage, plug_stage],
     )
 }

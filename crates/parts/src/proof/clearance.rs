@@ -43,14 +43,14 @@ impl fmt::Display for Clearance {
 }
 
 impl Assembly {
-    /// Pairs of bodies that come closer than `within` mm at some pose, the nearest first, each pair once.
+    /// Pairs of bodies that come closer than `limit_mm` at some pose, the nearest first, each pair once.
     pub fn nearest(
         &self,
         poses: impl IntoIterator<Item = Solution>,
-        within: f64,
+        limit_mm: f64,
     ) -> Vec<Clearance> {
         // The pairs of shapes, each with the indices of its bodies and an enclosing disc around each shape.
-        let disc = |shape: &Shape| (shape.middle(), shape.farthest(shape.middle()));
+        let disc_of = |shape: &Shape| (shape.middle(), shape.farthest(shape.middle()));
         let bodies = self.bodies();
         let mut pairs = Vec::new();
         for (i, a) in bodies.iter().enumerate() {
@@ -59,41 +59,45 @@ impl Assembly {
                     .prisms
                     .iter()
                     .flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
-                let level = |(p, q): &(&Prism, &Prism)| p.z[0] < q.z[1] && q.z[0] < p.z[1];
-                for (p, q) in layers.filter(|layers| !self.may_touch(a, b) && level(layers)) {
+                let overlap_in_height =
+                    |(p, q): &(&Prism, &Prism)| p.z[0] < q.z[1] && q.z[0] < p.z[1];
+                for (p, q) in
+                    layers.filter(|layers| !self.may_touch(a, b) && overlap_in_height(layers))
+                {
                     let shapes = p
                         .filled_shapes
                         .iter()
                         .flat_map(|a| q.filled_shapes.iter().map(move |b| (a, b)));
-                    pairs.extend(shapes.map(|(a, b)| ([i, j], [(a, disc(a)), (b, disc(b))])));
+                    pairs.extend(shapes.map(|(a, b)| ([i, j], [(a, disc_of(a)), (b, disc_of(b))])));
                 }
             }
         }
-        let mut min: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
+        let mut least_by_pair: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
         for pose in poses {
-            let places = bodies.iter().map(|body| self.place(body.mount, &pose));
-            let places: Vec<_> = places.collect();
-            for (index, [(a, (middle, reach)), (b, (other, more))]) in &pairs {
-                let [first, second] = index.map(|body| &places[body]);
-                let apart = (second.map(*other) - first.map(*middle)).length() - reach - more;
-                let nearest_so_far = min
-                    .get(index)
-                    .map_or(within, |nearest_so_far| nearest_so_far.1);
-                if apart < nearest_so_far {
+            let placements = bodies.iter().map(|body| self.place(body.mount, &pose));
+            let placements: Vec<_> = placements.collect();
+            for (body_indices, [(a, (middle, reach)), (b, (other_middle, other_reach))]) in &pairs {
+                let [first, second] = body_indices.map(|body| &placements[body]);
+                let disc_gap =
+                    (second.map(*other_middle) - first.map(*middle)).length() - reach - other_reach;
+                let least_so_far = least_by_pair
+                    .get(body_indices)
+                    .map_or(limit_mm, |least_so_far| least_so_far.1);
+                if disc_gap < least_so_far {
                     let mm = a.placed(first).distance(&b.placed(second));
-                    if mm < nearest_so_far {
-                        min.insert(*index, (pose.pose.into(), mm));
+                    if mm < least_so_far {
+                        least_by_pair.insert(*body_indices, (pose.pose.into(), mm));
                     }
                 }
             }
         }
-        let clearance = |([i, j], (pose, mm)): ([usize; 2], _)| Clearance {
+        let clearance_of = |([i, j], (pose, mm)): ([usize; 2], _)| Clearance {
             first: bodies[i].name.clone(),
             second: bodies[j].name.clone(),
             pose,
             mm,
         };
-        let mut clearances: Vec<_> = min.into_iter().map(clearance).collect();
+        let mut clearances: Vec<_> = least_by_pair.into_iter().map(clearance_of).collect();
         clearances.sort_by(|a, b| a.mm.total_cmp(&b.mm));
         clearances
     }
@@ -101,14 +105,14 @@ impl Assembly {
     /// Poses that the guard accepts, on a grid of `steps` angles over each servo's travel.
     pub fn poses(&self, steps: u32) -> impl Iterator<Item = Solution> + '_ {
         let robot = self.robot();
-        let angle = move |servo: usize, step: u32| {
+        let angle_at = move |servo: usize, step: u32| {
             let servo = &robot.servos()[servo];
             let (low, high) = servo.travel();
             servo.neutral + low + (high - low) * f64::from(step) / f64::from(steps - 1)
         };
         (0..steps.pow(4)).filter_map(move |index| {
-            let digit = |place: u32| index / steps.pow(place) % steps;
-            robot.accepted([0, 1, 2, 3].map(|i| angle(i as usize, digit(i))))
+            let digit_at = |position: u32| index / steps.pow(position) % steps;
+            robot.accepted([0, 1, 2, 3].map(|i| angle_at(i as usize, digit_at(i))))
         })
     }
 }

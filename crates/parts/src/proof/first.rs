@@ -25,12 +25,14 @@ pub fn worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
     poses.extend((0..81).filter_map(|direction| last_accepted_pose(robot, direction)));
     poses.extend(assembly.poses(STEPS));
-    let smallest = |task: &Task| {
+    let least_distance_of = |task: &Task| {
         let distances = poses.iter().map(|pose| distance(assembly, task, pose));
         distances.fold(f64::INFINITY, f64::min)
     };
-    let all = tasks.iter().map(|task| (smallest(task), task));
-    let mut too_near: Vec<_> = all.filter(|(mm, task)| *mm < task.min_distance()).collect();
+    let measured_tasks = tasks.iter().map(|task| (least_distance_of(task), task));
+    let mut too_near: Vec<_> = measured_tasks
+        .filter(|(mm, task)| *mm < task.min_distance())
+        .collect();
     too_near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let too_near = too_near.into_iter().take(WORST);
     let too_near: Vec<_> = too_near.map(|(_, task)| task.clone()).collect();
@@ -40,29 +42,31 @@ pub fn worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
 /// The least distance of a task's parts at a pose, mm; infinite if they are certainly far enough apart.
 fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
-    let place = b.relative_to(&a);
+    let placement = b.relative_to(&a);
     let shape_pairs = task.shape_pairs.iter();
-    let near = shape_pairs.filter(|pair| !pair.is_far(&place, [0.0; 2], task.min_distance()));
-    let distances = near.map(|pair| pair.distance(&place));
+    let near_pairs =
+        shape_pairs.filter(|pair| !pair.is_far(&placement, [0.0; 2], task.min_distance()));
+    let distances = near_pairs.map(|pair| pair.distance(&placement));
     distances.fold(f64::INFINITY, f64::min)
 }
 
 /// The last pose that the guard accepts on the line from neutral in one of 81 directions: each servo turns toward
 /// one limit of its travel, toward the other, or not at all. `None` if the guard refuses neutral.
 fn last_accepted_pose(robot: &Robot, direction: u32) -> Option<Solution> {
-    let from: [f64; 4] = robot.neutral().into();
-    let ends = [0, 1, 2, 3].map(|servo| {
+    let neutral: [f64; 4] = robot.neutral().into();
+    let end_offsets = [0, 1, 2, 3].map(|servo| {
         let (low, high) = robot.servos()[servo].travel();
         [low, 0.0, high][(direction / 3_u32.pow(servo as u32) % 3) as usize]
     });
-    let pose_at = |share: f64| robot.accepted([0, 1, 2, 3].map(|i| from[i] + share * ends[i]));
-    let (mut within, mut beyond) = (0.0, 1.0);
+    let pose_at =
+        |share: f64| robot.accepted([0, 1, 2, 3].map(|i| neutral[i] + share * end_offsets[i]));
+    let (mut accepted_share, mut refused_share) = (0.0, 1.0);
     for _ in 0..HALVINGS {
-        let share = (within + beyond) / 2.0;
+        let share = (accepted_share + refused_share) / 2.0;
         match pose_at(share) {
-            Some(_) => within = share,
-            None => beyond = share,
+            Some(_) => accepted_share = share,
+            None => refused_share = share,
         }
     }
-    pose_at(within)
+    pose_at(accepted_share)
 }

@@ -94,13 +94,13 @@ pub struct Guard<'a> {
 impl<'a> Guard<'a> {
     pub fn new(robot: &'a Robot) -> Self {
         let limits = robot.limits();
-        let sine = SINE_RELAXATION * (FULL_RELAXATION_TYPE2 / limits.type2).max(1.0);
+        let sine_relaxation = SINE_RELAXATION * (FULL_RELAXATION_TYPE2 / limits.type2).max(1.0);
         let mut guard = Self {
             robot,
             limits: Limits {
-                type2: limits.type2 - sine,
-                type1: limits.type1 - sine,
-                leg: limits.leg - sine,
+                type2: limits.type2 - sine_relaxation,
+                type1: limits.type1 - sine_relaxation,
+                leg: limits.leg - sine_relaxation,
                 stroke_min: limits.stroke_min - LENGTH_RELAXATION_MM,
                 stroke_max: limits.stroke_max + LENGTH_RELAXATION_MM,
             },
@@ -111,11 +111,15 @@ impl<'a> Guard<'a> {
         };
         // Two passes, because the range of one pair depends on the neighbouring pairs.
         for _ in 0..2 {
-            let ends = End::ALL.map(|end| end.servos());
-            for pair in ends.into_iter().chain(Side::ALL.map(|side| side.servos())) {
-                for which in 0..2 {
-                    let [low, high] = [false, true].map(|high| guard.range_end(pair, which, high));
-                    guard.ranges[pair[which]] = Interval::new(low, high);
+            let end_pairs = End::ALL.map(|end| end.servos());
+            for pair in end_pairs
+                .into_iter()
+                .chain(Side::ALL.map(|side| side.servos()))
+            {
+                for index in 0..2 {
+                    let [low, high] =
+                        [false, true].map(|is_high| guard.range_end(pair, index, is_high));
+                    guard.ranges[pair[index]] = Interval::new(low, high);
                 }
             }
         }
@@ -126,27 +130,30 @@ impl<'a> Guard<'a> {
     /// the other servo.
     fn range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
         let sign = if is_high { -1.0 } else { 1.0 };
-        let end = |region: &Region<2>| region.middle[index] - sign * region.half[index];
-        let whole = Region::of(pair.map(|servo| self.ranges[servo]));
+        let end_of = |region: &Region<2>| region.middle[index] - sign * region.half[index];
+        let whole_region = Region::of(pair.map(|servo| self.ranges[servo]));
         // The outermost region comes first; of regions that reach equally far, the one that was found first.
-        let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole)]), 0);
+        let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole_region)]), 0);
         while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
                 continue;
             }
-            let mut min = [OTHER_RESOLUTION_DEG; 2];
-            min[index] = RANGE_RESOLUTION_DEG;
-            let [a, b] = [0, 1].map(|i| region.half[i] / min[i]);
+            let mut resolution = [OTHER_RESOLUTION_DEG; 2];
+            resolution[index] = RANGE_RESOLUTION_DEG;
+            let [a, b] = [0, 1].map(|i| region.half[i] / resolution[i]);
             if a.max(b) < 1.0 {
-                return end(&region);
+                return end_of(&region);
             }
-            for half in region.halves(usize::from(b > a)) {
+            for half_region in region.halves(usize::from(b > a)) {
                 count += 1;
-                regions.insert((total_order_key(sign * end(&half)), count), half);
+                regions.insert(
+                    (total_order_key(sign * end_of(&half_region)), count),
+                    half_region,
+                );
             }
         }
         // The guard refuses every pose. This is not reached if the neutral pose is safe.
-        end(&whole)
+        end_of(&whole_region)
     }
 
     /// True if the conditions that depend only on these servos refuse every pose of a region.
@@ -164,44 +171,46 @@ impl<'a> Guard<'a> {
         let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
         let bounds = cranks_at(self.robot, servos, angles);
         let middle = cranks_at(self.robot, servos, region.middle);
-        let broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
+        let is_broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.tighten(middle, &region.half).value;
             let [low, high] = [value.low, value.high].map(|value| self.broken_limit(check, value));
             low.is_some() && low == high
         };
-        let all =
+        let has_all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
         // A leg's margin depends only on the crank's direction, not on the angle.
-        let (leg, none) = (&self.robot.lizard().leg, Slope::of(0.0));
-        let legs = servos.iter().any(|&servo| {
+        let (leg, zero) = (&self.robot.lizard().leg, Slope::of(0.0));
+        let breaks_leg = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
-            let bounds = leg.shape(end, none, bounds.cranks[servo]).margin;
+            let bounds = leg.shape(end, zero, bounds.cranks[servo]).margin;
             let middle = leg.shape(end, 0.0, middle.cranks[servo]).margin;
-            broken((Check::LEG[servo], bounds, middle))
+            is_broken((Check::LEG[servo], bounds, middle))
         });
-        let end = |end: End| {
+        let breaks_end = |end: End| {
             let values = middle.end(end).conditions(end).map(|(_, value)| value);
             let conditions = bounds.end(end).conditions(end).into_iter().zip(values);
-            all(end.servos()) && { conditions }
-                .any(|((check, servos_needed), value)| broken((check, servos_needed, value)))
+            has_all(end.servos()) && { conditions }
+                .any(|((check, servos_needed), value)| is_broken((check, servos_needed, value)))
         };
-        let side = |side: Side| {
+        let breaks_side = |side: Side| {
             let check = Check::STROKE[usize::from(side == Side::Right)];
-            all(side.servos()) && broken((check, bounds.side(side).s, middle.side(side).s))
+            has_all(side.servos()) && is_broken((check, bounds.side(side).s, middle.side(side).s))
         };
-        let refused = legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side);
-        (!refused).then_some((bounds, middle))
+        let is_refused = breaks_leg
+            || End::ALL.into_iter().any(breaks_end)
+            || Side::ALL.into_iter().any(breaks_side);
+        (!is_refused).then_some((bounds, middle))
     }
 
     /// The relaxed limit that a value breaks, if any.
     fn broken_limit(&self, check: Check, value: f64) -> Option<f64> {
         // The limit of crossed tips is 0 and not a field of `Limits`, so the value is shifted instead of the limit.
-        let slack = match check {
+        let shift = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
         };
         self.limits
-            .violation_of(check, value + slack)
+            .violation_of(check, value + shift)
             .map(|violation| violation.limit)
     }
 
@@ -209,10 +218,10 @@ impl<'a> Guard<'a> {
     /// search finds none.
     pub fn find_pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
-        let or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
+        let angles_or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
             ALL.map(|servo| angles[servo].unwrap_or(bound_of(&self.robot.servos()[servo])))
         };
-        if let Some(pose) = self.robot.accepted(or(|servo| servo.neutral)) {
+        if let Some(pose) = self.robot.accepted(angles_or(|servo| servo.neutral)) {
             return Some(pose);
         }
         let bounds = ALL.map(|servo| match angles[servo] {
@@ -282,20 +291,25 @@ mod tests {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
             let (guard, limits) = (Guard::new(&robot), robot.limits());
-            let sine = |limit: f64| [limit - BAND, limit - 0.1];
-            let stroke = |end: f64, sign: f64| [LENGTH_ERROR_MM, 1.0].map(|by| end + sign * by);
-            let sines = [
-                (&Check::TYPE2[..], sine(limits.type2)),
-                (&Check::TYPE1, sine(limits.type1)),
-                (&Check::LEG, sine(limits.leg)),
+            let sines_around = |limit: f64| [limit - BAND, limit - 0.1];
+            let strokes_around = |end: f64, sign: f64| {
+                [LENGTH_ERROR_MM, 1.0].map(|distance_mm| end + sign * distance_mm)
+            };
+            let cases = [
+                (&Check::TYPE2[..], sines_around(limits.type2)),
+                (&Check::TYPE1, sines_around(limits.type1)),
+                (&Check::LEG, sines_around(limits.leg)),
                 (&Check::UNCROSSED, [-LENGTH_ERROR_MM, -1.0]),
-                (&Check::STROKE, stroke(limits.stroke_min, -1.0)),
-                (&Check::STROKE, stroke(limits.stroke_max, 1.0)),
+                (&Check::STROKE, strokes_around(limits.stroke_min, -1.0)),
+                (&Check::STROKE, strokes_around(limits.stroke_max, 1.0)),
             ];
-            for (checks, [within, beyond]) in sines {
-                for &what in checks {
-                    assert_eq!(guard.broken_limit(what, within), None, "{name}: {what}");
-                    assert!(guard.broken_limit(what, beyond).is_some(), "{name}: {what}");
+            for (checks, [inside, outside]) in cases {
+                for &check in checks {
+                    assert_eq!(guard.broken_limit(check, inside), None, "{name}: {check}");
+                    assert!(
+                        guard.broken_limit(check, outside).is_some(),
+                        "{name}: {check}"
+                    );
                 }
             }
         }
@@ -304,52 +318,61 @@ mod tests {
     #[test]
     fn no_pose_that_the_firmware_may_accept_is_left_out_at_any_limit() {
         const ALL: [usize; 4] = [0, 1, 2, 3];
-        let mut seen: Vec<Check> = Vec::new();
+        let mut seen_checks: Vec<Check> = Vec::new();
         for name in ["paper", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
             let guard = Guard::new(&robot);
-            let lax = relaxed_limits(&robot);
+            let relaxed = relaxed_limits(&robot);
             let neutral = robot.servos().each_ref().map(|servo| servo.neutral);
-            let broken = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
-                Ok(solution) => lax.violations(&solution).map(|of| Some(of.check)).next(),
+            let broken_check_at = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
+                Ok(solution) => relaxed
+                    .violations(&solution)
+                    .map(|violation| Some(violation.check))
+                    .next(),
                 Err(_) => Some(None),
             };
             // Directions: each servo turns to one side, to the other, or not at all.
             for direction_index in 0..81 {
                 let direction =
-                    [1, 3, 9, 27].map(|part| f64::from(direction_index / part % 3) - 1.0);
+                    [1, 3, 9, 27].map(|divisor| f64::from(direction_index / divisor % 3) - 1.0);
                 for share in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
-                    let at = |by: f64| {
-                        ALL.map(|servo| neutral[servo] + by * direction[servo] * share[servo])
+                    let angles_at = |angle_deg: f64| {
+                        ALL.map(|servo| {
+                            neutral[servo] + angle_deg * direction[servo] * share[servo]
+                        })
                     };
-                    let (mut safe, mut not) = (0.0, 90.0);
-                    if broken(at(not)).is_none() {
+                    let (mut accepted_deg, mut refused_deg) = (0.0, 90.0);
+                    if broken_check_at(angles_at(refused_deg)).is_none() {
                         continue;
                     }
-                    while not - safe > 1e-6 {
-                        let middle = (safe + not) / 2.0;
-                        match broken(at(middle)) {
-                            None => safe = middle,
-                            Some(_) => not = middle,
+                    while refused_deg - accepted_deg > 1e-6 {
+                        let middle = (accepted_deg + refused_deg) / 2.0;
+                        match broken_check_at(angles_at(middle)) {
+                            None => accepted_deg = middle,
+                            Some(_) => refused_deg = middle,
                         }
                     }
                     let region = Region {
-                        middle: at(safe),
+                        middle: angles_at(accepted_deg),
                         half: [1e-7; 4],
                     };
-                    assert!(!guard.refuses(&ALL, &region), "{name}: {:?}", at(safe));
-                    seen.extend(broken(at(not)).flatten());
+                    assert!(
+                        !guard.refuses(&ALL, &region),
+                        "{name}: {:?}",
+                        angles_at(accepted_deg)
+                    );
+                    seen_checks.extend(broken_check_at(angles_at(refused_deg)).flatten());
                 }
             }
         }
-        for (kind, checks) in [
+        for (limit, checks) in [
             ("type-2", &Check::TYPE2[..]),
             ("type-1", &Check::TYPE1),
             ("leg", &Check::LEG),
             ("stroke", &Check::STROKE),
         ] {
-            let found = seen.iter().any(|what| checks.contains(what));
-            assert!(found, "no pose at the limit of a {kind}");
+            let is_seen = seen_checks.iter().any(|check| checks.contains(check));
+            assert!(is_seen, "no pose at the limit of a {limit}");
         }
     }
 }

@@ -59,13 +59,13 @@ impl Interval {
         };
         let (sin_a, cos_a) = sin_cos(self.low);
         let (sin_b, cos_b) = sin_cos(self.high);
-        let between = |a: f64, b: f64, top: f64, bottom: f64| {
+        let bounds_between = |a: f64, b: f64, top_deg: f64, bottom_deg: f64| {
             let (low, high) = (a.min(b) - SINE_ERROR, a.max(b) + SINE_ERROR);
-            let low = if passes(bottom) { -1.0 } else { low };
-            Self::new(low, if passes(top) { 1.0 } else { high })
+            let low = if passes(bottom_deg) { -1.0 } else { low };
+            Self::new(low, if passes(top_deg) { 1.0 } else { high })
         };
-        let sine = between(sin_a, sin_b, 90.0, -90.0);
-        (sine, between(cos_a, cos_b, 0.0, 180.0))
+        let sine = bounds_between(sin_a, sin_b, 90.0, -90.0);
+        (sine, bounds_between(cos_a, cos_b, 0.0, 180.0))
     }
 }
 
@@ -118,8 +118,8 @@ impl Real for Interval {
     }
 
     fn root(self) -> Self {
-        let root = |value: f64| value.max(0.0).sqrt();
-        let Self { low, high } = Self::outward(root(self.low), root(self.high));
+        let root_of = |value: f64| value.max(0.0).sqrt();
+        let Self { low, high } = Self::outward(root_of(self.low), root_of(self.high));
         Self::new(low.max(0.0), high)
     }
 
@@ -143,19 +143,21 @@ mod tests {
     #[test]
     fn an_interval_contains_the_results_for_all_numbers_of_its_operands() {
         let mut random = 1_u64;
-        let mut next = || {
+        let mut next_random = || {
             random = random
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1);
             (random >> 11) as f64 / (1_u64 << 53) as f64 * 8.0 - 4.0
         };
         for _ in 0..20_000 {
-            let [a, b, c, d] = [next(), next(), next(), next()];
+            let [a, b, c, d] = [next_random(), next_random(), next_random(), next_random()];
             let x = Interval::new(a.min(b), a.max(b));
             let y = Interval::new(c.min(d), c.max(d));
             for share in [0.0, 0.3, 1.0] {
-                let at = |of: Interval| of.low + share * (of.high - of.low);
-                let [p, q] = [x, y].map(|of| at(of).clamp(of.low, of.high));
+                let value_at =
+                    |interval: Interval| interval.low + share * (interval.high - interval.low);
+                let [p, q] =
+                    [x, y].map(|interval| value_at(interval).clamp(interval.low, interval.high));
                 assert!(contains(x + y, p + q) && contains(x - y, p - q) && contains(-x, -p));
                 assert!(contains(x * y, p * q) && contains(x * c, p * c));
                 assert!(q == 0.0 || contains(x / y, p / q), "{x:?} / {y:?}");
@@ -163,32 +165,32 @@ mod tests {
                 let degrees = Interval::new(x.low * 100.0, x.high * 100.0);
                 let ([sine], [cosine]) = Interval::sin_cos_each([degrees]);
                 let (sin, cos) = (p * 100.0).to_radians().sin_cos();
-                let wider = |i: Interval| Interval::new(i.low - 1e-14, i.high + 1e-14);
-                assert!(contains(wider(sine), sin) && contains(wider(cosine), cos));
+                let widen = |i: Interval| Interval::new(i.low - 1e-14, i.high + 1e-14);
+                assert!(contains(widen(sine), sin) && contains(widen(cosine), cos));
             }
         }
     }
 
     #[test]
     fn a_result_is_no_wider_than_it_has_to_be() {
-        let near = |interval: Interval, low: f64, high: f64| {
+        let is_near = |interval: Interval, low: f64, high: f64| {
             (interval.low - low).abs() < 1e-14 && (interval.high - high).abs() < 1e-14
         };
         let (x, y) = (Interval::new(-1.0, 2.0), Interval::new(3.0, 5.0));
-        assert!(near(x + y, 2.0, 7.0) && near(x - y, -6.0, -1.0));
-        assert!(near(x * y, -5.0, 10.0) && near(x / y, -1.0 / 3.0, 2.0 / 3.0));
-        assert!(near(y.root(), 3.0_f64.sqrt(), 5.0_f64.sqrt()));
+        assert!(is_near(x + y, 2.0, 7.0) && is_near(x - y, -6.0, -1.0));
+        assert!(is_near(x * y, -5.0, 10.0) && is_near(x / y, -1.0 / 3.0, 2.0 / 3.0));
+        assert!(is_near(y.root(), 3.0_f64.sqrt(), 5.0_f64.sqrt()));
         let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(30.0, 120.0)]);
-        assert!(near(sine, 0.5, 1.0) && near(cosine, -0.5, 0.75_f64.sqrt()));
+        assert!(is_near(sine, 0.5, 1.0) && is_near(cosine, -0.5, 0.75_f64.sqrt()));
         let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(-450.0, -340.0)]);
-        assert!(near(sine, -1.0, 20.0_f64.to_radians().sin()) && near(cosine, 0.0, 1.0));
+        assert!(is_near(sine, -1.0, 20.0_f64.to_radians().sin()) && is_near(cosine, 0.0, 1.0));
     }
 
     #[test]
     fn a_quotient_by_an_interval_with_0_is_unbounded() {
-        let over = Interval::of(1.0) / Interval::new(-1.0, 2.0);
-        assert_eq!(over, Interval::ALL);
-        assert_eq!(over * Interval::of(0.0), Interval::ALL);
-        assert_eq!(over - over, Interval::ALL);
+        let quotient = Interval::of(1.0) / Interval::new(-1.0, 2.0);
+        assert_eq!(quotient, Interval::ALL);
+        assert_eq!(quotient * Interval::of(0.0), Interval::ALL);
+        assert_eq!(quotient - quotient, Interval::ALL);
     }
 }

@@ -107,12 +107,12 @@ impl fmt::Display for NearestPair {
 }
 
 impl NearestPair {
-    /// The clash of the bodies if they come, or may come, closer than `min`, mm; `None` otherwise.
-    fn clash(&self, min: f64) -> Option<Clash> {
+    /// The clash of the bodies if they come, or may come, closer than `min_mm`, mm; `None` otherwise.
+    fn clash(&self, min_mm: f64) -> Option<Clash> {
         match &self.seen {
-            Some(seen) if seen.mm < min.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
-            Some(seen) if seen.mm < min => Some(Clash::Narrow(Box::new(seen.clone()))),
-            _ if self.proved < min => Some(Clash::Unsure(Box::new(self.clone()))),
+            Some(seen) if seen.mm < min_mm.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
+            Some(seen) if seen.mm < min_mm => Some(Clash::Narrow(Box::new(seen.clone()))),
+            _ if self.proved < min_mm => Some(Clash::Unsure(Box::new(self.clone()))),
             _ => None,
         }
     }
@@ -135,17 +135,19 @@ impl Proof {
     /// Returns the worst pair: parts that overlap, that come nearer than [`MIN_GAP_MM`], or that could
     /// not be proved to keep that distance.
     pub fn judge(&self) -> Result<(), Clash> {
-        let apart = self
+        let separate = self
             .separate_pairs
             .iter()
-            .map(|near| (near.clash(MIN_GAP_MM), near.least_distance()));
-        let meeting = self
+            .map(|pair| (pair.clash(MIN_GAP_MM), pair.least_distance()));
+        let touching = self
             .touching_pairs
             .iter()
-            .map(|near| (near.clash(-TOUCH), near.least_distance()));
-        let clashes = apart.chain(meeting).filter(|(clash, _)| clash.is_some());
-        let (worst, _) = clashes.min_by(|a, b| a.1.total_cmp(&b.1)).unzip();
-        worst.flatten().map_or(Ok(()), Err)
+            .map(|pair| (pair.clash(-TOUCH), pair.least_distance()));
+        let clashes = separate
+            .chain(touching)
+            .filter(|(clash, _)| clash.is_some());
+        let (worst_clash, _) = clashes.min_by(|a, b| a.1.total_cmp(&b.1)).unzip();
+        worst_clash.flatten().map_or(Ok(()), Err)
     }
 }
 
@@ -171,10 +173,10 @@ pub struct Answer {
 }
 
 impl<'a> Questions<'a> {
-    /// Collects the questions about the pairs of bodies that `which` accepts.
-    pub fn new(assembly: &'a Assembly, which: impl Fn(&Body, &Body) -> bool) -> Self {
+    /// Collects the questions about the pairs of bodies that `is_chosen` accepts.
+    pub fn new(assembly: &'a Assembly, is_chosen: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
-        let tasks = Task::all(assembly, &guard, FAR_MM, which);
+        let tasks = Task::all(assembly, &guard, FAR_MM, is_chosen);
         let worst = first::worst_tasks(assembly, &tasks);
         Self {
             has_clash: worst.is_some(),
@@ -195,8 +197,8 @@ impl<'a> Questions<'a> {
         self.answer_within(index, search::MAX_REGIONS)
     }
 
-    /// Answers one question; checks at most `max` regions.
-    fn answer_within(&self, index: usize, max: u64) -> Answer {
+    /// Answers one question; checks at most `max_regions` regions.
+    fn answer_within(&self, index: usize, max_regions: u64) -> Answer {
         let mut task = self.tasks[index].clone();
         let pinned = match task.may_touch {
             true => self
@@ -205,24 +207,25 @@ impl<'a> Questions<'a> {
             false => None,
         };
         let nearest = (!task.shape_pairs.is_empty()).then(|| {
-            let nearest = search::find_least_distance(self.assembly, &self.guard, &task, max);
+            let nearest =
+                search::find_least_distance(self.assembly, &self.guard, &task, max_regions);
             let regions = nearest.regions;
             (self.assembly.nearest_pair(nearest), regions)
         });
         Answer { pinned, nearest }
     }
 
-    /// Answers all questions and makes the proof. `known` returns an answer that
+    /// Answers all questions and makes the proof. `known_answer` returns an answer that
     /// [`Questions::answer_one`] has already given for an index. The proof ends at the first parts that
     /// do not fit, unless the quick check has found such parts: then each of its worst pairs is
     /// bounded. After parts that may not fit, the remaining questions are answered with fewer
-    /// regions and without `known`.
+    /// regions and without `known_answer`.
     pub fn answer(
         &self,
-        mut known: impl FnMut(usize) -> Option<Answer>,
+        mut known_answer: impl FnMut(usize) -> Option<Answer>,
         mut progress: impl FnMut(usize, usize),
     ) -> Proof {
-        let mut max = search::MAX_REGIONS;
+        let mut max_regions = search::MAX_REGIONS;
         let mut proof = Proof {
             separate_pairs: Vec::new(),
             touching_pairs: Vec::new(),
@@ -233,31 +236,33 @@ impl<'a> Questions<'a> {
         let count = self.count();
         for (index, task) in self.tasks.iter().enumerate() {
             progress(index, count);
-            let answer = match max {
-                search::MAX_REGIONS => known(index).unwrap_or_else(|| self.answer_one(index)),
-                fewer => self.answer_within(index, fewer),
+            let answer = match max_regions {
+                search::MAX_REGIONS => {
+                    known_answer(index).unwrap_or_else(|| self.answer_one(index))
+                }
+                fewer_regions => self.answer_within(index, fewer_regions),
             };
             proof.touching_pairs.extend(answer.pinned);
-            let Some((near, regions)) = answer.nearest else {
+            let Some((nearest_pair, regions)) = answer.nearest else {
                 continue;
             };
             proof.regions += regions;
-            let clash = near.clash(task.min_distance());
+            let clash = nearest_pair.clash(task.min_distance());
             if task.may_touch {
-                proof.touching_pairs.push(near);
+                proof.touching_pairs.push(nearest_pair);
             } else {
-                proof.separate_pairs.push(near);
+                proof.separate_pairs.push(nearest_pair);
             }
             // One clash is enough to refuse. Questions about parts that barely fit take long.
             match clash {
-                Some(Clash::Unsure(_)) => max = search::MAX_REGIONS / 10,
+                Some(Clash::Unsure(_)) => max_regions = search::MAX_REGIONS / 10,
                 Some(_) if !self.has_clash => break,
                 _ => {}
             }
         }
         progress(count, count);
-        for list in [&mut proof.separate_pairs, &mut proof.touching_pairs] {
-            list.sort_by(|a, b| a.proved.total_cmp(&b.proved));
+        for pairs in [&mut proof.separate_pairs, &mut proof.touching_pairs] {
+            pairs.sort_by(|a, b| a.proved.total_cmp(&b.proved));
         }
         proof
     }
@@ -273,32 +278,32 @@ impl Assembly {
         self.prove_some(|_, _| true, progress)
     }
 
-    /// [`Assembly::prove`] for the pairs of bodies that `which` accepts.
+    /// [`Assembly::prove`] for the pairs of bodies that `is_chosen` accepts.
     pub fn prove_some(
         &self,
-        which: impl Fn(&Body, &Body) -> bool,
+        is_chosen: impl Fn(&Body, &Body) -> bool,
         progress: impl FnMut(usize, usize),
     ) -> Proof {
-        Questions::new(self, which).answer(|_| None, progress)
+        Questions::new(self, is_chosen).answer(|_| None, progress)
     }
 
     /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` if
     /// no pair is pinned, or if there are no poses. A pin and its round hole have the same centre
     /// at every pose, so their gap never changes.
     fn remove_pinned_pairs(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
-        let place = |pose| {
+        let placement_of = |pose| {
             let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
             b.relative_to(&a)
         };
-        let places: Vec<_> = poses.iter().map(place).collect();
+        let placements: Vec<_> = poses.iter().map(placement_of).collect();
         let pose = poses.first()?;
-        let mut min: Option<NearestPair> = None;
+        let mut nearest: Option<NearestPair> = None;
         task.shape_pairs.retain(|pair| {
-            let gap = pair.pinned_gap(&places);
+            let gap = pair.pinned_gap(&placements);
             if let Some(mm) = gap
-                && min.as_ref().is_none_or(|min| mm < min.proved)
+                && nearest.as_ref().is_none_or(|nearest| mm < nearest.proved)
             {
-                min = Some(self.nearest_pair(SearchResult {
+                nearest = Some(self.nearest_pair(SearchResult {
                     proved: mm,
                     bodies: pair.bodies,
                     seen: Some((*pose, mm)),
@@ -308,27 +313,27 @@ impl Assembly {
             }
             gap.is_none()
         });
-        min
+        nearest
     }
 
     /// Converts a search result to body names and angles. Angles on which it does not depend are neutral.
-    fn nearest_pair(&self, found: SearchResult) -> NearestPair {
-        let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
+    fn nearest_pair(&self, result: SearchResult) -> NearestPair {
+        let [first, second] = result.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
-        let angles = |optional_angles: [Option<f64>; 4]| {
+        let angles_of = |optional_angles: [Option<f64>; 4]| {
             std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
         };
         NearestPair {
-            seen: found.seen.map(|(pose, mm)| Clearance {
+            seen: result.seen.map(|(pose, mm)| Clearance {
                 first: first.clone(),
                 second: second.clone(),
                 pose: pose.pose.into(),
                 mm,
             }),
-            doubt: found.doubt.map(angles),
+            doubt: result.doubt.map(angles_of),
             first,
             second,
-            proved: found.proved,
+            proved: result.proved,
         }
     }
 }

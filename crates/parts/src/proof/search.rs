@@ -61,20 +61,20 @@ struct Part<const N: usize> {
     candidates: Vec<u32>,
 }
 
-/// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max`
+/// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max_regions`
 /// regions.
 pub fn find_least_distance(
     assembly: &Assembly,
     guard: &Guard,
     task: &Task,
-    max: u64,
+    max_regions: u64,
 ) -> SearchResult {
     match task.servos()[..] {
-        [] => search(assembly, guard, task, [], max),
-        [a] => search(assembly, guard, task, [a], max),
-        [a, b] => search(assembly, guard, task, [a, b], max),
-        [a, b, c] => search(assembly, guard, task, [a, b, c], max),
-        _ => search(assembly, guard, task, [0, 1, 2, 3], max),
+        [] => search(assembly, guard, task, [], max_regions),
+        [a] => search(assembly, guard, task, [a], max_regions),
+        [a, b] => search(assembly, guard, task, [a, b], max_regions),
+        [a, b, c] => search(assembly, guard, task, [a, b, c], max_regions),
+        _ => search(assembly, guard, task, [0, 1, 2, 3], max_regions),
     }
 }
 
@@ -83,7 +83,7 @@ fn search<const N: usize>(
     guard: &Guard,
     task: &Task,
     servos: [usize; N],
-    max: u64,
+    max_regions: u64,
 ) -> SearchResult {
     let search = Search {
         assembly,
@@ -94,7 +94,7 @@ fn search<const N: usize>(
         by: 0,
         regions: 0,
     };
-    search.run(max)
+    search.run(max_regions)
 }
 
 struct Search<'a, const N: usize> {
@@ -115,52 +115,54 @@ impl<const N: usize> Search<'_, N> {
         self.seen.as_ref().map_or(FAR_MM, |seen| seen.1.min(FAR_MM))
     }
 
-    fn run(mut self, max: u64) -> SearchResult {
+    fn run(mut self, max_regions: u64) -> SearchResult {
         let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
-        let all: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
-        let share = if self.task.may_touch {
+        let all_pairs: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
+        let tolerance_share = if self.task.may_touch {
             TOUCHING_SHARE_TOLERANCE
         } else {
             RELATIVE_TOLERANCE
         };
         // The part with the least bound comes first. Parts of equal bounds are ordered by their regions, so the order
         // is always the same.
-        let key = |part: &Part<N>| {
+        let key_of = |part: &Part<N>| {
             (
                 total_order_key(part.lower_bound),
                 part.region.middle.map(total_order_key),
             )
         };
-        let first = self.bound_region(all_poses, &all).into_iter();
-        let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
+        let first_part = self.bound_region(all_poses, &all_pairs).into_iter();
+        let mut parts: BTreeMap<_, _> = first_part.map(|part| (key_of(&part), part)).collect();
         while let Some((_, part)) = parts.pop_first() {
-            let high = self.upper_bound();
-            if part.lower_bound >= high - TOLERANCE - share * high.abs() {
-                return self.found(part.lower_bound.min(high), None);
+            let upper_bound = self.upper_bound();
+            if part.lower_bound >= upper_bound - TOLERANCE - tolerance_share * upper_bound.abs() {
+                return self.into_result(part.lower_bound.min(upper_bound), None);
             }
-            let max = if high < 0.0 {
+            let max_regions = if upper_bound < 0.0 {
                 MAX_REGIONS_OVERLAPPING
             } else {
-                max
+                max_regions
             };
-            if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH) || self.regions >= max {
-                return self.found(part.lower_bound, Some(&part));
+            if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH)
+                || self.regions >= max_regions
+            {
+                return self.into_result(part.lower_bound, Some(&part));
             }
-            for half in part.region.halves(part.split_servo) {
-                let half = self.bound_region(half, &part.candidates);
-                parts.extend(half.map(|part| (key(&part), part)));
+            for half_region in part.region.halves(part.split_servo) {
+                let half_part = self.bound_region(half_region, &part.candidates);
+                parts.extend(half_part.map(|part| (key_of(&part), part)));
             }
         }
-        let high = self.upper_bound();
-        self.found(high, None)
+        let upper_bound = self.upper_bound();
+        self.into_result(upper_bound, None)
     }
 
-    fn found(self, proved: f64, doubt: Option<&Part<N>>) -> SearchResult {
-        let unseen = doubt.filter(|_| self.seen.is_none());
-        let by = unseen.map_or(self.by, |part| part.bounding_pair);
+    fn into_result(self, proved: f64, doubt: Option<&Part<N>>) -> SearchResult {
+        let unseen_part = doubt.filter(|_| self.seen.is_none());
+        let pair_index = unseen_part.map_or(self.by, |part| part.bounding_pair);
         SearchResult {
             proved: proved - ROUNDING,
-            bodies: self.task.shape_pairs[by as usize].bodies,
+            bodies: self.task.shape_pairs[pair_index as usize].bodies,
             doubt: doubt.map(|part| self.angles(&part.region)),
             seen: self.seen,
             regions: self.regions,
@@ -178,18 +180,18 @@ impl<const N: usize> Search<'_, N> {
 
     /// Bounds a region's distances. Returns `None` if no pair of shapes can be nearer than the least distance found
     /// so far, or if the guard accepts no pose of the region.
-    fn bound_region(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
+    fn bound_region(&mut self, region: Region<N>, candidates: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
         let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
         // The placements of both mounts: at the region's middle, and bounds for the whole region.
-        let [(a, around_a), (b, around_b)] = self.task.mounts.map(|mount| {
-            let place = self.assembly.place_on(mount, &middle);
+        let [(a, bounds_a), (b, bounds_b)] = self.task.mounts.map(|mount| {
+            let placement = self.assembly.place_on(mount, &middle);
             let bounds = self.assembly.place_on(mount, &bounds);
-            (place, tighten(&bounds, &place, &region))
+            (placement, tighten(&bounds, &placement, &region))
         });
-        let place = b.relative_to(&a);
-        let bounds = tighten(&around_b.relative_to(&around_a), &place, &region);
-        let strays = [bounds.origin, bounds.x_axis].map(|vector| {
+        let placement = b.relative_to(&a);
+        let bounds = tighten(&bounds_b.relative_to(&bounds_a), &placement, &region);
+        let deviations = [bounds.origin, bounds.x_axis].map(|vector| {
             let [x, y] =
                 [vector.x, vector.y].map(|coordinate| coordinate.largest_change(&region.half));
             x.hypot(y)
@@ -201,26 +203,30 @@ impl<const N: usize> Search<'_, N> {
             split_servo: most_influential_servo(&bounds, &region),
             candidates: Vec::new(),
         };
-        let closed = place.origin.is_finite() && place.x_axis.is_finite();
+        let is_closed = placement.origin.is_finite() && placement.x_axis.is_finite();
         let mut nearest = (f64::INFINITY, 0);
-        for &index in alive {
+        for &index in candidates {
             let shape_pair = &self.task.shape_pairs[index as usize];
-            let low = if !closed {
+            let lower_bound = if !is_closed {
                 f64::NEG_INFINITY
-            } else if shape_pair.is_far(&place, strays, self.upper_bound()) {
+            } else if shape_pair.is_far(&placement, deviations, self.upper_bound()) {
                 continue;
             } else {
-                let apart = shape_pair.distance(&place);
-                if apart < nearest.0 {
-                    nearest = (apart, index);
+                let distance = shape_pair.distance(&placement);
+                if distance < nearest.0 {
+                    nearest = (distance, index);
                 }
-                let low = shape_pair.distance_bound(&place, &bounds, &region);
-                if low.is_nan() { f64::NEG_INFINITY } else { low }
+                let lower_bound = shape_pair.distance_bound(&placement, &bounds, &region);
+                if lower_bound.is_nan() {
+                    f64::NEG_INFINITY
+                } else {
+                    lower_bound
+                }
             };
-            if low < self.upper_bound() {
+            if lower_bound < self.upper_bound() {
                 part.candidates.push(index);
-                if low < part.lower_bound {
-                    (part.lower_bound, part.bounding_pair) = (low, index);
+                if lower_bound < part.lower_bound {
+                    (part.lower_bound, part.bounding_pair) = (lower_bound, index);
                 }
             }
         }
@@ -241,13 +247,13 @@ fn tighten<const N: usize>(
     middle: &Placement,
     region: &Region<N>,
 ) -> Placement<Slope<N>> {
-    let tighten = |bounds: Vector<Slope<N>>, middle: Vector| {
+    let tighten_vector = |bounds: Vector<Slope<N>>, middle: Vector| {
         let x = bounds.x.tighten(middle.x, &region.half);
         Vector::new(x, bounds.y.tighten(middle.y, &region.half))
     };
     Placement {
-        origin: tighten(bounds.origin, middle.origin),
-        x_axis: tighten(bounds.x_axis, middle.x_axis),
+        origin: tighten_vector(bounds.origin, middle.origin),
+        x_axis: tighten_vector(bounds.x_axis, middle.x_axis),
     }
 }
 
@@ -258,21 +264,21 @@ fn most_influential_servo<const N: usize>(
 ) -> usize {
     /// The lever arm by which a rotation is converted into a distance, mm.
     const LEVER_MM: f64 = 30.0;
-    let (at, turn) = (bounds.origin, bounds.x_axis * LEVER_MM);
-    let numbers = [at.x, at.y, turn.x, turn.y];
-    let weight = |servo: usize| {
+    let (origin, axis_shift) = (bounds.origin, bounds.x_axis * LEVER_MM);
+    let coordinates = [origin.x, origin.y, axis_shift.x, axis_shift.y];
+    let influence_of = |servo: usize| {
         let half = region.half[servo];
-        numbers.iter().fold(0.0, |sum, number| {
+        coordinates.iter().fold(0.0, |sum, coordinate| {
             // Without a finite bound, the widest angle is halved.
-            let strays = number.derivatives[servo].max_abs() * half;
-            sum + if strays.is_finite() {
-                strays
+            let change = coordinate.derivatives[servo].max_abs() * half;
+            sum + if change.is_finite() {
+                change
             } else {
                 half * 1e6
             }
         })
     };
     (0..N)
-        .max_by(|a, b| weight(*a).total_cmp(&weight(*b)).then(b.cmp(a)))
+        .max_by(|a, b| influence_of(*a).total_cmp(&influence_of(*b)).then(b.cmp(a)))
         .unwrap_or(0)
 }

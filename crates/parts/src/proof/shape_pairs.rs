@@ -54,46 +54,47 @@ impl Task {
 
     /// The servos on which the relative placement of the two mounts depends.
     pub fn servos(&self) -> Vec<usize> {
-        let mut all: Vec<_> = self
+        let mut servos: Vec<_> = self
             .mounts
             .iter()
             .flat_map(|mount| mount.servos())
             .collect();
-        all.sort_unstable();
-        all.dedup();
-        all
+        servos.sort_unstable();
+        servos.dedup();
+        servos
     }
 
     /// The tasks of a robot: all pairs of bodies whose heights, and whose rectangles that they never leave, are less
-    /// than `within` mm apart. Bodies that are designed to touch are paired only if their heights overlap.
+    /// than `max_gap_mm` apart. Bodies that are designed to touch are paired only if their heights overlap.
     pub fn all(
         assembly: &Assembly,
         guard: &Guard,
-        within: f64,
-        which: impl Fn(&Body, &Body) -> bool,
+        max_gap_mm: f64,
+        is_chosen: impl Fn(&Body, &Body) -> bool,
     ) -> Vec<Self> {
         let mut tasks: Vec<Self> = Vec::new();
         let rectangles = sweep::body_rectangles(assembly, guard);
         let bodies = assembly.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
-                let is_apart = || sweep::are_apart(&rectangles[i], &rectangles[j], within);
-                if a.mount == b.mount || !which(a, b) || is_apart() {
+                let is_apart = || sweep::are_apart(&rectangles[i], &rectangles[j], max_gap_mm);
+                if a.mount == b.mount || !is_chosen(a, b) || is_apart() {
                     continue;
                 }
-                let meet = assembly.may_touch(a, b);
-                let within = if meet { 0.0 } else { within };
-                let shape_pairs = shape_pairs(i, a, j, b, within);
+                let may_touch = assembly.may_touch(a, b);
+                let max_gap_mm = if may_touch { 0.0 } else { max_gap_mm };
+                let shape_pairs = shape_pairs(i, a, j, b, max_gap_mm);
                 if shape_pairs.is_empty() {
                     continue;
                 }
                 let mounts = [a.mount, b.mount];
-                let is_same = |task: &&mut Self| task.mounts == mounts && task.may_touch == meet;
+                let is_same =
+                    |task: &&mut Self| task.mounts == mounts && task.may_touch == may_touch;
                 match tasks.iter_mut().find(is_same) {
                     Some(task) => task.shape_pairs.extend(shape_pairs),
                     None => tasks.push(Self {
                         mounts,
-                        may_touch: meet,
+                        may_touch,
                         shape_pairs,
                     }),
                 }
@@ -103,13 +104,13 @@ impl Task {
     }
 }
 
-/// The pairs of shapes of two bodies whose heights are less than `within` mm apart.
-fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<ShapePair> {
+/// The pairs of shapes of two bodies whose heights are less than `max_gap_mm` apart.
+fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<ShapePair> {
     let mut shape_pairs = Vec::new();
     for p in &a.prisms {
         for q in &b.prisms {
             let gap = (p.z[0] - q.z[1]).max(q.z[0] - p.z[1]);
-            if gap > within - SAME_HEIGHT_MM {
+            if gap > max_gap_mm - SAME_HEIGHT_MM {
                 continue;
             }
             let gap = if gap < -SAME_HEIGHT_MM {
@@ -141,124 +142,137 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Shape
 
 /// The holes of a layer that are at least as wide as a shape.
 fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
-    let large = |hole: &&Shape| hole.width() >= shape.width();
-    prism.cut_shapes.iter().filter(large).cloned().collect()
+    let is_large_enough = |hole: &&Shape| hole.width() >= shape.width();
+    prism
+        .cut_shapes
+        .iter()
+        .filter(is_large_enough)
+        .cloned()
+        .collect()
 }
 
 impl ShapePair {
-    /// True if the shapes are certainly at least `by` mm apart while the second shape's frame moves by up to `moves`
-    /// mm and the tips of its unit axes by up to `turns`. It is a quick test: false does not mean that the shapes are
-    /// near.
-    pub fn is_far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
-        let [(a, reach), (b, other)] = self.discs;
-        let between = (place.map(b) - a).length() - reach - other;
+    /// True if the shapes are certainly at least `min_mm` apart while the second shape's frame moves by up to
+    /// `shift_mm` and the tips of its unit axes by up to `turn`. It is a quick test: false does not mean that the
+    /// shapes are near.
+    pub fn is_far(&self, placement: &Placement, [shift_mm, turn]: [f64; 2], min_mm: f64) -> bool {
+        let [(a, reach_a), (b, reach_b)] = self.discs;
+        let gap = (placement.map(b) - a).length() - reach_a - reach_b;
         // When the frame turns, a point moves along both axes.
-        between - moves - 2.0 * turns * self.lever >= by
+        gap - shift_mm - 2.0 * turn * self.lever >= min_mm
     }
 
     /// The gap of a pinned pair, mm, which is constant: a pin in the centre of a round hole, or a disc whose centre
-    /// is fixed in the other shape's frame, in all of `places`. `None` if the pair is not pinned.
-    pub fn pinned_gap(&self, places: &[Placement]) -> Option<f64> {
+    /// is fixed in the other shape's frame, in all of `placements`. `None` if the pair is not pinned.
+    pub fn pinned_gap(&self, placements: &[Placement]) -> Option<f64> {
         /// A bound of the rounding error of a joint's position, mm.
         const ROUNDING_MM: f64 = 1e-6;
-        let centre = |shape: &Shape| match shape.points[..] {
+        let centre_of = |shape: &Shape| match shape.points[..] {
             [centre] => Some(centre),
             _ => None,
         };
         let stays = |first: Vector, second: Vector| {
-            let error = |place: &Placement| (place.map(second) - first).length();
-            places.iter().all(|place| error(place) < ROUNDING_MM)
+            let error_at = |placement: &Placement| (placement.map(second) - first).length();
+            placements
+                .iter()
+                .all(|placement| error_at(placement) < ROUNDING_MM)
         };
-        let air = |pin: &Shape, holes: &[Shape], stays: &dyn Fn(Vector, Vector) -> bool| {
-            let middle = centre(pin)?;
-            let around = |hole: &&Shape| centre(hole).is_some_and(|hole| stays(middle, hole));
-            let holes = holes.iter().filter(around);
+        let gap_in_hole = |pin: &Shape, holes: &[Shape], stays: &dyn Fn(Vector, Vector) -> bool| {
+            let middle = centre_of(pin)?;
+            let is_around = |hole: &&Shape| centre_of(hole).is_some_and(|hole| stays(middle, hole));
+            let holes = holes.iter().filter(is_around);
             holes.map(|hole| hole.radius - pin.radius).reduce(f64::max)
         };
-        let beside = |middle: Vector, radius: f64, other: &Shape, holes: &[Shape]| {
+        let gap_beside = |middle: Vector, radius: f64, other: &Shape, holes: &[Shape]| {
             let disc = Shape::disc(middle, radius);
-            let within = holes
+            let depths = holes
                 .iter()
                 .map(|hole| disc.depth_in(hole, Vector::default()));
-            within.fold(disc.distance(other), f64::max)
+            depths.fold(disc.distance(other), f64::max)
         };
         let (first, second) = (&self.first, &self.second);
-        let (place, around) = (
-            places.first()?,
+        let (placement, holes) = (
+            placements.first()?,
             [&self.holes_for_first, &self.holes_for_second],
         );
-        air(first, around[0], &stays)
-            .or_else(|| air(second, around[1], &|second, first| stays(first, second)))
+        gap_in_hole(first, holes[0], &stays)
+            .or_else(|| gap_in_hole(second, holes[1], &|second, first| stays(first, second)))
             .or_else(|| {
-                let (own, middle) = (centre(first)?, place.unmap(centre(first)?));
-                let clear = || beside(middle, first.radius, second, around[0]);
-                stays(own, middle).then(clear)
+                let (own_centre, other_centre) =
+                    (centre_of(first)?, placement.unmap(centre_of(first)?));
+                let gap = || gap_beside(other_centre, first.radius, second, holes[0]);
+                stays(own_centre, other_centre).then(gap)
             })
             .or_else(|| {
-                let (own, middle) = (centre(second)?, place.map(centre(second)?));
-                let clear = || beside(middle, second.radius, first, around[1]);
-                stays(middle, own).then(clear)
+                let (own_centre, other_centre) =
+                    (centre_of(second)?, placement.map(centre_of(second)?));
+                let gap = || gap_beside(other_centre, second.radius, first, holes[1]);
+                stays(other_centre, own_centre).then(gap)
             })
-            .map(|air| self.with_gap(air))
+            .map(|gap| self.with_gap(gap))
     }
 
     /// The distance of two shapes, mm, from their distance in plan view.
-    fn with_gap(&self, flat: f64) -> f64 {
+    fn with_gap(&self, plan_distance: f64) -> f64 {
         match self.gap > 0.0 {
-            true => flat.max(0.0).hypot(self.gap),
-            false => flat,
+            true => plan_distance.max(0.0).hypot(self.gap),
+            false => plan_distance,
         }
     }
 
-    /// The distance of the two shapes, mm, negative if they overlap; `place` is the second shape's frame in the first
-    /// shape's frame.
-    pub fn distance(&self, place: &Placement) -> f64 {
-        self.lower_bound(place, |_| Vector::default())
+    /// The distance of the two shapes, mm, negative if they overlap; `placement` is the second shape's frame in the
+    /// first shape's frame.
+    pub fn distance(&self, placement: &Placement) -> f64 {
+        self.lower_bound(placement, |_| Vector::default())
     }
 
     /// Lower bound of the shapes' distance in a region, mm, from their relative placement at the region's middle and
     /// the largest motion of each point in the region.
     pub fn distance_bound<const N: usize>(
         &self,
-        place: &Placement,
+        placement: &Placement,
         bounds: &Placement<Slope<N>>,
         region: &Region<N>,
     ) -> f64 {
         const ANYWHERE: Vector = Vector::new(f64::INFINITY, f64::INFINITY);
-        self.lower_bound(place, |shape| {
-            let strays = shape.points.iter().map(|&point| {
+        self.lower_bound(placement, |shape| {
+            let changes = shape.points.iter().map(|&point| {
                 let position = bounds.map(point);
                 Vector::new(
                     position.x.largest_change(&region.half),
                     position.y.largest_change(&region.half),
                 )
             });
-            strays.fold(Vector::default(), |max, stray| match stray.is_finite() {
-                true => Vector::new(max.x.max(stray.x), max.y.max(stray.y)),
+            changes.fold(Vector::default(), |max, change| match change.is_finite() {
+                true => Vector::new(max.x.max(change.x), max.y.max(change.y)),
                 false => ANYWHERE,
             })
         })
     }
 
     /// Lower bound of the shapes' distance, mm, while each point of the second shape moves along x and y by up to
-    /// `largest_change`.
-    fn lower_bound(&self, place: &Placement, largest_change: impl Fn(&Shape) -> Vector) -> f64 {
-        let second = self.second.placed(place);
-        let moves = largest_change(&self.second);
-        let mut flat = self.first.distance(&second) - moves.length();
+    /// `largest_change_of`.
+    fn lower_bound(
+        &self,
+        placement: &Placement,
+        largest_change_of: impl Fn(&Shape) -> Vector,
+    ) -> f64 {
+        let second = self.second.placed(placement);
+        let change = largest_change_of(&self.second);
+        let mut distance = self.first.distance(&second) - change.length();
         if self.gap > 0.0 {
-            return self.with_gap(flat);
+            return self.with_gap(distance);
         }
         for hole in &self.holes_for_first {
             // A hole that moves has the same effect as a pin that moves.
-            flat = flat.max(
+            distance = distance.max(
                 self.first
-                    .depth_in(&hole.placed(place), largest_change(hole)),
+                    .depth_in(&hole.placed(placement), largest_change_of(hole)),
             );
         }
         for hole in &self.holes_for_second {
-            flat = flat.max(second.depth_in(hole, moves));
+            distance = distance.max(second.depth_in(hole, change));
         }
-        flat
+        distance
     }
 }

@@ -40,8 +40,8 @@ impl<const N: usize> Slope<N> {
     pub fn tighten(self, middle: f64, half: &[f64; N]) -> Self {
         /// A bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
-        let strays = self.largest_change(half) + ROUNDING;
-        let (low, high) = (middle - strays, middle + strays);
+        let change = self.largest_change(half) + ROUNDING;
+        let (low, high) = (middle - change, middle + change);
         if low.is_nan() || high.is_nan() {
             return self;
         }
@@ -66,15 +66,13 @@ impl<const N: usize> Slope<N> {
         value: Interval,
         derivative: impl Fn(Interval, Interval) -> Interval,
     ) -> Self {
-        let slope = std::array::from_fn(|i| derivative(self.derivatives[i], other.derivatives[i]));
-        Self {
-            value,
-            derivatives: slope,
-        }
+        let derivatives =
+            std::array::from_fn(|i| derivative(self.derivatives[i], other.derivatives[i]));
+        Self { value, derivatives }
     }
 }
 
-/// Implements operators. `each` and `zip` apply the derivative rule.
+/// Implements operators. `map_chain_rule` and `zip` apply the derivative rule.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
         // The derivatives of a product or a quotient also need other operations.
@@ -90,8 +88,8 @@ operators! {
     Add add(self, other: Self) { self.zip(other, self.value + other.value, |a, b| a + b) }
     Sub sub(self, other: Self) { self.zip(other, self.value - other.value, |a, b| a - b) }
     Mul mul(self, other: Self) {
-        let (value, of) = (self.value * other.value, self.value);
-        self.zip(other, value, |a, b| a * other.value + b * of)
+        let (product, own_value) = (self.value * other.value, self.value);
+        self.zip(other, product, |a, b| a * other.value + b * own_value)
     }
     Mul mul(self, factor: f64) { self.map_chain_rule(self.value * factor, |slope| slope * factor) }
     Div div(self, other: Self) {
@@ -126,9 +124,9 @@ impl<const N: usize> Real for Slope<N> {
         let degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
         let (mut sin, mut cos) = (degrees, degrees);
         for i in 0..K {
-            let turn = |slope: Interval| slope * degree;
-            sin[i] = degrees[i].map_chain_rule(sines[i], |slope| turn(slope) * cosines[i]);
-            cos[i] = degrees[i].map_chain_rule(cosines[i], |slope| -turn(slope) * sines[i]);
+            let in_radians = |slope: Interval| slope * degree;
+            sin[i] = degrees[i].map_chain_rule(sines[i], |slope| in_radians(slope) * cosines[i]);
+            cos[i] = degrees[i].map_chain_rule(cosines[i], |slope| -in_radians(slope) * sines[i]);
         }
         (sin, cos)
     }
@@ -143,7 +141,7 @@ mod tests {
     const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 45.0, 28.0]);
 
     /// The coordinates of a five-bar's end point, and its type-2 margin, at two crank angles.
-    fn numbers<T: Real>([left, right]: [T; 2]) -> [T; 3] {
+    fn numbers_at<T: Real>([left, right]: [T; 2]) -> [T; 3] {
         let (sin, cos) = T::sin_cos_each([left, right]);
         let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));
         let pose = HEAD.pose_unchecked(AssemblyMode::Ahead, left, right);
@@ -154,23 +152,24 @@ mod tests {
     fn bounds_of_a_linkage_contain_every_pose_and_its_rates() {
         for (left, right) in [(120.0, 60.0), (95.0, 40.0), (140.0, 80.0)] {
             for half in [0.01, 0.1, 1.0] {
-                let bounds = |middle: f64| Interval::new(middle - half, middle + half);
+                let bounds_around = |middle: f64| Interval::new(middle - half, middle + half);
                 let angles = [(0, left), (1, right)];
-                let held = numbers(angles.map(|(i, of)| Slope::<2>::angle(i, bounds(of))));
-                let middle = numbers([left, right]);
+                let slopes =
+                    numbers_at(angles.map(|(i, angle)| Slope::<2>::angle(i, bounds_around(angle))));
+                let middle = numbers_at([left, right]);
                 for (x, y) in [(-1.0, 1.0), (0.5, 0.5), (1.0, -1.0), (-0.2, -1.0)] {
-                    let at = [left + x * half, right + y * half];
-                    let step = 1e-5;
-                    for (i, value) in numbers(at).into_iter().enumerate() {
-                        let Slope { value: bounds, .. } = held[i];
+                    let crank_angles = [left + x * half, right + y * half];
+                    let step_deg = 1e-5;
+                    for (i, value) in numbers_at(crank_angles).into_iter().enumerate() {
+                        let Slope { value: bounds, .. } = slopes[i];
                         assert!(bounds.low <= value && value <= bounds.high);
-                        let strays = held[i].largest_change(&[half; 2]);
-                        assert!((value - middle[i]).abs() <= strays + 1e-12);
+                        let change = slopes[i].largest_change(&[half; 2]);
+                        assert!((value - middle[i]).abs() <= change + 1e-12);
                         for servo in 0..2 {
-                            let mut next = at;
-                            next[servo] += step;
-                            let rate = (numbers(next)[i] - value) / step;
-                            let Interval { low, high } = held[i].derivatives[servo];
+                            let mut next_angles = crank_angles;
+                            next_angles[servo] += step_deg;
+                            let rate = (numbers_at(next_angles)[i] - value) / step_deg;
+                            let Interval { low, high } = slopes[i].derivatives[servo];
                             assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
                             // The bounds of the derivatives are not much wider than needed.
                             assert!(half > 0.1 || high - low < 0.1, "{low} {high}");

@@ -42,11 +42,11 @@ pub fn body_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
     rectangles
 }
 
-/// True if two rectangles are at least `by` mm apart.
-pub fn are_apart(a: &Rectangle, b: &Rectangle, by: f64) -> bool {
+/// True if two rectangles are at least `min_mm` apart.
+pub fn are_apart(a: &Rectangle, b: &Rectangle, min_mm: f64) -> bool {
     a.iter()
         .zip(b)
-        .any(|(a, b)| a.low - b.high >= by || b.low - a.high >= by)
+        .any(|(a, b)| a.low - b.high >= min_mm || b.low - a.high >= min_mm)
 }
 
 struct Sweep<'a> {
@@ -64,15 +64,15 @@ impl Sweep<'_> {
             let Some((bounds, _)) = self.guard.cranks(&servos, &region) else {
                 continue;
             };
-            let widest = (0..N).max_by(|a, b| region.half[*a].total_cmp(&region.half[*b]));
-            match widest {
-                Some(widest) if region.half[widest] > MIN_HALF_WIDTH_DEG => {
-                    regions.extend(region.halves(widest));
+            let widest_servo = (0..N).max_by(|a, b| region.half[*a].total_cmp(&region.half[*b]));
+            match widest_servo {
+                Some(widest_servo) if region.half[widest_servo] > MIN_HALF_WIDTH_DEG => {
+                    regions.extend(region.halves(widest_servo));
                 }
                 _ => {
-                    let place = self.assembly.place_on(self.mount, &bounds);
+                    let placement = self.assembly.place_on(self.mount, &bounds);
                     self.cover(|point| {
-                        let position = place.map(point);
+                        let position = placement.map(point);
                         [position.x.value, position.y.value]
                     });
                 }
@@ -81,17 +81,17 @@ impl Sweep<'_> {
     }
 
     /// Extends the rectangle of each body of the mount so that it encloses the bounds of the body's points.
-    fn cover(&mut self, at: impl Fn(Vector) -> Rectangle) {
+    fn cover(&mut self, bounds_of: impl Fn(Vector) -> Rectangle) {
         let bodies = self
             .assembly
             .bodies()
             .iter()
             .zip(self.rectangles.iter_mut());
         for (body, rectangle) in bodies.filter(|(body, _)| body.mount == self.mount) {
-            for (point, radius) in points(body) {
-                for (side, at) in rectangle.iter_mut().zip(at(point)) {
-                    side.low = side.low.min(at.low - radius);
-                    side.high = side.high.max(at.high + radius);
+            for (point, radius) in points_of(body) {
+                for (side, bounds) in rectangle.iter_mut().zip(bounds_of(point)) {
+                    side.low = side.low.min(bounds.low - radius);
+                    side.high = side.high.max(bounds.high + radius);
                 }
             }
         }
@@ -99,7 +99,7 @@ impl Sweep<'_> {
 }
 
 /// The points of a body's shapes, each with its shape's radius.
-fn points(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
+fn points_of(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
     let shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
     shapes.flat_map(|shape| shape.points.iter().map(|&point| (point, shape.radius)))
 }

@@ -4,13 +4,13 @@ use lizard_parts::{Assembly, Bill, Item, Kind, SpringEffect};
 
 use crate::{STRUT, neutral};
 
-fn bill(name: &str) -> (Assembly, Bill) {
+fn bill_of(name: &str) -> (Assembly, Bill) {
     bill_with(name, "")
 }
 
-/// The bill of a robot of `robots/`, with `more` lines added to its robot.toml.
-fn bill_with(name: &str, more: &str) -> (Assembly, Bill) {
-    let assembly = crate::assembly(name, more);
+/// The bill of a robot of `robots/`, with the lines `more_toml` added to its robot.toml.
+fn bill_with(name: &str, more_toml: &str) -> (Assembly, Bill) {
+    let assembly = crate::assembly(name, more_toml);
     let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
     (assembly, bill)
 }
@@ -18,18 +18,18 @@ fn bill_with(name: &str, more: &str) -> (Assembly, Bill) {
 #[test]
 fn every_body_is_printed_or_bought() {
     for name in ["paper", "large", "unequal"] {
-        let (assembly, bill) = bill(name);
-        let count = |is: fn(&Kind) -> bool| {
+        let (assembly, bill) = bill_of(name);
+        let count_of = |is_counted: fn(&Kind) -> bool| {
             let bodies = assembly.bodies().iter();
-            bodies.filter(|body| is(&body.kind)).count()
+            bodies.filter(|body| is_counted(&body.kind)).count()
         };
-        let printed: usize = bill.printed.iter().map(|item| item.count).sum();
-        assert_eq!(printed, count(|kind| kind.is_printed()), "{name}");
+        let printed_count: usize = bill.printed.iter().map(|item| item.count).sum();
+        assert_eq!(printed_count, count_of(|kind| kind.is_printed()), "{name}");
         assert_eq!(
             bill.count("screw M3"),
-            count(|kind| matches!(kind, Kind::Screw(_) | Kind::HexScrew(_)))
+            count_of(|kind| matches!(kind, Kind::Screw(_) | Kind::HexScrew(_)))
         );
-        assert_eq!(bill.count("lock nut"), count(|kind| *kind == Kind::Nut));
+        assert_eq!(bill.count("lock nut"), count_of(|kind| *kind == Kind::Nut));
         assert_eq!(bill.count("servo SG-90"), 4);
         assert_eq!(bill.count("tension spring"), 0, "{name}");
     }
@@ -37,13 +37,13 @@ fn every_body_is_printed_or_bought() {
 
 #[test]
 fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
-    let (_, paper) = bill("paper");
+    let (_, paper) = bill_of("paper");
     // Everything except board and supply is symmetric, and board and supply balance each other to within the
     // tolerance.
     let error = paper.centre[0].abs().max(paper.centre[1].abs());
     assert!(error < 1.0, "{:?}", paper.centre);
     assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
-    let (_, large) = bill("large");
+    let (_, large) = bill_of("large");
     assert!(large.grams > paper.grams);
 }
 
@@ -58,20 +58,20 @@ fn the_mass_of_a_file_of_robots_is_that_of_its_bill_in_whole_grams() {
             .file_stem()
             .and_then(|name| name.to_str())
             .expect("a name");
-        let (assembly, bill) = bill(name);
+        let (assembly, bill) = bill_of(name);
         let body = assembly.robot().ground().body;
         assert_eq!(body, bill.body(), "{name}");
         assert!(!bill.differs(&body), "{name}");
         count += 1;
     }
     assert!(count >= 4);
-    let (assembly, _) = bill("paper");
+    let (assembly, _) = bill_of("paper");
     assert_eq!(lizard_robot::Body::DEFAULT, assembly.robot().ground().body);
 }
 
 #[test]
 fn prices_are_on_every_row_to_buy_and_add_up() {
-    let (_, bill) = bill("paper");
+    let (_, bill) = bill_of("paper");
     let classes = bill.bought.iter().map(|item| item.price.expect("a class"));
     assert_eq!(bill.euros, lizard_parts::Price::sum(classes));
     assert!(bill.radio.iter().all(|item| item.price.is_some()));
@@ -81,30 +81,40 @@ fn prices_are_on_every_row_to_buy_and_add_up() {
         "{:?}",
         bill.euros
     );
-    let said = bill.to_string();
+    let text = bill.to_string();
     let sum = format!("is {} to {} euros", bill.euros[0], bill.euros[1]);
-    assert!(said.contains(&sum), "{said}");
+    assert!(text.contains(&sum), "{text}");
     assert_eq!(bill.count("resistor 10 kOhm"), 4);
     assert_eq!(bill.count("terminal strip, 12 ways"), 2);
 }
 
 #[test]
 fn inputs_are_options_of_the_bill_and_change_neither_sum_nor_mass() {
-    let (_, without) = bill("paper");
-    assert!(without.inputs.is_empty() && !without.to_string().contains("inputs"));
+    let (_, plain_bill) = bill_of("paper");
+    assert!(plain_bill.inputs.is_empty() && !plain_bill.to_string().contains("inputs"));
     let tables = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
-    let (_, both) = bill_with("paper", tables);
-    let rows: Vec<&str> = both.inputs.iter().map(|item| item.what.as_str()).collect();
+    let (_, bill_with_both) = bill_with("paper", tables);
+    let rows: Vec<&str> = bill_with_both
+        .inputs
+        .iter()
+        .map(|item| item.what.as_str())
+        .collect();
     assert!(rows[0].starts_with("push button") && rows[1].starts_with("infrared"));
-    assert!(rows.iter().all(|row| both.to_string().contains(row)));
-    assert_eq!((both.euros, both.grams), (without.euros, without.grams));
-    let (_, one) = bill_with("paper", "[input.nose]\npin = \"A2\"\n");
-    assert_eq!(one.inputs, both.inputs[1..]);
+    assert!(
+        rows.iter()
+            .all(|row| bill_with_both.to_string().contains(row))
+    );
+    assert_eq!(
+        (bill_with_both.euros, bill_with_both.grams),
+        (plain_bill.euros, plain_bill.grams)
+    );
+    let (_, bill_with_nose) = bill_with("paper", "[input.nose]\npin = \"A2\"\n");
+    assert_eq!(bill_with_nose.inputs, bill_with_both.inputs[1..]);
 }
 
 #[test]
 fn a_mass_centre_is_printed_in_words_and_as_toml() {
-    let (_, mut bill) = bill("paper");
+    let (_, mut bill) = bill_of("paper");
     (bill.grams, bill.centre) = (308.4, [-0.06, -0.11, 9.7]);
     assert_eq!(
         bill.centre_in_words(),
@@ -131,16 +141,16 @@ fn a_mass_centre_is_printed_in_words_and_as_toml() {
 fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     let (assembly, bill) = bill_with("paper", STRUT);
     let hold = bill.hold.expect("springs");
-    let strut = 28.5f64.hypot(10.0);
-    assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
-    assert!((hold.installed - strut - 3.0).abs() < 1e-9);
+    let strut_length = 28.5f64.hypot(10.0);
+    assert!((assembly.layout().legs[0].strut_length - strut_length).abs() < 1e-9);
+    assert!((hold.installed - strut_length - 3.0).abs() < 1e-9);
     // At neutral the angle between the strut and the anchor's arm is 60.8 deg. In walk a leg swings by 20 deg to
     // either side, in look by a little more.
-    let between = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
-    let lever = |swing: f64| 22.0 * (between + swing).to_radians().sin();
-    let [least, most] = hold.lever;
-    assert!(lever(-24.0) < least && least < lever(-20.0) + 0.01);
-    assert!(lever(20.0) - 0.01 < most && most < 22.0);
+    let angle_deg = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
+    let lever_at = |swing: f64| 22.0 * (angle_deg + swing).to_radians().sin();
+    let [least_lever, most_lever] = hold.lever;
+    assert!(lever_at(-24.0) < least_lever && least_lever < lever_at(-20.0) + 0.01);
+    assert!(lever_at(20.0) - 0.01 < most_lever && most_lever < 22.0);
     assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
     assert!(hold.friction * 1.8 < hold.preload);
     // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk, at more than seven
@@ -150,73 +160,79 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     // An independent check of the slot's end from the plan of the leg: there the strut is 5 mm longer, and the torque
     // is the spring's force times the derivative of the strut's length.
     let robot = assembly.robot();
-    let stretched = |lag: f64| {
+    let stretch_at = |lag: f64| {
         let angle = robot.servos()[1].neutral + 20.0;
         let [from, to] = robot.legs()[1].at(angle, angle - lag).strut;
-        (to - from).length() - strut
+        (to - from).length() - strut_length
     };
-    let (way, torque) = robot.drive().strut().expect("a strut").slot_end(1, 20.0);
-    assert!((stretched(way) - 5.0).abs() < 1e-6, "{way}");
-    let by = (stretched(way + 0.01) - stretched(way - 0.01)) / 0.02f64.to_radians();
+    let (lag_deg, torque) = robot.drive().strut().expect("a strut").slot_end(1, 20.0);
+    assert!((stretch_at(lag_deg) - 5.0).abs() < 1e-6, "{lag_deg}");
+    let lever_mm = (stretch_at(lag_deg + 0.01) - stretch_at(lag_deg - 0.01)) / 0.02f64.to_radians();
     let force = hold.force + 5.0 * hold.rate;
-    assert!((torque / (force * by) - 1.0).abs() < 1e-4, "{torque}");
+    assert!((torque / (force * lever_mm) - 1.0).abs() < 1e-4, "{torque}");
     // Only the weakest spring with which the robot still walks lets the servo turn.
-    let (_, weak) = bill_with("paper", &format!("{STRUT}\nforce = 2.0\nrate = 0.2"));
-    assert!(weak.hold.expect("springs").lets_servo_turn());
+    let (_, weak_bill) = bill_with("paper", &format!("{STRUT}\nforce = 2.0\nrate = 0.2"));
+    assert!(weak_bill.hold.expect("springs").lets_servo_turn());
 }
 
 #[test]
 fn a_held_foot_stretches_its_spring_one_way_only() {
     for name in ["paper", "large", "unequal"] {
-        let (assembly, _) = bill(name);
+        let (assembly, _) = bill_of(name);
         let robot = assembly.robot();
         for (servo, plan) in robot.legs().iter().enumerate() {
             let neutral = robot.servos()[servo].neutral;
-            let front = servo < 2;
+            let is_front = servo < 2;
             let forward = lizard_robot::servo::FORWARD[servo];
-            let longer = |by: f64| {
-                let [from, to] = plan.at(neutral + forward * by, neutral).strut;
+            let extension_at = |turn_deg: f64| {
+                let [from, to] = plan.at(neutral + forward * turn_deg, neutral).strut;
                 (to - from).length() - plan.strut_length
             };
-            assert_eq!(longer(5.0) > 0.5, front, "{name} {servo}");
-            assert_eq!(longer(-5.0) > 0.5, !front, "{name} {servo}");
+            assert_eq!(extension_at(5.0) > 0.5, is_front, "{name} {servo}");
+            assert_eq!(extension_at(-5.0) > 0.5, !is_front, "{name} {servo}");
         }
     }
 }
 
 #[test]
 fn rigid_struts_are_printed_instead_and_need_no_springs() {
-    let (_, sprung) = bill_with("paper", STRUT);
-    let (assembly, rigid) = bill_with("paper", "");
-    assert_eq!(sprung.count("tension spring"), 4);
-    assert_eq!(rigid.count("tension spring"), 0);
+    let (_, sprung_bill) = bill_with("paper", STRUT);
+    let (assembly, rigid_bill) = bill_with("paper", "");
+    assert_eq!(sprung_bill.count("tension spring"), 4);
+    assert_eq!(rigid_bill.count("tension spring"), 0);
     // The same screws and nuts are needed.
-    for what in ["screw M3", "lock nut"] {
-        assert_eq!(rigid.count(what), sprung.count(what));
+    for name in ["screw M3", "lock nut"] {
+        assert_eq!(rigid_bill.count(name), sprung_bill.count(name));
     }
-    let names = |items: &[Item]| -> Vec<_> {
+    let rows_of = |items: &[Item]| -> Vec<_> {
         let items = items.iter();
         items.map(|item| (item.count, item.what.clone())).collect()
     };
     // Each bill lists the other's struts as alternatives.
-    let [slotted, bar] = ["strut", "rigid strut"].map(|what| (4, what.to_owned()));
-    assert_eq!(names(&sprung.instead).first(), Some(&bar));
-    assert_eq!(names(&rigid.instead).first(), Some(&slotted));
-    assert!(names(&sprung.printed).contains(&slotted) && names(&rigid.printed).contains(&bar));
-    assert_eq!(rigid.hold, None);
+    let [slotted, bar] = ["strut", "rigid strut"].map(|name| (4, name.to_owned()));
+    assert_eq!(rows_of(&sprung_bill.instead).first(), Some(&bar));
+    assert_eq!(rows_of(&rigid_bill.instead).first(), Some(&slotted));
+    assert!(
+        rows_of(&sprung_bill.printed).contains(&slotted)
+            && rows_of(&rigid_bill.printed).contains(&bar)
+    );
+    assert_eq!(rigid_bill.hold, None);
     assert!(!assembly.robot().drive().can_lag());
-    let said = rigid.to_string();
-    for words in [
+    let text = rigid_bill.to_string();
+    for phrase in [
         "A foot that is caught can stall its servo",
         "[leg.drive]\nkind = \"rigid\"\n",
     ] {
-        assert!(said.contains(words), "{said}");
+        assert!(text.contains(phrase), "{text}");
     }
-    let said = sprung.to_string();
-    let (_, table) = said.split_once("```toml\n").expect("a table");
+    let text = sprung_bill.to_string();
+    let (_, table) = text.split_once("```toml\n").expect("a table");
     let (drive, _) = table.split_once("\n\n").expect("the drive");
     // The quoted table makes the same robot.
-    let (again, _) = bill_with("paper", drive);
-    let [was, is] = [sprung.hold, SpringEffect::of(&again)].map(|hold| hold.expect("springs"));
-    assert!((was.force - is.force).abs() < 0.01 && (was.rate - is.rate).abs() < 0.001);
+    let (same_assembly, _) = bill_with("paper", drive);
+    let [expected, actual] =
+        [sprung_bill.hold, SpringEffect::of(&same_assembly)].map(|hold| hold.expect("springs"));
+    assert!(
+        (expected.force - actual.force).abs() < 0.01 && (expected.rate - actual.rate).abs() < 0.001
+    );
 }

@@ -8,24 +8,24 @@ use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
 
 use crate::{ROBOTS, assembly, body, slotted};
 
-fn at(x: f64, y: f64) -> Vector {
+fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
 /// Points of a rectangle, given by its centre and size, every 0.3 mm.
-fn points(middle: Vector, size: Vector) -> Vec<Vector> {
-    let steps = |size: f64| {
+fn points_in_rectangle(middle: Vector, size: Vector) -> Vec<Vector> {
+    let offsets_over = |size: f64| {
         let count = (size / 0.3).ceil() as i32;
         (0..=count).map(move |i| size * (f64::from(i) / f64::from(count) - 0.5))
     };
-    let rows = steps(size.x).flat_map(|x| steps(size.y).map(move |y| at(x, y)));
-    rows.map(|by| middle + by).collect()
+    let rows = offsets_over(size.x).flat_map(|x| offsets_over(size.y).map(move |y| vector(x, y)));
+    rows.map(|offset| middle + offset).collect()
 }
 
 /// The heights and the outline of each layer.
-fn layers(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
-    let layer = |prism: &Prism| (prism.z, Outline::of(prism));
-    prisms.iter().map(layer).collect()
+fn layers_of(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
+    let layer_of = |prism: &Prism| (prism.z, Outline::of(prism));
+    prisms.iter().map(layer_of).collect()
 }
 
 #[test]
@@ -33,14 +33,15 @@ fn a_servo_goes_into_the_plate_with_its_lead() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let servo = assembly.robot().parts().servo;
-        let plate = layers(&body(&assembly, "plate").prisms);
+        let plate = layers_of(&body(&assembly, "plate").prisms);
         for end in End::ALL {
             for i in end.servos() {
                 let middle = assembly.layout().plate.cases[i];
-                let edge = middle + at(0.0, end.sign() * servo.length / 2.0);
+                let edge = middle + vector(0.0, end.sign() * servo.length / 2.0);
                 // The lead's bundle is 4 x 1.2 mm, at the end where the shaft is.
-                let lead = points(edge + at(0.0, end.sign() * 0.6), at(4.0, 1.2));
-                let case = points(middle, at(servo.width, servo.length));
+                let lead =
+                    points_in_rectangle(edge + vector(0.0, end.sign() * 0.6), vector(4.0, 1.2));
+                let case = points_in_rectangle(middle, vector(servo.width, servo.length));
                 for (z, outline) in &plate {
                     for point in lead.iter().chain(&case) {
                         assert!(
@@ -71,9 +72,9 @@ fn the_coupon_has_the_openings_of_the_plate() {
     areas.sort_by(f64::total_cmp);
     for (column, area) in areas.into_iter().enumerate() {
         let fit = 0.1 * column as f64;
-        let case = (parts.servo.length + 2.0 * fit) * (parts.servo.width + 2.0 * fit);
+        let case_area = (parts.servo.length + 2.0 * fit) * (parts.servo.width + 2.0 * fit);
         // The notch extends 1.2 mm beyond the case and its clearance.
-        let expected = case + 5.0 * 1.2;
+        let expected = case_area + 5.0 * 1.2;
         assert!(
             (area - expected).abs() < 1e-6,
             "{column}: {area} {expected}"
@@ -88,16 +89,16 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
         let parts = assembly.robot().parts();
         for (i, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
             let [spring, strut] =
-                ["spring", "strut"].map(|of| body(&assembly, &format!("{of} {leg}")));
+                ["spring", "strut"].map(|noun| body(&assembly, &format!("{noun} {leg}")));
             let shape = &spring.prisms[0].filled_shapes[0];
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
             // Each hook, with the coil's inner diameter, goes around the far side of an M3 screw.
-            let inner = parts.spring.outer - 2.0 * parts.spring.wire;
-            let hung = assembly.layout().legs[i].strut_length + 3.0 - 2.0 * inner;
+            let inner_diameter = parts.spring.outer - 2.0 * parts.spring.wire;
+            let hung_length = assembly.layout().legs[i].strut_length + 3.0 - 2.0 * inner_diameter;
             assert!(
-                (length - hung).abs() < 1e-9,
-                "{name} {leg}: {length} {hung}"
+                (length - hung_length).abs() < 1e-9,
+                "{name} {leg}: {length} {hung_length}"
             );
             if name == "paper" {
                 assert!((length - 24.5).abs() < 0.01, "{length}");
@@ -106,12 +107,12 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
             let middle = shape.middle();
             // This also holds when the leg lags as far as the slot allows.
             for lag in [0.0, 2.5, 5.0] {
-                let size = at(length + lag, parts.spring.outer);
-                for (z, outline) in layers(&strut.prisms) {
+                let size = vector(length + lag, parts.spring.outer);
+                for (z, outline) in layers_of(&strut.prisms) {
                     if z[1] <= bottom || top <= z[0] {
                         continue;
                     }
-                    for point in points(middle + at(lag / 2.0, 0.0), size) {
+                    for point in points_in_rectangle(middle + vector(lag / 2.0, 0.0), size) {
                         assert!(!outline.contains(point), "{name} {leg}: {point:?} {z:?}");
                     }
                 }
@@ -124,13 +125,13 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
 
 #[test]
 fn a_coil_that_rides_on_its_strut_is_found() {
-    let riding = slotted("paper", "").altered(|bodies| {
+    let altered = slotted("paper", "").altered(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
             body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
         }
     });
-    let spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
-    let proof = riding.prove_some(spring, |_, _| ());
+    let has_spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
+    let proof = altered.prove_some(has_spring, |_, _| ());
     let clash = proof.judge().expect_err("it is too near to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
@@ -146,8 +147,8 @@ fn every_shop_has_the_screws() {
             });
             assert!(screws.clone().count() > 40);
             for (screw, length) in screws {
-                let sold = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
-                assert!(sold.contains(&length), "{name}: {screw} {length}");
+                let sold_lengths = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
+                assert!(sold_lengths.contains(&length), "{name}: {screw} {length}");
             }
         }
     }
@@ -169,20 +170,20 @@ fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
 /// Points along a loop, every 0.2 mm.
 fn points_along(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
-    for (side, to) in line.sides_with_end_points() {
-        let chord = to - side.from;
-        match side.arc(to) {
+    for (side, end) in line.sides_with_end_points() {
+        let chord = end - side.from;
+        match side.arc(end) {
             None => {
                 let count = (chord.length() / 0.2).ceil() as u32;
-                let share = |i| f64::from(i) / f64::from(count);
-                points.extend((0..count).map(|i| side.from + chord * share(i)));
+                let share_at = |i| f64::from(i) / f64::from(count);
+                points.extend((0..count).map(|i| side.from + chord * share_at(i)));
             }
             Some((centre, radius)) => {
-                let whole = 4.0 * side.bulge.atan();
-                let count = (whole.abs() * radius / 0.2).ceil() as u32;
+                let whole_angle = 4.0 * side.bulge.atan();
+                let count = (whole_angle.abs() * radius / 0.2).ceil() as u32;
                 let arm = side.from - centre;
                 points.extend((0..count).map(|i| {
-                    let (sin, cos) = (whole * f64::from(i) / f64::from(count)).sin_cos();
+                    let (sin, cos) = (whole_angle * f64::from(i) / f64::from(count)).sin_cos();
                     centre + arm * cos + arm.rotated_left() * sin
                 }));
             }
@@ -192,8 +193,8 @@ fn points_along(line: &Loop) -> Vec<Vector> {
 }
 
 /// The thickness of the thinnest wall between two loops of a layer of a part, mm.
-fn thinnest(part: &Part) -> f64 {
-    let mut smallest = f64::INFINITY;
+fn thinnest_wall(part: &Part) -> f64 {
+    let mut least_mm = f64::INFINITY;
     for prism in &part.prisms {
         for piece in &Outline::of(prism).pieces {
             let lines: Vec<_> = piece.iter().map(points_along).collect();
@@ -202,13 +203,13 @@ fn thinnest(part: &Part) -> f64 {
                     .iter()
                     .flat_map(|b| a.iter().map(move |p| (b, p)))
                 {
-                    let near = b.iter().map(|other| (*other - *point).length());
-                    smallest = near.fold(smallest, f64::min);
+                    let distances = b.iter().map(|other| (*other - *point).length());
+                    least_mm = distances.fold(least_mm, f64::min);
                 }
             }
         }
     }
-    smallest
+    least_mm
 }
 
 #[test]
@@ -216,20 +217,27 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
     for name in ["paper", "unequal"] {
         let assembly = assembly(name, "");
         let wall = assembly.robot().parts().wall;
-        let mut asked = 0;
+        let mut checked_count = 0;
         for part in assembly.parts() {
             // Thinner walls are intended here: in the plate the servos' own screws are beside their openings, and
             // the engraved lines of a number beside each other; in a link the horn's screws are beside its hub; a
             // ring is as thin as the coil beside it requires; a dome tapers to nothing at its hole.
-            let thinner = ["plate", "link", "strut ring", "pad"];
-            if thinner.iter().any(|known| part.name.starts_with(known)) {
+            let exceptions = ["plate", "link", "strut ring", "pad"];
+            if exceptions
+                .iter()
+                .any(|prefix| part.name.starts_with(prefix))
+            {
                 continue;
             }
-            let thin = thinnest(&part);
-            assert!(thin > wall - 0.02, "{name}: {} {thin:.2}", part.name);
-            asked += 1;
+            let thinnest_mm = thinnest_wall(&part);
+            assert!(
+                thinnest_mm > wall - 0.02,
+                "{name}: {} {thinnest_mm:.2}",
+                part.name
+            );
+            checked_count += 1;
         }
-        assert!(asked > 10);
+        assert!(checked_count > 10);
     }
 }
 
@@ -238,50 +246,48 @@ fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
     let assembly = assembly("paper", "");
     let link = body(&assembly, "link A1");
     let floor = Outline::of(&link.prisms[0]);
-    let outer = points_along(&floor.pieces[0][0]);
-    let mut pockets = 0;
+    let outer_points = points_along(&floor.pieces[0][0]);
+    let mut pocket_count = 0;
     for hole in &floor.pieces[0][1..] {
         if hole.sides.len() != 6 {
             continue;
         }
-        pockets += 1;
+        pocket_count += 1;
         for corner in points_along(hole) {
-            let wall = outer.iter().map(|point| (*point - corner).length());
+            let wall = outer_points.iter().map(|point| (*point - corner).length());
             let wall = wall.fold(f64::INFINITY, f64::min);
             assert!(wall > 1.58, "{wall}");
         }
     }
-    assert_eq!(pockets, 2);
+    assert_eq!(pocket_count, 2);
 }
 
 #[test]
 fn parts_that_are_alike_but_for_left_and_right_are_marked() {
     for name in ["paper", "large", "unequal"] {
         let parts = assembly(name, "").parts();
-        let describe = |part: &Part| {
+        let noun_of = |part: &Part| {
             let name = &part.bodies[0];
             name.rsplit_once(' ')
-                .map_or(&**name, |(words, _)| words)
+                .map_or(&**name, |(noun, _)| noun)
                 .to_owned()
         };
         let mut marks = Vec::new();
         for part in &parts {
-            let others = parts
-                .iter()
-                .filter(|other| describe(other) == describe(part));
-            let spacer = part.name.starts_with("spacer");
-            let alone = others.count() == 1 || spacer;
-            assert_eq!(part.mark.is_empty(), alone, "{}", part.name);
+            let same_noun = parts.iter().filter(|other| noun_of(other) == noun_of(part));
+            let is_spacer = part.name.starts_with("spacer");
+            let is_unmarked = same_noun.count() == 1 || is_spacer;
+            assert_eq!(part.mark.is_empty(), is_unmarked, "{}", part.name);
             if part.mark.is_empty() {
                 continue;
             }
-            marks.push((describe(part), part.mark.clone()));
+            marks.push((noun_of(part), part.mark.clone()));
             // The mark was engraved, so some of the part's material is gone.
-            let (printed, roofs) = part.printed_layers();
+            let (printed, roof_count) = part.printed_layers();
             let solid = Solid::of(&printed);
-            let skins = 0.3 * 9.0 * roofs as f64;
-            let rest = part.volume() + skins - 0.5;
-            assert!(solid.volume < rest, "{name}: {}", part.name);
+            let roof_volume = 0.3 * 9.0 * roof_count as f64;
+            let max_volume = part.volume() + roof_volume - 0.5;
+            assert!(solid.volume < max_volume, "{name}: {}", part.name);
             assert!(Mesh::of(&solid).is_closed(), "{name}: {}", part.name);
         }
         let count = marks.len();
@@ -301,12 +307,12 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
 #[test]
 fn no_hole_of_a_printed_part_begins_in_the_air() {
     for name in ["paper", "large", "unequal"] {
-        let mut roofs = 0;
+        let mut roof_count = 0;
         for part in assembly(name, "").parts() {
             let (printed, count) = part.printed_layers();
-            roofs += count * part.count();
-            for pair in layers(&printed).windows(2) {
-                let [([_, end], below), (z, outline)] = pair else {
+            roof_count += count * part.count();
+            for pair in layers_of(&printed).windows(2) {
+                let [([_, end], outline_below), (z, outline)] = pair else {
                     continue;
                 };
                 let part = &part.name;
@@ -317,15 +323,15 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
                     let Some((middle, radius)) = line.circle() else {
                         continue;
                     };
-                    let on = (0..24).any(|i| {
-                        let way = Vector::direction(15.0 * f64::from(i));
-                        below.contains(middle + way * (radius + 0.2))
+                    let is_supported = (0..24).any(|i| {
+                        let direction = Vector::direction(15.0 * f64::from(i));
+                        outline_below.contains(middle + direction * (radius + 0.2))
                     });
-                    assert!(on, "{name}: {part} at {z:?}");
+                    assert!(is_supported, "{name}: {part} at {z:?}");
                 }
             }
         }
         // There are two closed holes in each link, and one in each crank, foot and pad.
-        assert_eq!(roofs, 20, "{name}");
+        assert_eq!(roof_count, 20, "{name}");
     }
 }

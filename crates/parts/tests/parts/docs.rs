@@ -11,18 +11,18 @@ fn read(path: &str) -> String {
 }
 
 /// The TOML block of docs/build.md that lists all keys.
-fn block() -> String {
+fn toml_block() -> String {
     let page = read("docs/build.md");
     let blocks = page.split("```toml\n").skip(1);
     let mut blocks = blocks.filter_map(|rest| rest.split("```").next());
-    let all = blocks.find(|block| block.contains("[parts.servo]"));
-    all.expect("a block with [parts.servo]").to_owned()
+    let keys_block = blocks.find(|block| block.contains("[parts.servo]"));
+    keys_block.expect("a block with [parts.servo]").to_owned()
 }
 
 #[test]
 fn the_page_has_the_default_values() {
     let paper = read("robots/paper.toml");
-    let robot = Robot::parse(&format!("{paper}\n{}", block())).expect("docs/build.md");
+    let robot = Robot::parse(&format!("{paper}\n{}", toml_block())).expect("docs/build.md");
     let paper = Robot::parse(&paper).expect("robots/paper.toml");
     // The foot's position, an optional key, is the one that results from the hips.
     let mut parts = *robot.parts();
@@ -34,23 +34,26 @@ fn the_page_has_the_default_values() {
 
 #[test]
 fn the_page_has_every_key() {
-    let block = block();
+    let block = toml_block();
     // The names of all fields, from their debug output.
     let printed = format!("{:#?}", Parts::default());
-    let mut asked = 0;
+    let mut checked_count = 0;
     for line in printed.lines() {
         let Some((name, value)) = line.trim().split_once(": ") else {
             continue;
         };
-        let table = value.ends_with('{');
-        let key = |line: &str| match table {
+        let is_table = value.ends_with('{');
+        let is_key_line = |line: &str| match is_table {
             true => line.starts_with(&format!("[parts.{name}]")),
             false => line.starts_with(&format!("{name} = ")),
         };
-        assert!(block.lines().any(key), "docs/build.md has no {name}");
-        asked += 1;
+        assert!(
+            block.lines().any(is_key_line),
+            "docs/build.md has no {name}"
+        );
+        checked_count += 1;
     }
-    assert!(asked > 30, "{asked} keys of {printed}");
+    assert!(checked_count > 30, "{checked_count} keys of {printed}");
 }
 
 /// Compares the text of a page between a start mark and the end mark with `expected`. If BLESS_DOCS is set, writes
@@ -58,11 +61,15 @@ fn the_page_has_every_key() {
 fn check_or_write_quote(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
     let page = read(path);
-    let (before, rest) = page.split_once(start).expect(start);
-    let (list, after) = rest.split_once(END).expect("the list ends");
+    let (text_before, rest) = page.split_once(start).expect(start);
+    let (list, text_after) = rest.split_once(END).expect("the list ends");
     if std::env::var_os("BLESS_DOCS").is_some() {
         let file = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
-        std::fs::write(file, format!("{before}{start}{expected}{END}{after}")).expect(path);
+        std::fs::write(
+            file,
+            format!("{text_before}{start}{expected}{END}{text_after}"),
+        )
+        .expect(path);
         return;
     }
     assert_eq!(list, expected, "{path}: run with BLESS_DOCS=1");
@@ -99,15 +106,15 @@ fn the_pages_quote_the_lists_of_the_bill() {
 #[test]
 fn the_pages_have_the_mass_of_robot_toml() {
     let mass = assembly("paper", "").robot().ground().body.mass;
-    let weighs = format!("The parts weigh {mass:.0} g.");
+    let mass_sentence = format!("The parts weigh {mass:.0} g.");
     assert!(
-        read("docs/twin.md").contains(&weighs),
-        "docs/twin.md: {weighs}"
+        read("docs/twin.md").contains(&mass_sentence),
+        "docs/twin.md: {mass_sentence}"
     );
     assert!(read("docs/twin.md").contains(&format!("| mass | {mass:.0} g,")));
-    let key = format!("\nmass = {mass:.1} ");
+    let mass_line = format!("\nmass = {mass:.1} ");
     for path in ["robot.toml", "robots/paper.toml", "robots/own-gaits.toml"] {
-        assert!(read(path).contains(&key), "{path}: {key}");
+        assert!(read(path).contains(&mass_line), "{path}: {mass_line}");
     }
 }
 
@@ -115,9 +122,9 @@ fn the_pages_have_the_mass_of_robot_toml() {
 fn the_quickstart_goes_through_the_steps_of_the_guide_in_their_order() {
     let page = read("docs/quickstart.md");
     let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
-    let text = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
-    let text: Vec<_> = text.map(str::to_owned).collect();
+    let entries = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
+    let entries: Vec<_> = entries.map(str::to_owned).collect();
     let steps = (1..).zip(steps(false));
     let expected = steps.map(|(number, step)| format!("step {number}, {}", step.title));
-    assert_eq!(text, expected.collect::<Vec<_>>());
+    assert_eq!(entries, expected.collect::<Vec<_>>());
 }

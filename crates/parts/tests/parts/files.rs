@@ -10,58 +10,64 @@ fn assembly(name: &str) -> Assembly {
 }
 
 /// The centres, from above, of a body's holes in which an M3 screw turns.
-fn holes(body: &Body) -> Vec<(f64, f64)> {
-    let mut found: Vec<(f64, f64)> = Vec::new();
+fn holes_of(body: &Body) -> Vec<(f64, f64)> {
+    let mut holes: Vec<(f64, f64)> = Vec::new();
     for prism in &body.prisms {
         for (middle, radius) in Outline::of(prism).loops().filter_map(Loop::circle) {
-            let known = |at: &(f64, f64)| (at.0 - middle.x).hypot(at.1 - middle.y) < 1e-6;
-            if (radius - 1.6).abs() < 1e-6 && !found.iter().any(known) {
-                found.push((middle.x, middle.y));
+            let is_known = |hole: &(f64, f64)| (hole.0 - middle.x).hypot(hole.1 - middle.y) < 1e-6;
+            if (radius - 1.6).abs() < 1e-6 && !holes.iter().any(is_known) {
+                holes.push((middle.x, middle.y));
             }
         }
     }
-    found
+    holes
 }
 
 /// Checks that some two holes of a body are `mm` apart.
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
-    let holes = holes(body(assembly, name));
-    let error = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
-    let near = holes
+    let holes = holes_of(body(assembly, name));
+    let error_of = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
+    let has_pair = holes
         .iter()
-        .any(|a| holes.iter().any(|b| error(a, b) < 1e-9));
-    assert!(near, "{name}: no two of {holes:?} are {mm} mm apart");
+        .any(|a| holes.iter().any(|b| error_of(a, b) < 1e-9));
+    assert!(has_pair, "{name}: no two of {holes:?} are {mm} mm apart");
 }
 
 #[test]
 fn from_hole_to_hole_is_the_length_of_the_link() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name);
-        let l = assembly.robot().lizard().links;
+        let links = assembly.robot().lizard().links;
         let leg = assembly.robot().lizard().leg;
-        for (coupler, length) in [("A1", l.l2), ("A2", l.l3), ("A3", l.l8), ("A4", l.l7)] {
+        for (coupler, length) in [
+            ("A1", links.l2),
+            ("A2", links.l3),
+            ("A3", links.l8),
+            ("A4", links.l7),
+        ] {
             assert_hole_distance(&assembly, &format!("coupler {coupler}"), length);
         }
         // Crank and arm form a right angle at the shaft.
         for (link, crank, arm) in [
-            ("A1", l.l1, l.l14),
-            ("A2", l.l4, l.l19),
-            ("A3", l.l9, l.l16),
-            ("A4", l.l6, l.l11),
+            ("A1", links.l1, links.l14),
+            ("A2", links.l4, links.l19),
+            ("A3", links.l9, links.l16),
+            ("A4", links.l6, links.l11),
         ] {
             let link = format!("link {link}");
             assert_hole_distance(&assembly, &link, crank.hypot(arm));
-            let holes = holes(assembly.body(&link).expect("a link"));
+            let holes = holes_of(assembly.body(&link).expect("a link"));
             for length in [crank, arm] {
-                let from_shaft = |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
-                assert!(holes.iter().any(from_shaft), "{name} {link} {length}");
+                let is_at_distance =
+                    |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
+                assert!(holes.iter().any(is_at_distance), "{name} {link} {length}");
             }
         }
-        for of in ["LF", "RF", "RH", "LH"] {
-            assert_hole_distance(&assembly, &format!("crank {of}"), leg.crank);
-            assert_hole_distance(&assembly, &format!("follower {of}"), leg.follower);
-            assert_hole_distance(&assembly, &format!("leg coupler {of}"), leg.coupler);
+        for leg_name in ["LF", "RF", "RH", "LH"] {
+            assert_hole_distance(&assembly, &format!("crank {leg_name}"), leg.crank);
+            assert_hole_distance(&assembly, &format!("follower {leg_name}"), leg.follower);
+            assert_hole_distance(&assembly, &format!("leg coupler {leg_name}"), leg.coupler);
             assert_hole_distance(&assembly, "plate", leg.ground);
         }
     }
@@ -73,17 +79,20 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
         let assembly = assembly(name);
         for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.alternatives()) {
             let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
-            assert_eq!(holes(rigid), expected, "{name}: {}", rigid.name);
-            let slotted = rigid.name.trim_start_matches("rigid ");
-            let slotted = body(&assembly, slotted);
+            assert_eq!(holes_of(rigid), expected, "{name}: {}", rigid.name);
+            let slotted_name = rigid.name.trim_start_matches("rigid ");
+            let slotted = body(&assembly, slotted_name);
             assert_eq!(slotted.mount, rigid.mount);
             // The rigid strut lies within the slotted one, so bodies clear of the slotted one are clear of both.
-            let (inner, outer) = (rigid.z(), slotted.z());
-            assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
+            let (inner_z, outer_z) = (rigid.z(), slotted.z());
+            assert!(
+                outer_z[0] <= inner_z[0] && inner_z[1] <= outer_z[1],
+                "{name}"
+            );
             for prism in &slotted.prisms {
-                let air = rigid.prisms[0].filled_shapes[0]
+                let depth = rigid.prisms[0].filled_shapes[0]
                     .depth_in(&prism.filled_shapes[0], Default::default());
-                assert!(air > -1e-9, "{name}: {air}");
+                assert!(depth > -1e-9, "{name}: {depth}");
             }
         }
     }
@@ -92,11 +101,11 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
 #[test]
 fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
     let assembly = assembly("unequal");
-    let holes = holes(body(&assembly, "plate"));
+    let holes = holes_of(body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
         for pivot in [leg.crank_pivot, leg.follower_pivot] {
-            let at = |hole: &(f64, f64)| (hole.0 - pivot.x).hypot(hole.1 - pivot.y) < 1e-9;
-            assert!(holes.iter().any(at), "{pivot:?}");
+            let is_at_pivot = |hole: &(f64, f64)| (hole.0 - pivot.x).hypot(hole.1 - pivot.y) < 1e-9;
+            assert!(holes.iter().any(is_at_pivot), "{pivot:?}");
         }
     }
 }
@@ -116,16 +125,19 @@ fn the_foot_stands_where_the_contact_model_has_it() {
                 let leg = &assembly.layout().legs[servo];
                 // The points that the drawings show.
                 let angle = pose.legs[servo].direction.angle();
-                let drawn = leg.at(angle, angle);
-                let at = |mount, point| assembly.place(mount, &pose).map(point);
+                let drawn_leg = leg.at(angle, angle);
+                let point_on = |mount, point| assembly.place(mount, &pose).map(point);
                 let crank = Mount::Crank(servo);
                 for (drawn, built) in [
-                    (foot, at(Mount::Foot(servo), leg.foot)),
-                    (drawn.foot, foot),
-                    (drawn.joints[0], at(crank, leg.joint)),
-                    (drawn.joints[1], at(Mount::Follower(servo), leg.joint)),
-                    (drawn.strut[0], at(Mount::Link(servo), leg.anchor)),
-                    (drawn.strut[1], at(crank, leg.anchor)),
+                    (foot, point_on(Mount::Foot(servo), leg.foot)),
+                    (drawn_leg.foot, foot),
+                    (drawn_leg.joints[0], point_on(crank, leg.joint)),
+                    (
+                        drawn_leg.joints[1],
+                        point_on(Mount::Follower(servo), leg.joint),
+                    ),
+                    (drawn_leg.strut[0], point_on(Mount::Link(servo), leg.anchor)),
+                    (drawn_leg.strut[1], point_on(crank, leg.anchor)),
                 ] {
                     assert!((drawn - built).length() < 1e-9, "{name} {servo}");
                 }
@@ -136,14 +148,14 @@ fn the_foot_stands_where_the_contact_model_has_it() {
 
 #[test]
 fn every_file_is_the_same_on_every_run() {
-    let files = || -> Vec<_> {
+    let make_files = || -> Vec<_> {
         let assembly = assembly("unequal");
         let parts = assembly.parts().into_iter();
         parts
             .flat_map(|part| part_files(&part, 0.2).expect("files"))
             .collect()
     };
-    let (first, second) = (files(), files());
+    let (first, second) = (make_files(), make_files());
     assert!(first.len() > 50);
     assert!(first == second);
     let mut paths: Vec<_> = first.iter().map(|file| &file.path).collect();

@@ -6,7 +6,7 @@ use lizard_parts::Clearance;
 use crate::{ROBOTS, assembly, body, slotted};
 
 /// The nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
-fn nearest(parts: &str) -> Option<Clearance> {
+fn nearest_pair(parts: &str) -> Option<Clearance> {
     let assembly = slotted("paper", parts);
     assembly.nearest(assembly.poses(9), 1.0).into_iter().next()
 }
@@ -16,8 +16,8 @@ fn every_robot_has_gaps_between_its_parts() {
     for name in ROBOTS {
         let assembly = slotted(name, "");
         assert!(assembly.poses(10).count() > 100, "{name}");
-        let near = assembly.nearest(assembly.poses(10), 0.2);
-        assert!(near.is_empty(), "{name}: {}", near[0]);
+        let near_pairs = assembly.nearest(assembly.poses(10), 0.2);
+        assert!(near_pairs.is_empty(), "{name}: {}", near_pairs[0]);
     }
 }
 
@@ -31,10 +31,10 @@ fn a_wrong_measure_makes_parts_overlap() {
         ("[parts]\nanchor = [12.0, 5.0]", "", ""),
         ("[parts.screw]\nhead = 14.0\nhead_height = 3.0", "screw", ""),
     ] {
-        let near = nearest(parts).unwrap_or_else(|| panic!("{parts}: nothing is near"));
-        assert!(near.mm < 0.0, "{parts}: {near}");
-        let named = near.first.contains(first) || near.second.contains(second);
-        assert!(named, "{parts}: {near}");
+        let pair = nearest_pair(parts).unwrap_or_else(|| panic!("{parts}: nothing is near"));
+        assert!(pair.mm < 0.0, "{parts}: {pair}");
+        let are_named = pair.first.contains(first) || pair.second.contains(second);
+        assert!(are_named, "{parts}: {pair}");
     }
 }
 
@@ -53,9 +53,9 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
         for prism in &body.prisms {
             assert!(prism.z[0] < prism.z[1], "{}", body.name);
         }
-        for other in &body.allowed_contacts {
-            let known = assembly.body(other).is_some();
-            assert!(known, "{} meets {other}", body.name);
+        for contact in &body.allowed_contacts {
+            let is_known = assembly.body(contact).is_some();
+            assert!(is_known, "{} meets {contact}", body.name);
         }
     }
 }
@@ -64,28 +64,28 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
 fn pins_meet_the_holes_of_the_parts_that_they_hold() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
-        let mut met = 0;
+        let mut met_count = 0;
         for pose in assembly.poses(5) {
             let bodies = assembly.bodies().iter();
             for screw in bodies.filter(|body| body.name.starts_with("screw ")) {
                 let shapes = screw.prisms.iter().map(|prism| &prism.filled_shapes[0]);
                 let shank = shapes.min_by(|a, b| a.width().total_cmp(&b.width()));
                 let shank = shank.expect("a shank");
-                let at = assembly.place(screw.mount, &pose).map(shank.points[0]);
-                for held in &screw.allowed_contacts {
-                    let held = body(&assembly, held);
+                let centre = assembly.place(screw.mount, &pose).map(shank.points[0]);
+                for held_name in &screw.allowed_contacts {
+                    let held = body(&assembly, held_name);
                     let frame = assembly.place(held.mount, &pose);
                     let cuts = held.prisms.iter().flat_map(|prism| &prism.cut_shapes);
                     let holes = cuts.filter(|cut| cut.radius >= shank.radius - 0.3);
-                    let error = holes.map(|hole| (frame.map(hole.points[0]) - at).length());
-                    let near = error.fold(f64::INFINITY, f64::min);
+                    let errors = holes.map(|hole| (frame.map(hole.points[0]) - centre).length());
+                    let least_mm = errors.fold(f64::INFINITY, f64::min);
                     let (screw, held) = (&screw.name, &held.name);
-                    assert!(near < 1e-9, "{name}: {screw} in {held} {near}");
-                    met += 1;
+                    assert!(least_mm < 1e-9, "{name}: {screw} in {held} {least_mm}");
+                    met_count += 1;
                 }
             }
         }
-        assert!(met > 50, "{name}: {met} holes");
+        assert!(met_count > 50, "{name}: {met_count} holes");
     }
 }
 
@@ -94,22 +94,22 @@ fn a_robot_that_does_not_fit_is_refused_with_one_message() {
     let bar = "parts.bar is 6 mm, but the head of a screw and a wall on each side need 7.3 mm";
     let spring = "leg strut LF is 30.2 mm from screw to screw, but its spring is 40.0 mm long";
     // The pivot that the paper's figures suggest is below the servo's link.
-    let naive = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
-    let near = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
-    for (parts, words) in [
-        (naive, [" and ", "overlap by"]),
-        (near, ["overlap by", "at pose"]),
+    let naive_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
+    let near_pivot = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
+    for (parts, phrases) in [
+        (naive_pivot, [" and ", "overlap by"]),
+        (near_pivot, ["overlap by", "at pose"]),
         ("[parts]\nbar = 6.0", [bar, ""]),
         ("[parts]\nheight = 15.0", ["the feet need 21.3 mm", ""]),
         ("[parts.spring]\nlength = 40.0", [spring, ""]),
         ("[parts]\nthickness = 15.0", ["do not make one body", ""]),
     ] {
-        let refused = slotted("paper", parts)
+        let message = slotted("paper", parts)
             .check_fit()
             .expect_err(parts)
             .to_string();
-        for words in words {
-            assert!(refused.contains(words), "{refused}");
+        for phrase in phrases {
+            assert!(message.contains(phrase), "{message}");
         }
     }
     for name in ROBOTS {

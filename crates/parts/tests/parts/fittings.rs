@@ -6,7 +6,7 @@ use lizard_robot::{FUSE, SWITCH};
 use crate::{ROBOTS, assembly};
 
 /// The bodies that stand for a fitting.
-fn bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
+fn bodies_of(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
     let bodies = assembly.bodies().iter();
     bodies
         .filter(|body| body.kind == Kind::Fitting(fitting))
@@ -14,7 +14,7 @@ fn bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
 }
 
 /// Sorts the lengths of a box, the shortest first, so that a product may be turned to fit.
-fn sorted(mut size: [f64; 3]) -> [f64; 3] {
+fn sort_lengths(mut size: [f64; 3]) -> [f64; 3] {
     size.sort_by(f64::total_cmp);
     size
 }
@@ -25,27 +25,35 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
         let assembly = assembly(name, "");
         for fitting in Fitting::ALL {
             let facts = fitting.facts();
-            let found = bodies(&assembly, fitting);
+            let bodies = bodies_of(&assembly, fitting);
             let count = if fitting == Fitting::Resistor { 4 } else { 1 };
-            assert_eq!(found.len(), count, "{name}: {}", facts.name);
+            assert_eq!(bodies.len(), count, "{name}: {}", facts.name);
             // A strap goes around other parts, so it has no box.
             if fitting == Fitting::Strap {
                 continue;
             }
-            for body in found {
+            for body in bodies {
                 let points = body
                     .prisms
                     .iter()
                     .flat_map(|prism| &prism.filled_shapes[0].points);
-                let range = |of: fn(&lizard_kinematics::Vector) -> f64| {
-                    let all = points.clone().map(of);
-                    all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+                let extent_of = |coordinate_of: fn(&lizard_kinematics::Vector) -> f64| {
+                    let coordinates = points.clone().map(coordinate_of);
+                    coordinates.clone().fold(f64::MIN, f64::max)
+                        - coordinates.fold(f64::MAX, f64::min)
                 };
                 let [low, high] = body.z();
-                let room = sorted([range(|at| at.x), range(|at| at.y), high - low]);
+                let room = sort_lengths([
+                    extent_of(|point| point.x),
+                    extent_of(|point| point.y),
+                    high - low,
+                ]);
                 for product in facts.examples {
-                    let size = sorted(product.size);
-                    let fits = size.iter().zip(room).all(|(of, room)| *of <= room + 1e-9);
+                    let size = sort_lengths(product.size);
+                    let fits = size
+                        .iter()
+                        .zip(room)
+                        .all(|(length, limit)| *length <= limit + 1e-9);
                     assert!(fits, "{product} in {room:?}");
                 }
             }
@@ -59,7 +67,11 @@ fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
         let assembly = assembly(name, "");
         let room = assembly.robot().parts().battery;
         for product in BATTERIES {
-            let fits = product.size.iter().zip(room).all(|(of, room)| *of <= room);
+            let fits = product
+                .size
+                .iter()
+                .zip(room)
+                .all(|(length, limit)| *length <= limit);
             assert!(fits, "{name}: {product} in {room:?}");
             assert!(places(room).contains(product.name));
         }
@@ -90,22 +102,23 @@ fn a_size_of_which_no_drawing_was_found_is_marked() {
 #[test]
 fn a_radio_module_of_either_common_size_has_a_place() {
     let assembly = assembly("paper", "");
-    let [place] = bodies(&assembly, Fitting::Radio)[..] else {
+    let [body] = bodies_of(&assembly, Fitting::Radio)[..] else {
         panic!("one place")
     };
-    let xs = place.prisms[0].filled_shapes[0]
+    let xs = body.prisms[0].filled_shapes[0]
         .points
         .iter()
         .map(|point| point.x);
-    let ys = place.prisms[0].filled_shapes[0]
+    let ys = body.prisms[0].filled_shapes[0]
         .points
         .iter()
         .map(|point| point.y);
-    let extent = |of: Vec<f64>| {
-        of.iter().copied().fold(f64::MIN, f64::max) - of.iter().copied().fold(f64::MAX, f64::min)
+    let extent_of = |coordinates: Vec<f64>| {
+        coordinates.iter().copied().fold(f64::MIN, f64::max)
+            - coordinates.iter().copied().fold(f64::MAX, f64::min)
     };
-    let (wide, long) = (extent(xs.collect()), extent(ys.collect()));
-    assert!(wide >= 16.0 && long >= 37.0, "{wide} {long}");
+    let (width, length) = (extent_of(xs.collect()), extent_of(ys.collect()));
+    assert!(width >= 16.0 && length >= 37.0, "{width} {length}");
 }
 
 #[test]
@@ -113,15 +126,16 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
     // Cable ties go through the deck beside the parts that they hold, so no fitting covers a slot.
     let assembly = assembly("paper", "");
     let deck = assembly.body("deck").expect("a deck");
-    let narrow = |cut: &&Shape| {
-        let range = |of: fn(&lizard_kinematics::Vector) -> f64| {
-            let all = cut.points.iter().map(of);
-            all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+    let is_slot = |cut: &&Shape| {
+        let extent_of = |coordinate_of: fn(&lizard_kinematics::Vector) -> f64| {
+            let coordinates = cut.points.iter().map(coordinate_of);
+            coordinates.clone().fold(f64::MIN, f64::max) - coordinates.fold(f64::MAX, f64::min)
         };
-        let thin = range(|at| at.x).min(range(|at| at.y)) + 2.0 * cut.radius;
-        cut.points.len() > 1 && (1.9..2.1).contains(&thin)
+        let width_mm =
+            extent_of(|point| point.x).min(extent_of(|point| point.y)) + 2.0 * cut.radius;
+        cut.points.len() > 1 && (1.9..2.1).contains(&width_mm)
     };
-    let slots = deck.prisms[0].cut_shapes.iter().filter(narrow);
+    let slots = deck.prisms[0].cut_shapes.iter().filter(is_slot);
     let mut count = 0;
     for slot in slots {
         for body in assembly.bodies() {
@@ -129,8 +143,8 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
                 continue;
             }
             for prism in &body.prisms {
-                let apart = prism.filled_shapes[0].distance(slot);
-                assert!(apart > 0.05, "{}: {apart}", body.name);
+                let distance = prism.filled_shapes[0].distance(slot);
+                assert!(distance > 0.05, "{}: {distance}", body.name);
             }
         }
         count += 1;
@@ -144,8 +158,8 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
 #[test]
 fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
     // The battery's current for 3 A at 5 V: two cells at 3.2 V, and a converter that loses 15 %.
-    let max = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
-    assert!(max < f64::from(FUSE), "{max}");
+    let max_amperes = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
+    assert!(max_amperes < f64::from(FUSE), "{max_amperes}");
     for (fitting, rating) in [(Fitting::Fuse, FUSE), (Fitting::Switch, SWITCH)] {
         assert!(fitting.what().contains(&format!(" {rating} A ")));
     }
@@ -156,10 +170,13 @@ fn price_classes_follow_each_other_and_their_sum_is_that_of_their_ends() {
     for pair in Price::ALL.windows(2) {
         assert_eq!(pair[0].euros()[1], pair[1].euros()[0]);
     }
-    let some = [Price::A, Price::C, Price::C, Price::E];
-    assert_eq!(Price::sum(some.into_iter()), [3 + 3 + 15, 1 + 7 + 7 + 30]);
-    let printed = Price::meaning();
-    for words in ["A up to 1", "E 15 to 30", "2026", "vary"] {
-        assert!(printed.contains(words), "{printed}");
+    let classes = [Price::A, Price::C, Price::C, Price::E];
+    assert_eq!(
+        Price::sum(classes.into_iter()),
+        [3 + 3 + 15, 1 + 7 + 7 + 30]
+    );
+    let text = Price::meaning();
+    for phrase in ["A up to 1", "E 15 to 30", "2026", "vary"] {
+        assert!(text.contains(phrase), "{text}");
     }
 }

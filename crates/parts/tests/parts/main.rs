@@ -29,21 +29,21 @@ const GRAIN: &str = "grain";
 const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
 /// The robot of a file of robots/, with more lines of TOML appended.
-fn robot_with(name: &str, more: &str) -> Robot {
+fn robot_with(name: &str, more_toml: &str) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
-    Robot::parse(&format!("{text}\n{more}"))
-        .unwrap_or_else(|error| panic!("{name} with {more}: {error}"))
+    Robot::parse(&format!("{text}\n{more_toml}"))
+        .unwrap_or_else(|error| panic!("{name} with {more_toml}: {error}"))
 }
 
 /// The assembly of a file of robots/, with more lines appended.
-fn assembly(name: &str, more: &str) -> Assembly {
-    Assembly::new(&robot_with(name, more))
+fn assembly(name: &str, more_toml: &str) -> Assembly {
+    Assembly::new(&robot_with(name, more_toml))
 }
 
 /// The assembly of a file of robots/, with slotted struts, which are wider than the default.
-fn slotted(name: &str, more: &str) -> Assembly {
-    assembly(name, &format!("{STRUT}\n{more}"))
+fn slotted(name: &str, more_toml: &str) -> Assembly {
+    assembly(name, &format!("{STRUT}\n{more_toml}"))
 }
 
 /// The positions of the robot's joints at neutral.

@@ -20,37 +20,37 @@ fn robot(name: &str) -> Robot {
 fn its_loops_are_closed_where_the_robots_joints_are() {
     for name in ROBOTS {
         let robot = robot(name);
-        let solved = neutral(&robot);
+        let solution = neutral(&robot);
         let angles: [f64; 4] = robot.neutral().into();
         let legs = [0, 1, 2, 3].map(|i| robot.legs()[i].at(angles[i], angles[i]));
         let shafts = robot.lizard().shafts();
         let mut joints: BTreeMap<String, Vector> = BTreeMap::new();
         for end in End::ALL {
-            joints.insert(format!("end {}", end.name()), solved.point(end));
+            joints.insert(format!("end {}", end.name()), solution.point(end));
         }
         for side in Side::ALL {
             let rear = shafts[side.servos()[1]];
-            let tip = rear + solved.side(side).front_tip;
+            let tip = rear + solution.side(side).front_tip;
             joints.insert(format!("slider {}", side.name()), tip);
         }
-        for (leg, place) in LEGS.iter().zip(&legs) {
-            joints.insert(format!("follower joint {leg}"), place.joints[1]);
-            joints.insert(format!("leg anchor {leg}"), place.strut[1]);
+        for (leg, leg_points) in LEGS.iter().zip(&legs) {
+            joints.insert(format!("follower joint {leg}"), leg_points.joints[1]);
+            joints.insert(format!("leg anchor {leg}"), leg_points.strut[1]);
         }
         let (force, rate) = (4.0, 0.4);
         for pull in [None, Some(Pull { force, rate })] {
             let text = mjcf_with(&robot, |scene| scene.pull = pull);
             let document = Document::parse(&text).expect("well formed");
-            let all = bodies(&document);
-            let closed = elements(&document, "equality");
-            assert_eq!(closed.len(), joints.len());
-            for connect in closed {
-                let of = |attribute: &str| connect.attribute(attribute).expect(attribute);
-                let (first, second) = (of("body1"), of("body2"));
-                assert!(all.contains_key(second), "{second}");
-                let at = all[first].0.point(&numbers(connect, "anchor"));
-                let joint = joints[of("name")] * 1e-3;
-                let error = (at[0] - joint.x).hypot(at[1] - joint.y);
+            let bodies_by_name = bodies(&document);
+            let loops = elements(&document, "equality");
+            assert_eq!(loops.len(), joints.len());
+            for connect in loops {
+                let attribute_of = |attribute: &str| connect.attribute(attribute).expect(attribute);
+                let (first, second) = (attribute_of("body1"), attribute_of("body2"));
+                assert!(bodies_by_name.contains_key(second), "{second}");
+                let anchor = bodies_by_name[first].0.point(&numbers(connect, "anchor"));
+                let joint = joints[attribute_of("name")] * 1e-3;
+                let error = (anchor[0] - joint.x).hypot(anchor[1] - joint.y);
                 assert!(error < 1e-8, "{name} {connect:?} {error}");
             }
         }
@@ -63,19 +63,24 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
         let robot = robot(name);
         let text = mjcf_with(&robot, |scene| scene.excess_lengths = [0.0, 0.6, 0.0, -0.3]);
         let document = Document::parse(&text).expect("well formed");
-        let all = bodies(&document);
+        let bodies_by_name = bodies(&document);
         let feet = robot.ground().feet.positions([0.0; 4]);
-        for (servo, long) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
-            let (placed, foot) = all[&format!("foot {}", LEGS[servo])];
+        for (servo, excess) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
+            let (placement, foot) = bodies_by_name[&format!("foot {}", LEGS[servo])];
             let mut geoms = foot.children();
             let pad = geoms.find(|geom| geom.attribute("type") == Some("sphere"));
             let pad = pad.expect("a pad");
-            let [x, y, z] = placed.point(&numbers(pad, "pos")).map(|part| 1000.0 * part);
-            let under = z - 1000.0 * numbers(pad, "size")[0];
+            let [x, y, z] = placement
+                .point(&numbers(pad, "pos"))
+                .map(|coordinate| 1000.0 * coordinate);
+            let pad_bottom = z - 1000.0 * numbers(pad, "size")[0];
             let [forward, left] = feet[servo];
             assert!((y - forward).hypot(x + left) < 1e-5, "{name} {x} {y}");
             // The longest foot is on the floor.
-            assert!((under - (0.6 - long)).abs() < 1e-5, "{name} {under}");
+            assert!(
+                (pad_bottom - (0.6 - excess)).abs() < 1e-5,
+                "{name} {pad_bottom}"
+            );
             assert_eq!(child(foot, "joint").attribute("type"), Some("slide"));
         }
     }
@@ -83,11 +88,14 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
 
 #[test]
 fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() {
-    let before = weighed(&mjcf_with(&robot("paper"), |_| {}));
-    let after = weighed(&mjcf_with(&robot("paper"), |scene| {
+    let normal_mass = weighed(&mjcf_with(&robot("paper"), |_| {}));
+    let light_mass = weighed(&mjcf_with(&robot("paper"), |scene| {
         scene.limb_mass_factor = 0.2
     }));
-    assert!((before.0 - after.0).abs() < 1e-3, "{before:?} {after:?}");
+    assert!(
+        (normal_mass.0 - light_mass.0).abs() < 1e-3,
+        "{normal_mass:?} {light_mass:?}"
+    );
     let radius = robot("paper").parts().pad.radius;
     for (pads, count) in [
         (Pads::Domes(5.0), 1),
@@ -99,8 +107,8 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
             (scene.pads, scene.has_shapes) = (pads, false);
         });
         let document = Document::parse(&text).expect("well formed");
-        let all = bodies(&document);
-        let (placed, foot) = &all["foot LF"];
+        let bodies_by_name = bodies(&document);
+        let (placement, foot) = &bodies_by_name["foot LF"];
         let geoms: Vec<_> = foot
             .children()
             .filter(|node| node.has_attribute("friction"))
@@ -108,14 +116,14 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
         assert_eq!(geoms.len(), count, "{pads:?}");
         for (layer, geom) in geoms.iter().enumerate() {
             let size = numbers(*geom, "size");
-            let [_, _, z] = placed
+            let [_, _, z] = placement
                 .point(&numbers(*geom, "pos"))
-                .map(|part| 1000.0 * part);
-            let high = 1000.0 * size[size.len() - 1];
+                .map(|coordinate| 1000.0 * coordinate);
+            let half_height = 1000.0 * size[size.len() - 1];
             let floor = 0.1 * layer as f64;
             assert!(
-                (z - high - floor).abs() < 1e-5,
-                "{pads:?} {layer}: {z} {high}"
+                (z - half_height - floor).abs() < 1e-5,
+                "{pads:?} {layer}: {z} {half_height}"
             );
             if let Pads::Terraces(_) = pads {
                 // Pythagoras: the rim of the disc's middle plane is on the ball of the dome.
@@ -132,12 +140,12 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
 #[test]
 fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
     let text = mjcf_with(&robot("paper"), |scene| {
-        let (at, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
-        let turned = 30.0;
+        let (centre, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
+        let rotation_deg = 30.0;
         scene.floor.blocks.push(Block {
-            centre: at,
+            centre,
             size,
-            rotation: turned,
+            rotation: rotation_deg,
         });
         scene.floor.slope = 30.0;
         scene.floor.friction = [0.1, 0.2, 0.3, 0.4];
@@ -160,11 +168,14 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
     };
     let block = geoms().find(|geom| geom.attribute("type") == Some("box"));
     let block = block.expect("a block");
-    let [at, half] = ["pos", "size"].map(|of| numbers(block, of));
-    assert_eq!((at[0], at[1]), (0.02, 0.3));
+    let [position, half_size] = ["pos", "size"].map(|attribute| numbers(block, attribute));
+    assert_eq!((position[0], position[1]), (0.02, 0.3));
     let euler = numbers(block, "euler");
     assert!((euler[2] - 30f64.to_radians()).abs() < 1e-6 && euler[..2] == [0.0; 2]);
-    assert_eq!((half[0], half[1], at[2] + half[2]), (0.005, 0.02, 0.002));
+    assert_eq!(
+        (half_size[0], half_size[1], position[2] + half_size[2]),
+        (0.005, 0.02, 0.002)
+    );
     for (leg, friction) in LEGS.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
         let name = format!("pad {leg}");
         let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
@@ -195,15 +206,18 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
     let (mut lowest, mut count) = (top, 0);
     for triangle in &mesh.triangles {
         let corners = triangle.map(|corner| mesh.corners[corner]);
-        let around = corners.map(|[x, y, _]| x.hypot(y));
-        let edge = around.map(|around| (3.05..10.95).contains(&around));
-        if edge == [false; 3] {
+        let axis_distances = corners.map(|[x, y, _]| x.hypot(y));
+        let are_on_dome = axis_distances.map(|distance| (3.05..10.95).contains(&distance));
+        if are_on_dome == [false; 3] {
             continue;
         }
         count += 1;
-        for ([.., z], around) in corners.into_iter().zip(around) {
-            let ball = top - radius + (radius.powi(2) - around.powi(2)).sqrt();
-            assert!((z - ball).abs() < 0.002, "{z} where the ball has {ball}");
+        for ([.., z], axis_distance) in corners.into_iter().zip(axis_distances) {
+            let ball_z = top - radius + (radius.powi(2) - axis_distance.powi(2)).sqrt();
+            assert!(
+                (z - ball_z).abs() < 0.002,
+                "{z} where the ball has {ball_z}"
+            );
             lowest = lowest.min(z);
         }
         let [a, b, c] = corners;
@@ -227,16 +241,17 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
         scene.pull = Some(Pull { force, rate })
     });
     let document = Document::parse(&text).expect("well formed");
-    let all = bodies(&document);
+    let bodies_by_name = bodies(&document);
     for leg in LEGS {
-        let slot = all[&format!("slot {leg}")].1;
+        let slot = bodies_by_name[&format!("slot {leg}")].1;
         // A steel wire of 0.6 mm, about 0.7 m long, weighs about 1.6 g.
         let grams = 1000.0 * numbers(child(slot, "inertial"), "mass")[0];
         assert!((0.5..2.5).contains(&grams), "{grams}");
         let joint = child(slot, "joint");
         let range = numbers(joint, "range");
         assert_eq!(range, [0.0, 0.005]);
-        let [stiffness, rest] = ["stiffness", "springref"].map(|of| numbers(joint, of)[0]);
+        let [stiffness, rest] =
+            ["stiffness", "springref"].map(|attribute| numbers(joint, attribute)[0]);
         for (metres, newtons) in [(0.0, force), (0.003, force + 3.0 * rate)] {
             let error = stiffness * (metres - rest) - newtons;
             assert!(
@@ -245,8 +260,8 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
             );
         }
     }
-    let rigid = mjcf_with(&robot("paper"), |scene| scene.pull = None);
-    assert!(!rigid.contains("slot"));
+    let rigid_text = mjcf_with(&robot("paper"), |scene| scene.pull = None);
+    assert!(!rigid_text.contains("slot"));
 }
 
 #[test]
@@ -258,20 +273,21 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
         let motors = elements(&document, "actuator");
         for (servo, motor) in motors.iter().enumerate() {
             assert_eq!(motor.attribute("name"), Some(NAMES[servo]));
-            let of = motor.attribute("joint").expect("a joint");
+            let joint_name = motor.attribute("joint").expect("a joint");
             let mut nodes = document.descendants();
-            let is_joint =
-                |node: &Node| node.has_tag_name("joint") && node.attribute("name") == Some(of);
-            let joint = nodes.find(is_joint).expect(of);
-            let [smallest, largest] = numbers(*motor, "forcerange")[..] else {
+            let is_joint = |node: &Node| {
+                node.has_tag_name("joint") && node.attribute("name") == Some(joint_name)
+            };
+            let joint = nodes.find(is_joint).expect(joint_name);
+            let [min_torque, max_torque] = numbers(*motor, "forcerange")[..] else {
                 panic!("two torques")
             };
             // The stall torque of the SG-90, 1.8 kg cm.
             assert!(
-                (largest - 0.018 * 9.80665).abs() < 1e-6 && smallest == -largest,
-                "{largest}"
+                (max_torque - 0.018 * 9.80665).abs() < 1e-6 && min_torque == -max_torque,
+                "{max_torque}"
             );
-            let rate = largest / numbers(joint, "damping")[0];
+            let rate = max_torque / numbers(joint, "damping")[0];
             assert!((rate.to_degrees() - 500.0).abs() < 1e-3, "{rate}");
             let (low, high) = robot.servos()[servo].travel();
             let range = numbers(*motor, "ctrlrange");
@@ -295,17 +311,17 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
         .descendants()
         .filter(|node| node.has_tag_name("joint"))
         .collect();
-    let friction = |name: &str| -> Vec<f64> {
-        let named = joints.iter().filter(|node| {
-            let own = node.attribute("name").unwrap_or_default();
-            own.starts_with(name)
+    let friction_of = |name: &str| -> Vec<f64> {
+        let matching_joints = joints.iter().filter(|node| {
+            let node_name = node.attribute("name").unwrap_or_default();
+            node_name.starts_with(name)
         });
-        named
+        matching_joints
             .map(|node| numbers(*node, "frictionloss")[0])
             .collect()
     };
-    assert_eq!(friction("link"), [0.017; 4]);
-    assert_eq!(friction("rod"), [0.5; 2]);
+    assert_eq!(friction_of("link"), [0.017; 4]);
+    assert_eq!(friction_of("rod"), [0.5; 2]);
     // The servo "copy" has 1.2 kg cm and 400 deg/s at 4.8 V. At 4.2 V, both are less in proportion, so the damping
     // stays the same, and so does the rotor's inertia.
     let link = joints
@@ -316,8 +332,11 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
     assert!((numbers(*link, "damping")[0] - damping).abs() < 1e-8);
     assert!((numbers(*link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
     let motor = elements(&document, "actuator")[0];
-    let max = numbers(motor, "forcerange")[1];
-    assert!((max - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6, "{max}");
+    let max_torque = numbers(motor, "forcerange")[1];
+    assert!(
+        (max_torque - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6,
+        "{max_torque}"
+    );
 }
 
 #[test]
@@ -331,24 +350,24 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let mut nodes = document.descendants();
     let numeric = nodes.find(|node| node.attribute("name") == Some("cycle"));
     let numeric = numeric.expect("the cycle");
-    let [written, long, count] = numbers(numeric, "data")[..] else {
+    let [cycle_start, cycle_length, cycle_count] = numbers(numeric, "data")[..] else {
         panic!("two times and a number")
     };
-    assert!((written - start).abs() < 1e-9 && long == period && period == 0.91);
-    assert_eq!(count, 1.0);
+    assert!((cycle_start - start).abs() < 1e-9 && cycle_length == period && period == 0.91);
+    assert_eq!(cycle_count, 1.0);
     let mut keys = elements(&document, "keyframe");
     let home = keys.pop().and_then(|key| key.attribute("name"));
     assert_eq!(home, Some("home"));
-    let last = numbers(*keys.last().expect("frames"), "time")[0];
-    assert!(last >= start + period && last < start + period + 0.02 + 1e-9);
+    let last_time = numbers(*keys.last().expect("frames"), "time")[0];
+    assert!(last_time >= start + period && last_time < start + period + 0.02 + 1e-9);
     for key in keys {
         let time = numbers(key, "time")[0];
         if time < start {
             continue;
         }
-        let wanted = gait.angles(gait.phase(time - start));
+        let expected = gait.angles(gait.phase(time - start));
         for (servo, target) in numbers(key, "ctrl").into_iter().enumerate() {
-            let error = wanted[servo] - robot.servos()[servo].neutral - target.to_degrees();
+            let error = expected[servo] - robot.servos()[servo].neutral - target.to_degrees();
             assert!(
                 lizard_kinematics::wrap(error).abs() < 0.11,
                 "{time} {error}"

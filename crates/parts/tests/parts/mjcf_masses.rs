@@ -12,42 +12,42 @@ use crate::{ROBOTS, robot_with};
 pub fn weighed(text: &str) -> (f64, [f64; 3]) {
     let document = Document::parse(text).expect("well formed");
     let (mut mass, mut moment) = (0.0, [0.0; 3]);
-    let all = bodies(&document);
-    for (placed, body) in all.values() {
+    let bodies_by_name = bodies(&document);
+    for (placement, body) in bodies_by_name.values() {
         let inertial = child(*body, "inertial");
         let grams = 1000.0 * numbers(inertial, "mass")[0];
         assert!(grams > 0.0, "{body:?}");
-        let at = placed.point(&numbers(inertial, "pos"));
+        let centre = placement.point(&numbers(inertial, "pos"));
         mass += grams;
-        for (sum, part) in moment.iter_mut().zip(at) {
-            *sum += grams * part * 1000.0;
+        for (sum, coordinate) in moment.iter_mut().zip(centre) {
+            *sum += grams * coordinate * 1000.0;
         }
     }
-    let plate = 1000.0 * all["chassis"].0.at[2];
-    let [right, forward, up] = moment.map(|part| part / mass);
+    let plate = 1000.0 * bodies_by_name["chassis"].0.at[2];
+    let [right, forward, up] = moment.map(|component| component / mass);
     (mass, [forward, -right, up - plate])
 }
 
 /// The robot of a file with its mass, g, and its mass centre, mm, replaced.
-fn with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
+fn robot_with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
-    let (before, after) = text.split_once("\nmass = ").expect("a mass");
-    let (_, after) = after.split_once('\n').expect("its line");
+    let (text_before, text_after) = text.split_once("\nmass = ").expect("a mass");
+    let (_, text_after) = text_after.split_once('\n').expect("its line");
     let keys = format!("\nmass = {mass:.1}\ncentre = [{ahead:.1}, {left:.1}]\n");
-    Robot::parse(&format!("{before}{keys}{after}")).expect(name)
+    Robot::parse(&format!("{text_before}{keys}{text_after}")).expect(name)
 }
 
 #[test]
 fn its_bodies_weigh_what_robot_toml_says_and_where() {
     for name in ROBOTS {
-        let own = robot_with(name, "").ground().body;
+        let body = robot_with(name, "").ground().body;
         for (mass, centre) in [
-            (own.mass, own.centre),
+            (body.mass, body.centre),
             (500.0, [20.0, -9.0]),
             (350.0, [-15.0, 0.0]),
         ] {
-            let robot = with_body(name, mass, centre);
+            let robot = robot_with_body(name, mass, centre);
             let bill = Bill::of(&Assembly::new(&robot), &[], &neutral(&robot));
             let (grams, [ahead, left, up]) = weighed(&mjcf_with(&robot, |_| {}));
             // The mesh replaces each arc by chords, which cut off a little volume.
@@ -55,8 +55,8 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
             let error = (ahead - centre[0]).hypot(left - centre[1]);
             assert!(error < 0.05, "{name} {ahead} {left} {centre:?}");
             // Wires count as being at the height of the plate.
-            let moment = (grams * up / (bill.grams * bill.centre[2]) - 1.0).abs();
-            assert!(moment < 0.01, "{name} {up} {:?}", bill.centre);
+            let moment_error = (grams * up / (bill.grams * bill.centre[2]) - 1.0).abs();
+            assert!(moment_error < 0.01, "{name} {up} {:?}", bill.centre);
         }
     }
 }
@@ -69,8 +69,8 @@ fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
         let document = Document::parse(&text).expect("well formed");
         let ground = robot.ground();
         for leg in LEGS {
-            let part = |part: &str| {
-                let name = format!("{part} {leg}");
+            let mass_and_lever = |noun: &str| {
+                let name = format!("{noun} {leg}");
                 let mut nodes = document.descendants();
                 let body = nodes.find(|node| {
                     node.has_tag_name("body") && node.attribute("name") == Some(&*name)
@@ -81,14 +81,15 @@ fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
             };
             // Foot and coupler move as the pad does. Crank and follower rotate about their pivots, so their mass
             // centres move by a share of the pad's motion.
-            let carried = part("foot").0 + part("leg coupler").0;
-            let turned = ["crank", "follower"].map(part);
-            let turned = turned.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);
-            let grams = 1e3 * (carried + turned[0] + turned[1]);
-            let model = ground.body.leg_mass();
+            let carried_mass = mass_and_lever("foot").0 + mass_and_lever("leg coupler").0;
+            let turning_masses = ["crank", "follower"].map(mass_and_lever);
+            let turning_masses =
+                turning_masses.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);
+            let grams = 1e3 * (carried_mass + turning_masses[0] + turning_masses[1]);
+            let model_grams = ground.body.leg_mass();
             assert!(
-                (grams / model - 1.0).abs() < 0.25,
-                "{name} {leg}: {grams} and {model} g"
+                (grams / model_grams - 1.0).abs() < 0.25,
+                "{name} {leg}: {grams} and {model_grams} g"
             );
         }
     }

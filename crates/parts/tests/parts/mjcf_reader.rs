@@ -9,8 +9,8 @@ use roxmltree::{Document, Node};
 
 /// The positions of the robot's joints at neutral.
 pub fn neutral(robot: &Robot) -> Solution {
-    let solved = robot.lizard().solve(&robot.neutral());
-    solved.expect("neutral closes")
+    let solution = robot.lizard().solve(&robot.neutral());
+    solution.expect("neutral closes")
 }
 
 /// The MuJoCo file of a robot whose scene is changed by `change`.
@@ -24,8 +24,10 @@ pub fn mjcf_with(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
 /// The numbers in an attribute, which blanks separate.
 pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
     let text = node.attribute(attribute).expect(attribute);
-    let parts = text.split(' ');
-    parts.map(|part| part.parse().expect("a number")).collect()
+    let fields = text.split(' ');
+    fields
+        .map(|field| field.parse().expect("a number"))
+        .collect()
 }
 
 /// The placement of a body in the world: position, m, and rotation about z.
@@ -52,24 +54,34 @@ pub type Bodies<'a> = BTreeMap<String, (Placed, Node<'a, 'a>)>;
 
 /// Every body of a file, with its placement.
 pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
-    fn walk<'a>(parent: Node<'a, 'a>, on: Placed, all: &mut Bodies<'a>) {
+    fn walk<'a>(parent: Node<'a, 'a>, parent_placement: Placed, found_bodies: &mut Bodies<'a>) {
         for body in parent.children().filter(|node| node.has_tag_name("body")) {
             let quat = numbers(body, "quat");
             assert_eq!(quat[1..3], [0.0; 2], "it stays upright");
-            let placed = Placed {
-                at: on.point(&numbers(body, "pos")),
-                turn: on.turn + 2.0 * quat[3].atan2(quat[0]),
+            let placement = Placed {
+                at: parent_placement.point(&numbers(body, "pos")),
+                turn: parent_placement.turn + 2.0 * quat[3].atan2(quat[0]),
             };
             let name = body.attribute("name").expect("a name").to_owned();
-            assert!(all.insert(name, (placed, body)).is_none(), "one of a name");
-            walk(body, placed, all);
+            assert!(
+                found_bodies.insert(name, (placement, body)).is_none(),
+                "one of a name"
+            );
+            walk(body, placement, found_bodies);
         }
     }
-    let mut all = BTreeMap::new();
+    let mut found_bodies = BTreeMap::new();
     let world = find(document, "worldbody");
-    let at = [0.0; 3];
-    walk(world, Placed { at, turn: 0.0 }, &mut all);
-    all
+    let origin = [0.0; 3];
+    walk(
+        world,
+        Placed {
+            at: origin,
+            turn: 0.0,
+        },
+        &mut found_bodies,
+    );
+    found_bodies
 }
 
 fn find<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
@@ -84,6 +96,6 @@ pub fn elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
 
 /// The first child element with a tag.
 pub fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
-    let found = node.children().find(|node| node.has_tag_name(tag));
-    found.expect(tag)
+    let element = node.children().find(|node| node.has_tag_name(tag));
+    element.expect(tag)
 }

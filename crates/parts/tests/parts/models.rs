@@ -32,31 +32,33 @@ fn text_of(node: Node, tag: &str) -> String {
     child(node, tag).text().expect(tag).to_owned()
 }
 
-fn floats(text: &str) -> Vec<f64> {
-    let parts = text.split(' ');
-    parts.map(|part| part.parse().expect("a number")).collect()
+fn parse_floats(text: &str) -> Vec<f64> {
+    let fields = text.split(' ');
+    fields
+        .map(|field| field.parse().expect("a number"))
+        .collect()
 }
 
 /// The child elements with a tag, by their name attributes. Fails if a name contains a blank or occurs twice.
-fn named<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
-    let mut all = BTreeMap::new();
+fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
+    let mut nodes = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
         let name = node.attribute("name").expect("a name").to_owned();
         assert!(!name.contains(' '), "{name}");
-        assert!(all.insert(name.clone(), node).is_none(), "two of {name}");
+        assert!(nodes.insert(name.clone(), node).is_none(), "two of {name}");
     }
-    all
+    nodes
 }
 
 /// A body: placement, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
 type ReadBody = (Placed, f64, Vec<f64>, Vec<f64>);
 
 /// The placement of a frame that is given relative to another one by six numbers: x, y, z, roll, pitch, yaw.
-fn frame_on(frame: Placed, six: &[f64]) -> Placed {
-    assert_eq!(six[3..5], [0.0; 2], "it stays upright");
+fn frame_on(frame: Placed, pose: &[f64]) -> Placed {
+    assert_eq!(pose[3..5], [0.0; 2], "it stays upright");
     Placed {
-        at: frame.point(&six[..3]),
-        turn: frame.turn + six[5],
+        at: frame.point(&pose[..3]),
+        turn: frame.turn + pose[5],
     }
 }
 
@@ -69,24 +71,31 @@ const INERTIA: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 /// The bodies of a URDF file by name. Each is placed by the joints from the root to its link.
 fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
     let root = document.root_element();
-    let (links, joints) = (named(root, "link"), named(root, "joint"));
-    let end = |joint: &Node, tag: &str| {
+    let (links, joints) = (
+        elements_by_name(root, "link"),
+        elements_by_name(root, "joint"),
+    );
+    let link_of = |joint: &Node, tag: &str| {
         let link = child(*joint, tag).attribute("link");
         link.expect("a link").to_owned()
     };
-    let place = |link: &str| {
-        let (mut link, mut up) = (link.to_owned(), Vec::new());
-        while let Some(joint) = joints.values().find(|joint| end(joint, "child") == link) {
+    let placement_of = |link: &str| {
+        let (mut link, mut poses_to_root) = (link.to_owned(), Vec::new());
+        while let Some(joint) = joints
+            .values()
+            .find(|joint| link_of(joint, "child") == link)
+        {
             let origin = child(*joint, "origin");
-            up.push([numbers(origin, "xyz"), numbers(origin, "rpy")].concat());
-            link = end(joint, "parent");
+            poses_to_root.push([numbers(origin, "xyz"), numbers(origin, "rpy")].concat());
+            link = link_of(joint, "parent");
         }
         assert_eq!(link, "base_link", "one root");
-        up.iter()
+        poses_to_root
+            .iter()
             .rev()
-            .fold(WORLD, |frame, six| frame_on(frame, six))
+            .fold(WORLD, |frame, pose| frame_on(frame, pose))
     };
-    let mut read = BTreeMap::new();
+    let mut read_bodies = BTreeMap::new();
     for (name, link) in &links {
         let mut children = link.children();
         let Some(inertial) = children.find(|node| node.has_tag_name("inertial")) else {
@@ -96,37 +105,40 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
             );
             continue;
         };
-        let inertia = INERTIA.map(|of| numbers(child(inertial, "inertia"), of)[0]);
+        let inertia = INERTIA.map(|key| numbers(child(inertial, "inertia"), key)[0]);
         let mass = numbers(child(inertial, "mass"), "value")[0];
         let centre = numbers(child(inertial, "origin"), "xyz");
-        read.insert(name.clone(), (place(name), mass, centre, inertia.to_vec()));
+        read_bodies.insert(
+            name.clone(),
+            (placement_of(name), mass, centre, inertia.to_vec()),
+        );
     }
-    read
+    read_bodies
 }
 
 /// The bodies of an SDF file by name. Each is placed by the poses of the links to which it is relative.
 fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
     let model = child(document.root_element(), "model");
-    let links = named(model, "link");
-    fn place<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placed {
+    let links = elements_by_name(model, "link");
+    fn placement_of<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placed {
         let pose = child(links[name], "pose");
         let frame = pose.attribute("relative_to");
-        let frame = frame.map_or(WORLD, |parent| place(links, parent));
-        frame_on(frame, &floats(pose.text().expect("six numbers")))
+        let frame = frame.map_or(WORLD, |parent| placement_of(links, parent));
+        frame_on(frame, &parse_floats(pose.text().expect("six numbers")))
     }
-    let mut read = BTreeMap::new();
+    let mut read_bodies = BTreeMap::new();
     for (name, link) in &links {
         let inertial = child(*link, "inertial");
-        let of = child(inertial, "inertia");
-        let inertia = INERTIA.map(|name| floats(&text_of(of, name))[0]);
-        let mass = floats(&text_of(inertial, "mass"))[0];
-        let centre = floats(&text_of(inertial, "pose"))[..3].to_vec();
-        read.insert(
+        let inertia_node = child(inertial, "inertia");
+        let inertia = INERTIA.map(|name| parse_floats(&text_of(inertia_node, name))[0]);
+        let mass = parse_floats(&text_of(inertial, "mass"))[0];
+        let centre = parse_floats(&text_of(inertial, "pose"))[..3].to_vec();
+        read_bodies.insert(
             name.clone(),
-            (place(&links, name), mass, centre, inertia.to_vec()),
+            (placement_of(&links, name), mass, centre, inertia.to_vec()),
         );
     }
-    read
+    read_bodies
 }
 
 #[test]
@@ -138,25 +150,29 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
             let change = |scene: &mut Scene| (scene.pull, scene.play) = (pull, play);
             let text = mjcf_with(&robot, change);
             let document = Document::parse(&text).expect("well formed");
-            let wanted = bodies(&document);
+            let expected = bodies(&document);
             let ([urdf, sdf], _) = urdf_and_sdf(&robot, change);
             let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
-            for read in [read_urdf(&urdf), read_sdf(&sdf)] {
-                assert_eq!(read.len(), wanted.len());
-                for (name, (placed, body)) in &wanted {
-                    let (found, mass, centre, inertia) = &read[&name.replace(' ', "_")];
+            for read_bodies in [read_urdf(&urdf), read_sdf(&sdf)] {
+                assert_eq!(read_bodies.len(), expected.len());
+                for (name, (expected_placement, body)) in &expected {
+                    let (read_placement, mass, centre, inertia) =
+                        &read_bodies[&name.replace(' ', "_")];
                     let inertial = child(*body, "inertial");
                     assert_eq!([*mass][..], numbers(inertial, "mass"), "{name}");
                     assert_eq!(*centre, numbers(inertial, "pos"), "{name}");
                     assert_eq!(*inertia, numbers(inertial, "fullinertia"), "{name}");
                     // The x axis in URDF and SDF is the y axis in MuJoCo's file.
-                    let [x, y, z] = placed.at;
-                    for (found, wanted) in found.at.into_iter().zip([y, -x, z]) {
-                        assert!((found - wanted).abs() < 1e-8, "{name} {found} {wanted}");
+                    let [x, y, z] = expected_placement.at;
+                    for (actual, expected) in read_placement.at.into_iter().zip([y, -x, z]) {
+                        assert!(
+                            (actual - expected).abs() < 1e-8,
+                            "{name} {actual} {expected}"
+                        );
                     }
-                    let turned = found.turn - placed.turn + FRAC_PI_2;
-                    let error = turned.sin().hypot(1.0 - turned.cos());
-                    assert!(error < 1e-8, "{name} {turned}");
+                    let angle = read_placement.turn - expected_placement.turn + FRAC_PI_2;
+                    let error = angle.sin().hypot(1.0 - angle.cos());
+                    assert!(error < 1e-8, "{name} {angle}");
                 }
             }
         }
@@ -170,9 +186,9 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
         let document = Document::parse(&urdf).expect("well formed");
         let (links, joints) = (
             read_urdf(&document),
-            named(document.root_element(), "joint"),
+            elements_by_name(document.root_element(), "joint"),
         );
-        let frame = |name: &str| {
+        let point_of = |name: &str| {
             let joint = joints[&format!("{name}_joint")];
             assert_eq!(joint.attribute("type"), Some("fixed"));
             let parent = child(joint, "parent").attribute("link").expect("a link");
@@ -181,13 +197,14 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
                 .point(&numbers(child(joint, "origin"), "xyz"))
         };
         let mut count = 0;
-        for first in joints
+        for joint_name in joints
             .keys()
             .filter_map(|name| name.strip_suffix("_1_joint"))
         {
-            let [one, two] = ["1", "2"].map(|number| frame(&format!("{first}_{number}")));
-            let error = (one[0] - two[0]).hypot(one[1] - two[1]);
-            assert!(error < 1e-8, "{name} {first} {error}");
+            let [first_point, second_point] =
+                ["1", "2"].map(|number| point_of(&format!("{joint_name}_{number}")));
+            let error = (first_point[0] - second_point[0]).hypot(first_point[1] - second_point[1]);
+            assert!(error < 1e-8, "{name} {joint_name} {error}");
             count += 1;
         }
         assert_eq!(count, 12, "two ends, two sliders, two for each leg");
@@ -200,26 +217,32 @@ fn servos_have_their_names_ranges_and_powers_in_both() {
     let ([urdf, sdf], _) = urdf_and_sdf(&robot, |_| {});
     let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
     let model = child(sdf.root_element(), "model");
-    let (in_urdf, in_sdf) = (named(urdf.root_element(), "joint"), named(model, "joint"));
-    let links = named(model, "link");
-    assert!(in_sdf.keys().all(|joint| !links.contains_key(joint)));
+    let (urdf_joints, sdf_joints) = (
+        elements_by_name(urdf.root_element(), "joint"),
+        elements_by_name(model, "joint"),
+    );
+    let links = elements_by_name(model, "link");
+    assert!(sdf_joints.keys().all(|joint| !links.contains_key(joint)));
     for (servo, name) in NAMES.into_iter().enumerate() {
-        let (smallest, largest) = robot.servos()[servo].travel();
+        let (min_deg, max_deg) = robot.servos()[servo].travel();
         // The SG-90: 1.8 kg cm and 500 deg/s.
-        let wanted = [
-            smallest.to_radians(),
-            largest.to_radians(),
+        let expected = [
+            min_deg.to_radians(),
+            max_deg.to_radians(),
             0.018 * 9.80665,
             500f64.to_radians(),
         ];
-        let limit = child(in_urdf[name], "limit");
-        let found = ["lower", "upper", "effort", "velocity"];
-        let of_urdf = found.map(|of| numbers(limit, of)[0]);
-        let limit = child(child(in_sdf[name], "axis"), "limit");
-        let of_sdf = found.map(|of| floats(&text_of(limit, of))[0]);
-        for found in [of_urdf, of_sdf] {
-            for (found, wanted) in found.into_iter().zip(wanted) {
-                assert!((found - wanted).abs() < 1e-8, "{name} {found} {wanted}");
+        let limit = child(urdf_joints[name], "limit");
+        let attributes = ["lower", "upper", "effort", "velocity"];
+        let urdf_limits = attributes.map(|attribute| numbers(limit, attribute)[0]);
+        let limit = child(child(sdf_joints[name], "axis"), "limit");
+        let sdf_limits = attributes.map(|attribute| parse_floats(&text_of(limit, attribute))[0]);
+        for limits in [urdf_limits, sdf_limits] {
+            for (actual, expected) in limits.into_iter().zip(expected) {
+                assert!(
+                    (actual - expected).abs() < 1e-8,
+                    "{name} {actual} {expected}"
+                );
             }
         }
     }
@@ -230,17 +253,17 @@ fn every_mesh_that_they_name_is_made_and_none_is_left_over() {
     let (texts, meshes) = urdf_and_sdf(&robot_with("paper", ""), |_| {});
     for text in &texts {
         let document = Document::parse(text).expect("well formed");
-        let of_urdf = document
+        let urdf_names = document
             .descendants()
             .filter_map(|node| node.attribute("filename"));
-        let of_sdf = document
+        let sdf_nodes = document
             .descendants()
             .filter(|node| node.has_tag_name("uri"));
-        let named: BTreeSet<String> = of_urdf
-            .chain(of_sdf.filter_map(|node| node.text()))
+        let mesh_names: BTreeSet<String> = urdf_names
+            .chain(sdf_nodes.filter_map(|node| node.text()))
             .map(|name| name.strip_prefix("at/").expect("the folder").to_owned())
             .collect();
-        assert_eq!(named, meshes);
+        assert_eq!(mesh_names, meshes);
     }
     let (texts, _) = urdf_and_sdf(&robot_with("paper", ""), |scene| scene.has_shapes = false);
     assert!(texts.iter().all(|text| !text.contains("mesh")));

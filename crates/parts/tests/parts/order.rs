@@ -8,7 +8,7 @@ use lizard_parts::{
 use crate::{ROBOTS, assembly, neutral, slotted};
 
 /// The steps of the guide for a robot's kind of struts.
-fn order(assembly: &Assembly) -> Vec<Step> {
+fn steps_of(assembly: &Assembly) -> Vec<Step> {
     steps(assembly.robot().drive().strut().is_some())
 }
 
@@ -17,19 +17,19 @@ fn every_screw_of_every_robot_can_be_reached() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
-            let access_poses = assembly.access_poses(&order(&assembly));
+            let access_poses = assembly.access_poses(&steps_of(&assembly));
             let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
             // At neutral the follower covers a screw of its foot; the leg, still on the bench, is swung aside. In
             // the robot `unequal`, the short arm of a strut's anchor is above the servo's seat, where no socket
             // reaches the anchor's nut; the link is turned.
-            for aside in access_poses {
-                let screw = match aside.step {
+            for access_pose in access_poses {
+                let screw = match access_pose.step {
                     7 => "screw foot",
                     9 if name == "unequal" => "screw anchor",
-                    _ => panic!("{name}: {aside:?}"),
+                    _ => panic!("{name}: {access_pose:?}"),
                 };
-                for found in aside.screws {
-                    assert!(found.starts_with(screw), "{name}: {found}");
+                for screw_name in access_pose.screws {
+                    assert!(screw_name.starts_with(screw), "{name}: {screw_name}");
                 }
             }
         }
@@ -38,23 +38,24 @@ fn every_screw_of_every_robot_can_be_reached() {
 
 /// The blocked screws of the paper's robot with changed steps, each with the body in its way; without the screws of
 /// the feet, which are blocked at neutral in any order.
-fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
+fn blocked_screws(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
     let assembly = slotted("paper", "");
-    let mut steps = order(&assembly);
+    let mut steps = steps_of(&assembly);
     change(&mut steps);
-    let blocked = assembly.blocked(&steps, &neutral(&assembly));
-    let all = blocked
+    let blocked_screws = assembly.blocked(&steps, &neutral(&assembly));
+    let screws = blocked_screws
         .into_iter()
-        .map(|of| (of.screw, of.operation, of.by));
-    all.filter(|(screw, ..)| !screw.starts_with("screw foot"))
+        .map(|blocked| (blocked.screw, blocked.operation, blocked.by));
+    screws
+        .filter(|(screw, ..)| !screw.starts_with("screw foot"))
         .collect()
 }
 
 #[test]
 fn a_wrong_order_is_found() {
-    assert_eq!(blocked(|_| ()), []);
+    assert_eq!(blocked_screws(|_| ()), []);
     // A link's screws are inserted from below after the struts are under it.
-    let late_screws = blocked(|steps| {
+    let late_screws = blocked_screws(|steps| {
         steps[4].stages[0].adds =
             |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
         steps[8].stages.push(Stage {
@@ -63,35 +64,42 @@ fn a_wrong_order_is_found() {
             turns: |_| false,
         });
     });
-    let pushed = late_screws
+    let pushed_screws = late_screws
         .iter()
         .filter(|(_, operation, _)| *operation == ScrewOperation::Push);
-    assert!(pushed.count() > 0, "{late_screws:?}");
+    assert!(pushed_screws.count() > 0, "{late_screws:?}");
 }
 
 #[test]
 fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
-    let glued = slotted("paper", "").altered(|bodies| {
-        let pad = |body: &&mut Body| body.name == "pad LF";
-        for body in bodies.iter_mut().filter(pad) {
+    let glued_assembly = slotted("paper", "").altered(|bodies| {
+        let is_pad = |body: &&mut Body| body.name == "pad LF";
+        for body in bodies.iter_mut().filter(is_pad) {
             body.prisms[0].cut_shapes.clear();
         }
     });
-    let refused = glued
-        .access_poses(&order(&glued))
+    let blocked_screw = glued_assembly
+        .access_poses(&steps_of(&glued_assembly))
         .expect_err("the key has no way");
     assert_eq!(
-        (&*refused.screw, refused.operation),
+        (&*blocked_screw.screw, blocked_screw.operation),
         ("screw height LF", ScrewOperation::Turn)
     );
-    assert_eq!(refused.by, "pad LF");
+    assert_eq!(blocked_screw.by, "pad LF");
     // The check finds the pad both in the step that mounts it and in the step that levels the feet.
-    let steps = order(&glued);
-    let level = steps.iter().position(|step| step.title == "Level the feet");
-    let level = 1 + level.expect("a step");
-    let turned = glued.blocked(&steps, &neutral(&glued));
-    let found = |step| turned.iter().any(|of| of.step == step && of.by == "pad LF");
-    assert!(found(7) && found(level), "{turned:?}");
+    let steps = steps_of(&glued_assembly);
+    let level_step = steps.iter().position(|step| step.title == "Level the feet");
+    let level_step = 1 + level_step.expect("a step");
+    let blocked_screws = glued_assembly.blocked(&steps, &neutral(&glued_assembly));
+    let is_pad_blocking = |step| {
+        blocked_screws
+            .iter()
+            .any(|blocked| blocked.step == step && blocked.by == "pad LF")
+    };
+    assert!(
+        is_pad_blocking(7) && is_pad_blocking(level_step),
+        "{blocked_screws:?}"
+    );
 }
 
 #[test]
@@ -104,18 +112,18 @@ fn a_strut_under_a_head_is_found() {
             }
         }
     });
-    let refused = unequal.access_poses(&order(&unequal));
-    let refused = refused.expect_err("no key gets there");
+    let blocked_screw = unequal.access_poses(&steps_of(&unequal));
+    let blocked_screw = blocked_screw.expect_err("no key gets there");
     assert_eq!(
-        (&*refused.screw, refused.operation),
+        (&*blocked_screw.screw, blocked_screw.operation),
         ("screw tip A4", ScrewOperation::Turn)
     );
-    assert_eq!(refused.by, "strut LH");
+    assert_eq!(blocked_screw.by, "strut LH");
 }
 
 #[test]
 fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
-    let covered = slotted("paper", "").altered(|bodies| {
+    let covered_assembly = slotted("paper", "").altered(|bodies| {
         // A board as large as the plate, above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
         let mut lid = plate.expect("a plate");
@@ -126,11 +134,13 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
         }
         bodies.push(lid);
     });
-    let refused = covered.access_poses(&order(&covered)).expect_err("a lid");
-    assert_eq!(refused.by, "deck lid");
-    let message = BuildProblem::from(refused).to_string();
-    let blocked = "at step 3 of the guide: deck lid is in the way, at every pose";
-    assert!(message.contains(blocked), "{message}");
+    let blocked_screw = covered_assembly
+        .access_poses(&steps_of(&covered_assembly))
+        .expect_err("a lid");
+    assert_eq!(blocked_screw.by, "deck lid");
+    let message = BuildProblem::from(blocked_screw).to_string();
+    let expected = "at step 3 of the guide: deck lid is in the way, at every pose";
+    assert!(message.contains(expected), "{message}");
 }
 
 #[test]
@@ -139,9 +149,9 @@ fn parts_that_move_together_are_not_in_one_place() {
         assert_eq!(slotted(name, "").check_measures(), Ok(()), "{name}");
     }
     // The head of a standoff's screw is moved into the boss of the board's screw.
-    let near = slotted("paper", "").altered(|bodies| {
-        let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
-        for body in bodies.iter_mut().filter(screw) {
+    let altered = slotted("paper", "").altered(|bodies| {
+        let is_screw = |body: &&mut Body| body.name == "screw standoff 1 above";
+        for body in bodies.iter_mut().filter(is_screw) {
             let heads = body
                 .prisms
                 .iter_mut()
@@ -149,9 +159,12 @@ fn parts_that_move_together_are_not_in_one_place() {
             heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
-    let refused = near.check_measures().expect_err("they overlap").to_string();
-    let both = "deck and screw standoff 1 above, which move together, overlap by 0.5";
-    assert!(refused.contains(both), "{refused}");
+    let message = altered
+        .check_measures()
+        .expect_err("they overlap")
+        .to_string();
+    let expected = "deck and screw standoff 1 above, which move together, overlap by 0.5";
+    assert!(message.contains(expected), "{message}");
 }
 
 /// An independent check of free space, with the layers' outlines tested point by point.
@@ -160,49 +173,57 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
     for name in ["paper", "unequal"] {
         let assembly = slotted(name, "");
         let pose = neutral(&assembly);
-        let steps = order(&assembly);
-        let blocked = assembly.blocked(&steps, &pose);
+        let steps = steps_of(&assembly);
+        let blocked_screws = assembly.blocked(&steps, &pose);
         let step_of = |body: &Body| steps.iter().position(|step| step.adds(body));
-        let outlines = |body: &Body| body.prisms.iter().map(Outline::of).collect();
+        let outlines_of = |body: &Body| body.prisms.iter().map(Outline::of).collect();
         let bodies = assembly.bodies().iter();
-        let outlines: Vec<(&Body, Vec<_>)> = bodies.map(|body| (body, outlines(body))).collect();
-        let mut asked = 0;
+        let outlines: Vec<(&Body, Vec<_>)> = bodies.map(|body| (body, outlines_of(body))).collect();
+        let mut checked_count = 0;
         for screw in assembly.bodies() {
-            let here = step_of(screw);
+            let screw_step = step_of(screw);
             // Only screws that are inserted from above, on the robot.
             let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };
-            if high.filled_shapes[0].width() <= low.filled_shapes[0].width() || here == Some(6) {
+            if high.filled_shapes[0].width() <= low.filled_shapes[0].width()
+                || screw_step == Some(6)
+            {
                 continue;
             }
-            if blocked.iter().any(|of| of.screw == screw.name) {
+            if blocked_screws
+                .iter()
+                .any(|blocked| blocked.screw == screw.name)
+            {
                 assert!(name == "unequal" && screw.name.starts_with("screw anchor"));
                 continue;
             }
-            let at = assembly
+            let head = assembly
                 .place(screw.mount, &pose)
                 .map(high.filled_shapes[0].middle());
             for turn in 0..12 {
-                let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;
-                for up in 1..60 {
-                    let z = high.z[1] + 0.5 * f64::from(up);
-                    let later = |body: &Body| step_of(body) > here;
-                    let own =
+                let rim = head + Vector::direction(30.0 * f64::from(turn)) * 1.99;
+                for height_step in 1..60 {
+                    let z = high.z[1] + 0.5 * f64::from(height_step);
+                    let is_later = |body: &Body| step_of(body) > screw_step;
+                    let is_own =
                         |body: &Body| body.name == screw.name || body.name.starts_with("board");
-                    for (body, layers) in outlines.iter().filter(|(of, _)| !later(of) && !own(of)) {
+                    for (body, layers) in outlines
+                        .iter()
+                        .filter(|(body, _)| !is_later(body) && !is_own(body))
+                    {
                         let point = assembly.place(body.mount, &pose).unmap(rim);
                         for (prism, outline) in body.prisms.iter().zip(layers) {
-                            let there = prism.z[0] < z && z < prism.z[1];
-                            asked += usize::from(there);
+                            let is_at_height = prism.z[0] < z && z < prism.z[1];
+                            checked_count += usize::from(is_at_height);
                             let (screw, body) = (&screw.name, &body.name);
-                            let free = !there || !outline.contains(point);
-                            assert!(free, "{name}: {screw} in {body}");
+                            let is_free = !is_at_height || !outline.contains(point);
+                            assert!(is_free, "{name}: {screw} in {body}");
                         }
                     }
                 }
             }
         }
-        assert!(asked > 1000, "{name}: {asked}");
+        assert!(checked_count > 1000, "{name}: {checked_count}");
     }
 }

@@ -7,7 +7,7 @@ use lizard_robot::servo::LEGS;
 use crate::{GRAIN, assembly, body, neutral};
 
 /// The notch of a pad, its only hole with corners; `None` for a plain pad.
-fn notch(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
+fn notch_of(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
     let mut cuts = prisms.iter().flat_map(|prism| &prism.cut_shapes);
     cuts.find(|cut| cut.points.len() > 1)
 }
@@ -15,16 +15,16 @@ fn notch(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
 #[test]
 fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
     let assembly = assembly(GRAIN, "");
-    let half = assembly.robot().parts().pad.width / 2.0;
+    let half_width = assembly.robot().parts().pad.width / 2.0;
     let parts = assembly.parts();
     let is_pad = |part: &&Part| part.rubbery;
     let [pad] = parts.iter().filter(is_pad).collect::<Vec<_>>()[..] else {
         panic!("one kind of pad");
     };
     assert_eq!(pad.count(), 4);
-    let (layers, closed) = pad.printed_layers();
-    assert_eq!(closed, 1, "the hole for the key, as in a plain pad");
-    let notch = notch(&layers).expect("a notch in the file");
+    let (layers, closed_count) = pad.printed_layers();
+    assert_eq!(closed_count, 1, "the hole for the key, as in a plain pad");
+    let notch = notch_of(&layers).expect("a notch in the file");
     // A second pose is also checked, because a foot never turns.
     let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {
         let angles: [f64; 4] = assembly.robot().neutral().into();
@@ -37,12 +37,12 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
             body(&assembly, &format!("screw height {leg}")),
         );
         let motion = pad.print_to_body(pad_body);
-        let place = assembly.place(pad_body.mount, pose);
-        let to_robot = |at: &Vector| {
-            let y = if motion.flipped { -at.y } else { at.y };
-            place.map(motion.frame.map(Vector::new(at.x, y)))
+        let placement = assembly.place(pad_body.mount, pose);
+        let to_robot = |point: &Vector| {
+            let y = if motion.flipped { -point.y } else { point.y };
+            placement.map(motion.frame.map(Vector::new(point.x, y)))
         };
-        let axis = place.map(screw.prisms[0].filled_shapes[0].middle());
+        let axis = placement.map(screw.prisms[0].filled_shapes[0].middle());
         for corner in &notch.points {
             let from_axis = to_robot(corner) - axis;
             // Robots of this project face along y.
@@ -50,7 +50,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
                 (from_axis.x.abs() - 4.2).abs() < 1e-9,
                 "{leg}: {from_axis:?}"
             );
-            assert!(from_axis.y > half - 1.51, "{leg}: {from_axis:?}");
+            assert!(from_axis.y > half_width - 1.51, "{leg}: {from_axis:?}");
         }
     }
 }
@@ -59,40 +59,46 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
 fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
     let [plain, marked] = ["paper", GRAIN].map(|name| assembly(name, ""));
     for leg in LEGS {
-        let [plain, marked] = [&plain, &marked].map(|of| body(of, &format!("pad {leg}")));
+        let [plain, marked] =
+            [&plain, &marked].map(|assembly| body(assembly, &format!("pad {leg}")));
         assert_eq!(plain.z(), marked.z());
-        assert!(notch(&plain.prisms).is_none());
+        assert!(notch_of(&plain.prisms).is_none());
         assert_eq!(plain.prisms.len(), marked.prisms.len());
-        let mut notched = 0;
+        let mut notched_count = 0;
         for (plain, marked) in plain.prisms.iter().zip(&marked.prisms) {
             assert_eq!(plain.z, marked.z);
-            let radius =
-                |of: &lizard_parts::Prism, end: usize| of.filled_shapes[0].radius - of.inset[end];
+            let radius_of = |prism: &lizard_parts::Prism, end: usize| {
+                prism.filled_shapes[0].radius - prism.inset[end]
+            };
             for end in [0, 1] {
-                let beyond = radius(marked, end) - radius(plain, end);
-                assert!((-0.3..1e-9).contains(&beyond), "{leg}: {beyond}");
+                let excess = radius_of(marked, end) - radius_of(plain, end);
+                assert!((-0.3..1e-9).contains(&excess), "{leg}: {excess}");
             }
             if marked.cut_shapes.len() > plain.cut_shapes.len() {
-                let [less, more] = [marked, plain].map(|of| Outline::of(of).area());
-                assert!(less < more - 1.0, "{leg}: {less} {more}");
-                notched += 1;
+                let [marked_area, plain_area] =
+                    [marked, plain].map(|prism| Outline::of(prism).area());
+                assert!(
+                    marked_area < plain_area - 1.0,
+                    "{leg}: {marked_area} {plain_area}"
+                );
+                notched_count += 1;
             }
         }
         // The notch exists only in the layers where the dome is wide enough for it.
-        assert!(notched > 5, "{leg}: {notched} layers");
+        assert!(notched_count > 5, "{leg}: {notched_count} layers");
     }
 }
 
 #[test]
 fn a_strip_that_its_pad_cannot_carry_is_refused() {
     for (width, fits) in [(4.0, false), (5.0, true), (14.5, true), (15.5, false)] {
-        let robot = assembly("paper", &format!("[parts]\nstrip = {width:.1}"));
-        let refusal = robot
+        let assembly = assembly("paper", &format!("[parts]\nstrip = {width:.1}"));
+        let refusal = assembly
             .check_measures()
             .err()
             .map(|refused| refused.to_string());
         assert_eq!(refusal.is_none(), fits, "{width}");
-        assert!(refusal.is_none_or(|words| words.starts_with("parts.strip is")));
+        assert!(refusal.is_none_or(|message| message.starts_with("parts.strip is")));
     }
 }
 
@@ -113,11 +119,11 @@ fn the_guide_of_a_robot_with_strips_says_how_they_are_glued_and_turned() {
         let files = papers(&assembly, &bill, &pose).expect("a guide");
         let text = files.iter().find(|file| file.path.ends_with("guide.md"));
         let text = String::from_utf8_lossy(&text.expect("the guide").bytes).into_owned();
-        for words in [
+        for phrase in [
             "folded up and glued into the notch",
             "point straight to the head",
         ] {
-            assert_eq!(text.contains(words), has_strip, "{name}: {words}");
+            assert_eq!(text.contains(phrase), has_strip, "{name}: {phrase}");
         }
     }
 }

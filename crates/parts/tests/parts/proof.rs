@@ -24,27 +24,29 @@ impl Random {
 
 /// Poses that the guard accepts: some anywhere in the servos' travel, the others at the edge of the accepted range,
 /// where parts come nearest.
-fn poses(robot: &Robot, count: usize) -> Vec<Solution> {
+fn accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
     let mut random = Random(7);
     let mut poses = Vec::new();
     let neutral = robot.servos().map(|servo| servo.neutral);
     while poses.len() < count {
-        let far = robot.servos().each_ref().map(|servo| {
+        let far_angles = robot.servos().each_ref().map(|servo| {
             let (low, high) = servo.travel();
             servo.neutral + low + (high - low) * random.next()
         });
-        poses.extend(robot.accepted(far));
-        let (mut within, mut beyond) = (0.0, 1.0);
+        poses.extend(robot.accepted(far_angles));
+        let (mut accepted_share, mut refused_share) = (0.0, 1.0);
         for _ in 0..30 {
-            let share = (within + beyond) / 2.0;
-            let at = |servo: usize| neutral[servo] + share * (far[servo] - neutral[servo]);
-            match robot.accepted([0, 1, 2, 3].map(at)) {
-                Some(_) => within = share,
-                None => beyond = share,
+            let share = (accepted_share + refused_share) / 2.0;
+            let angle_of =
+                |servo: usize| neutral[servo] + share * (far_angles[servo] - neutral[servo]);
+            match robot.accepted([0, 1, 2, 3].map(angle_of)) {
+                Some(_) => accepted_share = share,
+                None => refused_share = share,
             }
         }
-        let at = |servo: usize| neutral[servo] + within * (far[servo] - neutral[servo]);
-        poses.extend(robot.accepted([0, 1, 2, 3].map(at)));
+        let angle_of =
+            |servo: usize| neutral[servo] + accepted_share * (far_angles[servo] - neutral[servo]);
+        poses.extend(robot.accepted([0, 1, 2, 3].map(angle_of)));
     }
     poses
 }
@@ -54,30 +56,36 @@ fn assert_bounds_hold(name: &str) {
     let assembly = slotted(name, "");
     let proof = assembly.prove(|_, _| ());
     assert_eq!(proof.judge(), Ok(()), "{name}");
-    let mounts = |first: &str, second: &str| [first, second].map(|of| body(&assembly, of).mount);
-    let poses = poses(assembly.robot(), 300);
+    let mounts_of = |first: &str, second: &str| {
+        [first, second].map(|body_name| body(&assembly, body_name).mount)
+    };
+    let poses = accepted_poses(assembly.robot(), 300);
     for pose in &poses {
         let angles: [f64; 4] = pose.pose.into();
         for (angle, [low, high]) in angles.into_iter().zip(proof.ranges) {
             assert!((low..=high).contains(&angle), "{name}: {angle}");
         }
     }
-    for near in assembly.nearest(poses, FAR_MM - 0.2) {
-        let of = mounts(&near.first, &near.second);
-        let mut apart = proof.separate_pairs.iter();
-        let known = apart.find(|known| mounts(&known.first, &known.second) == of);
-        let known = known.unwrap_or_else(|| panic!("{name}: nothing proved of {near}"));
-        assert!(known.proved <= near.mm, "{name}: {near}, proved {known}");
+    for pair in assembly.nearest(poses, FAR_MM - 0.2) {
+        let mounts = mounts_of(&pair.first, &pair.second);
+        let mut pairs = proof.separate_pairs.iter();
+        let proved_pair =
+            pairs.find(|proved_pair| mounts_of(&proved_pair.first, &proved_pair.second) == mounts);
+        let proved_pair = proved_pair.unwrap_or_else(|| panic!("{name}: nothing proved of {pair}"));
+        assert!(
+            proved_pair.proved <= pair.mm,
+            "{name}: {pair}, proved {proved_pair}"
+        );
     }
-    for near in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
-        let Some(seen) = &near.seen else { continue };
+    for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
+        let Some(seen) = &pair.seen else { continue };
         let accepted = assembly.robot().accepted(seen.pose);
-        assert!(accepted.is_some(), "{name}: {near}");
-        assert!(near.proved <= seen.mm, "{name}: {near}");
+        assert!(accepted.is_some(), "{name}: {pair}");
+        assert!(pair.proved <= seen.mm, "{name}: {pair}");
         // The proven bound is not much below the least distance found, except near poses that the guard barely
         // accepts.
-        let close = seen.mm < near.proved.max(0.0) * 2.1 + 0.02;
-        assert!(close || near.doubt.is_some(), "{name}: {near}");
+        let is_close = seen.mm < pair.proved.max(0.0) * 2.1 + 0.02;
+        assert!(is_close || pair.doubt.is_some(), "{name}: {pair}");
     }
 }
 
@@ -98,31 +106,37 @@ fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
 
 #[test]
 fn rigid_struts_keep_the_distances_of_slotted_ones() {
-    let [sprung, rigid] = ["strut", "rigid"].map(|word| {
+    let [sprung_gap, rigid_gap] = ["strut", "rigid"].map(|word| {
         let assembly = assembly("paper", &format!("[leg.drive]\nkind = \"{word}\""));
-        let strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
-        let proof = assembly.prove_some(|a, b| strut(a) || strut(b), |_, _| ());
+        let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
+        let proof = assembly.prove_some(|a, b| is_strut(a) || is_strut(b), |_, _| ());
         assert_eq!(proof.judge(), Ok(()), "{word}");
         proof.nearest().expect("something is near").proved
     });
-    assert!(rigid >= sprung, "{rigid} {sprung}");
+    assert!(rigid_gap >= sprung_gap, "{rigid_gap} {sprung_gap}");
 }
 
 #[test]
 fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
     let paper = slotted("paper", "");
-    let plain = |of: Assembly| {
-        of.altered(|bodies| bodies.retain(|body| body.kind != lizard_parts::Kind::Pad))
+    let without_pads = |assembly: Assembly| {
+        assembly.altered(|bodies| bodies.retain(|body| body.kind != lizard_parts::Kind::Pad))
     };
     // The pads of `grain` are not compared: they lie within plain pads, as the tests in `pads.rs` show.
-    for (own, paper) in [
+    for (assembly, paper) in [
         (slotted("own-gaits", ""), paper.clone()),
-        (plain(slotted(GRAIN, "")), plain(paper)),
+        (without_pads(slotted(GRAIN, "")), without_pads(paper)),
     ] {
-        assert_eq!(own.bodies(), paper.bodies());
-        assert_eq!(own.robot().limits(), paper.robot().limits());
-        let travel = |of: &Assembly| of.robot().servos().each_ref().map(|servo| servo.travel());
-        assert_eq!(travel(&own), travel(&paper));
+        assert_eq!(assembly.bodies(), paper.bodies());
+        assert_eq!(assembly.robot().limits(), paper.robot().limits());
+        let travels_of = |assembly: &Assembly| {
+            assembly
+                .robot()
+                .servos()
+                .each_ref()
+                .map(|servo| servo.travel())
+        };
+        assert_eq!(travels_of(&assembly), travels_of(&paper));
     }
 }
 
@@ -131,38 +145,38 @@ fn every_file_of_robots_is_here() {
     let folder = format!("{}/../../robots", env!("CARGO_MANIFEST_DIR"));
     let files = std::fs::read_dir(folder).expect("robots/");
     let names = files.map(|file| file.expect("a file").file_name());
-    let here = ROBOTS.into_iter().chain([GRAIN]);
-    let here = here.map(|name| format!("{name}.toml").into());
-    assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(here));
+    let expected = ROBOTS.into_iter().chain([GRAIN]);
+    let expected = expected.map(|name| format!("{name}.toml").into());
+    assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(expected));
 }
 
-/// The worst clash among the pairs that include a body for which `of` is true.
-fn find_clash(assembly: &Assembly, of: impl Fn(&Body) -> bool) -> Clash {
-    let proof = assembly.prove_some(|a, b| of(a) || of(b), |_, _| ());
+/// The worst clash among the pairs that include a body for which `is_chosen` is true.
+fn find_clash(assembly: &Assembly, is_chosen: impl Fn(&Body) -> bool) -> Clash {
+    let proof = assembly.prove_some(|a, b| is_chosen(a) || is_chosen(b), |_, _| ());
     proof.judge().expect_err("nothing is found")
 }
 
 /// Checks that a clash is an overlap of two bodies whose names begin with the given texts, in either order.
 #[track_caller]
 fn assert_overlap(clash: Clash, first: &str, second: &str) {
-    let Clash::Overlap(found) = clash else {
+    let Clash::Overlap(clearance) = clash else {
         panic!("{clash}");
     };
-    assert!(found.mm < 0.0);
-    let (a, b) = (&found.first, &found.second);
+    assert!(clearance.mm < 0.0);
+    let (a, b) = (&clearance.first, &clearance.second);
     let is_pair = |a: &str, b: &str| a.starts_with(first) && b.starts_with(second);
-    assert!(is_pair(a, b) || is_pair(b, a), "{found}");
+    assert!(is_pair(a, b) || is_pair(b, a), "{clearance}");
 }
 
 #[test]
 fn a_wrong_measure_is_found() {
-    for (parts, of, first, second) in [
+    for (parts, prefix, first, second) in [
         ("bar = 20.0", "link", "link A", ""),
         ("pivot = [22.0, 6.0]", "crank", "crank", "plate"),
     ] {
-        let wrong = slotted("paper", &format!("[parts]\n{parts}"));
+        let altered = slotted("paper", &format!("[parts]\n{parts}"));
         assert_overlap(
-            find_clash(&wrong, |body| body.name.starts_with(of)),
+            find_clash(&altered, |body| body.name.starts_with(prefix)),
             first,
             second,
         );
@@ -172,65 +186,65 @@ fn a_wrong_measure_is_found() {
 #[test]
 fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
     let proof = slotted("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
-    let Err(Clash::Overlap(found)) = proof.judge() else {
+    let Err(Clash::Overlap(clearance)) = proof.judge() else {
         panic!("no overlap");
     };
-    assert!(found.mm < -5.0, "{found}");
+    assert!(clearance.mm < -5.0, "{clearance}");
     assert!(proof.regions < 10_000, "{}", proof.regions);
 }
 
-/// The paper's robot with one screw made longer by `by` mm.
-fn with_longer_screw(name: &str, by: f64, downwards: bool) -> Assembly {
+/// The paper's robot with one screw made longer by `extra_mm`.
+fn with_longer_screw(name: &str, extra_mm: f64, is_downwards: bool) -> Assembly {
     slotted("paper", "").altered(|bodies| {
-        let mut all = bodies.iter_mut();
-        let screw = all.find(|body| body.name == name).expect(name);
-        let thin = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].width();
-        let shank = usize::from(thin(screw, 1) < thin(screw, 0));
+        let mut bodies = bodies.iter_mut();
+        let screw = bodies.find(|body| body.name == name).expect(name);
+        let width_of = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].width();
+        let shank = usize::from(width_of(screw, 1) < width_of(screw, 0));
         let z = &mut screw.prisms[shank].z;
-        if downwards {
-            z[0] -= by;
+        if is_downwards {
+            z[0] -= extra_mm;
         } else {
-            z[1] += by;
+            z[1] += extra_mm;
         }
     })
 }
 
 #[test]
 fn a_screw_that_is_too_long_is_found() {
-    for (name, by, downwards, other) in [
+    for (name, extra_mm, is_downwards, other) in [
         ("screw tip A1", 8.0, true, "strut LF"),
         ("screw foot LF 2", 3.0, false, "follower LF"),
         ("screw crank pivot LF", 6.5, false, "screw arm A1"),
         ("screw height LF", 26.0, false, "crank LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {
-        let long = with_longer_screw(name, by, downwards);
-        assert_overlap(find_clash(&long, |body| body.name == name), name, other);
+        let altered = with_longer_screw(name, extra_mm, is_downwards);
+        assert_overlap(find_clash(&altered, |body| body.name == name), name, other);
     }
 }
 
 #[test]
 fn swapped_layers_are_found() {
     // The layers of the head's upper and lower coupler are swapped.
-    let swapped = slotted("paper", "").altered(|bodies| {
-        let place = |name: &str| {
+    let altered = slotted("paper", "").altered(|bodies| {
+        let index_of = |name: &str| {
             bodies
                 .iter()
                 .position(|body| body.name == name)
                 .expect(name)
         };
-        let [lower, upper] = ["coupler A1", "coupler A2"].map(place);
-        let z = bodies[lower].prisms[0].z;
-        bodies[lower].prisms[0].z = bodies[upper].prisms[0].z;
-        bodies[upper].prisms[0].z = z;
+        let [lower_index, upper_index] = ["coupler A1", "coupler A2"].map(index_of);
+        let z = bodies[lower_index].prisms[0].z;
+        bodies[lower_index].prisms[0].z = bodies[upper_index].prisms[0].z;
+        bodies[upper_index].prisms[0].z = z;
     });
-    let found = find_clash(&swapped, |body| body.name.starts_with("coupler"));
-    assert_overlap(found, "coupler A", "");
+    let clash = find_clash(&altered, |body| body.name.starts_with("coupler"));
+    assert_overlap(clash, "coupler A", "");
 }
 
 #[test]
 fn a_hole_beside_its_pin_is_found() {
-    let moved = slotted("paper", "").altered(|bodies| {
+    let altered = slotted("paper", "").altered(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut_shapes {
                 for point in &mut cut.points {
@@ -239,28 +253,28 @@ fn a_hole_beside_its_pin_is_found() {
             }
         }
     });
-    let Clash::Overlap(found) = find_clash(&moved, |body| body.name == "coupler A4") else {
+    let Clash::Overlap(clearance) = find_clash(&altered, |body| body.name == "coupler A4") else {
         panic!("no overlap");
     };
-    assert!((found.mm + 0.2).abs() < 0.02, "{found}");
-    assert!(found.second.starts_with("screw"), "{found}");
+    assert!((clearance.mm + 0.2).abs() < 0.02, "{clearance}");
+    assert!(clearance.second.starts_with("screw"), "{clearance}");
 }
 
 #[test]
 fn parts_that_come_too_near_are_refused_with_their_pose() {
     // At the end of the rotation that the guard allows, the strut comes close to the servo's screws.
-    let near = slotted("paper", "[parts]\nanchor = [22.0, 5.0]");
-    let found = find_clash(&near, |body| body.name.starts_with("strut"));
-    let message = found.to_string();
+    let altered = slotted("paper", "[parts]\nanchor = [22.0, 5.0]");
+    let clash = find_clash(&altered, |body| body.name.starts_with("strut"));
+    let message = clash.to_string();
     assert!(message.contains("strut"), "{message}");
     assert!(message.contains(" pose "), "{message}");
 }
 
-/// The smallest and largest x of a shape that is shifted by `from` along x, mm.
-fn extent_along_x(shape: &Shape, from: f64) -> [f64; 2] {
-    let x = shape.points.iter().map(|point| point.x + from);
-    let low = x.clone().fold(f64::INFINITY, f64::min) - shape.radius;
-    [low, x.fold(f64::NEG_INFINITY, f64::max) + shape.radius]
+/// The smallest and largest x of a shape that is shifted by `shift_mm` along x, mm.
+fn extent_along_x(shape: &Shape, shift_mm: f64) -> [f64; 2] {
+    let xs = shape.points.iter().map(|point| point.x + shift_mm);
+    let low = xs.clone().fold(f64::INFINITY, f64::min) - shape.radius;
+    [low, xs.fold(f64::NEG_INFINITY, f64::max) + shape.radius]
 }
 
 #[test]
@@ -276,23 +290,27 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
                 shapes.find(|shape| shape.points.len() > 2).expect(part)
             });
             let [start, end] = extent_along_x(sleeve, 0.0);
-            let mut smallest = f64::INFINITY;
+            let mut least_overlap = f64::INFINITY;
             for step in 0..=100 {
                 let share = f64::from(step) / 100.0;
                 let stroke = limits.stroke_min + share * (limits.stroke_max - limits.stroke_min);
                 let [rear, front] = extent_along_x(rod, slider.nominal + stroke);
-                smallest = smallest.min(front.min(end) - rear.max(start));
+                least_overlap = least_overlap.min(front.min(end) - rear.max(start));
             }
             // At the longest stroke, the rod still overlaps the sleeve by exactly the required length.
-            assert!((smallest - 20.0).abs() < 1e-9, "{name} {side}: {smallest}");
+            assert!(
+                (least_overlap - 20.0).abs() < 1e-9,
+                "{name} {side}: {least_overlap}"
+            );
         }
-        let pair = |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
-        let sliders = assembly.prove_some(pair, |_, _| ());
+        let is_sleeve_and_rod =
+            |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
+        let proof = assembly.prove_some(is_sleeve_and_rod, |_, _| ());
         // In the bore, each side of the rod has a clearance of 0.2 mm.
-        assert_eq!(sliders.touching_pairs.len(), 2);
-        for near in &sliders.touching_pairs {
-            let seen = near.seen.as_ref().expect("they are near").mm;
-            assert!((seen - assembly.robot().parts().fit).abs() < 1e-9, "{near}");
+        assert_eq!(proof.touching_pairs.len(), 2);
+        for pair in &proof.touching_pairs {
+            let gap = pair.seen.as_ref().expect("they are near").mm;
+            assert!((gap - assembly.robot().parts().fit).abs() < 1e-9, "{pair}");
         }
     }
 }
@@ -302,7 +320,7 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
     let assembly = slotted("paper", "");
     let strut = body(&assembly, "strut LF");
     let leg = assembly.layout().legs[0];
-    let screw = assembly.robot().parts().screw.diameter / 2.0;
+    let screw_radius = assembly.robot().parts().screw.diameter / 2.0;
     let is_own = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
     let mut slots = strut.prisms[0]
         .cut_shapes
@@ -311,12 +329,12 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
     let slot = slots.find(is_own).expect("a slot");
     for step in 0..=10 {
         let travel = 5.0 * f64::from(step) / 10.0;
-        let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw);
-        let air = pin.depth_in(slot, Vector::default());
-        assert!((air - 0.1).abs() < 1e-9, "{travel}: {air}");
+        let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw_radius);
+        let gap = pin.depth_in(slot, Vector::default());
+        assert!((gap - 0.1).abs() < 1e-9, "{travel}: {gap}");
     }
-    let beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw);
-    assert!(beyond.depth_in(slot, Vector::default()) < 0.0);
+    let pin_beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw_radius);
+    assert!(pin_beyond.depth_in(slot, Vector::default()) < 0.0);
 }
 
 #[test]

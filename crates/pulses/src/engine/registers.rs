@@ -16,9 +16,9 @@ const TCNT1: usize = 0x84;
 const OCR1A: usize = 0x88;
 const OCR1B: usize = 0x8a;
 /// Compare match B: the bit OCF1B in TIFR1, and OCIE1B in TIMSK1.
-const B: u8 = 1 << 2;
+const MATCH_B: u8 = 1 << 2;
 /// Compare match A: the bit OCF1A in TIFR1, and OCIE1A in TIMSK1.
-const A: u8 = 1 << 1;
+const MATCH_A: u8 = 1 << 1;
 /// The value of TCCR1B that starts the timer, WGM12 and CS10: it counts every cycle up to OCR1A (CTC mode).
 const RUN: u8 = 1 << 3 | 1;
 
@@ -27,7 +27,7 @@ const NEVER: u16 = u16::MAX;
 
 /// The PORT register at a data address.
 #[inline(always)]
-fn port(address: u8) -> *mut u8 {
+fn port_register(address: u8) -> *mut u8 {
     with_exposed_provenance_mut(usize::from(address))
 }
 
@@ -36,7 +36,7 @@ fn port(address: u8) -> *mut u8 {
 /// # Safety
 /// The register is one of Timer1's.
 #[inline(always)]
-unsafe fn set<T>(register: usize, value: T) {
+unsafe fn write_register<T>(register: usize, value: T) {
     // SAFETY: as the caller says.
     unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
 }
@@ -70,7 +70,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     #[inline(always)]
     fn lower(&self) {
         for [address, mask] in &self.pins[..SERVOS] {
-            let port = port(address.get());
+            let port = port_register(address.get());
             let mask = mask.get();
             // SAFETY: a `Pin` holds only addresses of PORT registers, and DDR is the register just below PORT. No
             // handler writes one of them before a width has been submitted.
@@ -94,14 +94,14 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         // SAFETY: these registers are Timer1's, which is ours.
         unsafe {
             // A boot loader leaves the timer running for its LED, so it is stopped first.
-            set(TCCR1B, 0u8);
-            set(TCCR1A, 0u8);
-            set(TCNT1, 0u16);
-            set(OCR1A, const { slot_cycles(SERVOS) - 1 });
-            set(OCR1B, NEVER);
-            set(TIFR1, A | B);
-            set(TIMSK1, A | B);
-            set(TCCR1B, RUN);
+            write_register(TCCR1B, 0u8);
+            write_register(TCCR1A, 0u8);
+            write_register(TCNT1, 0u16);
+            write_register(OCR1A, const { slot_cycles(SERVOS) - 1 });
+            write_register(OCR1B, NEVER);
+            write_register(TIFR1, MATCH_A | MATCH_B);
+            write_register(TIMSK1, MATCH_A | MATCH_B);
+            write_register(TCCR1B, RUN);
         }
     }
 
@@ -121,7 +121,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     pub unsafe fn open(&self) {
         let mask = self.mask.get() & self.allowed.get();
         if mask != 0 {
-            let port = port(self.port.get());
+            let port = port_register(self.port.get());
             // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
             unsafe {
                 let level_before = port.read_volatile();
@@ -140,10 +140,10 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         // SAFETY: after `start` only the two handlers use Timer1, and they cannot
         // interrupt each other.
         unsafe {
-            set(OCR1B, self.fall.get() - u16::from(LEAD));
+            write_register(OCR1B, self.fall.get() - u16::from(LEAD));
             // If interrupts were off for very long, a match B from the previous slot, or one in this slot with the
             // previous value of OCR1B, is pending here and would close this slot at once.
-            set(TIFR1, B);
+            write_register(TIFR1, MATCH_B);
         }
     }
 
@@ -156,7 +156,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     pub unsafe fn close(&self) {
         let mask = self.mask.get();
         if mask != 0 {
-            let port = port(self.port.get());
+            let port = port_register(self.port.get());
             // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
             let on_time =
                 unsafe { store_at(self.fall.bytes(), port, port.read_volatile() & !mask, 0) };

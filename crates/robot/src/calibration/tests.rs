@@ -1,7 +1,7 @@
 use super::*;
 
 fn calibration() -> Calibration {
-    let servo = |trim| ServoSettings {
+    let servo_with = |trim| ServoSettings {
         trim,
         limit: [48.59, 228.59],
         dir: '-',
@@ -10,7 +10,7 @@ fn calibration() -> Calibration {
     Calibration {
         boot: "arc left".to_owned(),
         deadman: 1500,
-        servos: [-3.25, 0.0, 0.1, 20.0].map(servo),
+        servos: [-3.25, 0.0, 0.1, 20.0].map(servo_with),
     }
 }
 
@@ -23,32 +23,36 @@ fn a_calibration_is_the_same_after_the_way_through_a_file() {
 #[test]
 fn the_file_reads_as_a_person_would_write_it() {
     let text = calibration().text();
-    for part in [
+    for lines in [
         "boot = \"arc left\"\ndeadman = 1500\n",
         "[servo.A1]\ntrim = -3.25\nlimit = [48.59, 228.59]\ndir = \"-\"\nscale = 10.0\n",
     ] {
-        assert!(text.contains(part), "{text}");
+        assert!(text.contains(lines), "{text}");
     }
 }
 
 #[test]
 fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
-    let good = calibration().text();
-    let complaint = |from: &str, to: &str| {
-        assert!(good.contains(from), "{from}");
-        let wrong = good.replacen(from, to, 1);
-        let error = Calibration::parse(&wrong, "a.toml").expect_err("it is wrong");
+    let valid_text = calibration().text();
+    let error_text = |from: &str, to: &str| {
+        assert!(valid_text.contains(from), "{from}");
+        let wrong_text = valid_text.replacen(from, to, 1);
+        let error = Calibration::parse(&wrong_text, "a.toml").expect_err("it is wrong");
         error.to_string()
     };
-    let other = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml").expect_err("another file");
+    let other_error =
+        Calibration::parse("[links]\nl0 = 20.0\n", "a.toml").expect_err("another file");
     let sentence = "must be \"lizard calibration 1\": this is no calibration that can be read";
-    assert_eq!(other.to_string(), format!("a.toml: format {sentence}"));
-    let line = 1 + good
+    assert_eq!(
+        other_error.to_string(),
+        format!("a.toml: format {sentence}")
+    );
+    let line = 1 + valid_text
         .lines()
         .position(|line| line == "trim = -3.25")
         .expect("A1");
-    let trim = format!("a.toml:{line}: servo.A1.trim ");
-    for (from, to, whole) in [
+    let trim_prefix = format!("a.toml:{line}: servo.A1.trim ");
+    for (from, to, message) in [
         (
             "calibration 1",
             "calibration 2",
@@ -65,17 +69,17 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
         (
             "trim = -3.25",
             "trim = \"much\"",
-            format!("{trim}is the string \"much\"; it must be a number"),
+            format!("{trim_prefix}is the string \"much\"; it must be a number"),
         ),
         (
             "trim = -3.25",
             "trim = 1.234",
-            format!("{trim}is 1.234; it must have at most two decimals"),
+            format!("{trim_prefix}is 1.234; it must have at most two decimals"),
         ),
         (
             "trim = -3.25",
             "trim = 1e9",
-            format!("{trim}is 1e9; it must be within -360 to 360 deg"),
+            format!("{trim_prefix}is 1e9; it must be within -360 to 360 deg"),
         ),
         (
             "arc left",
@@ -88,9 +92,9 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
             "a.toml:6: deadman must be a whole number of ms".to_owned(),
         ),
     ] {
-        assert_eq!(complaint(from, to), whole);
+        assert_eq!(error_text(from, to), message);
     }
-    for (from, to, part) in [
+    for (from, to, phrase) in [
         (
             "trim = -3.25",
             "trim = nan",
@@ -123,43 +127,43 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
         ),
         ("format = \"", "format = \"x\n", "lacks the = between"),
     ] {
-        let words = complaint(from, to);
-        assert!(words.contains(part), "{words} / {part}");
+        let message = error_text(from, to);
+        assert!(message.contains(phrase), "{message} / {phrase}");
     }
 }
 
 #[test]
 fn the_lines_of_a_robot_are_read_and_are_those_that_set_it() {
-    let said = "# boot arc left|# deadman 1500|# A1 trim -3.25 limit 48.59 228.59 dir - scale 10|# t=1 pose=1,2,3,4|\
+    let answer = "# boot arc left|# deadman 1500|# A1 trim -3.25 limit 48.59 228.59 dir - scale 10|# t=1 pose=1,2,3,4|\
         # A2 trim 0 limit 48.59 228.59 dir - scale 10|# A3 trim 0.1 limit 48.59 228.59 dir - scale 10|\
         # A4 trim 20 limit 48.59 228.59 dir - scale 10";
-    let lines: Vec<String> = said.split('|').map(str::to_owned).collect();
+    let lines: Vec<String> = answer.split('|').map(str::to_owned).collect();
     assert_eq!(Calibration::from_lines(&lines), Some(calibration()));
-    for missing in 0..lines.len() {
+    for index in 0..lines.len() {
         let mut rest = lines.clone();
-        let is_needed = !rest.remove(missing).contains("pose");
+        let is_needed = !rest.remove(index).contains("pose");
         assert_eq!(
             Calibration::from_lines(&rest).is_none(),
             is_needed,
             "{rest:?}"
         );
     }
-    let set = calibration().lines();
-    assert_eq!(set.len(), 18);
-    let first = [
+    let set_lines = calibration().lines();
+    assert_eq!(set_lines.len(), 18);
+    let first_lines = [
         "dir 1 -",
         "scale 1 10.00",
         "trim 1 -3.25",
         "limit 1 48.59 228.59",
     ];
-    assert_eq!(set[..4], first);
-    assert_eq!(set[16..], ["boot arc left", "deadman 1500"]);
+    assert_eq!(set_lines[..4], first_lines);
+    assert_eq!(set_lines[16..], ["boot arc left", "deadman 1500"]);
 }
 
 #[test]
 fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
     // Change of the neutral pulse by the trim, us.
-    let pulse = |servo: ServoSettings| {
+    let pulse_shift_us = |servo: ServoSettings| {
         let sign = if servo.dir == '+' { 1.0 } else { -1.0 };
         sign * servo.trim * servo.scale
     };
@@ -173,11 +177,11 @@ fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
             assert_eq!(scaled.scale, scale);
             // A trim is rounded to hundredths of a degree.
             assert!(
-                (pulse(scaled) - pulse(servo)).abs() <= 0.005 * scale + 1e-9,
+                (pulse_shift_us(scaled) - pulse_shift_us(servo)).abs() <= 0.005 * scale + 1e-9,
                 "{scaled:?}"
             );
             let reversed = servo.reversed();
-            assert_eq!(pulse(reversed), pulse(servo));
+            assert_eq!(pulse_shift_us(reversed), pulse_shift_us(servo));
             assert_eq!(reversed.reversed(), servo);
             assert!(
                 reversed.trim.is_sign_positive() || reversed.trim < 0.0,
@@ -197,10 +201,10 @@ fn calibrations_that_differ_in_anything_are_not_the_same_but_a_turn_is_no_differ
         |calibration| calibration.boot = "walk".to_owned(),
         |calibration| calibration.deadman = 1,
     ];
-    for (n, change) in changes.into_iter().enumerate() {
-        let mut other = calibration();
-        change(&mut other);
-        assert!(!other.is_same(&calibration()), "change {n}");
+    for (index, change) in changes.into_iter().enumerate() {
+        let mut changed = calibration();
+        change(&mut changed);
+        assert!(!changed.is_same(&calibration()), "change {index}");
     }
     let mut turned = calibration();
     turned.servos[2].limit = [48.59 - 360.0, 228.59 - 360.0];

@@ -30,15 +30,15 @@ pub(crate) fn table_error(gait: &Gait, index: usize, tables: &Tables, count: usi
         servo: 0,
         phase: 0.0,
     };
-    let mut squares = 0.0;
+    let mut sum_of_squares = 0.0;
     for i in 0..count {
         let step = (i * (ALL_PHASES / count)) as u16;
         let phase = f64::from(step) / ALL_PHASES as f64;
-        let table = gait.table_angles(tables.sweeps(index, step));
-        let float = gait.angles(phase);
+        let table_angles = gait.table_angles(tables.sweeps(index, step));
+        let exact_angles = gait.angles(phase);
         for servo in 0..4 {
-            let deviation = (table[servo] - float[servo]).abs();
-            squares += deviation * deviation;
+            let deviation = (table_angles[servo] - exact_angles[servo]).abs();
+            sum_of_squares += deviation * deviation;
             if deviation > error.max {
                 error = TableError {
                     max: deviation,
@@ -49,7 +49,7 @@ pub(crate) fn table_error(gait: &Gait, index: usize, tables: &Tables, count: usi
             }
         }
     }
-    error.rms = (squares / (4 * count) as f64).sqrt();
+    error.rms = (sum_of_squares / (4 * count) as f64).sqrt();
     error
 }
 
@@ -64,17 +64,21 @@ mod tests {
             for gait in robot.gaits() {
                 let mut errors = [0.0f64; 4];
                 for i in 0..COUNT {
-                    let table = gait.table_angles((64 * i) as u16);
-                    let float = gait.angles(i as f64 / COUNT as f64);
+                    let table_angles = gait.table_angles((64 * i) as u16);
+                    let exact_angles = gait.angles(i as f64 / COUNT as f64);
                     for servo in 0..4 {
-                        errors[servo] = errors[servo].max((table[servo] - float[servo]).abs());
+                        errors[servo] =
+                            errors[servo].max((table_angles[servo] - exact_angles[servo]).abs());
                     }
                 }
-                let worst = gait.error_over(COUNT);
-                let largest = errors.into_iter().fold(0.0, f64::max);
-                assert_eq!(worst.max, largest, "{name} {}", gait.name());
-                assert_eq!(errors[worst.servo], largest);
-                assert!(worst.rms <= largest && 2.0 * worst.rms >= largest / COUNT as f64);
+                let table_error = gait.error_over(COUNT);
+                let largest_error = errors.into_iter().fold(0.0, f64::max);
+                assert_eq!(table_error.max, largest_error, "{name} {}", gait.name());
+                assert_eq!(errors[table_error.servo], largest_error);
+                assert!(
+                    table_error.rms <= largest_error
+                        && 2.0 * table_error.rms >= largest_error / COUNT as f64
+                );
             }
         }
     }

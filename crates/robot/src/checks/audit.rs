@@ -19,7 +19,7 @@ use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 /// Number of evenly spaced phases that are checked in addition to the tables' own samples.
 const CHECKED_PHASES: usize = 1024;
 /// Number of phases at which the speed over one frame is computed.
-const SPEEDS: usize = 4096;
+const SPEED_PHASES: usize = 4096;
 /// The largest error allowed in a table, deg.
 const ERROR_LIMIT: f64 = 0.50;
 
@@ -76,9 +76,9 @@ impl Audit {
 }
 
 impl LeastMargin {
-    const fn none(what: Check) -> Self {
+    const fn none(check: Check) -> Self {
         Self {
-            what,
+            what: check,
             value: f64::INFINITY,
             phase: 0.0,
         }
@@ -106,13 +106,13 @@ pub(crate) fn check(
     robot: &Measures,
     firmware: &lizard_core::numbers::robot::Robot<'_>,
 ) -> Result<Audit, LimitBreach> {
-    let mut found = Audit {
+    let mut audit = Audit {
         peak: find_peak(gait),
         ..Audit::NONE
     };
-    let mut worst: Option<(f64, Violation)> = None;
+    let mut worst_violation: Option<(f64, Violation)> = None;
     let mut guard_stop: Option<(f64, Check)> = None;
-    let at = |phase: f64| format!("at phase {phase:.4}");
+    let at_phase = |phase: f64| format!("at phase {phase:.4}");
     for phase in phases(&tables.gaits[index]) {
         let sweeps = tables.sweeps(index, phase);
         let angles = gait.table_angles(sweeps);
@@ -125,28 +125,28 @@ pub(crate) fn check(
         let solution = robot.lizard.solve(&angles.into());
         let solution = solution.map_err(|fault| LimitBreach {
             meaning: no_loop(fault.part),
-            problem: format!("{fault} {}", at(phase)),
+            problem: format!("{fault} {}", at_phase(phase)),
         })?;
         for violation in robot.limits.violations(&solution) {
-            worst = Some(match worst {
+            worst_violation = Some(match worst_violation {
                 Some(earlier) if !exceeds(violation, earlier.1) => earlier,
                 _ => (phase, violation),
             });
         }
-        found.add(&solution, phase);
+        audit.add(&solution, phase);
     }
-    if let Some((phase, violation)) = worst {
+    if let Some((phase, violation)) = worst_violation {
         return Err(LimitBreach {
             meaning: consequence(violation.check),
-            problem: format!("{violation} {}", at(phase)),
+            problem: format!("{violation} {}", at_phase(phase)),
         });
     }
-    if let Some((phase, what)) = guard_stop {
+    if let Some((phase, stopping_check)) = guard_stop {
         return Err(LimitBreach {
-            meaning: consequence(what),
+            meaning: consequence(stopping_check),
             problem: format!(
-                "margin or travel {what} is so near to its limit {} that the firmware's integers take it to be beyond; leave it a little room",
-                at(phase)
+                "margin or travel {stopping_check} is so near to its limit {} that the firmware's integers take it to be beyond; leave it a little room",
+                at_phase(phase)
             ),
         });
     }
@@ -154,32 +154,32 @@ pub(crate) fn check(
         servo,
         speed,
         phase,
-    } = found.peak;
+    } = audit.peak;
     let limit = robot.pace.gait_slew;
     if speed > limit {
         return Err(LimitBreach {
             meaning: format!("servo {} would have to turn too fast", NAMES[servo]),
             problem: format!(
                 "{speed:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
-                at(phase)
+                at_phase(phase)
             ),
         });
     }
-    let coarse = accuracy::table_error(gait, index, tables, CHECKED_PHASES);
-    if coarse.max > ERROR_LIMIT {
+    let error = accuracy::table_error(gait, index, tables, CHECKED_PHASES);
+    if error.max > ERROR_LIMIT {
         return Err(LimitBreach {
             meaning: format!(
                 "servo {} would have to turn too sharply",
-                NAMES[coarse.servo]
+                NAMES[error.servo]
             ),
             problem: format!(
                 "the firmware's table of {SAMPLES} samples is {:.3} deg off {}; at most {ERROR_LIMIT:.2} deg is allowed",
-                coarse.max,
-                at(coarse.phase)
+                error.max,
+                at_phase(error.phase)
             ),
         });
     }
-    Ok(found)
+    Ok(audit)
 }
 
 /// Converts a hazard of the firmware's guard to the corresponding condition of the floating-point check.
@@ -197,16 +197,16 @@ fn condition(hazard: &Hazard) -> Check {
 
 /// True if a violation breaks the same limit as an earlier violation, and by more.
 fn exceeds(violation: Violation, earlier: Violation) -> bool {
-    let by = |v: Violation| (v.value - v.limit).abs();
-    violation.check == earlier.check && by(violation) > by(earlier)
+    let excess_of = |v: Violation| (v.value - v.limit).abs();
+    violation.check == earlier.check && excess_of(violation) > excess_of(earlier)
 }
 
 /// Lists the phases to check: evenly spaced ones, and every sample of every servo.
 fn phases(table: &TableGait) -> Vec<u16> {
-    let every = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
-    let mut phases: Vec<u16> = every(CHECKED_PHASES).collect();
+    let evenly_spaced = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
+    let mut phases: Vec<u16> = evenly_spaced(CHECKED_PHASES).collect();
     for channel in &table.channels {
-        phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
+        phases.extend(evenly_spaced(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
     }
     phases.sort_unstable();
     phases.dedup();
@@ -237,8 +237,8 @@ fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), L
 fn find_peak(gait: &Gait) -> Peak {
     let frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
     let mut peak = Audit::NONE.peak;
-    for i in 0..SPEEDS {
-        let phase = i as f64 / SPEEDS as f64;
+    for i in 0..SPEED_PHASES {
+        let phase = i as f64 / SPEED_PHASES as f64;
         let (from, to) = (gait.sweeps(phase), gait.sweeps(phase + frame));
         for servo in 0..4 {
             let speed = (to[servo] - from[servo]).abs() * FRAMES_PER_SECOND;
@@ -257,15 +257,19 @@ fn find_peak(gait: &Gait) -> Peak {
 impl Audit {
     /// Adds the margins and strokes of the pose at a phase.
     fn add(&mut self, solution: &Solution, phase: f64) {
-        for (what, value) in solution.margins.iter() {
+        for (check, value) in solution.margins.iter() {
             let kinds = [
                 (&mut self.type2, &Check::TYPE2[..]),
                 (&mut self.type1, &Check::TYPE1),
                 (&mut self.leg, &Check::LEG),
             ];
-            for (smallest, kind) in kinds {
-                if kind.contains(&what) && value < smallest.value {
-                    *smallest = LeastMargin { what, value, phase };
+            for (least, checks) in kinds {
+                if checks.contains(&check) && value < least.value {
+                    *least = LeastMargin {
+                        what: check,
+                        value,
+                        phase,
+                    };
                 }
             }
         }

@@ -162,29 +162,29 @@ impl CheckedGait {
     /// A part of the movement is unknown if it depends on a tie: two feet that pull against the other two, equally
     /// strongly. Ties are found with rigid legs, because they depend on the pads alone.
     pub fn predict(&self, ground: &Ground) -> Prediction {
-        let known = ground.rigid().predict(self.cycle(TIE_STEPS));
-        known.keep_known(self.simulate_cycle(ground).travel)
+        let prediction = ground.rigid().predict(self.cycle(TIE_STEPS));
+        prediction.keep_known(self.simulate_cycle(ground).travel)
     }
 
     /// Simulates one cycle on this ground, even if the result depends on ties. If legs lag, the result is the second
     /// cycle.
     pub fn simulate_cycle(&self, ground: &Ground) -> SimulatedCycle {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
-        let mut steps = STEPS;
+        let mut steps = RIGID_STEPS;
         if ground.drive.can_lag() {
             steps = LAGGING_STEPS;
             self.cycle(steps).for_each(|sweeps| {
                 walker.step(sweeps);
             });
         }
-        let begin = walker.place();
+        let start_place = walker.place();
         let mut lag = 0.0;
         for sweeps in self.cycle(steps) {
             walker.step(sweeps);
             lag = walker.lag().into_iter().map(f64::abs).fold(lag, f64::max);
         }
         SimulatedCycle {
-            travel: walker.place().seen_from(begin),
+            travel: walker.place().seen_from(start_place),
             lag,
         }
     }
@@ -195,7 +195,8 @@ impl CheckedGait {
         self.simulate_scaled_cycle(ground, motors, pace, 1.0)
     }
 
-    /// Simulates as [`CheckedGait::simulate_driven_cycle`] does, with servos that turn `scale` times as far as the firmware assumes.
+    /// Simulates as [`CheckedGait::simulate_driven_cycle`] does, with servos that turn `scale` times as far as the
+    /// firmware assumes.
     pub(crate) fn simulate_scaled_cycle(
         &self,
         ground: &Ground,
@@ -204,22 +205,22 @@ impl CheckedGait {
         scale: f64,
     ) -> Travel {
         let frames = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
-        let sweeps = |frame: usize| -> [f64; 4] {
+        let sweeps_at = |frame: usize| -> [f64; 4] {
             let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
             let phase = (self.phase(seconds) * 65536.0).round() as i64;
             let steps = self.table_sweeps(phase.rem_euclid(65536) as u16);
             std::array::from_fn(|i| scale * FORWARD[i] * f64::from(steps[i]) / STEPS_PER_DEGREE)
         };
-        let mut walker = Walker::new(*ground, sweeps(0));
-        let mut cycle = || {
-            let begin = walker.place();
+        let mut walker = Walker::new(*ground, sweeps_at(0));
+        let mut walk_cycle = || {
+            let start_place = walker.place();
             for frame in 1..=frames {
-                walker.drive(sweeps(frame).map(Some), 1.0 / FRAMES_PER_SECOND, motors);
+                walker.drive(sweeps_at(frame).map(Some), 1.0 / FRAMES_PER_SECOND, motors);
             }
-            walker.place().seen_from(begin)
+            walker.place().seen_from(start_place)
         };
-        cycle();
-        cycle()
+        walk_cycle();
+        walk_cycle()
     }
 
     /// The legs' sweeps over one cycle in equal steps of time, at its start, its end and between.
@@ -229,7 +230,7 @@ impl CheckedGait {
 }
 
 /// Steps in a cycle with rigid legs; twice as many change no result by 0.01 mm.
-const STEPS: usize = 1000;
+const RIGID_STEPS: usize = 1000;
 /// Steps in a cycle with legs that lag, which takes longer to compute; four times as many change no result by 0.05
 /// mm.
 const LAGGING_STEPS: usize = 250;
@@ -255,10 +256,10 @@ mod tests {
             for gait in robot.gaits() {
                 let frames: Vec<(f64, u16)> = gait.frames().collect();
                 assert_eq!(frames[0], (0.0, 0));
-                let (end, _) = frames[frames.len() - 1];
-                let late = end - gait.period();
+                let (end_seconds, _) = frames[frames.len() - 1];
+                let overrun_seconds = end_seconds - gait.period();
                 assert!(
-                    (-1e-9..0.02 - 1e-9).contains(&late),
+                    (-1e-9..0.02 - 1e-9).contains(&overrun_seconds),
                     "{name} {}",
                     gait.name()
                 );
@@ -278,12 +279,12 @@ mod tests {
     #[test]
     fn a_gait_moves_if_a_leg_does() {
         let robot = robot("own-gaits");
-        let still: Vec<&str> = robot
+        let still_gaits: Vec<&str> = robot
             .gaits()
             .iter()
             .filter(|gait| !gait.moves())
             .map(|gait| gait.name())
             .collect();
-        assert_eq!(still, ["stand"]);
+        assert_eq!(still_gaits, ["stand"]);
     }
 }

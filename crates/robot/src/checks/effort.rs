@@ -14,7 +14,7 @@ const STEP: f64 = 0.0025;
 /// Share of the line from which a servo has little reserve: play, cold gears or a thin wire may use it up.
 pub const HIGH_LINE_SHARE: f64 = 0.9;
 /// Factor on a motor's torque and speed that makes it follow every gait exactly.
-const STRONG: f64 = 1e6;
+const STRONG_FACTOR: f64 = 1e6;
 /// Iterations of the search for a pace.
 const ROUNDS: usize = 20;
 
@@ -45,11 +45,11 @@ impl Effort {
             return Self { servos };
         }
         // The motors keep their gain and damping, but have no limits; the rotor is added afterwards.
-        let strong = Motors {
+        let strong_motors = Motors {
             each: motors.each.map(|motor| Motor {
-                stall: motor.stall * STRONG,
-                no_load_speed: motor.no_load_speed * STRONG,
-                full_torque_error: motor.full_torque_error * STRONG,
+                stall: motor.stall * STRONG_FACTOR,
+                no_load_speed: motor.no_load_speed * STRONG_FACTOR,
+                full_torque_error: motor.full_torque_error * STRONG_FACTOR,
                 spin_up: 0.0,
                 half_dead_band: 0.0,
             }),
@@ -57,24 +57,26 @@ impl Effort {
         };
         let steps = (gait.period() / STEP).round();
         let seconds = gait.period() / steps;
-        let at = |step: f64| gait.sweeps(gait.phase(step * seconds));
-        let mut walker = Walker::new(*ground, at(0.0));
+        let sweeps_at = |step: f64| gait.sweeps(gait.phase(step * seconds));
+        let mut walker = Walker::new(*ground, sweeps_at(0.0));
         let steps = steps as usize;
         for step in 1..=2 * steps {
-            let (before, target) = (walker.servos(), at(step as f64));
-            walker.drive(target.map(Some), seconds, &strong);
+            let (angles_before, target) = (walker.servos(), sweeps_at(step as f64));
+            walker.drive(target.map(Some), seconds, &strong_motors);
             if step <= steps {
                 continue;
             }
-            let (last, next) = (at(step as f64 - 1.0), at(step as f64 + 1.0));
-            let now = walker.servos();
+            let (last_target, next_target) =
+                (sweeps_at(step as f64 - 1.0), sweeps_at(step as f64 + 1.0));
+            let angles = walker.servos();
             for (i, (motor, samples)) in servos.iter_mut().enumerate() {
-                let rate = (now[i] - before[i]) / seconds;
-                let torque = motor.stall / motor.full_torque_error * (target[i] - now[i]);
-                let bend = (next[i] - 2.0 * target[i] + last[i]).to_radians();
+                let rate = (angles[i] - angles_before[i]) / seconds;
+                let torque = motor.stall / motor.full_torque_error * (target[i] - angles[i]);
+                let second_difference =
+                    (next_target[i] - 2.0 * target[i] + last_target[i]).to_radians();
                 samples.push(Sample {
                     load: torque - motor.damping() * rate.to_radians(),
-                    rotor: motor.inertia() * bend / (seconds * seconds),
+                    rotor: motor.inertia() * second_difference / (seconds * seconds),
                     rate,
                 });
             }
@@ -86,15 +88,15 @@ impl Effort {
     /// supply that is given as a share of the supply in [`Effort::of`].
     #[must_use]
     pub fn line_share(&self, pace: f64, supply: f64) -> f64 {
-        let of_servo = |(motor, samples): &(Motor, Vec<Sample>)| {
+        let share_of = |(motor, samples): &(Motor, Vec<Sample>)| {
             let motor = motor.at_supply(supply);
-            let used = samples.iter().map(|sample| {
+            let shares = samples.iter().map(|sample| {
                 let torque = sample.load + sample.rotor * pace * pace;
                 motor.line_share(torque, sample.rate * pace).abs()
             });
-            used.fold(0.0, f64::max)
+            shares.fold(0.0, f64::max)
         };
-        self.servos.iter().map(of_servo).fold(0.0, f64::max)
+        self.servos.iter().map(share_of).fold(0.0, f64::max)
     }
 
     /// The highest pace, up to 1, at which no servo exceeds its torque-speed line on a supply; 0 if a servo exceeds
@@ -118,7 +120,7 @@ impl Effort {
     /// The largest torque that a servo needs for pads, joints and body, N mm.
     #[must_use]
     pub fn max_load(&self) -> f64 {
-        let all = self.servos.iter().flat_map(|(_, samples)| samples);
-        all.map(|sample| sample.load.abs()).fold(0.0, f64::max)
+        let samples = self.servos.iter().flat_map(|(_, samples)| samples);
+        samples.map(|sample| sample.load.abs()).fold(0.0, f64::max)
     }
 }

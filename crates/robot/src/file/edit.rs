@@ -66,17 +66,20 @@ pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoS
 /// # Errors
 /// Fails if the text is not TOML or does not have the key.
 pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<String, NoSuchKey> {
-    let missing = || NoSuchKey(key.to_string());
-    let document = DeTable::parse(text).map_err(|_| missing())?;
-    let value = find(document.get_ref(), key).ok_or_else(missing)?;
+    let key_error = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| key_error())?;
+    let value = find(document.get_ref(), key).ok_or_else(key_error)?;
     let start = value.span().end;
     let line = &text[start..line_end(text, start)];
     let comment = format!(" # {word} ");
-    let kept = line.find(&comment).map_or(line, |old| &line[..old]);
-    let end = start + kept.trim_end().len();
+    let kept_text = line.find(&comment).map_or(line, |old| &line[..old]);
+    let end = start + kept_text.trim_end().len();
     let blanks = &line[line.trim_end().len()..];
-    let after = &text[start + line.len()..];
-    Ok(format!("{}{comment}{rest}{blanks}{after}", &text[..end]))
+    let text_after = &text[start + line.len()..];
+    Ok(format!(
+        "{}{comment}{rest}{blanks}{text_after}",
+        &text[..end]
+    ))
 }
 
 /// Sets the string of a key, as [`with_number`] sets a number.
@@ -96,41 +99,41 @@ fn with_value(
     value: &str,
     has_type: fn(&DeValue) -> bool,
 ) -> Result<String, NoSuchKey> {
-    let missing = || NoSuchKey(key.to_string());
-    let document = DeTable::parse(text).map_err(|_| missing())?;
-    let (table, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    let key_error = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| key_error())?;
+    let (table, name) = key.rsplit_once('.').ok_or_else(key_error)?;
     if let Some(old_value) = find(document.get_ref(), key) {
         if !has_type(old_value.get_ref()) {
-            return Err(missing());
+            return Err(key_error());
         }
         let mut changed = text.to_string();
         changed.replace_range(old_value.span(), value);
         return Ok(changed);
     }
     if !OPTIONAL.contains(&key) {
-        return Err(missing());
+        return Err(key_error());
     }
     let line = format!("{name} = {value}");
     let entries = match find(document.get_ref(), table) {
-        Some(entries) => entries.get_ref().as_table().ok_or_else(missing)?,
+        Some(entries) => entries.get_ref().as_table().ok_or_else(key_error)?,
         None => &DeTable::new(),
     };
     // A subtable such as [servo.A1] has its lines elsewhere.
-    let own = entries.values().filter(|value| !value.get_ref().is_table());
-    let Some(last) = own.map(|value| value.span().end).max() else {
-        let end = if text.ends_with('\n') { "" } else { "\n" };
-        let longer = format!("{text}{end}\n[{table}]\n{line}\n");
-        let is_toml = DeTable::parse(&longer).is_ok();
-        return is_toml.then_some(longer).ok_or_else(missing);
+    let own_values = entries.values().filter(|value| !value.get_ref().is_table());
+    let Some(last_end) = own_values.map(|value| value.span().end).max() else {
+        let line_break = if text.ends_with('\n') { "" } else { "\n" };
+        let new_text = format!("{text}{line_break}\n[{table}]\n{line}\n");
+        let is_toml = DeTable::parse(&new_text).is_ok();
+        return is_toml.then_some(new_text).ok_or_else(key_error);
     };
-    let end = line_end(text, last);
-    let mut longer = text.to_string();
-    longer.insert_str(end, &format!("\n{line}"));
+    let end = line_end(text, last_end);
+    let mut new_text = text.to_string();
+    new_text.insert_str(end, &format!("\n{line}"));
     // If the table is written on one line, the new line would belong to another table.
-    let document = DeTable::parse(&longer).map_err(|_| missing())?;
+    let document = DeTable::parse(&new_text).map_err(|_| key_error())?;
     match find(document.get_ref(), key) {
-        Some(added) if added.span().start > end => Ok(longer.clone()),
-        _ => Err(missing()),
+        Some(added) if added.span().start > end => Ok(new_text.clone()),
+        _ => Err(key_error()),
     }
 }
 
@@ -139,9 +142,9 @@ fn with_value(
 /// # Errors
 /// Fails if the text is not TOML, or if the key is in a table that is written on one line.
 pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
-    let missing = || NoSuchKey(key.to_string());
-    let document = DeTable::parse(text).map_err(|_| missing())?;
-    let (_, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    let key_error = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| key_error())?;
+    let (_, name) = key.rsplit_once('.').ok_or_else(key_error)?;
     let Some(value) = find(document.get_ref(), key) else {
         return Ok(text.to_string());
     };
@@ -150,7 +153,7 @@ pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
         .map_or(0, |line| line + 1);
     let end = (line_end(text, value.span().end) + 1).min(text.len());
     if !text[start..end].trim_start().starts_with(name) {
-        return Err(missing());
+        return Err(key_error());
     }
     Ok(text[..start].to_string() + &text[end..])
 }
@@ -172,12 +175,12 @@ pub fn without_gait(text: &str, name: &str) -> String {
 
 /// Replaces a gait's tables by `table`. Returns the text, and true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
-    let (header, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
+    let (header, subtable_start) = (format!("[gait.{name}]"), format!("[gait.{name}."));
     let (mut result, mut is_own, mut is_replaced) = (String::new(), false, false);
     for line in text.lines() {
-        let head = line.trim_start();
-        if head.starts_with('[') {
-            is_own = head.starts_with(&header) || head.starts_with(&below);
+        let trimmed_line = line.trim_start();
+        if trimmed_line.starts_with('[') {
+            is_own = trimmed_line.starts_with(&header) || trimmed_line.starts_with(&subtable_start);
             if is_own && !is_replaced {
                 is_replaced = true;
                 for line in table.lines() {
@@ -187,7 +190,7 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
             }
         }
         // A comment after the last key may belong to the next table.
-        if !is_own || head.starts_with('#') {
+        if !is_own || trimmed_line.starts_with('#') {
             result += line;
             result.push('\n');
         }
@@ -217,7 +220,7 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     };
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(name, _)| name.span().start);
-    let written = |(name, routine): (&Spanned<_>, &Spanned<DeValue>)| {
+    let read_routine = |(name, routine): (&Spanned<_>, &Spanned<DeValue>)| {
         let steps = routine.get_ref().get("steps")?.get_ref().as_array()?;
         let steps = steps.iter().map(|step| step.get_ref().as_str());
         Some(WrittenRoutine {
@@ -227,7 +230,7 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
                 .collect::<Option<_>>()?,
         })
     };
-    entries.into_iter().filter_map(written).collect()
+    entries.into_iter().filter_map(read_routine).collect()
 }
 
 /// Sets the steps of a routine. A missing routine is added at the end of the text. The routine's other lines,
@@ -248,8 +251,8 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     } else {
         name.to_string()
     };
-    let end = if text.ends_with('\n') { "" } else { "\n" };
-    format!("{text}{end}\n[routine.{key}]\nsteps = {steps}\n")
+    let line_break = if text.ends_with('\n') { "" } else { "\n" };
+    format!("{text}{line_break}\n[routine.{key}]\nsteps = {steps}\n")
 }
 
 /// Finds the value of a dotted key.
@@ -260,11 +263,11 @@ fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>
     }
 }
 
-/// The position of the end of the line that contains the position `from`.
-fn line_end(text: &str, from: usize) -> usize {
-    text[from..]
+/// The position of the end of the line that contains the position `start`.
+fn line_end(text: &str, start: usize) -> usize {
+    text[start..]
         .find('\n')
-        .map_or(text.len(), |line| from + line)
+        .map_or(text.len(), |line| start + line)
 }
 
 #[cfg(test)]
@@ -288,8 +291,8 @@ mod tests {
         let changed = with_number(LEG, "leg.hip_side", 36.0).expect("it may be set");
         let expected = LEG.replace("# lg10\n", "# lg10\nhip_side = 36.0\n");
         assert_eq!(changed, expected);
-        let again = with_number(&changed, "leg.hip_side", 37.5).expect("there");
-        assert_eq!(again, expected.replace("36.0", "37.5"));
+        let changed_again = with_number(&changed, "leg.hip_side", 37.5).expect("there");
+        assert_eq!(changed_again, expected.replace("36.0", "37.5"));
         // The lines of [servo.A1] do not belong to [servo].
         let servo = with_number(TEXT, "servo.volts", 4.5).expect("it may be set");
         assert_eq!(servo, format!("{TEXT}\n[servo]\nvolts = 4.5\n"));
@@ -356,8 +359,8 @@ mod tests {
         let rest = without_key(DRIVE, "leg.drive.force").expect("it may be left out");
         assert_eq!(rest, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
         assert_eq!(without_key(&rest, "leg.drive.force"), Ok(rest.clone()));
-        let one = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
-        assert!(without_key(one, "leg.drive.force").is_err());
+        let inline_table = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
+        assert!(without_key(inline_table, "leg.drive.force").is_err());
     }
 
     #[test]
@@ -379,20 +382,21 @@ mod tests {
         let rest = "# the next\n[gait.look-up]\nlike = \"walk\"\n";
         assert_eq!(without_gait(GAITS, "look"), rest);
         assert_eq!(without_gait(rest, "look"), rest);
-        let again = with_gait(GAITS, "look", "[gait.look]\nperiod = 5.0\n");
-        assert_eq!(again, format!("[gait.look]\nperiod = 5.0\n{rest}"));
+        let replaced = with_gait(GAITS, "look", "[gait.look]\nperiod = 5.0\n");
+        assert_eq!(replaced, format!("[gait.look]\nperiod = 5.0\n{rest}"));
     }
 
     const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";
 
     /// The names and steps of a text's routines.
-    fn written(text: &str) -> Vec<(String, Vec<String>)> {
-        let all = routines(text).into_iter();
-        all.map(|WrittenRoutine { name, steps }| (name, steps))
+    fn names_and_steps(text: &str) -> Vec<(String, Vec<String>)> {
+        let written_routines = routines(text).into_iter();
+        written_routines
+            .map(|WrittenRoutine { name, steps }| (name, steps))
             .collect()
     }
 
-    fn texts(steps: &[&str]) -> Vec<String> {
+    fn to_strings(steps: &[&str]) -> Vec<String> {
         steps.iter().map(ToString::to_string).collect()
     }
 
@@ -400,10 +404,10 @@ mod tests {
     fn routines_are_read_as_they_are_written_in_the_order_of_the_text() {
         let [patrol, about] = ["patrol", "about"].map(str::to_string);
         let expected = [
-            (patrol, texts(&["walk 4", "left 6"])),
-            (about, texts(&["left 12"])),
+            (patrol, to_strings(&["walk 4", "left 6"])),
+            (about, to_strings(&["left 12"])),
         ];
-        assert_eq!(written(ROUTINES), expected);
+        assert_eq!(names_and_steps(ROUTINES), expected);
         for text in [
             "[routine",
             "",
@@ -411,15 +415,15 @@ mod tests {
             "[routine]\na = 1",
             "[routine.a]\nsteps = [1]",
         ] {
-            assert_eq!(written(text), [], "{text}");
+            assert_eq!(names_and_steps(text), [], "{text}");
         }
     }
 
     #[test]
     fn steps_replace_others_and_all_else_stays() {
-        let steps = texts(&["walk until \"nose\"", "wait\\", "rest"]);
+        let steps = to_strings(&["walk until \"nose\"", "wait\\", "rest"]);
         let changed = with_steps(ROUTINES, "patrol", &steps);
-        assert_eq!(written(&changed)[0].1, steps);
+        assert_eq!(names_and_steps(&changed)[0].1, steps);
         let start = ROUTINES.find("[\n").expect("there");
         assert!(changed.starts_with(&ROUTINES[..start]));
         assert!(changed.ends_with(&ROUTINES[ROUTINES.find("\nrepeat").expect("there")..]));
@@ -428,13 +432,13 @@ mod tests {
     #[test]
     fn a_new_routine_is_written_below_all() {
         for text in [ROUTINES, ROUTINES.trim_end()] {
-            let added = with_steps(text, "new-one", &texts(&["walk 1"]));
+            let added = with_steps(text, "new-one", &to_strings(&["walk 1"]));
             let expected = format!("{ROUTINES}\n[routine.new-one]\nsteps = [\"walk 1\"]\n");
             assert_eq!(added, expected);
         }
         for name in ["", "a b", "a]\n[b", "\"", "x.y"] {
-            let added = with_steps(ROUTINES, name, &texts(&["walk 1"]));
-            assert_eq!(written(&added)[2].0, name);
+            let added = with_steps(ROUTINES, name, &to_strings(&["walk 1"]));
+            assert_eq!(names_and_steps(&added)[2].0, name);
         }
     }
 

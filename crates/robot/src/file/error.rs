@@ -21,23 +21,23 @@ pub struct Error {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut place = self.file.clone();
+        let mut location = self.file.clone();
         if let Some(line) = self.line {
-            place += &format!(":{line}");
+            location += &format!(":{line}");
         }
         if !self.key.is_empty() {
-            place += &format!(": {}", self.key);
+            location += &format!(": {}", self.key);
         }
         // The reader first wants to know what is wrong with the robot, then where the file says so.
         if let Some(meaning) = &self.meaning {
-            return write!(f, "{meaning}: {} ({place})", self.problem);
+            return write!(f, "{meaning}: {} ({location})", self.problem);
         }
-        let link = if self.key.is_empty() || self.is_clause {
+        let separator = if self.key.is_empty() || self.is_clause {
             ":"
         } else {
             ""
         };
-        write!(f, "{place}{link} {}", self.problem)
+        write!(f, "{location}{separator} {}", self.problem)
     }
 }
 
@@ -114,14 +114,20 @@ pub(crate) fn format_number(value: f64) -> String {
 }
 
 /// A hint for a word that is not allowed: the most similar allowed word, or all of them.
-pub(crate) fn hint(word: &str, all: &[&str]) -> String {
-    let near = all.iter().map(|known| (distance(word, known), known)).min();
-    match near {
+pub(crate) fn hint(word: &str, allowed: &[&str]) -> String {
+    let nearest = allowed
+        .iter()
+        .map(|candidate| (distance(word, candidate), candidate))
+        .min();
+    match nearest {
         // Up to two letters of a word may be wrong; in a word of two letters, only the case may be.
-        Some((d, known)) if d == 0 || (d <= 2 && known.len() > 2 && d < known.len()) => {
-            format!("did you mean \"{known}\"?")
+        Some((changes, candidate))
+            if changes == 0
+                || (changes <= 2 && candidate.len() > 2 && changes < candidate.len()) =>
+        {
+            format!("did you mean \"{candidate}\"?")
         }
-        _ => format!("allowed are {}", all.join(", ")),
+        _ => format!("allowed are {}", allowed.join(", ")),
     }
 }
 

@@ -30,24 +30,26 @@ pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Res
 /// The position in the text of a key, or of the innermost existing table in its name; `None` if no table of the name
 /// exists.
 fn position(mut table: &DeTable, key: &str) -> Option<usize> {
-    let (mut rest, mut found) = (key, None);
+    let (mut rest, mut innermost_start) = (key, None);
     loop {
         // A quoted key may contain a dot, so the longest matching key counts.
-        let after = |known: &str| {
-            let after = rest.strip_prefix(known)?;
-            (after.is_empty() || after.starts_with(['.', '['])).then_some(after)
+        let rest_after = |known: &str| {
+            let suffix = rest.strip_prefix(known)?;
+            (suffix.is_empty() || suffix.starts_with(['.', '['])).then_some(suffix)
         };
         let entries = table.iter().filter_map(|(known, value)| {
             let name = known.get_ref().as_ref();
-            Some((name.len(), known.span().start, after(name)?, value))
+            Some((name.len(), known.span().start, rest_after(name)?, value))
         });
-        let Some((_, start, after, value)) = entries.max_by_key(|(length, ..)| *length) else {
-            return found;
+        let Some((_, start, suffix, value)) = entries.max_by_key(|(length, ..)| *length) else {
+            return innermost_start;
         };
-        found = Some(start);
+        innermost_start = Some(start);
         match value.get_ref() {
-            DeValue::Table(inner) if after.starts_with('.') => (table, rest) = (inner, &after[1..]),
-            _ => return found,
+            DeValue::Table(inner) if suffix.starts_with('.') => {
+                (table, rest) = (inner, &suffix[1..])
+            }
+            _ => return innermost_start,
         }
     }
 }
@@ -105,7 +107,7 @@ impl<'a> Section<'a> {
                 key: self.path(name),
                 table,
             }),
-            other => Err(self.wrong_type(name, other, "a table")),
+            value => Err(self.wrong_type(name, value, "a table")),
         }
     }
 
@@ -115,8 +117,8 @@ impl<'a> Section<'a> {
         for name in allowed {
             self.note(name, KeyRead::Allowed);
         }
-        let unknown = |name: &&str| !allowed.contains(name);
-        match self.names().into_iter().find(unknown) {
+        let is_unknown = |name: &&str| !allowed.contains(name);
+        match self.names().into_iter().find(is_unknown) {
             Some(name) => {
                 let hint = hint(name, allowed);
                 Err(self.fault(name, format!("is not a known key; {hint}")))
@@ -168,7 +170,7 @@ impl<'a> Section<'a> {
         self.note_number(name, (min, max), unit, None);
         const EXPECTED: &str = "a number";
         let value = self.value(name, EXPECTED)?;
-        let value = number(value).ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
+        let value = number_of(value).ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
         self.require_in_range(name, value, (min, max), unit)
     }
 
@@ -225,7 +227,8 @@ impl<'a> Section<'a> {
         let DeValue::Array(array) = value else {
             return Err(self.wrong_type(name, value, expected));
         };
-        let numbers: Option<Vec<f64>> = array.iter().map(|item| number(item.get_ref())).collect();
+        let numbers: Option<Vec<f64>> =
+            array.iter().map(|item| number_of(item.get_ref())).collect();
         let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
             let message = format!("is an array of {}; it must be {expected}", array.len());
             return Err(self.fault(name, message));
@@ -257,7 +260,7 @@ impl<'a> Section<'a> {
         let value = self.value(name, EXPECTED)?;
         let items = value.as_array();
         let items = items.ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
-        let section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
+        let read_section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
             let name = format!("{name}[{i}]");
             match item.get_ref() {
                 DeValue::Table(table) => Section {
@@ -265,10 +268,10 @@ impl<'a> Section<'a> {
                     table,
                 }
                 .require_known_keys(allowed),
-                other => Err(self.wrong_type(&name, other, "a table")),
+                value => Err(self.wrong_type(&name, value, "a table")),
             }
         };
-        items.iter().enumerate().map(section).collect()
+        items.iter().enumerate().map(read_section).collect()
     }
 
     #[cfg(test)]
@@ -289,9 +292,9 @@ impl<'a> Section<'a> {
 
     /// Returns the value of a key; a missing key is a mistake.
     fn value(&self, name: &str, expected: &str) -> Checked<&'a DeValue<'a>> {
-        let missing = || self.fault(name, format!("is missing; it must be {expected}"));
+        let missing_fault = || self.fault(name, format!("is missing; it must be {expected}"));
         let value = self.table.get(name).map(Spanned::get_ref);
-        value.ok_or_else(missing)
+        value.ok_or_else(missing_fault)
     }
 
     /// Returns a key's value if it is in a range, both limits included; refuses it otherwise.
@@ -324,7 +327,7 @@ impl<'a> Section<'a> {
 }
 
 /// The value of a decimal integer or a finite float; `None` for anything else, such as TOML's nan, inf or 0x1f.
-fn number(value: &DeValue) -> Option<f64> {
+fn number_of(value: &DeValue) -> Option<f64> {
     let text = match value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
         DeValue::Float(float) => float.as_str(),

@@ -6,13 +6,13 @@
 
 /// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own.
 pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
-    let number = text
+    let line_index = text
         .get(..offset)
         .map_or(0, |text| text.matches('\n').count());
     let lines: Vec<&str> = text.lines().map(without_comment).collect();
-    let line = lines.get(number).copied().unwrap_or_default();
-    let twice = (message == "duplicate key").then(|| find_duplicate(&lines, number));
-    twice
+    let line = lines.get(line_index).copied().unwrap_or_default();
+    let duplicate = (message == "duplicate key").then(|| find_duplicate(&lines, line_index));
+    duplicate
         .flatten()
         .or_else(|| find_mistake_in_line(line))
         .unwrap_or_else(|| format!("this is not TOML: {message}"))
@@ -20,14 +20,14 @@ pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
 
 /// Removes a line's comment, and the white space at both ends.
 fn without_comment(line: &str) -> &str {
-    let mut quoted = None;
-    let mut escaped = false;
-    for (index, c) in line.char_indices() {
-        match (quoted, c) {
-            _ if escaped => escaped = false,
-            (Some('"'), '\\') => escaped = true,
-            (Some(mark), c) if c == mark => quoted = None,
-            (None, '"' | '\'') => quoted = Some(c),
+    let mut open_quote = None;
+    let mut is_escaped = false;
+    for (index, letter) in line.char_indices() {
+        match (open_quote, letter) {
+            _ if is_escaped => is_escaped = false,
+            (Some('"'), '\\') => is_escaped = true,
+            (Some(mark), letter) if letter == mark => open_quote = None,
+            (None, '"' | '\'') => open_quote = Some(letter),
             (None, '#') => return line[..index].trim(),
             _ => {}
         }
@@ -36,36 +36,36 @@ fn without_comment(line: &str) -> &str {
 }
 
 /// The name of a table if this line is its heading; `None` for any other line.
-fn heading(line: &str) -> Option<&str> {
+fn heading_of(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
 
-/// The message for a table or a key that line `number`, counted from 0, repeats; `None` if the first occurrence is
+/// The message for a table or a key that line `line_index`, counted from 0, repeats; `None` if the first occurrence is
 /// not found.
-fn find_duplicate(lines: &[&str], number: usize) -> Option<String> {
-    let lines_before = lines.get(..number)?;
-    let line = lines.get(number)?;
-    if let Some(table) = heading(line) {
-        let first = lines_before
+fn find_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
+    let lines_before = lines.get(..line_index)?;
+    let line = lines.get(line_index)?;
+    if let Some(table) = heading_of(line) {
+        let first_line = lines_before
             .iter()
-            .position(|line| heading(line) == Some(table))?
+            .position(|line| heading_of(line) == Some(table))?
             + 1;
         return Some(format!(
-            "the table [{table}] is there twice, first in line {first}; put all its keys under one of them"
+            "the table [{table}] is there twice, first in line {first_line}; put all its keys under one of them"
         ));
     }
     let key = line.split_once('=')?.0.trim();
-    let table = lines_before
+    let table_start = lines_before
         .iter()
-        .rposition(|line| heading(line).is_some())
-        .map_or(0, |heading| heading + 1);
+        .rposition(|line| heading_of(line).is_some())
+        .map_or(0, |index| index + 1);
     let is_key = |line: &&str| {
         line.split_once('=')
             .is_some_and(|(name, _)| name.trim() == key)
     };
-    let first = table + lines_before[table..].iter().position(is_key)? + 1;
+    let first_line = table_start + lines_before[table_start..].iter().position(is_key)? + 1;
     Some(format!(
-        "`{key}` is there twice, first in line {first}; keep one of them"
+        "`{key}` is there twice, first in line {first_line}; keep one of them"
     ))
 }
 
@@ -92,31 +92,31 @@ fn find_mistake_in_line(line: &str) -> Option<String> {
 fn explain_number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
-    let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
-    if let Some((integer, part)) = value.split_once(',')
-        && digits(integer.trim_start_matches(['-', '+']))
-        && digits(part)
+    let are_digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    if let Some((integer, fraction)) = value.split_once(',')
+        && are_digits(integer.trim_start_matches(['-', '+']))
+        && are_digits(fraction)
     {
         return Some(format!(
-            "`{value}` is no number; the decimal mark is a point: {integer}.{part}"
+            "`{value}` is no number; the decimal mark is a point: {integer}.{fraction}"
         ));
     }
-    let bare = value.trim_start_matches(['-', '+']);
-    if let Some(part) = bare.strip_prefix('.')
-        && digits(part)
+    let unsigned = value.trim_start_matches(['-', '+']);
+    if let Some(fraction) = unsigned.strip_prefix('.')
+        && are_digits(fraction)
     {
         let sign = if value.starts_with('-') { "-" } else { "" };
         return Some(format!(
-            "`{value}` is no number in TOML; write {sign}0.{part}"
+            "`{value}` is no number in TOML; write {sign}0.{fraction}"
         ));
     }
-    if let Some(integer) = bare.strip_suffix('.')
-        && digits(integer)
+    if let Some(integer) = unsigned.strip_suffix('.')
+        && are_digits(integer)
     {
         return Some(format!("`{value}` is no number in TOML; write {value}0"));
     }
-    let split = value.find(|c: char| c.is_alphabetic() || c.is_whitespace() || c == '%')?;
-    let (amount, unit) = (value[..split].trim(), value[split..].trim());
+    let split_index = value.find(|c: char| c.is_alphabetic() || c.is_whitespace() || c == '%')?;
+    let (amount, unit) = (value[..split_index].trim(), value[split_index..].trim());
     let is_unit = unit.starts_with(|c: char| c.is_alphabetic() || c == '%');
     (is_number(amount) && is_unit).then(|| {
         format!(
@@ -127,8 +127,8 @@ fn explain_number(value: &str) -> Option<String> {
 
 /// The message for a string without quotation marks; `None` for anything else.
 fn explain_bare_word(value: &str) -> Option<String> {
-    let plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
-    let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(plain);
+    let is_plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
+    let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(is_plain);
     let is_known = ["true", "false", "inf", "nan"].contains(&value);
     (is_word && !is_known)
         .then(|| format!("`{value}` lacks its quotation marks; write \"{value}\""))

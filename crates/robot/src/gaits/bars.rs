@@ -31,9 +31,9 @@ impl Bars {
     /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait
     /// becomes the bars of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
-        let largest = |max: f64, leg: f64| max.max(leg.abs());
+        let pick_larger = |max: f64, leg: f64| max.max(leg.abs());
         let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
-        let amplitude = amplitudes.into_iter().fold(0.0, largest);
+        let amplitude = amplitudes.into_iter().fold(0.0, pick_larger);
         let mut bars = Self {
             name: gait.name.clone(),
             held: false,
@@ -69,46 +69,50 @@ impl Bars {
     /// played backwards is the negated gait with the opposite order of legs; all four legs are
     /// shifted in time equally, which makes no difference.
     pub fn reversed(&self) -> Self {
-        let start = |leg: usize| match self.held {
+        let start_of = |leg: usize| match self.held {
             true => 1.0 - self.start[leg],
             false => (-self.start[leg] - self.duty).rem_euclid(1.0),
         };
         let mut reversed = Self {
-            start: std::array::from_fn(start),
+            start: std::array::from_fn(start_of),
             gain: self.gain.map(|gain| -gain),
             ..self.clone()
         };
         if self.held {
             // Shift the starts so that the first leg in the order has 0.
-            let first = reversed.start.into_iter().fold(f64::MAX, f64::min);
-            reversed.start = reversed.start.map(|start| start - first);
+            let first_start = reversed.start.into_iter().fold(f64::MAX, f64::min);
+            reversed.start = reversed.start.map(|start| start - first_start);
         }
         reversed
     }
 
     /// Writes the gait as a table of robot.toml, rounded to thousandths.
     pub fn table(&self) -> String {
-        let legs = |values: [f64; 4]| {
-            let each = LEGS.iter().zip(values);
-            let each = each.map(|(leg, value)| format!("{leg} = {:?}", rounded(value)));
-            format!("{{ {} }}", each.collect::<Vec<_>>().join(", "))
+        let format_legs = |values: [f64; 4]| {
+            let entries = LEGS.iter().zip(values);
+            let entries =
+                entries.map(|(leg, value)| format!("{leg} = {:?}", round_to_thousandths(value)));
+            format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         };
-        let (period, amplitude) = (rounded(self.period), rounded(self.amplitude));
+        let (period, amplitude) = (
+            round_to_thousandths(self.period),
+            round_to_thousandths(self.amplitude),
+        );
         let waveform = if self.held {
             let mut order = [0, 1, 2, 3];
             order.sort_by(|a, b| self.start[*a].total_cmp(&self.start[*b]));
             let order = order.map(|leg| format!("\"{}\"", LEGS[leg])).join(", ");
             format!("waveform = \"held\"\namplitude = {amplitude:?}\norder = [{order}]\n")
         } else {
-            let duty = rounded(self.duty);
-            let start = legs(self.start.map(|start| rounded(start) % 1.0));
+            let duty = round_to_thousandths(self.duty);
+            let start = format_legs(self.start.map(|start| round_to_thousandths(start) % 1.0));
             format!(
                 "waveform = \"wave\"\nduty = {duty:?}\namplitude = {amplitude:?}\nstart = {start}\n"
             )
         };
         let gain = match self.gain.iter().all(|gain| (gain - 1.0).abs() <= 1e-9) {
             true => String::new(),
-            false => format!("gain = {}\n", legs(self.gain)),
+            false => format!("gain = {}\n", format_legs(self.gain)),
         };
         let name = &self.name;
         format!("[gait.{name}]\nperiod = {period:?}\n{waveform}{gain}")
@@ -116,6 +120,6 @@ impl Bars {
 }
 
 /// Rounds a value to thousandths.
-fn rounded(value: f64) -> f64 {
+fn round_to_thousandths(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

@@ -65,8 +65,8 @@ pub(crate) fn read_gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> 
         .into_iter()
         .map(|name| resolver.resolve(name))
         .collect::<Checked<Vec<_>>>()?;
-    let still = |stride: &Stride| stride.waveform == Waveform::Still;
-    if gaits[0].strides.iter().all(still) {
+    let is_still = |stride: &Stride| stride.waveform == Waveform::Still;
+    if gaits[0].strides.iter().all(is_still) {
         Ok(gaits)
     } else {
         let message = "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period";
@@ -79,12 +79,12 @@ pub(crate) fn read_gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> 
 pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
-        let written = name
+        let console_name = name
             .bytes()
             .map(|byte| if byte == b'-' { b' ' } else { byte });
-        if let Some(other) = names_by_key.insert(key(written), *name) {
+        if let Some(other_name) = names_by_key.insert(key(console_name), *name) {
             let message = format!(
-                "is not a gait name: the memory would take it for {other} when `boot` begins it, so one of them needs another name"
+                "is not a gait name: the memory would take it for {other_name} when `boot` begins it, so one of them needs another name"
             );
             return Err(section.fault(name, message));
         }
@@ -92,28 +92,28 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> 
     Ok(())
 }
 
-/// Refuses a name that the console cannot accept as a command, or that it could not print. `kind` is "gait" or
+/// Refuses a name that the console cannot accept as a command, or that it could not print. `noun` is "gait" or
 /// "routine", for the message.
-pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
-    let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    let refused = |reason: String| Err(format!("is not a {kind} name: {reason}"));
-    if !name.chars().all(letters) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-        return refused(
+pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
+    let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    let refuse = |reason: String| Err(format!("is not a {noun} name: {reason}"));
+    if !name.chars().all(is_allowed) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        return refuse(
             "it must be lower-case letters, digits and dashes, a letter first".to_string(),
         );
     }
     if name.len() > MAX_NAME_BYTES {
         let length = name.len();
-        return refused(format!(
+        return refuse(format!(
             "it has {length} characters, but `status` must fit into a line of the console with it, so it may have {MAX_NAME_BYTES}"
         ));
     }
     if name.ends_with('-') || name.contains("--") {
-        return refused("a dash stands for a blank between two words".to_string());
+        return refuse("a dash stands for a blank between two words".to_string());
     }
     let word = name.split('-').next().unwrap_or(name);
     if Word::find(word.as_bytes()).is_some_and(Word::is_reserved) {
-        return refused(format!("\"{word}\" is a command of the console"));
+        return refuse(format!("\"{word}\" is a command of the console"));
     }
     Ok(())
 }
@@ -178,13 +178,13 @@ impl<'a> Resolver<'a> {
 
 /// Finds the single key that defines this gait.
 fn definition_key(table: &Section) -> Checked<&'static str> {
-    let path = table.has("head") || table.has("tail");
+    let has_path = table.has("head") || table.has("tail");
     let mut definitions: Vec<&'static str> = REFERENCES
         .into_iter()
         .filter(|key| table.has(key))
         .collect();
     definitions.extend(table.has("waveform").then_some("waveform"));
-    definitions.extend(path.then_some("head or tail"));
+    definitions.extend(has_path.then_some("head or tail"));
     match definitions.as_slice() {
         [definition] => Ok(definition),
         _ => {
@@ -195,31 +195,31 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
     }
 }
 
-/// Refuses keys outside `allowed`: they are meaningless together with `with`.
-fn allow_only(table: &Section, allowed: &[&str], with: &str) -> Checked<()> {
+/// Refuses keys outside `allowed`: they are meaningless together with `partner`.
+fn allow_only(table: &Section, allowed: &[&str], partner: &str) -> Checked<()> {
     match table
         .names()
         .into_iter()
         .find(|name| !allowed.contains(name))
     {
-        Some(name) => Err(table.fault(name, format!("does not go with {with}"))),
+        Some(name) => Err(table.fault(name, format!("does not go with {partner}"))),
         None => Ok(()),
     }
 }
 
 fn read_waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
     let word = table.text("waveform")?;
-    let with = format!("waveform = \"{word}\"");
+    let partner = format!("waveform = \"{word}\"");
     let strides = match word {
         "still" => {
-            allow_only(table, &["waveform", "period"], &with)?;
+            allow_only(table, &["waveform", "period"], &partner)?;
             [Stride::STILL; 4]
         }
         "wave" => {
             allow_only(
                 table,
                 &["waveform", "period", "duty", "amplitude", "start", "gain"],
-                &with,
+                &partner,
             )?;
             let waveform = Waveform::Wave {
                 duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
@@ -242,7 +242,7 @@ fn read_waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> 
             allow_only(
                 table,
                 &["waveform", "period", "amplitude", "order", "gain"],
-                &with,
+                &partner,
             )?;
             let amplitude = read_amplitude(table)?;
             read_order(table)?.map(|turn| Stride {
@@ -345,23 +345,23 @@ fn read_legs(
 /// Reads the order of swings: for each leg, in servo order, its position in the order.
 fn read_order(table: &Section) -> Checked<[usize; 4]> {
     let words = table.words("order")?;
-    let fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");
+    let order_fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");
     if words.len() != LEGS.len() {
-        return Err(fault());
+        return Err(order_fault());
     }
     let mut turns = [0; 4];
     for (turn, leg) in turns.iter_mut().zip(LEGS) {
         *turn = words
             .iter()
             .position(|word| *word == leg)
-            .ok_or_else(fault)?;
+            .ok_or_else(order_fault)?;
     }
     Ok(turns)
 }
 
 fn read_harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
     let terms = section.list(name, &["k", "amplitude", "shift"])?;
-    let term = |term: Section| {
+    let read_term = |term: Section| {
         let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
         if k.fract() != 0.0 {
             return Err(term.fault("k", format!("is {k}; it must be a whole number")));
@@ -372,7 +372,7 @@ fn read_harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
             shift: term.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
         })
     };
-    terms.into_iter().map(term).collect()
+    terms.into_iter().map(read_term).collect()
 }
 
 #[cfg(test)]

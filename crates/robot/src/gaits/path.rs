@@ -30,11 +30,14 @@ pub struct Path {
 impl Path {
     /// The point at a phase of 0 to 1, mm.
     pub fn at(&self, phase: f64) -> Vector {
-        let sum = |terms: &[Harmonic]| {
-            let value =
+        let sum_of = |terms: &[Harmonic]| {
+            let value_of =
                 |term: &Harmonic| term.amplitude * (TAU * (term.k * phase + term.shift)).sin();
-            terms.iter().map(value).sum::<f64>()
+            terms.iter().map(value_of).sum::<f64>()
         };
-        Vector::new(self.centre[0] + sum(&self.x), self.centre[1] + sum(&self.y))
+        Vector::new(
+            self.centre[0] + sum_of(&self.x),
+            self.centre[1] + sum_of(&self.y),
+        )
     }
 }

@@ -19,7 +19,7 @@ pub struct PathLeg {
 }
 
 /// Number of points per cycle at which a path is checked to be within reach.
-const CHECKED: usize = 4096;
+const CHECKED_POINTS: usize = 4096;
 
 impl PathLeg {
     /// Makes the motions of the two servos of head or tail, each with its servo's index.
@@ -33,8 +33,8 @@ impl PathLeg {
         end: End,
         path: &Path,
     ) -> Result<[(usize, Self); 2], String> {
-        for i in 0..CHECKED {
-            let phase = i as f64 / CHECKED as f64;
+        for i in 0..CHECKED_POINTS {
+            let phase = i as f64 / CHECKED_POINTS as f64;
             let point = path.at(phase);
             if lizard.point_angles(end, point).is_err() {
                 let (Vector { x, y }, end) = (point, end.name());
@@ -57,7 +57,7 @@ impl PathLeg {
 
     /// The servo's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // `pair` has checked only some points of the path. But none between them is out of reach
+        // `both_servos` has checked only some points of the path. But none between them is out of reach
         // either: type-1 margins are zero at the edge of reach, and the check of every sample
         // keeps the path's margins far from zero.
         let angles = self

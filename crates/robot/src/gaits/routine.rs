@@ -86,10 +86,10 @@ pub(crate) fn read_routines(
             return Err(section.fault(name, "has the name of a gait; give it another one"));
         }
     }
-    let all: Vec<&str> = gaits.iter().chain(&names).copied().collect();
-    check_boot_keys(&section, &all)?;
-    if all.len() > MAX_GAITS {
-        let count = all.len();
+    let all_names: Vec<&str> = gaits.iter().chain(&names).copied().collect();
+    check_boot_keys(&section, &all_names)?;
+    if all_names.len() > MAX_GAITS {
+        let count = all_names.len();
         let message = format!(
             "and gait are {count} together; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
@@ -114,23 +114,23 @@ fn read_routine(
         return Err(table.fault("steps", message));
     }
     let parse_text = |(index, text): (usize, &&str)| {
-        let fault = |problem| {
+        let fault_of = |problem| {
             let message = format!("step {}, \"{text}\", {problem}", index + 1);
             Fault::clause(table.path("steps"), message)
         };
-        parse_records(text, name, gaits, routines, inputs).map_err(fault)
+        parse_records(text, name, gaits, routines, inputs).map_err(fault_of)
     };
     let steps = texts.iter().enumerate().map(parse_text);
     let steps = steps.collect::<Checked<Vec<_>>>()?;
     let unit = "(a step)";
-    let from = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
-    if from.fract() != 0.0 {
-        let message = format!("is {from}; it must be the number of a step");
+    let first_repeated = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
+    if first_repeated.fract() != 0.0 {
+        let message = format!("is {first_repeated}; it must be the number of a step");
         return Err(table.fault("repeat_from", message));
     }
     Ok(Routine {
         name: name.to_string(),
-        repeat_from: steps[..from as usize - 1].concat().len() as u16,
+        repeat_from: steps[..first_repeated as usize - 1].concat().len() as u16,
         steps: steps.concat(),
         rounds: read_rounds(&table)?,
     })
@@ -159,7 +159,7 @@ fn parse_records(
     inputs: &Inputs,
 ) -> Result<Vec<Step>, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
-    let until = |name: &str| {
+    let until_record = |name: &str| {
         let input = inputs
             .find_input(name)
             .ok_or_else(|| missing_input_message(name))?;
@@ -177,11 +177,11 @@ fn parse_records(
                 gait: 0,
                 count: Step::ENDLESS,
             };
-            Ok(vec![until(name)?, wait])
+            Ok(vec![until_record(name)?, wait])
         }
         [.., "until"] => Err("must say until what, as \"walk until nose\"".to_string()),
         [words @ .., "until", name] if !words.is_empty() => Ok(vec![
-            until(name)?,
+            until_record(name)?,
             parse_step(words, own_name, gaits, routines, true)?,
         ]),
         words => Ok(vec![parse_step(words, own_name, gaits, routines, false)?]),
@@ -237,8 +237,8 @@ fn parse_step(
         });
     };
     let gait = gait as u8;
-    let endless = (has_input && count == "none").then_some(Step::ENDLESS);
-    if let Some(count) = frames.or(endless) {
+    let endless_count = (has_input && count == "none").then_some(Step::ENDLESS);
+    if let Some(count) = frames.or(endless_count) {
         let kind = Step::FRAMES;
         return Ok(Step { kind, gait, count });
     }

@@ -37,8 +37,8 @@ impl Waveform {
         let u = phase.rem_euclid(1.0);
         match self {
             Self::Still => 0.0,
-            Self::Wave { duty } => wave(u, *duty),
-            Self::Held { turn } => held(u, *turn),
+            Self::Wave { duty } => wave_value(u, *duty),
+            Self::Held { turn } => held_value(u, *turn),
             Self::Path(leg) => leg.sweep(u),
         }
     }
@@ -48,7 +48,7 @@ impl Waveform {
 /// t = (u - beta)/(1 - beta) and the slope m = -2 (1 - beta)/beta at both of its ends, the swing is the Hermite
 /// cubic from -1 to 1; all is divided by the cubic's peak. To keep its speed, the foot overshoots a little before it
 /// reverses (by 1.4 % at beta = 0.75), and the amplitude includes the overshoot.
-fn wave(u: f64, duty: f64) -> f64 {
+fn wave_value(u: f64, duty: f64) -> f64 {
     let m = -2.0 * (1.0 - duty) / duty;
     let shape = if u < duty {
         1.0 - 2.0 * u / duty
@@ -57,8 +57,8 @@ fn wave(u: f64, duty: f64) -> f64 {
     };
     // The cubic is odd about t = 1/2, so its first turning point is its peak.
     let (a, b) = (6.0 * m - 12.0, 12.0 - 6.0 * m);
-    let turning = (-b + (b * b - 4.0 * a * m).sqrt()) / (2.0 * a);
-    shape / -hermite(turning, m)
+    let turning_point = (-b + (b * b - 4.0 * a * m).sqrt()) / (2.0 * a);
+    shape / -hermite(turning_point, m)
 }
 
 /// The Hermite cubic from -1 at t = 0 to 1 at t = 1, with slope m at both ends.
@@ -67,7 +67,7 @@ fn hermite(t: f64, m: f64) -> f64 {
 }
 
 /// The value of a held waveform at phase u.
-fn held(u: f64, turn: usize) -> f64 {
+fn held_value(u: f64, turn: usize) -> f64 {
     let start = MOVE * (turn + 1) as f64;
     1.0 - 2.0 * smoothstep(u / MOVE) + 2.0 * smoothstep((u - start) / MOVE)
 }
@@ -89,7 +89,7 @@ pub(crate) fn canonicalize(waveform: &Waveform) -> (Waveform, f64, f64) {
             MOVE * (turn + 1) as f64,
             -1.0,
         ),
-        other => (other.clone(), 0.0, 1.0),
+        canonical => (canonical.clone(), 0.0, 1.0),
     }
 }
 
@@ -98,42 +98,43 @@ mod tests {
     use super::*;
 
     /// All held waveforms, and waves of several duty factors.
-    fn all() -> Vec<Waveform> {
-        let mut all: Vec<_> = (0..4).map(|turn| Waveform::Held { turn }).collect();
-        all.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));
-        all
+    fn all_waveforms() -> Vec<Waveform> {
+        let mut waveforms: Vec<_> = (0..4).map(|turn| Waveform::Held { turn }).collect();
+        waveforms.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));
+        waveforms
     }
 
     #[test]
     fn every_waveform_reaches_1_and_minus_1_and_is_continuous_over_the_wrap() {
-        for w in all() {
-            let samples: Vec<f64> = (0..=10_000).map(|i| w.at(i as f64 / 1e4)).collect();
+        for waveform in all_waveforms() {
+            let samples: Vec<f64> = (0..=10_000).map(|i| waveform.at(i as f64 / 1e4)).collect();
             assert!(
                 samples
                     .windows(2)
                     .all(|pair| (pair[0] - pair[1]).abs() < 3e-3),
-                "{w:?} jumps"
+                "{waveform:?} jumps"
             );
-            let largest = samples.iter().fold(f64::MIN, |a, b| a.max(*b));
+            let max = samples.iter().fold(f64::MIN, |a, b| a.max(*b));
             let min = samples.iter().fold(f64::MAX, |a, b| a.min(*b));
             assert!(
-                (largest - 1.0).abs() < 1e-5 && (min + 1.0).abs() < 1e-5,
-                "{w:?}"
+                (max - 1.0).abs() < 1e-5 && (min + 1.0).abs() < 1e-5,
+                "{waveform:?}"
             );
         }
     }
 
     #[test]
     fn a_wave_has_equal_speed_on_both_sides_of_each_corner() {
-        let e = 1e-6;
+        let step = 1e-6;
         for duty in [0.5, 0.75, 0.875] {
-            let w = Waveform::Wave { duty };
-            let stance = (w.at(duty) - w.at(0.0)) / duty;
+            let waveform = Waveform::Wave { duty };
+            let stance_speed = (waveform.at(duty) - waveform.at(0.0)) / duty;
             for corner in [0.0, duty] {
-                let before = (w.at(corner) - w.at(corner - e)) / e;
-                let after = (w.at(corner + e) - w.at(corner)) / e;
+                let speed_before = (waveform.at(corner) - waveform.at(corner - step)) / step;
+                let speed_after = (waveform.at(corner + step) - waveform.at(corner)) / step;
                 assert!(
-                    (before - stance).abs() < 1e-3 && (after - stance).abs() < 1e-3,
+                    (speed_before - stance_speed).abs() < 1e-3
+                        && (speed_after - stance_speed).abs() < 1e-3,
                     "duty {duty}, corner {corner}"
                 );
             }
@@ -149,7 +150,7 @@ mod tests {
     #[test]
     fn a_held_leg_returns_in_its_own_fifth_alone() {
         for turn in 0..4 {
-            let w = Waveform::Held { turn };
+            let waveform = Waveform::Held { turn };
             let start = 0.2 * (turn + 1) as f64;
             for i in 0..=1000 {
                 let u = i as f64 / 1e3 * 0.999_999;
@@ -162,21 +163,24 @@ mod tests {
                 } else {
                     continue;
                 };
-                assert!((w.at(u) - expected).abs() < 1e-12, "turn {turn}, phase {u}");
+                assert!(
+                    (waveform.at(u) - expected).abs() < 1e-12,
+                    "turn {turn}, phase {u}"
+                );
             }
-            assert!(w.at(0.1).abs() < 1e-12 && w.at(start + 0.1).abs() < 1e-12);
+            assert!(waveform.at(0.1).abs() < 1e-12 && waveform.at(start + 0.1).abs() < 1e-12);
         }
     }
 
     #[test]
     fn a_canonical_waveform_reproduces_the_original() {
-        for w in all() {
-            let (base, shift, sign) = canonicalize(&w);
+        for waveform in all_waveforms() {
+            let (base, shift, sign) = canonicalize(&waveform);
             for i in 0..1000 {
                 let u = i as f64 / 1e3;
                 assert!(
-                    (w.at(u) - sign * base.at(u - shift)).abs() < 1e-12,
-                    "{w:?} at {u}"
+                    (waveform.at(u) - sign * base.at(u - shift)).abs() < 1e-12,
+                    "{waveform:?} at {u}"
                 );
             }
         }

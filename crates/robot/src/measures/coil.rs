@@ -34,8 +34,8 @@ impl Coil {
     /// Number of active coils. The wound body is as long as the spring without its two hooks;
     /// each hook is an inner diameter long.
     pub fn coils(&self) -> f64 {
-        let inner = self.outer - 2.0 * self.wire;
-        (self.length - 2.0 * inner) / self.wire - 1.0
+        let inner_diameter = self.outer - 2.0 * self.wire;
+        (self.length - 2.0 * inner_diameter) / self.wire - 1.0
     }
 
     /// Rate, N/mm: G d^4 / (8 D^3 n).
@@ -88,8 +88,8 @@ mod tests {
             coil.initial_tension()
         );
         assert!((coil.stress(coil.initial_tension()) - 80.8).abs() < 0.1);
-        let stretched = coil.force(coil.length + 4.0) - coil.force(coil.length);
-        assert!((stretched - 4.0 * 0.495_625).abs() < 1e-9);
+        let force_change = coil.force(coil.length + 4.0) - coil.force(coil.length);
+        assert!((force_change - 4.0 * 0.495_625).abs() < 1e-9);
         assert_eq!(coil.force(0.0), coil.initial_tension());
     }
 }

@@ -6,12 +6,12 @@ use lizard_kinematics::{Check, End, Part, Side};
 const LEGS: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
 
 /// Returns the consequence for the robot of a pose that breaks a condition.
-pub(crate) fn consequence(what: Check) -> String {
-    let at = |all: &[Check]| all.iter().position(|one| *one == what);
-    if let Some(end) = at(&Check::TYPE2) {
+pub(crate) fn consequence(check: Check) -> String {
+    let index_in = |checks: &[Check]| checks.iter().position(|known| *known == check);
+    if let Some(end) = index_in(&Check::TYPE2) {
         return format!("nothing would hold the {}", End::ALL[end]);
     }
-    if let Some(servo) = at(&Check::TYPE1) {
+    if let Some(servo) = index_in(&Check::TYPE1) {
         let end = End::of_servo(servo);
         let hand = if end.servos()[0] == servo {
             "left"
@@ -20,13 +20,13 @@ pub(crate) fn consequence(what: Check) -> String {
         };
         return format!("the {hand} elbow of the {end} could flip over");
     }
-    if let Some(leg) = at(&Check::LEG) {
+    if let Some(leg) = index_in(&Check::LEG) {
         return format!("the {} leg would lock", LEGS[leg]);
     }
-    if let Some(side) = at(&Check::STROKE) {
+    if let Some(side) = index_in(&Check::STROKE) {
         return format!("the {} slider would run into its end", Side::ALL[side]);
     }
-    let end = at(&Check::UNCROSSED).map_or("end", |end| End::ALL[end].name());
+    let end = index_in(&Check::UNCROSSED).map_or("end", |end| End::ALL[end].name());
     format!("the cranks of the {end} would cross")
 }
 
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn each_condition_names_what_the_robot_calls_it() {
-        for (what, said) in [
+        for (check, expected) in [
             (Check::Type2Tail, "nothing would hold the tail"),
             (Check::Type1A1, "the left elbow of the head could flip over"),
             (
@@ -61,7 +61,7 @@ mod tests {
             (Check::StrokeLeft, "the left slider would run into its end"),
             (Check::UncrossedHead, "the cranks of the head would cross"),
         ] {
-            assert_eq!(consequence(what), said);
+            assert_eq!(consequence(check), expected);
         }
     }
 }

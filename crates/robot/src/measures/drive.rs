@@ -35,13 +35,13 @@ pub(crate) fn read(
         return Err(section.fault("kind", message));
     }
     let section = section.require_known_keys(&KEYS)?;
-    let Some((_, own)) = KINDS.into_iter().find(|(known, _)| *known == word) else {
-        let hint = hint(word, &KINDS.map(|(known, _)| known));
+    let Some((_, own_keys)) = KINDS.into_iter().find(|(name, _)| *name == word) else {
+        let hint = hint(word, &KINDS.map(|(name, _)| name));
         return Err(section.fault("kind", format!("is \"{word}\"; {hint}")));
     };
-    let mut others = KINDS.into_iter().flat_map(|(_, keys)| keys);
-    if let Some(other) = others.find(|key| !own.contains(key) && section.has(key)) {
-        return Err(section.fault(other, format!("does not go with kind = \"{word}\"")));
+    let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
+    if let Some(foreign_key) = all_keys.find(|key| !own_keys.contains(key) && section.has(key)) {
+        return Err(section.fault(foreign_key, format!("does not go with kind = \"{word}\"")));
     }
     let kind = match word {
         "strut" => {

@@ -47,14 +47,14 @@ fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
 
 /// Reads `[feet]`; every key is optional.
 fn read_stance(root: &Section) -> Checked<Stance> {
-    let all = Stance::DEFAULT;
+    let default = Stance::DEFAULT;
     if !root.has("feet") {
-        return Ok(all);
+        return Ok(default);
     }
     let section = root.section("feet", &["stiffness", "twist", "level"])?;
     Ok(Stance {
-        stiffness: section.number_or("stiffness", all.stiffness, 0.01, 1000.0, "N/mm")?,
-        twist: section.number_or("twist", all.twist, -20.0, 20.0, "mm")?,
-        level: section.number_or("level", all.level, 0.0, 20.0, "mm")?,
+        stiffness: section.number_or("stiffness", default.stiffness, 0.01, 1000.0, "N/mm")?,
+        twist: section.number_or("twist", default.twist, -20.0, 20.0, "mm")?,
+        level: section.number_or("level", default.level, 0.0, 20.0, "mm")?,
     })
 }

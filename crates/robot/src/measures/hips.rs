@@ -35,13 +35,13 @@ pub(crate) struct Hips {
 impl Hips {
     /// Reads the hips from `[leg]`.
     pub fn read(leg: &Section) -> Checked<Self> {
-        let mm = |name, (min, max)| match leg.has(name) {
+        let read_mm = |name, (min, max)| match leg.has(name) {
             true => leg.number(name, min, max, "mm").map(Some),
             false => Ok(None),
         };
         Ok(Self {
-            ahead: mm(AHEAD_KEY, HIP_FORWARD_RANGE)?,
-            side: mm(SIDE_KEY, HIP_SIDE_RANGE)?,
+            ahead: read_mm(AHEAD_KEY, HIP_FORWARD_RANGE)?,
+            side: read_mm(SIDE_KEY, HIP_SIDE_RANGE)?,
         })
     }
 
@@ -55,25 +55,27 @@ impl Hips {
             let hip = shafts[right] + outward(right, parts.pivot) + outward(right, foot);
             end.mirror(hip)
         });
-        let placed = |value: Option<f64>, follows: f64, key: &str, (min, max)| {
+        let check_distance = |value: Option<f64>, computed_mm: f64, key: &str, (min, max)| {
             let problem = match value {
-                Some(value) if parts.foot.is_none() || (value - follows).abs() < SAME_LENGTH_MM => {
+                Some(value)
+                    if parts.foot.is_none() || (value - computed_mm).abs() < SAME_LENGTH_MM =>
+                {
                     return Ok(value);
                 }
                 Some(value) => format!(
-                    "is {value} mm, but parts.pivot and parts.foot put it at {follows:.2} mm; leave one of them out"
+                    "is {value} mm, but parts.pivot and parts.foot put it at {computed_mm:.2} mm; leave one of them out"
                 ),
-                None if (min..=max).contains(&follows) => return Ok(follows),
+                None if (min..=max).contains(&computed_mm) => return Ok(computed_mm),
                 None => format!(
-                    "is left out and follows from links, parts.pivot and parts.foot, which put it at {follows:.2} mm; it must be within {min} to {max} mm"
+                    "is left out and follows from links, parts.pivot and parts.foot, which put it at {computed_mm:.2} mm; it must be within {min} to {max} mm"
                 ),
             };
             Err(Fault::new(format!("leg.{key}"), problem))
         };
-        let side = |end: Vector| placed(self.side, end.x, SIDE_KEY, HIP_SIDE_RANGE);
+        let side_of = |end: Vector| check_distance(self.side, end.x, SIDE_KEY, HIP_SIDE_RANGE);
         Ok(Feet {
-            hip_forward: placed(self.ahead, head.y, AHEAD_KEY, HIP_FORWARD_RANGE)?,
-            hip_side: [side(head)?, side(tail)?],
+            hip_forward: check_distance(self.ahead, head.y, AHEAD_KEY, HIP_FORWARD_RANGE)?,
+            hip_side: [side_of(head)?, side_of(tail)?],
             mount,
             reach: lizard.leg.crank,
         })
@@ -89,41 +91,44 @@ mod tests {
     const LEG: &str = "[leg] ";
 
     /// The paper's robot with these lines in `[leg]` and in `[parts]`.
-    fn robot(hips: &str, parts: &str) -> Result<Robot, String> {
-        let leg = format!("[parts]\n{parts}\n[leg]\n{hips}\n#");
+    fn robot(hip_lines: &str, part_lines: &str) -> Result<Robot, String> {
+        let leg = format!("[parts]\n{part_lines}\n[leg]\n{hip_lines}\n#");
         with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
     }
 
     /// The distances of the paper's hips with these lines: ahead, and to the side at head and tail.
-    fn hips(hips: &str, parts: &str) -> (f64, [f64; 2]) {
-        let feet = robot(hips, parts).expect("a robot").ground().feet;
+    fn hips_of(hip_lines: &str, part_lines: &str) -> (f64, [f64; 2]) {
+        let feet = robot(hip_lines, part_lines).expect("a robot").ground().feet;
         (feet.hip_forward, feet.hip_side)
     }
 
     #[test]
     fn hips_follow_from_the_pivots_and_the_foot() {
         // Compared exactly: no result of the paper's robot may depend on the last digit.
-        assert_eq!(hips("", ""), (55.0, [35.0; 2]));
-        assert_eq!(hips("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
-        assert_eq!(hips("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));
-        let both = "hip_forward = 55.0\nhip_side = 35.0";
-        assert_eq!(hips(both, "foot = [-3.5, 2.5]"), (55.0, [35.0; 2]));
-        let wide = with("paper", &[("l0 = 20.0", "l0 = 24.0")]).expect("a robot");
-        assert_eq!(wide.ground().feet.hip_side, [37.0, 35.0]);
-        assert_eq!(wide.ground().feet.hips()[3], [-55.0, 35.0]);
+        assert_eq!(hips_of("", ""), (55.0, [35.0; 2]));
+        assert_eq!(hips_of("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
+        assert_eq!(hips_of("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));
+        let hip_lines = "hip_forward = 55.0\nhip_side = 35.0";
+        assert_eq!(hips_of(hip_lines, "foot = [-3.5, 2.5]"), (55.0, [35.0; 2]));
+        let wide_robot = with("paper", &[("l0 = 20.0", "l0 = 24.0")]).expect("a robot");
+        assert_eq!(wide_robot.ground().feet.hip_side, [37.0, 35.0]);
+        assert_eq!(wide_robot.ground().feet.hips()[3], [-55.0, 35.0]);
     }
 
     #[test]
     fn the_foot_follows_from_hips_that_are_given() {
-        assert_eq!(hips("hip_side = 36.0", ""), (55.0, [36.0; 2]));
-        let foot = |robot: &Robot| {
+        assert_eq!(hips_of("hip_side = 36.0", ""), (55.0, [36.0; 2]));
+        let foot_offset = |robot: &Robot| {
             let leg = robot.legs()[1];
             leg.coupler_direction * leg.foot.x + leg.coupler_direction.rotated_left() * leg.foot.y
         };
-        let built = robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("a robot");
-        let error = foot(&built) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
+        let moved_robot = robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("a robot");
+        let error = foot_offset(&moved_robot) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
         assert!(error.length() < 1e-9, "{error:?}");
-        let same = robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("a robot");
-        assert_eq!(foot(&same), foot(&robot("", "").expect("a robot")));
+        let same_robot = robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("a robot");
+        assert_eq!(
+            foot_offset(&same_robot),
+            foot_offset(&robot("", "").expect("a robot"))
+        );
     }
 }

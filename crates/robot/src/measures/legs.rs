@@ -66,47 +66,52 @@ impl LegPlan {
         parts: &Parts,
         feet: &Feet,
     ) -> Self {
-        let point = |[forward, left]: Point| Vector::new(-left, forward);
-        let hip = point(feet.hips()[servo]);
-        let reach = point(feet.positions([0.0; 4])[servo]) - hip;
+        let to_vector = |[forward, left]: Point| Vector::new(-left, forward);
+        let hip = to_vector(feet.hips()[servo]);
+        let reach = to_vector(feet.positions([0.0; 4])[servo]) - hip;
         let shaft = lizard.shafts()[servo];
-        let driven = shaft + driven(servo, parts);
-        let set = reach.angle() - neutral;
+        let driven_pivot = shaft + driven_pivot_offset(servo, parts);
+        let crank_offset = reach.angle() - neutral;
         // The angle between ground link and crank equals the servo's angle. The follower's pivot
         // may be at either end of the ground link; the end that is farther from the servo is used.
-        let link = Vector::direction(set) * lizard.leg.ground;
-        let [idle, other] = [driven + link, driven - link];
-        let idle = match (idle - shaft).length_squared() > (other - shaft).length_squared() {
-            true => idle,
-            false => other,
-        };
-        let along = (idle - driven) * (1.0 / (idle - driven).length());
-        let foot = hip - driven;
-        let strut = driven - shaft;
+        let ground_link = Vector::direction(crank_offset) * lizard.leg.ground;
+        let [idle_pivot, other_pivot] = [driven_pivot + ground_link, driven_pivot - ground_link];
+        let idle_pivot =
+            match (idle_pivot - shaft).length_squared() > (other_pivot - shaft).length_squared() {
+                true => idle_pivot,
+                false => other_pivot,
+            };
+        let coupler_direction =
+            (idle_pivot - driven_pivot) * (1.0 / (idle_pivot - driven_pivot).length());
+        let foot_offset = hip - driven_pivot;
+        let strut_vector = driven_pivot - shaft;
         let [radius, angle] = parts.anchor;
         Self {
             shaft,
-            crank_pivot: driven,
-            follower_pivot: idle,
-            coupler_direction: along,
-            crank_offset: set,
-            joint: Vector::direction(set) * lizard.leg.crank,
-            foot: Vector::new(foot.dot(along), along.cross(foot)),
-            strut: strut * (1.0 / strut.length()),
-            strut_length: strut.length(),
+            crank_pivot: driven_pivot,
+            follower_pivot: idle_pivot,
+            coupler_direction,
+            crank_offset,
+            joint: Vector::direction(crank_offset) * lizard.leg.crank,
+            foot: Vector::new(
+                foot_offset.dot(coupler_direction),
+                coupler_direction.cross(foot_offset),
+            ),
+            strut: strut_vector * (1.0 / strut_vector.length()),
+            strut_length: strut_vector.length(),
             anchor: Vector::direction(-ARM_SIDE[servo] * angle) * radius,
         }
     }
 
-    /// Places the leg for the servo's angle `servo` and the angle `leg` that the leg follows, both
+    /// Places the leg for the servo's angle and the angle that the leg follows, both
     /// in deg, chassis frame. The angles differ by the leg's lag.
-    pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
-        let turned = |angle: f64, v: Vector| {
+    pub fn at(&self, servo_angle: f64, leg_angle: f64) -> LegPlace {
+        let rotate = |angle: f64, vector: Vector| {
             let x = Vector::direction(angle);
-            x * v.x + x.rotated_left() * v.y
+            x * vector.x + x.rotated_left() * vector.y
         };
         let pivots = [self.crank_pivot, self.follower_pivot];
-        let joints = pivots.map(|pivot| pivot + turned(leg, self.joint));
+        let joints = pivots.map(|pivot| pivot + rotate(leg_angle, self.joint));
         LegPlace {
             pivots,
             joints,
@@ -114,15 +119,15 @@ impl LegPlan {
                 + self.coupler_direction * self.foot.x
                 + self.coupler_direction.rotated_left() * self.foot.y,
             strut: [
-                self.shaft + turned(servo, self.anchor),
-                self.crank_pivot + turned(leg, self.anchor),
+                self.shaft + rotate(servo_angle, self.anchor),
+                self.crank_pivot + rotate(leg_angle, self.anchor),
             ],
         }
     }
 }
 
 /// The vector from a servo's shaft to the driven pivot of its leg, mm, chassis frame.
-fn driven(servo: usize, parts: &Parts) -> Vector {
+fn driven_pivot_offset(servo: usize, parts: &Parts) -> Vector {
     outward(servo, parts.pivot)
 }
 
@@ -142,15 +147,19 @@ mod tests {
     fn a_crank_has_its_length_and_its_servos_angle_to_the_ground_link() {
         for (name, robot) in all() {
             let bars = robot.lizard().leg;
-            for (servo, of) in robot.servos().iter().enumerate() {
-                for angle in [of.neutral - 30.0, of.neutral, of.neutral + 12.5] {
+            for (servo, settings) in robot.servos().iter().enumerate() {
+                for angle in [
+                    settings.neutral - 30.0,
+                    settings.neutral,
+                    settings.neutral + 12.5,
+                ] {
                     let leg = robot.legs()[servo].at(angle, angle);
                     let [ground, coupler] =
                         [leg.pivots, leg.joints].map(|[driven, idle]| idle - driven);
                     let crank = leg.joints[0] - leg.pivots[0];
                     // A ground link may have either of two opposite directions.
-                    let between = wrap(2.0 * (crank.angle() - ground.angle() - angle));
-                    assert!(between.abs() < 1e-9, "{name} {servo} {between}");
+                    let angle_error = wrap(2.0 * (crank.angle() - ground.angle() - angle));
+                    assert!(angle_error.abs() < 1e-9, "{name} {servo} {angle_error}");
                     assert!((crank.length() - bars.crank).abs() < 1e-9, "{name} {servo}");
                     assert!((ground.length() - bars.ground).abs() < 1e-9);
                     assert!((coupler - ground).length() < 1e-9, "it is not turned");
@@ -176,20 +185,21 @@ mod tests {
 
     #[test]
     fn the_papers_legs_are_pivoted_beside_their_servos() {
-        let near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
+        let is_near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
         let right = robot("paper").legs()[1];
         assert!(
-            near(right.crank_pivot, 10.0 + 28.5, 67.5 - 10.0),
+            is_near(right.crank_pivot, 10.0 + 28.5, 67.5 - 10.0),
             "{right:?}"
         );
         // The ground link: 50 mm long, and turned by 41.41 deg from straight to the side toward the middle.
-        let (across, back) = (37.5, 50.0 * 0.4375f64.sqrt());
+        let (across_mm, back_mm) = (37.5, 50.0 * 0.4375f64.sqrt());
         assert!(
-            (right.follower_pivot - right.crank_pivot - Vector::new(across, -back)).length() < 1e-4
+            (right.follower_pivot - right.crank_pivot - Vector::new(across_mm, -back_mm)).length()
+                < 1e-4
         );
         let left = robot("paper").legs()[0];
         assert!(
-            near(left.crank_pivot, -right.crank_pivot.x, right.crank_pivot.y),
+            is_near(left.crank_pivot, -right.crank_pivot.x, right.crank_pivot.y),
             "{left:?}"
         );
     }
@@ -198,16 +208,16 @@ mod tests {
     fn a_strut_keeps_its_length_while_its_leg_does_not_lag() {
         for (name, robot) in all() {
             for (servo, leg) in robot.legs().iter().enumerate() {
-                let length = |angle: f64, lag: f64| {
+                let length_at = |angle: f64, lag: f64| {
                     let [from, to] = leg.at(angle, angle - lag).strut;
                     (to - from).length()
                 };
                 let neutral = robot.servos()[servo].neutral;
                 for angle in [neutral - 30.0, neutral, neutral + 30.0] {
-                    let error = length(angle, 0.0) - leg.strut_length;
+                    let error = length_at(angle, 0.0) - leg.strut_length;
                     assert!(error.abs() < 1e-9, "{name} {servo} {error}");
                 }
-                assert!((length(neutral, 5.0) - leg.strut_length).abs() > 0.5);
+                assert!((length_at(neutral, 5.0) - leg.strut_length).abs() > 0.5);
             }
         }
     }

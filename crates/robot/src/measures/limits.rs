@@ -37,12 +37,12 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
         "stroke_max",
         limits.stroke_max,
     )?;
-    let speed = |name| section.number(name, MIN_SPEED, 1000.0, "deg/s");
+    let read_speed = |name| section.number(name, MIN_SPEED, 1000.0, "deg/s");
     Ok((
         limits,
         SpeedLimits {
-            slew: speed("slew")?,
-            gait_slew: speed("gait_slew")?,
+            slew: read_speed("slew")?,
+            gait_slew: read_speed("gait_slew")?,
         },
     ))
 }

@@ -119,28 +119,28 @@ impl Measures {
         ] {
             let bars = self.lizard.end(end);
             let per_mm = scale::steps_per_mm(scale::five_bar_scale(&bars));
-            let smallest = f64::from(MIN_COUPLER) / per_mm;
+            let min_mm = f64::from(MIN_COUPLER) / per_mm;
             for (key, value) in names
                 .into_iter()
                 .zip([bars.coupler_left, bars.coupler_right])
             {
-                if value < smallest {
+                if value < min_mm {
                     // Rounded up, so that the length in the message is sufficient.
-                    let smallest = (10.0 * smallest).ceil() / 10.0;
+                    let min_mm = (10.0 * min_mm).ceil() / 10.0;
                     let message = format!(
-                        "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {smallest:.1} mm, or for shorter cranks and a shorter base"
+                        "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {min_mm:.1} mm, or for shorter cranks and a shorter base"
                     );
                     return Err(Fault::new(key, message));
                 }
             }
         }
         let nominal = Side::ALL.map(|side| self.lizard.side(side).nominal);
-        let shortest = nominal[0].min(nominal[1]);
+        let least_nominal = nominal[0].min(nominal[1]);
         for (key, value) in [
             ("limits.stroke_min", self.limits.stroke_min),
             ("limits.stroke_max", self.limits.stroke_max),
         ] {
-            let (min, max) = (-shortest, LONGEST_BAR);
+            let (min, max) = (-least_nominal, LONGEST_BAR);
             if !(min..=max).contains(&value) {
                 let unit = "mm, so that the slider keeps a length";
                 return Err(Fault::range(key.to_string(), value, (min, max), unit));
@@ -151,14 +151,14 @@ impl Measures {
 
     /// Refuses a robot whose neutral pose breaks a limit.
     fn check_neutral(&self) -> Checked<()> {
-        let fault = |consequence: String, problem: String| {
+        let refuse = |consequence: String, problem: String| {
             let meaning = format!("in the neutral pose {consequence}");
             Err(Fault::clause("servo", problem).meaning(meaning))
         };
         match self.lizard.solve(&self.neutral().into()) {
-            Err(infeasible) => fault(no_loop(infeasible.part), infeasible.to_string()),
+            Err(infeasible) => refuse(no_loop(infeasible.part), infeasible.to_string()),
             Ok(solution) => match self.limits.violations(&solution).next() {
-                Some(violation) => fault(consequence(violation.check), violation.to_string()),
+                Some(violation) => refuse(consequence(violation.check), violation.to_string()),
                 None => Ok(()),
             },
         }
@@ -172,15 +172,15 @@ fn read_links(root: &Section) -> Checked<Links> {
     for (length, name) in lengths.iter_mut().zip(LINKS) {
         *length = section.number(name, LENGTHS.0, LENGTHS.1, "mm")?;
     }
-    let l = Links::from(lengths);
+    let links = Links::from(lengths);
     require_equal(
         "links.l15",
-        l.l15,
+        links.l15,
         "links.l10",
-        l.l10,
+        links.l10,
         "the chassis is a rectangle, so its two sides are equally long",
     )?;
-    Ok(l)
+    Ok(links)
 }
 
 /// Reads the legs: their links, their hips, and the sweep angle `mount` of the feet at neutral, deg.
@@ -198,12 +198,12 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let section = root.open("leg")?;
     section.refuse_moved_keys(&["spring", "preload"], SPRING)?;
     let section = section.require_known_keys(&keys)?;
-    let bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
+    let read_bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
     let leg = Leg {
-        ground: bar("ground")?,
-        crank: bar("crank")?,
-        coupler: bar("coupler")?,
-        follower: bar("follower")?,
+        ground: read_bar("ground")?,
+        crank: read_bar("crank")?,
+        coupler: read_bar("coupler")?,
+        follower: read_bar("follower")?,
     };
     let parallelogram = "a leg is a parallelogram, so its opposite links are equally long";
     require_equal(
@@ -225,17 +225,17 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     Ok((leg, hips, mount))
 }
 
-/// Refuses the `value` of a key that differs from the value of the key `other`.
+/// Refuses the `value` of a key that differs from the value of the key `other_key`.
 fn require_equal(
     key: &str,
     value: f64,
-    other: &str,
+    other_key: &str,
     other_value: f64,
     reason: &str,
 ) -> Checked<()> {
     if value == other_value {
         return Ok(());
     }
-    let message = format!("is {value}, but {other} is {other_value}; {reason}");
+    let message = format!("is {value}, but {other_key} is {other_value}; {reason}");
     Err(Fault::new(key, message))
 }

@@ -92,17 +92,22 @@ impl ServoType {
             true => read_model(&section)?,
             false => SG90,
         };
-        let number =
+        let read_number =
             |name, default, (min, max), unit| section.number_or(name, default, min, max, unit);
-        let at_volts = number("at_volts", base.at_volts, Self::SUPPLIES, "V")?;
+        let at_volts = read_number("at_volts", base.at_volts, Self::SUPPLIES, "V")?;
         Ok(Self {
-            stall_kg_cm: number("stall_kg_cm", base.stall_kg_cm, (0.1, 100.0), "kg cm")?,
-            s_per_60_deg: number("s_per_60_deg", base.s_per_60_deg, (0.02, 2.0), "s")?,
+            stall_kg_cm: read_number("stall_kg_cm", base.stall_kg_cm, (0.1, 100.0), "kg cm")?,
+            s_per_60_deg: read_number("s_per_60_deg", base.s_per_60_deg, (0.02, 2.0), "s")?,
             at_volts,
-            volts: number("volts", at_volts, Self::SUPPLIES, "V")?,
-            dead_band_us: number("dead_band_us", base.dead_band_us, (0.0, 100.0), "us")?,
-            spin_up_ms: number("spin_up_ms", base.spin_up_ms, (0.5, 200.0), "ms")?,
-            full_torque_deg: number("full_torque_deg", base.full_torque_deg, (0.1, 45.0), "deg")?,
+            volts: read_number("volts", at_volts, Self::SUPPLIES, "V")?,
+            dead_band_us: read_number("dead_band_us", base.dead_band_us, (0.0, 100.0), "us")?,
+            spin_up_ms: read_number("spin_up_ms", base.spin_up_ms, (0.5, 200.0), "ms")?,
+            full_torque_deg: read_number(
+                "full_torque_deg",
+                base.full_torque_deg,
+                (0.1, 45.0),
+                "deg",
+            )?,
             ..base
         })
     }
@@ -122,13 +127,13 @@ impl ServoType {
 
 /// The servo type that `[servo] model` names; ignores case, dashes and blanks.
 fn read_model(section: &Section) -> Checked<ServoType> {
-    let plain = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
+    let simplify = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
     let word = section.text("model")?;
-    let found = ServoType::ALL
+    let model = ServoType::ALL
         .iter()
-        .find(|own| plain(own.model) == plain(word));
-    found.copied().ok_or_else(|| {
-        let hint = hint(word, &ServoType::ALL.map(|own| own.model));
+        .find(|known| simplify(known.model) == simplify(word));
+    model.copied().ok_or_else(|| {
+        let hint = hint(word, &ServoType::ALL.map(|known| known.model));
         let message = format!(
             "is \"{word}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
         );
@@ -168,10 +173,10 @@ mod tests {
     use crate::Robot;
     use crate::testing::with;
 
-    const BEFORE: &str = "[servo.A1]";
+    const NEXT_TABLE: &str = "[servo.A1]";
 
     fn robot(keys: &str) -> Result<Robot, crate::Error> {
-        with("paper", &[(BEFORE, &format!("{keys}\n{BEFORE}"))])
+        with("paper", &[(NEXT_TABLE, &format!("{keys}\n{NEXT_TABLE}"))])
     }
 
     #[test]
@@ -208,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_servo_that_no_one_knows_or_that_cannot_be_is_refused_with_what_to_write() {
-        for (keys, words) in [
+        for (keys, phrase) in [
             ("model = \"SG-91\"", "did you mean \"SG-90\""),
             (
                 "model = \"DS3218\"",
@@ -222,21 +227,21 @@ mod tests {
             ("stall_kg_cm = 0.0", "servo.stall_kg_cm"),
             ("volts = 12.0", "must be within 2 to 9 V"),
         ] {
-            let refused = robot(&format!("[servo]\n{keys}"))
+            let message = robot(&format!("[servo]\n{keys}"))
                 .expect_err(keys)
                 .to_string();
-            assert!(refused.contains(words), "{keys}: {refused}");
+            assert!(message.contains(phrase), "{keys}: {message}");
         }
     }
 
     #[test]
     fn the_arms_of_the_sliders_are_where_the_linkage_has_them() {
         let robot = robot("").expect("right");
-        let solved = robot.lizard().solve(&robot.neutral()).expect("closes");
+        let solution = robot.lizard().solve(&robot.neutral()).expect("closes");
         let arms = robot.motors().joints.arms;
         for side in lizard_kinematics::Side::ALL {
             let [front, hind] = side.servos();
-            let slider = solved.side(side);
+            let slider = solution.side(side);
             // The tips are given relative to the hind shaft.
             let tips = [
                 (front, slider.front_tip, 135.0),

@@ -155,9 +155,9 @@ impl Pad {
     /// Height of the dome, mm, which is also the height of the highest edge that the pad can slide
     /// up; `None` for a pad that is wider than the sphere.
     pub fn dome(&self) -> Option<f64> {
-        let half = self.width / 2.0;
-        (half <= self.radius)
-            .then(|| self.radius - (self.radius * self.radius - half * half).sqrt())
+        let half_width = self.width / 2.0;
+        (half_width <= self.radius)
+            .then(|| self.radius - (self.radius * self.radius - half_width * half_width).sqrt())
     }
 }
 
@@ -217,11 +217,11 @@ fn read_coil(parts: &Section, default: Coil) -> Checked<Coil> {
         return Ok(default);
     }
     let section = parts.section("spring", &["wire", "outer", "length"])?;
-    let mm = |name, default| section.number_or(name, default, 0.1, 200.0, "mm");
+    let read_mm = |name, default| section.number_or(name, default, 0.1, 200.0, "mm");
     Ok(Coil {
-        wire: mm("wire", default.wire)?,
-        outer: mm("outer", default.outer)?,
-        length: mm("length", default.length)?,
+        wire: read_mm("wire", default.wire)?,
+        outer: read_mm("outer", default.outer)?,
+        length: read_mm("length", default.length)?,
     })
 }
 
@@ -231,47 +231,47 @@ const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
 impl Parts {
     /// Reads `[parts]`; every key may be left out.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
-        let all = Self::default();
+        let defaults = Self::default();
         if !root.has("parts") {
-            return Ok(all);
+            return Ok(defaults);
         }
         let section = root.open("parts")?;
         section.refuse_moved_keys(&["strut"], STRUT)?;
         let section = section.require_known_keys(&KEYS)?;
-        let mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
-        let list = |name, default: [f64; 2], min, max| match section.has(name) {
+        let read_mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
+        let read_pair = |name, default: [f64; 2], min, max| match section.has(name) {
             true => section.numbers(name, min, max, "(mm; an angle in deg)"),
             false => Ok(default),
         };
         let foot = match section.has("foot") {
-            true => Some(list("foot", [0.0; 2], -500.0, 500.0)?),
+            true => Some(read_pair("foot", [0.0; 2], -500.0, 500.0)?),
             false => None,
         };
         let battery = match section.has("battery") {
             true => section.numbers("battery", 1.0, 500.0, "mm")?,
-            false => all.battery,
+            false => defaults.battery,
         };
         Ok(Self {
-            fit: mm("fit", all.fit, 0.0, 1.0)?,
-            wall: mm("wall", all.wall, 0.4, 10.0)?,
-            bar: mm("bar", all.bar, 4.0, 50.0)?,
-            thickness: mm("thickness", all.thickness, 2.0, 20.0)?,
-            plate: mm("plate", all.plate, 2.0, 20.0)?,
-            gap: mm("gap", all.gap, 0.1, 5.0)?,
-            kerf: mm("kerf", all.kerf, 0.0, 2.0)?,
-            pivot: list("pivot", all.pivot, -500.0, 500.0)?,
+            fit: read_mm("fit", defaults.fit, 0.0, 1.0)?,
+            wall: read_mm("wall", defaults.wall, 0.4, 10.0)?,
+            bar: read_mm("bar", defaults.bar, 4.0, 50.0)?,
+            thickness: read_mm("thickness", defaults.thickness, 2.0, 20.0)?,
+            plate: read_mm("plate", defaults.plate, 2.0, 20.0)?,
+            gap: read_mm("gap", defaults.gap, 0.1, 5.0)?,
+            kerf: read_mm("kerf", defaults.kerf, 0.0, 2.0)?,
+            pivot: read_pair("pivot", defaults.pivot, -500.0, 500.0)?,
             foot,
-            anchor: list("anchor", all.anchor, -90.0, 500.0)?,
-            height: mm("height", all.height, 5.0, 500.0)?,
+            anchor: read_pair("anchor", defaults.anchor, -90.0, 500.0)?,
+            height: read_mm("height", defaults.height, 5.0, 500.0)?,
             servo: ServoBody::read(&section)?,
             horn: Horn::read(&section)?,
             screw: Screw::read(&section)?,
             pad: Pad::read(&section)?,
-            strip: mm("strip", all.strip, 0.0, 100.0)?,
-            spring: read_coil(&section, all.spring)?,
+            strip: read_mm("strip", defaults.strip, 0.0, 100.0)?,
+            spring: read_coil(&section, defaults.spring)?,
             battery,
-            tail: mm("tail", all.tail, 0.0, 300.0)?,
-            head: mm("head", all.head, 0.0, 300.0)?,
+            tail: read_mm("tail", defaults.tail, 0.0, 300.0)?,
+            head: read_mm("head", defaults.head, 0.0, 300.0)?,
         })
     }
 }
@@ -281,17 +281,17 @@ mod tests {
     use super::*;
     use crate::testing::with;
 
-    fn built(table: &str) -> Result<Parts, String> {
-        const BEFORE: &str = "[ground]";
-        with("paper", &[(BEFORE, &format!("{table}\n{BEFORE}"))])
+    fn parts_with(table: &str) -> Result<Parts, String> {
+        const NEXT_TABLE: &str = "[ground]";
+        with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
             .map(|robot| *robot.parts())
             .map_err(|error| error.to_string())
     }
 
     #[test]
     fn a_key_that_is_left_out_has_the_value_of_the_papers_robot() {
-        assert_eq!(built(""), Ok(Parts::default()));
-        let parts = built("[parts]\nbar = 10.0\npivot = [30, 11]\n[parts.servo]\nshaft = 5.9");
+        assert_eq!(parts_with(""), Ok(Parts::default()));
+        let parts = parts_with("[parts]\nbar = 10.0\npivot = [30, 11]\n[parts.servo]\nshaft = 5.9");
         let expected = Parts {
             bar: 10.0,
             pivot: [30.0, 11.0],

@@ -41,19 +41,23 @@ impl Plate {
             legs[servo].shaft + Vector::new(0.0, inward * (body.length / 2.0 - body.shaft))
         });
         // Wide enough for the servos of both ends, and long enough for their flanges.
-        let largest =
+        let largest_of =
             |coordinate: fn(Vector) -> f64| cases.map(coordinate).into_iter().fold(0.0, f64::max);
         let half = Vector::new(
-            largest(|case| case.x.abs()) + body.width / 2.0 + BESIDE_SERVO,
-            largest(|case| case.y.abs()) + body.flange / 2.0 + BEYOND_FLANGE,
+            largest_of(|case| case.x.abs()) + body.width / 2.0 + BESIDE_SERVO,
+            largest_of(|case| case.y.abs()) + body.flange / 2.0 + BEYOND_FLANGE,
         );
         let arms = legs.map(|leg| {
-            let inner = |pivot: Vector| {
+            let inner_end_of = |pivot: Vector| {
                 let y = (half.y - Self::ARM).max(0.0);
                 Vector::new((half.x - Self::ARM).copysign(pivot.x), pivot.y.clamp(-y, y))
             };
             let [driven, idle] = [leg.crank_pivot, leg.follower_pivot];
-            [[driven, idle], [driven, inner(driven)], [idle, inner(idle)]]
+            [
+                [driven, idle],
+                [driven, inner_end_of(driven)],
+                [idle, inner_end_of(idle)],
+            ]
         });
         Self {
             half,
@@ -74,9 +78,9 @@ mod tests {
     fn the_papers_plate_holds_its_servos() {
         let plate = robot("paper").plate();
         // 10 mm to a shaft, half a case, 5 mm. The shaft is 6.1 mm from the case's end.
-        let wide = 10.0 + 6.2 + 5.0;
-        let long = 67.5 - (11.4 - 6.1) + 16.2 + 2.0;
-        assert!((plate.half.x - wide).abs() < 1e-9, "{plate:?}");
-        assert!((plate.half.y - long).abs() < 1e-9, "{plate:?}");
+        let half_width = 10.0 + 6.2 + 5.0;
+        let half_length = 67.5 - (11.4 - 6.1) + 16.2 + 2.0;
+        assert!((plate.half.x - half_width).abs() < 1e-9, "{plate:?}");
+        assert!((plate.half.y - half_length).abs() < 1e-9, "{plate:?}");
     }
 }

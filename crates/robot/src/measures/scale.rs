@@ -18,9 +18,9 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 
 /// Finds the finest scale for the five-bar of head or tail.
 pub(crate) fn five_bar_scale(bars: &FiveBar) -> Scale {
-    let all = bars.base + bars.crank_left + bars.crank_right;
-    finest(&[
-        (all, bars::MAX_STEPS),
+    let base_and_cranks = bars.base + bars.crank_left + bars.crank_right;
+    find_finest_scale(&[
+        (base_and_cranks, bars::MAX_STEPS),
         (bars.coupler_left, bars::MAX_STEPS),
         (bars.coupler_right, bars::MAX_STEPS),
     ])
@@ -29,7 +29,7 @@ pub(crate) fn five_bar_scale(bars: &FiveBar) -> Scale {
 /// Finds the finest scale for a side whose slider may extend by `stroke_max` mm from nominal.
 pub(crate) fn side_scale(side: &Slider, stroke_max: f64) -> Scale {
     let arms = side.front + side.rear + side.offset.abs();
-    finest(&[
+    find_finest_scale(&[
         (side.base + arms, slider::MAX_STEPS),
         (arms, slider::MAX_ARM_STEPS),
         (side.nominal + stroke_max.max(0.0), slider::MAX_STEPS),
@@ -37,7 +37,7 @@ pub(crate) fn side_scale(side: &Slider, stroke_max: f64) -> Scale {
 }
 
 /// Finds the finest scale at which every length (mm) has fewer steps than its bound.
-fn finest(lengths: &[(f64, f64)]) -> Scale {
+fn find_finest_scale(lengths: &[(f64, f64)]) -> Scale {
     let is_in_range = |scale: &Scale| {
         let per_mm = steps_per_mm(*scale);
         lengths.iter().all(|(mm, max)| mm * per_mm < *max)
@@ -56,20 +56,20 @@ mod tests {
 
     /// True if the bars fit at this number of bits, by the core's bound of 127 times 256 steps.
     fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
-        let steps = |mm: f64| mm * f64::from(1u32 << bits);
-        let all = bars.base + bars.crank_left + bars.crank_right;
-        [all, bars.coupler_left, bars.coupler_right]
+        let steps_of = |mm: f64| mm * f64::from(1u32 << bits);
+        let base_and_cranks = bars.base + bars.crank_left + bars.crank_right;
+        [base_and_cranks, bars.coupler_left, bars.coupler_right]
             .into_iter()
-            .all(|mm| steps(mm) < 127.0 * 256.0)
+            .all(|mm| steps_of(mm) < 127.0 * 256.0)
     }
 
     /// True if a side fits at this number of bits, by the core's bounds of 127 and 255 times 256 steps.
     fn side_fits(side: &Slider, stroke_max: f64, bits: u16) -> bool {
-        let steps = |mm: f64| mm * f64::from(1u32 << bits);
+        let steps_of = |mm: f64| mm * f64::from(1u32 << bits);
         let arms = side.front + side.rear + side.offset.abs();
-        steps(arms) < 127.0 * 256.0
-            && steps(side.base + arms) < 255.0 * 256.0
-            && steps(side.nominal + stroke_max) < 255.0 * 256.0
+        steps_of(arms) < 127.0 * 256.0
+            && steps_of(side.base + arms) < 255.0 * 256.0
+            && steps_of(side.nominal + stroke_max) < 255.0 * 256.0
     }
 
     fn length() -> impl Strategy<Value = f64> {
@@ -103,27 +103,27 @@ mod tests {
     fn a_length_that_just_does_not_fit_halves_the_step_less() {
         // With a base of 47 mm the sum is 127 mm: exactly the bound at 256 steps per mm, so a coarser scale is
         // needed.
-        let bars = |base| FiveBar {
+        let bars_with_base = |base| FiveBar {
             base,
             crank_left: 40.0,
             coupler_left: 60.0,
             coupler_right: 60.0,
             crank_right: 40.0,
         };
-        assert_eq!(five_bar_scale(&bars(46.99)).bits, 8);
-        assert_eq!(five_bar_scale(&bars(47.0)).bits, 7);
+        assert_eq!(five_bar_scale(&bars_with_base(46.99)).bits, 8);
+        assert_eq!(five_bar_scale(&bars_with_base(47.0)).bits, 7);
     }
 
     #[test]
     fn the_smallest_and_the_largest_robot_have_a_scale() {
-        let bars = |mm| FiveBar {
+        let equal_bars = |mm| FiveBar {
             base: mm,
             crank_left: mm,
             coupler_left: mm,
             coupler_right: mm,
             crank_right: mm,
         };
-        assert_eq!(five_bar_scale(&bars(1.0)).bits, 13);
-        assert_eq!(five_bar_scale(&bars(LONGEST_BAR)).bits, 3);
+        assert_eq!(five_bar_scale(&equal_bars(1.0)).bits, 13);
+        assert_eq!(five_bar_scale(&equal_bars(LONGEST_BAR)).bits, 3);
     }
 }

@@ -140,14 +140,14 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
             ],
         )?;
         let servo = read_servo(&table)?;
-        if let Some(other) = servos
+        if let Some(owner) = servos
             .iter()
             .position(|earlier: &Servo| earlier.pin == servo.pin)
         {
-            let (pin, other) = (table.text("pin")?, NAMES[other]);
+            let (pin, owner) = (table.text("pin")?, NAMES[owner]);
             return Err(table.fault(
                 "pin",
-                format!("is \"{pin}\", which servo.{other} already has"),
+                format!("is \"{pin}\", which servo.{owner} already has"),
             ));
         }
         servos.push(servo);
@@ -156,7 +156,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
 }
 
 fn read_servo(section: &Section) -> Checked<Servo> {
-    let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
+    let read_width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
     let pin = read_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
     if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
@@ -169,10 +169,10 @@ fn read_servo(section: &Section) -> Checked<Servo> {
     let servo = Servo {
         pin,
         neutral: section.number("neutral", 0.0, 360.0, "deg")?,
-        neutral_us: width("neutral_us")?,
+        neutral_us: read_width("neutral_us")?,
         us_per_degree,
-        min_us: width("min_us")?,
-        max_us: width("max_us")?,
+        min_us: read_width("min_us")?,
+        max_us: read_width("max_us")?,
     };
     section.require_less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
     section.require_less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
@@ -203,11 +203,11 @@ mod tests {
 
     #[test]
     fn no_travel_is_beyond_half_a_turn() {
-        let wide = Servo {
+        let wide_servo = Servo {
             us_per_degree: 1.0,
             ..SERVO
         };
-        let (min, max) = wide.travel();
+        let (min, max) = wide_servo.travel();
         assert!(-180.0 < min && min < -179.9 && 179.9 < max && max < 180.0);
     }
 

@@ -21,13 +21,13 @@ pub(crate) fn strut_with_coil(
     coil: &Coil,
 ) -> Strut {
     let [radius, angle] = parts.anchor;
-    let arm = |leg: usize| neutral[leg] - ARM_SIDE[leg] * angle - legs[leg].strut.angle();
+    let arm_angle_of = |leg: usize| neutral[leg] - ARM_SIDE[leg] * angle - legs[leg].strut.angle();
     Strut {
         force: coil.force(mounted_spring_length(legs, parts)),
         rate: coil.rate(),
         slot: SLOT,
         length: legs[0].strut_length,
         radius,
-        angles: std::array::from_fn(arm),
+        angles: std::array::from_fn(arm_angle_of),
     }
 }

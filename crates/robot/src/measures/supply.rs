@@ -70,13 +70,13 @@ const SLOWEST_PACE: f64 = 10.0;
 
 impl Rail {
     /// Sets the first threshold, if robot.toml leaves it to the servos: the voltage below which the hardest gait
-    /// would use more than `share` of the servos' torque-speed line. `line` is the share that this gait uses at
+    /// would use more than `share` of the servos' torque-speed line. `used_share` is the share that this gait uses at
     /// `volts`.
-    pub(crate) fn set_slow_threshold(&mut self, line: f64, share: f64, volts: f64) {
+    pub(crate) fn set_slow_threshold(&mut self, used_share: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
         // Rounded to hundredths. The threshold stays below the supply itself, or the robot would always be slow.
-        let slow_volts = (100.0 * volts * line / share).round() / 100.0;
+        let slow_volts = (100.0 * volts * used_share / share).round() / 100.0;
         if self.follows_servos {
             *slow = slow_volts.min(volts - MIN_THRESHOLD_GAP).max(min);
         }
@@ -120,12 +120,14 @@ impl Supplies {
     /// Converts the voltages to the integers of the core.
     pub(crate) fn numbers(&self) -> CoreSupplies {
         CoreSupplies {
-            reference: millivolts(self.reference),
-            board: numbers(self.board),
+            reference: to_millivolts(self.reference),
+            board: thresholds_in_mv(self.board),
             rail_reference: self
                 .rail
-                .map_or(0, |rail| millivolts(self.reference * rail.ratio)),
-            rail: self.rail.map_or(NO_RAIL, |rail| numbers(rail.thresholds)),
+                .map_or(0, |rail| to_millivolts(self.reference * rail.ratio)),
+            rail: self
+                .rail
+                .map_or(NO_RAIL, |rail| thresholds_in_mv(rail.thresholds)),
         }
     }
 }
@@ -154,19 +156,19 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     }
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
     let text = section.text("pin")?;
-    let refused = |reason: String| section.fault("pin", format!("is \"{text}\"{reason}"));
+    let fault_of = |reason: String| section.fault("pin", format!("is \"{text}\"{reason}"));
     let pin = parse_pin(text)
         .filter(|pin| ANALOGUE.contains(pin))
-        .ok_or_else(|| refused("; it must be one of A0 to A5".to_string()))?;
+        .ok_or_else(|| fault_of("; it must be one of A0 to A5".to_string()))?;
     if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
-        let other = NAMES[servo];
-        return Err(refused(format!(", which servo.{other} already has")));
+        let owner = NAMES[servo];
+        return Err(fault_of(format!(", which servo.{owner} already has")));
     }
     // Up to a battery of two lithium cells, 8.4 V, through a divider of two or more.
     let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
-    let by_servos = !section.has("slow");
+    let follows_servos = !section.has("slow");
     let mut defaults = DEFAULTS;
-    if by_servos && section.has("stop") {
+    if follows_servos && section.has("stop") {
         // A placeholder until the servos are known.
         defaults[0] = f64::INFINITY;
     }
@@ -174,7 +176,7 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
         pin,
         ratio,
         thresholds: read_thresholds(&section, (1.0, 5.0 * ratio), defaults)?,
-        follows_servos: by_servos,
+        follows_servos,
     }))
 }
 
@@ -184,27 +186,27 @@ fn read_thresholds(
     (min, max): (f64, f64),
     defaults: [f64; 3],
 ) -> Checked<[f64; 3]> {
-    let voltage = |name, default| section.number_or(name, default, min, max, "V");
+    let read_voltage = |name, default| section.number_or(name, default, min, max, "V");
     let [slow, stop, rest] = defaults;
     let [slow, stop, rest] = [
-        voltage("slow", slow)?,
-        voltage("stop", stop)?,
-        voltage("rest", rest)?,
+        read_voltage("slow", slow)?,
+        read_voltage("stop", stop)?,
+        read_voltage("rest", rest)?,
     ];
     section.require_less("rest", rest, "stop", stop)?;
     section.require_less("stop", stop, "slow", slow)?;
     Ok([slow, stop, rest])
 }
 
-fn numbers([slow, stop, rest]: [f64; 3]) -> Thresholds {
+fn thresholds_in_mv([slow, stop, rest]: [f64; 3]) -> Thresholds {
     Thresholds {
-        slow: millivolts(slow),
-        stop: millivolts(stop),
-        rest: millivolts(rest),
+        slow: to_millivolts(slow),
+        stop: to_millivolts(stop),
+        rest: to_millivolts(rest),
     }
 }
 
-fn millivolts(volts: f64) -> u16 {
+fn to_millivolts(volts: f64) -> u16 {
     (1000.0 * volts).round() as u16
 }
 
@@ -214,10 +216,10 @@ mod tests {
 
     use crate::testing::with;
 
-    const BEFORE: &str = "[ground]";
+    const NEXT_TABLE: &str = "[ground]";
 
-    fn supplied(table: &str) -> Result<crate::Robot, crate::Error> {
-        with("paper", &[(BEFORE, &format!("{table}\n{BEFORE}"))])
+    fn robot_with_supply(table: &str) -> Result<crate::Robot, crate::Error> {
+        with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
     }
 
     #[test]
@@ -238,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_rail_has_the_divider_in_its_reference() {
-        let robot = supplied(
+        let robot = robot_with_supply(
             "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n",
         )
         .expect("a rail");
@@ -255,87 +257,99 @@ mod tests {
 
     #[test]
     fn a_rail_slows_the_robot_down_where_its_servos_would_be_near_their_line() {
-        let slow = |servo: &str, rail: &str, friction: &str| {
+        let slow_volts_with = |servo: &str, rail: &str, friction: &str| {
             let tables = format!(
-                "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{BEFORE}\nfriction = {friction}"
+                "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
             );
             let servo = format!("[servo]\n{servo}\n[servo.A1]");
-            let robot = with("paper", &[("[servo.A1]", &servo), (BEFORE, &tables)]).expect(rail);
+            let robot =
+                with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail);
             f64::from(robot.firmware().supplies().rail.slow) / 1000.0
         };
-        let sg90 = slow("", "", "0.6");
-        let robot = with("paper", &[(BEFORE, "[ground]\nfriction = 0.6")]).expect("right");
-        let of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
-        let largest = |supply| {
-            let used = robot
+        let sg90_volts = slow_volts_with("", "", "0.6");
+        let robot = with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.6")]).expect("right");
+        let effort_of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
+        let largest_share = |supply| {
+            let shares = robot
                 .gaits()
                 .iter()
-                .map(|gait| of(gait).line_share(1.0, supply));
-            used.fold(0.0, f64::max)
+                .map(|gait| effort_of(gait).line_share(1.0, supply));
+            shares.fold(0.0, f64::max)
         };
         // On this floor the servos would allow slightly less than stop + 0.25 V, so this minimum is the threshold.
-        let wanted = (4.8 * largest(1.0) / crate::HIGH_LINE_SHARE).max(4.25);
-        assert!((sg90 - wanted).abs() < 0.01, "{sg90} {wanted}");
+        let expected = (4.8 * largest_share(1.0) / crate::HIGH_LINE_SHARE).max(4.25);
+        assert!(
+            (sg90_volts - expected).abs() < 0.01,
+            "{sg90_volts} {expected}"
+        );
         // More friction requires a higher threshold; a given threshold stays.
-        let rough = slow("", "", "0.8");
-        let by_line = rough / 4.8;
-        assert!(rough > sg90 + 0.1, "{rough}");
-        let grips = with("paper", &[(BEFORE, "[ground]\nfriction = 0.8")]).expect("right");
-        let used = grips.gaits().iter().map(|gait| {
-            let effort = crate::Effort::of(gait, grips.ground(), &grips.motors());
-            effort.line_share(1.0, by_line)
+        let rough_volts = slow_volts_with("", "", "0.8");
+        let supply_share = rough_volts / 4.8;
+        assert!(rough_volts > sg90_volts + 0.1, "{rough_volts}");
+        let gripping_robot =
+            with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.8")]).expect("right");
+        let shares = gripping_robot.gaits().iter().map(|gait| {
+            let effort = crate::Effort::of(gait, gripping_robot.ground(), &gripping_robot.motors());
+            effort.line_share(1.0, supply_share)
         });
-        let used = used.fold(0.0, f64::max);
-        assert!((used - crate::HIGH_LINE_SHARE).abs() < 0.005, "{used}");
-        assert_eq!(slow("", "slow = 4.3", "0.8"), 4.3);
+        let largest_share = shares.fold(0.0, f64::max);
+        assert!(
+            (largest_share - crate::HIGH_LINE_SHARE).abs() < 0.005,
+            "{largest_share}"
+        );
+        assert_eq!(slow_volts_with("", "slow = 4.3", "0.8"), 4.3);
         // If a servo exceeds its line even at its own supply, the threshold still stays below that supply.
-        assert_eq!(slow("model = \"copy\"", "", "1.2"), 4.55);
+        assert_eq!(slow_volts_with("model = \"copy\"", "", "1.2"), 4.55);
         // A battery of two lithium cells, and servos for that voltage.
-        let two = slow("at_volts = 8.0", "stop = 6.4\nrest = 6.0", "0.7");
-        assert!((6.65..7.75).contains(&two), "{two}");
+        let two_cells_volts = slow_volts_with("at_volts = 8.0", "stop = 6.4\nrest = 6.0", "0.7");
+        assert!((6.65..7.75).contains(&two_cells_volts), "{two_cells_volts}");
     }
 
     /// The slow pace, percent, of the paper's robot with changed servos, thresholds and friction, and the pace that a
     /// search finds independently: the highest percentage at which no gait exceeds the allowed share of the
     /// torque-speed line.
-    fn paces(servo: &str, rail: &str, friction: f64) -> [u8; 2] {
+    fn slow_paces(servo: &str, rail: &str, friction: f64) -> [u8; 2] {
         let tables = format!(
-            "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{BEFORE}\nfriction = {friction}"
+            "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
         );
         let servo = format!("[servo]\n{servo}\n[servo.A1]");
-        let robot = with("paper", &[("[servo.A1]", &servo), (BEFORE, &tables)]).expect(rail);
+        let robot = with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail);
         let [_, stop, _] = robot.supplies().rail.expect("a rail").thresholds;
-        let own = robot.servo_type().volts;
-        let effort = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
-        let efforts: Vec<_> = robot.gaits().iter().map(effort).collect();
+        let own_volts = robot.servo_type().volts;
+        let effort_of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
+        let efforts: Vec<_> = robot.gaits().iter().map(effort_of).collect();
         let is_followed = |percent: &u8| {
-            let line =
-                |effort: &crate::Effort| effort.line_share(f64::from(*percent) / 100.0, stop / own);
+            let share_of = |effort: &crate::Effort| {
+                effort.line_share(f64::from(*percent) / 100.0, stop / own_volts)
+            };
             efforts
                 .iter()
-                .all(|effort| line(effort) <= crate::HIGH_LINE_SHARE)
+                .all(|effort| share_of(effort) <= crate::HIGH_LINE_SHARE)
         };
-        let found = (10..=100).rev().find(is_followed).unwrap_or(10);
-        [robot.firmware().slow_pace(), found]
+        let searched = (10..=100).rev().find(is_followed).unwrap_or(10);
+        [robot.firmware().slow_pace(), searched]
     }
 
     #[test]
     fn below_its_threshold_a_robot_is_as_fast_as_its_servos_line_allows_where_it_stops() {
-        let [even, searched] = paces("", "", 0.7);
-        assert_eq!(even, searched);
-        let [rough, searched] = paces("", "", 0.9);
-        assert_eq!(rough, searched);
-        assert!((11..even).contains(&rough) && even < 100, "{rough} {even}");
+        let [even_pace, searched] = slow_paces("", "", 0.7);
+        assert_eq!(even_pace, searched);
+        let [rough_pace, searched] = slow_paces("", "", 0.9);
+        assert_eq!(rough_pace, searched);
+        assert!(
+            (11..even_pace).contains(&rough_pace) && even_pace < 100,
+            "{rough_pace} {even_pace}"
+        );
         // This also holds if the threshold is given. A robot that stops at a higher voltage may go faster.
-        let [given, searched] = paces("", "slow = 4.7\nstop = 4.5", 0.9);
-        assert_eq!(given, searched);
-        assert!(given > rough, "{given} {rough}");
+        let [given_pace, searched] = slow_paces("", "slow = 4.7\nstop = 4.5", 0.9);
+        assert_eq!(given_pace, searched);
+        assert!(given_pace > rough_pace, "{given_pace} {rough_pace}");
         // In one robot no pace is slow enough, in the other no pace is too fast.
         assert_eq!(
-            paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
+            slow_paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
             [10, 10]
         );
-        assert_eq!(paces("model = \"MG90S\"", "", 0.2), [100, 100]);
+        assert_eq!(slow_paces("model = \"MG90S\"", "", 0.2), [100, 100]);
     }
 
     #[test]
@@ -346,14 +360,17 @@ mod tests {
 
     #[test]
     fn a_pin_of_a_servo_measures_no_rail() {
-        let taken = with(
+        let refusal = with(
             "paper",
             &[
                 ("pin = \"D9\"", "pin = \"A2\""),
-                (BEFORE, "[supply.rail]\npin = \"A2\"\nratio = 2.0\n[ground]"),
+                (
+                    NEXT_TABLE,
+                    "[supply.rail]\npin = \"A2\"\nratio = 2.0\n[ground]",
+                ),
             ],
         );
-        let taken = taken.expect_err("a pin of a servo").to_string();
-        assert!(taken.contains("which servo.A1 already has"), "{taken}");
+        let refusal = refusal.expect_err("a pin of a servo").to_string();
+        assert!(refusal.contains("which servo.A1 already has"), "{refusal}");
     }
 }

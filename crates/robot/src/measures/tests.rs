@@ -3,7 +3,7 @@
 use crate::testing::with;
 
 /// The message with which the unequal robot is refused after changes of its robot.toml.
-fn refused(changes: &[(&str, &str)]) -> String {
+fn refusal_of(changes: &[(&str, &str)]) -> String {
     with("unequal", changes).expect_err("refused").to_string()
 }
 
@@ -16,19 +16,19 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
         ("l7 = 55.0", "l7 = 15.9"),
         ("l8 = 48.0", "l8 = 15.9"),
     ] {
-        let refused = refused(&[(from, to)]);
+        let message = refusal_of(&[(from, to)]);
         let key = from.split(' ').next().expect("a key");
         assert!(
-            refused.contains(&format!("links.{key} is 15.9 mm, which is short"))
-                && refused.contains("at least 16.1 mm"),
-            "{refused}"
+            message.contains(&format!("links.{key} is 15.9 mm, which is short"))
+                && message.contains("at least 16.1 mm"),
+            "{message}"
         );
     }
     // A longer base of the tail halves the steps per mm of the tail only.
-    let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
+    let message = refusal_of(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
     assert!(
-        long.contains("links.l7 is 31 mm") && long.contains("at least 32.1 mm"),
-        "{long}"
+        message.contains("links.l7 is 31 mm") && message.contains("at least 32.1 mm"),
+        "{message}"
     );
 }
 
@@ -37,29 +37,32 @@ fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
     for name in ["A1", "A2", "A3", "A4"] {
         let text = crate::testing::text("unequal");
         let start = text.find(&format!("[servo.{name}]")).expect(name);
-        let line = |key: &str| {
+        let line_range = |key: &str| {
             let from = start + text[start..].find(key).expect(key);
             let to = from + text[from..].find('\n').expect("a line's end");
             from..to
         };
-        let us = |key: &str| -> f64 {
-            let line = &text[line(key)];
+        let us_of = |key: &str| -> f64 {
+            let line = &text[line_range(key)];
             let value = line.split(" = ").nth(1).expect("a value");
             value.parse().expect("a number")
         };
-        for (neutral, refused) in [
-            (us("min_us") - 0.1, "min_us"),
-            (us("min_us"), "min_us"),
-            (us("max_us"), "neutral_us"),
-            (us("max_us") + 0.1, "neutral_us"),
+        for (neutral_us, refused_key) in [
+            (us_of("min_us") - 0.1, "min_us"),
+            (us_of("min_us"), "min_us"),
+            (us_of("max_us"), "neutral_us"),
+            (us_of("max_us") + 0.1, "neutral_us"),
         ] {
             let mut changed = text.clone();
-            changed.replace_range(line("neutral_us"), &format!("neutral_us = {neutral}"));
+            changed.replace_range(
+                line_range("neutral_us"),
+                &format!("neutral_us = {neutral_us}"),
+            );
             let error = crate::Robot::parse(&changed)
                 .expect_err("outside")
                 .to_string();
             assert!(
-                error.contains(&format!("servo.{name}.{refused}")),
+                error.contains(&format!("servo.{name}.{refused_key}")),
                 "{error}"
             );
         }
@@ -73,10 +76,10 @@ fn a_stroke_leaves_the_shorter_slider_a_length() {
             (slider[0], &*slider[0].replace(" 5", " 4")),
             ("stroke_min = -19.0", "stroke_min = -102.0"),
         ];
-        let refused = refused(&changes);
+        let message = refusal_of(&changes);
         assert!(
-            refused.contains("limits.stroke_min is -102; it must be within"),
-            "{refused}"
+            message.contains("limits.stroke_min is -102; it must be within"),
+            "{message}"
         );
     }
 }
@@ -89,12 +92,12 @@ fn each_leg_must_stand_on_the_side_where_it_was_assembled() {
         ("neutral = 316.0", "neutral = 10.0", "right hind", "leg_rh"),
         ("neutral = 228.0", "neutral = 170.0", "left hind", "leg_lh"),
     ] {
-        let refused = refused(&[(from, to)]);
+        let message = refusal_of(&[(from, to)]);
         assert!(
-            refused.starts_with(&format!(
+            message.starts_with(&format!(
                 "in the neutral pose the {name} leg would lock: margin {leg} -"
             )),
-            "{refused}"
+            "{message}"
         );
     }
 }

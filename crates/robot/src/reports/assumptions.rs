@@ -75,19 +75,19 @@ impl Variation {
     /// The value that the prediction uses.
     fn value(&self, mut inputs: Inputs) -> f64 {
         match self {
-            Self::Value(number) | Self::ValueAfterChange(_, number) => *number(&mut inputs),
+            Self::Value(field_of) | Self::ValueAfterChange(_, field_of) => *field_of(&mut inputs),
             Self::Switch(_) => 0.0,
         }
     }
 
     fn set(&self, inputs: &mut Inputs, value: f64) {
         match self {
-            Self::Value(number) => *number(inputs) = value,
+            Self::Value(field_of) => *field_of(inputs) = value,
             Self::Switch(change) if value > 0.0 => change(inputs),
             Self::Switch(_) => {}
-            Self::ValueAfterChange(change, number) => {
+            Self::ValueAfterChange(change, field_of) => {
                 change(inputs);
-                *number(inputs) = value;
+                *field_of(inputs) = value;
             }
         }
     }
@@ -183,26 +183,28 @@ impl Assumptions {
     /// seconds.
     pub fn of(robot: &Robot) -> Self {
         let nominal = Inputs::of(robot);
-        let gaits = without_mirror_images(robot, |gait| nominal.walk(robot, gait, 1.0));
-        let row = |assumption: &Assumption| {
-            let change = |gait: &CheckedGait, before: &Travel, value: f64| {
-                let mut changed = nominal;
-                assumption.variation.set(&mut changed, value);
-                let component = principal_component(before);
-                100.0 * (component(&changed.walk(robot, gait, 1.0)) / component(before) - 1.0)
+        let gaits = distinct_gaits(robot, |gait| nominal.walk(robot, gait, 1.0));
+        let row_of = |assumption: &Assumption| {
+            let change_of = |gait: &CheckedGait, movement: &Travel, value: f64| {
+                let mut inputs = nominal;
+                assumption.variation.set(&mut inputs, value);
+                let component = principal_component(movement);
+                100.0 * (component(&inputs.walk(robot, gait, 1.0)) / component(movement) - 1.0)
             };
-            let changes = |(gait, before): &(&CheckedGait, Travel)| {
-                assumption.range.map(|value| change(gait, before, value))
+            let changes_of = |(gait, movement): &(&CheckedGait, Travel)| {
+                assumption
+                    .range
+                    .map(|value| change_of(gait, movement, value))
             };
             Row {
                 words: assumption.words,
                 unit: assumption.unit,
                 nominal: assumption.variation.value(nominal),
                 range: assumption.range,
-                changes: gaits.iter().map(changes).collect(),
+                changes: gaits.iter().map(changes_of).collect(),
             }
         };
-        let mut rows: Vec<Row> = ALL.iter().map(row).collect();
+        let mut rows: Vec<Row> = ALL.iter().map(row_of).collect();
         rows.sort_by(|a, b| b.max_change().total_cmp(&a.max_change()));
         Self {
             gaits: gaits
@@ -243,31 +245,31 @@ impl MovementRange {
         let nominal = Inputs::of(robot);
         let travel = nominal.walk(robot, gait, pace);
         let component = principal_component(&travel);
-        let assumed = Extreme {
+        let nominal_extreme = Extreme {
             movement: component(&travel),
             assumption: None,
         };
-        let ends = ALL.iter().flat_map(|assumption| {
+        let extremes = ALL.iter().flat_map(|assumption| {
             assumption.range.map(|value| {
-                let mut changed = nominal;
-                assumption.variation.set(&mut changed, value);
+                let mut inputs = nominal;
+                assumption.variation.set(&mut inputs, value);
                 Extreme {
-                    movement: component(&changed.walk(robot, gait, pace)),
+                    movement: component(&inputs.walk(robot, gait, pace)),
                     assumption: Some(assumption.words),
                 }
             })
         });
         let mut range = Self {
             is_turn: is_turn(&travel),
-            least: assumed,
-            most: assumed,
+            least: nominal_extreme,
+            most: nominal_extreme,
         };
-        for end in ends {
-            if end.movement < range.least.movement {
-                range.least = end;
+        for extreme in extremes {
+            if extreme.movement < range.least.movement {
+                range.least = extreme;
             }
-            if end.movement > range.most.movement {
-                range.most = end;
+            if extreme.movement > range.most.movement {
+                range.most = extreme;
             }
         }
         range
@@ -275,24 +277,24 @@ impl MovementRange {
 }
 
 /// The gaits that move the robot noticeably, each with its movement. Mirror images and reverses are left out.
-fn without_mirror_images(
+fn distinct_gaits(
     robot: &Robot,
     simulate: impl Fn(&CheckedGait) -> Travel,
 ) -> Vec<(&CheckedGait, Travel)> {
     let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
-    let rigid = robot.ground().rigid();
+    let rigid_ground = robot.ground().rigid();
     for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
-        if !gait.predict(&rigid).is_decided() {
+        if !gait.predict(&rigid_ground).is_decided() {
             continue;
         }
         let movement = simulate(gait);
-        let alike = |(_, other): &(_, Travel)| {
+        let is_alike = |(_, other): &(_, Travel)| {
             let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
             is_close(movement.forward, other.forward) && is_close(movement.turn, other.turn)
         };
         let moves_noticeably =
             movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
-        if moves_noticeably && !gaits.iter().any(alike) {
+        if moves_noticeably && !gaits.iter().any(is_alike) {
             gaits.push((gait, movement));
         }
     }
@@ -316,8 +318,8 @@ fn principal_component(movement: &Travel) -> fn(&Travel) -> f64 {
 impl Row {
     /// The largest change of a movement, percent.
     fn max_change(&self) -> f64 {
-        let all = self.changes.as_flattened().iter();
-        all.map(|change| change.abs()).fold(0.0, f64::max)
+        let changes = self.changes.as_flattened().iter();
+        changes.map(|change| change.abs()).fold(0.0, f64::max)
     }
 }
 
@@ -337,13 +339,13 @@ impl fmt::Display for Assumptions {
             write!(f, "{gait:>13}")?;
         }
         writeln!(f)?;
-        let (count, rest): (Vec<&Row>, Vec<&Row>) = self
+        let (listed_rows, other_rows): (Vec<&Row>, Vec<&Row>) = self
             .rows
             .iter()
             .partition(|row| row.max_change() >= MIN_CHANGE_PERCENT);
-        for row in count {
-            let [least, most] = row.range;
-            let range = format!("{least} to {most} {}", row.unit);
+        for row in listed_rows {
+            let [min, max] = row.range;
+            let range = format!("{min} to {max} {}", row.unit);
             write!(f, "{:<width$} {:>8} {range:>19}", row.words, row.nominal)?;
             for [low, high] in &row.changes {
                 // Adding +0.0 turns -0.0 into 0.0.
@@ -352,18 +354,18 @@ impl fmt::Display for Assumptions {
             }
             writeln!(f)?;
         }
-        let columns = |row: &Row| {
-            let [least, most] = row.range;
-            format!("  {}, {least} to {most} {}", row.words, row.unit)
+        let line_of = |row: &Row| {
+            let [min, max] = row.range;
+            format!("  {}, {min} to {max} {}", row.words, row.unit)
                 .trim_end()
                 .to_string()
         };
-        let rest: Vec<String> = rest.into_iter().map(columns).collect();
-        if !rest.is_empty() {
+        let other_lines: Vec<String> = other_rows.into_iter().map(line_of).collect();
+        if !other_lines.is_empty() {
             writeln!(
                 f,
                 "\nLess than {MIN_CHANGE_PERCENT:.0} %:\n{}",
-                rest.join("\n")
+                other_lines.join("\n")
             )?;
         }
         writeln!(f, "\n{BEYOND_THE_MODEL}")

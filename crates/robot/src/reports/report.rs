@@ -33,14 +33,15 @@ pub struct Row {
 }
 
 impl Row {
-    /// True for a gait that travels, but whose fastest servo stays below [`SLOW`].
+    /// True for a gait that travels, but whose fastest servo stays below [`SLOW_SPEED`].
     fn is_slow(&self) -> bool {
         /// Smallest speed at which a gait counts as travelling: mm/s ahead, deg/s of turn.
-        const WALKS: (f64, f64) = (5.0, 2.0);
-        let speed = |part: Option<f64>| part.unwrap_or_default().abs() / self.period;
+        const MIN_SPEEDS: (f64, f64) = (5.0, 2.0);
+        let speed_of = |component: Option<f64>| component.unwrap_or_default().abs() / self.period;
         let movement = &self.movement;
-        let walks = speed(movement.forward) >= WALKS.0 || speed(movement.turn) >= WALKS.1;
-        walks && self.audit.peak.speed < SLOW
+        let is_walking =
+            speed_of(movement.forward) >= MIN_SPEEDS.0 || speed_of(movement.turn) >= MIN_SPEEDS.1;
+        is_walking && self.audit.peak.speed < SLOW_SPEED
     }
 }
 
@@ -64,10 +65,10 @@ pub struct Report {
 }
 
 /// CPU cycles that the main loop may spend on a console line without making a frame late: docs/firmware.md.
-const BESIDE_A_FRAME: usize = 34_000;
+const MAX_SEARCH_CYCLES: usize = 34_000;
 
 /// The note for a robot whose console takes longer to find a gait's name.
-const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may make a frame 20 ms late; \
+const LONG_SEARCH_NOTE: &str = "many gaits: `cal`, or a line that names one, may make a frame 20 ms late; \
      fewer gaits or shorter names avoid it\n";
 
 /// The note that explains a dash in place of a prediction.
@@ -76,7 +77,7 @@ pub const UNDECIDED: &str =
 
 /// Speed of the fastest servo, deg/s, below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
 /// similar gaits keep nine tenths of their distance; slow gaits lose up to a third.
-const SLOW: f64 = 200.0;
+const SLOW_SPEED: f64 = 200.0;
 
 /// The note about the assumptions behind the figures of routines with inputs.
 pub const WITHOUT_CONTACTS: &str =
@@ -86,7 +87,7 @@ impl Report {
     /// Measures the tables and predicts the gaits of a robot; takes a moment.
     pub fn of(robot: &Robot) -> Self {
         let (ground, motors) = (robot.ground(), robot.motors());
-        let row = |gait: &CheckedGait| {
+        let row_of = |gait: &CheckedGait| {
             let movement = robot.predict(gait);
             Row {
                 name: gait.name().to_string(),
@@ -101,7 +102,7 @@ impl Report {
         };
         let firmware = robot.core();
         Self {
-            rows: robot.gaits().iter().map(row).collect(),
+            rows: robot.gaits().iter().map(row_of).collect(),
             rounds: robot
                 .routines()
                 .iter()
@@ -110,7 +111,7 @@ impl Report {
             hash: firmware.hash(),
             waves: firmware.waves().len(),
             flash: robot.section().len(),
-            searches_long: robot.longest_search() > BESIDE_A_FRAME,
+            searches_long: robot.longest_search() > MAX_SEARCH_CYCLES,
             name: robot.name().to_string(),
         }
     }
@@ -171,19 +172,19 @@ impl fmt::Display for Report {
             self.name,
             self.hash
         )?;
-        let lags = self.rows.iter().any(|row| row.spring_cost.is_some());
+        let has_lag = self.rows.iter().any(|row| row.spring_cost.is_some());
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
             "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm ideal servos, mm and deg   by its servos{}",
             "",
-            if lags { "   drive, deg and %" } else { "" }
+            if has_lag { "   drive, deg and %" } else { "" }
         )?;
         writeln!(
             f,
             "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn   line  ahead   turn{}",
             "gait",
-            if lags { "      lag  of rigid" } else { "" }
+            if has_lag { "      lag  of rigid" } else { "" }
         )?;
         for row in &self.rows {
             let Row {
@@ -233,34 +234,34 @@ impl fmt::Display for Report {
         if movements.any(|movement| !movement.is_decided()) {
             write!(f, "\n{UNDECIDED}")?;
         }
-        let slow = self.rows.iter().filter(|row| row.is_slow());
-        let slow: Vec<_> = slow.map(|row| row.name.as_str()).collect();
-        if !slow.is_empty() {
+        let slow_names = self.rows.iter().filter(|row| row.is_slow());
+        let slow_names: Vec<_> = slow_names.map(|row| row.name.as_str()).collect();
+        if !slow_names.is_empty() {
             writeln!(
                 f,
-                "\nslow steps: {}\nGaits below {SLOW:.0} deg/s lose up to a third of their way and half of their turn at an \
+                "\nslow steps: {}\nGaits below {SLOW_SPEED:.0} deg/s lose up to a third of their way and half of their turn at an \
                  edge of 2 mm (docs/judges.md).",
-                slow.join(", ")
+                slow_names.join(", ")
             )?;
         }
         for row in self.rows.iter().filter(|row| row.line >= HIGH_LINE_SHARE) {
             write!(f, "\n{}", reserve_warning(&row.name, row.line))?;
         }
         if self.searches_long {
-            write!(f, "\n{SEARCHES_LONG}")?;
+            write!(f, "\n{LONG_SEARCH_NOTE}")?;
         }
         Ok(())
     }
 }
 
 /// The warning for a gait that leaves its servos little reserve, or no reserve.
-fn reserve_warning(name: &str, line: f64) -> String {
-    let meaning = match line < 1.0 {
+fn reserve_warning(name: &str, line_share: f64) -> String {
+    let meaning = match line_share < 1.0 {
         true => "little is left for play, a cold gear or a long wire",
         false => "above 1 a servo falls behind its pulses",
     };
     format!(
-        "{name}: {line:.2} of its servos' torque-speed line; {meaning}: `lizard gaits --servos`\n"
+        "{name}: {line_share:.2} of its servos' torque-speed line; {meaning}: `lizard gaits --servos`\n"
     )
 }
 
@@ -298,9 +299,9 @@ mod tests {
                 .skip(2)
                 .take_while(|line| !line.is_empty())
                 .collect();
-            let long = rows[1].len();
+            let length = rows[1].len();
             assert!(
-                rows.len() > 10 && rows[1..].iter().all(|row| row.len() == long),
+                rows.len() > 10 && rows[1..].iter().all(|row| row.len() == length),
                 "{text}"
             );
         }
@@ -308,7 +309,7 @@ mod tests {
 
     #[test]
     fn gaits_that_lose_much_at_an_edge_in_mujoco_are_called_slow() {
-        let slow = |robot: Robot| {
+        let slow_gaits_of = |robot: Robot| {
             let report = Report::of(&robot);
             let rows = report.rows.iter().filter(|row| row.is_slow());
             let names: Vec<_> = rows.map(|row| row.name.clone()).collect();
@@ -320,15 +321,15 @@ mod tests {
             names
         };
         for name in ["paper", "large", "unequal", "grain"] {
-            assert!(slow(robot(name)).is_empty(), "{name}");
+            assert!(slow_gaits_of(robot(name)).is_empty(), "{name}");
         }
         let turns = [
             "turn-slowly-on-the-spot-all-the-way-to-the-left",
             "turn-slowly-to-the-right",
         ];
-        assert_eq!(slow(robot("own-gaits")), turns);
+        assert_eq!(slow_gaits_of(robot("own-gaits")), turns);
         // Such gaits lose 16 to 34 % of their distance.
-        let own = with(
+        let slower_robot = with(
             "own-gaits",
             &[
                 ("period = 1.2\n", "period = 1.6\n"),
@@ -338,7 +339,7 @@ mod tests {
                 ),
             ],
         );
-        let names = slow(own.expect("a slower stroll"));
+        let names = slow_gaits_of(slower_robot.expect("a slower stroll"));
         for gait in ["stroll", "veer-left"].into_iter().chain(turns) {
             assert!(names.iter().any(|name| name == gait), "{gait} of {names:?}");
         }

@@ -39,9 +39,9 @@ impl Round {
         sweeps.extend(Self::sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
         // Which components are undecided depends on the pads alone, so rigid legs suffice to find them.
-        let known = robot.ground().rigid().predict(sweeps.iter().copied());
-        let driven = known.keep_known(driven(robot, &sweeps));
-        let movement = known.keep_known(robot.ground().travel(sweeps));
+        let prediction = robot.ground().rigid().predict(sweeps.iter().copied());
+        let driven = prediction.keep_known(drive_servos(robot, &sweeps));
+        let movement = prediction.keep_known(robot.ground().travel(sweeps));
         Self {
             name: routine.name().to_string(),
             steps: routine.count(),
@@ -57,7 +57,7 @@ impl Round {
     /// foot is forward.
     pub fn sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
         let mut running = RunningRobot::power_on(*robot.without_contacts().firmware());
-        running.run_frames(STANDS);
+        running.run_frames(STANDING_FRAMES);
         running.send_line(&format!("{} 1", routine.name().replace('-', " ")));
         let mut is_done = false;
         std::iter::from_fn(move || {
@@ -74,11 +74,11 @@ impl Round {
 }
 
 /// Simulates the robot's servos as they follow one set of sweeps per frame, until they are at rest.
-fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
-    let (motors, start) = (robot.motors(), sweeps[0]);
-    let end = sweeps.last().copied().unwrap_or(start);
-    let mut walker = Walker::new(*robot.ground(), start);
-    for sweeps in sweeps[1..].iter().chain(&[end; SETTLING_FRAMES]) {
+fn drive_servos(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
+    let (motors, start_sweeps) = (robot.motors(), sweeps[0]);
+    let end_sweeps = sweeps.last().copied().unwrap_or(start_sweeps);
+    let mut walker = Walker::new(*robot.ground(), start_sweeps);
+    for sweeps in sweeps[1..].iter().chain(&[end_sweeps; SETTLING_FRAMES]) {
         walker.drive(sweeps.map(Some), 1.0 / FRAMES_PER_SECOND, &motors);
     }
     walker.place().travel()
@@ -87,4 +87,4 @@ fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
 /// Frames after which a servo that lags behind its last pulse is at rest.
 const SETTLING_FRAMES: usize = 25;
 /// Frames after power-on until the robot stands.
-const STANDS: u32 = 60;
+const STANDING_FRAMES: u32 = 60;

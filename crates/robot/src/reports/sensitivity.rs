@@ -35,11 +35,11 @@ const CHANGES: [Change; 5] = [
         },
     ),
     ("too long, mm", &[0.5, 1.0, 1.5, 2.0], |ground, twist| {
-        standing(ground, ground.stance.stiffness, twist)
+        ground_with_stance(ground, ground.stance.stiffness, twist)
     }),
     // The last value is that of leaf springs of 2 mm.
     ("feet, N/mm", &[1.0, 2.0, 3.3], |ground, stiffness| {
-        standing(ground, stiffness, EXCESS_MM)
+        ground_with_stance(ground, stiffness, EXCESS_MM)
     }),
     ("play, +-deg", &[1.0, 2.0], |ground, play| Ground {
         drive: Drive {
@@ -51,7 +51,7 @@ const CHANGES: [Change; 5] = [
 ];
 
 /// The ground with feet of this stiffness, and the front left foot too long by `twist` mm.
-fn standing(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
+fn ground_with_stance(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
     Ground {
         stance: Stance {
             stiffness,
@@ -75,8 +75,8 @@ impl Sensitivity {
     /// Predicts the gaits of a robot with each changed parameter.
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
-        let moving = robot.gaits().iter().filter(|gait| gait.moves());
-        let rows = moving.map(|gait| {
+        let moving_gaits = robot.gaits().iter().filter(|gait| gait.moves());
+        let rows = moving_gaits.map(|gait| {
             let cells = CHANGES.map(|(_, values, change)| {
                 let predict = |value: &f64| gait.predict(&change(ground, *value));
                 values.iter().map(predict).collect()
@@ -97,9 +97,9 @@ impl fmt::Display for Sensitivity {
         )?;
         let width = widest(self.rows.iter().map(|(name, _)| name.as_str()));
         let mut is_decided = true;
-        for (table, (head, values, _)) in CHANGES.iter().enumerate() {
+        for (table, (title, values, _)) in CHANGES.iter().enumerate() {
             f.write_str("\n")?;
-            match *head {
+            match *title {
                 "too long, mm" => {
                     let leaf = self.leaf;
                     writeln!(f, "The front left foot too long, on feet of {leaf} N/mm:")?;
@@ -107,7 +107,7 @@ impl fmt::Display for Sensitivity {
                 "feet, N/mm" => writeln!(f, "Too long by {EXCESS_MM} mm, on other feet:")?,
                 _ => {}
             }
-            write!(f, "{head:<width$}")?;
+            write!(f, "{title:<width$}")?;
             for value in *values {
                 write!(f, "{value:>15}")?;
             }
@@ -117,7 +117,7 @@ impl fmt::Display for Sensitivity {
                 is_decided &= cells
                     .iter()
                     .all(|movement| movement.forward.is_some() && movement.turn.is_some());
-                let cells: String = cells.iter().map(cell).collect();
+                let cells: String = cells.iter().map(format_cell).collect();
                 writeln!(f, "{}", format!("{name:<width$}{cells}").trim_end())?;
             }
         }
@@ -129,7 +129,7 @@ impl fmt::Display for Sensitivity {
 }
 
 /// Formats a prediction. A turn that rounds to zero is left out.
-fn cell(movement: &Prediction) -> String {
+fn format_cell(movement: &Prediction) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
         turn => format_part(turn, 1),

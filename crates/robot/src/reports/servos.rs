@@ -45,12 +45,12 @@ impl ServoTable {
     pub fn of(robot: &Robot) -> Self {
         let (servo, volts) = (*robot.servo_type(), robot.reported_volts());
         let ground = robot.ground();
-        let row = |gait: &CheckedGait| {
+        let row_of = |gait: &CheckedGait| {
             let effort = Effort::of(gait, ground, &robot.motors());
-            let known = gait.predict(&ground.rigid());
-            let cell = |pace: f64, volts: f64| Cell {
+            let prediction = gait.predict(&ground.rigid());
+            let cell_of = |pace: f64, volts: f64| Cell {
                 line: effort.line_share(pace / 100.0, volts / servo.volts),
-                movement: known.keep_known(gait.simulate_driven_cycle(
+                movement: prediction.keep_known(gait.simulate_driven_cycle(
                     ground,
                     &robot.motors_at(volts),
                     pace / 100.0,
@@ -58,16 +58,16 @@ impl ServoTable {
             };
             Row {
                 name: gait.name().to_string(),
-                cells: PACES.map(|pace| volts.map(|volts| cell(pace, volts))),
+                cells: PACES.map(|pace| volts.map(|volts| cell_of(pace, volts))),
                 paces: volts.map(|volts| 100.0 * effort.max_pace(volts / servo.volts)),
             }
         };
-        let moving = robot.gaits().iter().filter(|gait| gait.moves());
+        let moving_gaits = robot.gaits().iter().filter(|gait| gait.moves());
         Self {
             servo,
             volts,
             slow_pace: robot.supplies().slow_pace,
-            rows: moving.map(row).collect(),
+            rows: moving_gaits.map(row_of).collect(),
         }
     }
 
@@ -108,7 +108,7 @@ impl fmt::Display for ServoTable {
         for (i, pace) in PACES.into_iter().enumerate() {
             self.write_head(f, &format!("speed {pace:.0}"), width, 22)?;
             for row in &self.rows {
-                let cells: String = row.cells[i].iter().map(cell).collect();
+                let cells: String = row.cells[i].iter().map(format_cell).collect();
                 writeln!(f, "{}", format!("{:<width$}{cells}", row.name).trim_end())?;
             }
         }
@@ -117,8 +117,8 @@ impl fmt::Display for ServoTable {
             let paces: String = paces.iter().map(|pace| format!("{pace:>10.0}")).collect();
             writeln!(f, "{name:<width$}{paces}")?;
         }
-        let all = self.rows.iter().flat_map(|row| row.cells.as_flattened());
-        match all.into_iter().all(|cell| cell.movement.is_decided()) {
+        let all_cells = self.rows.iter().flat_map(|row| row.cells.as_flattened());
+        match all_cells.into_iter().all(|cell| cell.movement.is_decided()) {
             true => Ok(()),
             false => write!(f, "\n{UNDECIDED}"),
         }
@@ -126,7 +126,7 @@ impl fmt::Display for ServoTable {
 }
 
 /// Formats a cell. A turn that rounds to zero is left out.
-fn cell(Cell { line, movement }: &Cell) -> String {
+fn format_cell(Cell { line, movement }: &Cell) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
         turn => format_part(turn, 1),

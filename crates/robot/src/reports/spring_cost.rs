@@ -28,19 +28,22 @@ impl SpringCost {
         if !ground.drive.can_lag() {
             return None;
         }
-        let walked = gait.simulate_cycle(ground);
+        let cycle = gait.simulate_cycle(ground);
         let movement = gait.predict(&ground.rigid());
-        let part = |lagging: f64, rigid: Option<f64>, smallest: f64| {
+        let share_of = |lagging: f64, rigid: Option<f64>, min: f64| {
             rigid
-                .filter(|rigid| rigid.abs() > smallest)
+                .filter(|rigid| rigid.abs() > min)
                 .map(|rigid| lagging / rigid)
         };
-        let forward_share = part(walked.travel.forward, movement.forward, MIN_MOVEMENT.0);
-        let turn = part(walked.travel.turn, movement.turn, MIN_MOVEMENT.1);
+        let forward_share = share_of(cycle.travel.forward, movement.forward, MIN_MOVEMENT.0);
+        let turn_share = share_of(cycle.travel.turn, movement.turn, MIN_MOVEMENT.1);
         Some(Self {
-            movement: movement.keep_known(walked.travel),
-            lag: walked.lag,
-            share: [forward_share, turn].into_iter().flatten().reduce(f64::min),
+            movement: movement.keep_known(cycle.travel),
+            lag: cycle.lag,
+            share: [forward_share, turn_share]
+                .into_iter()
+                .flatten()
+                .reduce(f64::min),
         })
     }
 }

@@ -22,9 +22,9 @@ pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String>
 
 /// Returns a message if a servo (0 to 3) cannot reach an angle (deg, chassis frame), `None` if it can.
 pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
-    let limits_of_servo = &robot.servos()[servo];
-    (!limits_of_servo.reaches(angle)).then(|| {
-        let (neutral, (min, max)) = (limits_of_servo.neutral, limits_of_servo.travel());
+    let servo_numbers = &robot.servos()[servo];
+    (!servo_numbers.reaches(angle)).then(|| {
+        let (neutral, (min, max)) = (servo_numbers.neutral, servo_numbers.travel());
         let sweep = wrap(angle - neutral);
         format!(
             "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg, its travel is {:.1} to {:.1} deg",

@@ -43,8 +43,8 @@ pub(crate) fn content(
     let pins = servos.map(|servo| servo.pin);
     let neutral =
         servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
-    let calibrations = servos.map(|servo| calibration(&servo));
-    let reach = reach(tables, &calibrations);
+    let calibrations = servos.map(|servo| calibration_of(&servo));
+    let reach = reach_of(tables, &calibrations);
     let (mut gaits, mut names) = (tables.gaits.clone(), tables.names.clone());
     let mut steps = Vec::new();
     for routine in routines {
@@ -62,14 +62,15 @@ pub(crate) fn content(
         calibration: calibrations,
         reach,
         limits: Limits {
-            type2: sine(limits.type2),
-            type1: sine(limits.type1),
-            leg: sine(limits.leg),
+            type2: to_sine(limits.type2),
+            type1: to_sine(limits.type1),
+            leg: to_sine(limits.leg),
         },
         slew: Slew::new(floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16),
         supplies: supplies.numbers(),
-        ends: kinematics::End::ALL.map(|end| five_bar(&lizard.end(end))),
-        sides: kinematics::Side::ALL.map(|name_of_side| side(&lizard.side(name_of_side), limits)),
+        ends: kinematics::End::ALL.map(|end| convert_five_bar(&lizard.end(end))),
+        sides: kinematics::Side::ALL
+            .map(|name_of_side| convert_side(&lizard.side(name_of_side), limits)),
         gaits,
         steps,
         names,
@@ -84,13 +85,13 @@ fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 
     crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
 }
 
-fn five_bar(bars: &kinematics::FiveBar) -> Loop {
+fn convert_five_bar(bars: &kinematics::FiveBar) -> Loop {
     let scale = scale::five_bar_scale(bars);
-    let length = |mm: f64| steps(mm, scale) as i16;
+    let length_of = |mm: f64| to_steps(mm, scale) as i16;
     // The crank tips are farthest apart if both cranks point outward.
-    let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length);
+    let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length_of);
     let furthest = (base as u32 + left as u32 + right as u32) / 2 + 2;
-    let [a, b] = [bars.coupler_left, bars.coupler_right].map(length);
+    let [a, b] = [bars.coupler_left, bars.coupler_right].map(length_of);
     Loop {
         scale,
         base,
@@ -100,7 +101,7 @@ fn five_bar(bars: &kinematics::FiveBar) -> Loop {
     }
 }
 
-fn calibration(servo: &Servo) -> Calibration {
+fn calibration_of(servo: &Servo) -> Calibration {
     let (min, max) = servo.travel();
     let gain = servo.us_per_degree * CYCLES_PER_US / STEPS_PER_DEGREE * ONE_Q14;
     Calibration {
@@ -114,7 +115,7 @@ fn calibration(servo: &Servo) -> Calibration {
 /// Computes the range of each servo's sweep over all gaits, neutral included. Between two samples a gait is
 /// interpolated linearly, so no phase exceeds the samples. The travel is rounded inward, so the rounded sweep of a
 /// gait that uses the whole travel may exceed the travel by a step; so the range is limited to the travel.
-fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
+fn reach_of(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     let mut reach = [Reach::default(); 4];
     for gait in &tables.gaits {
         for (reach, channel) in reach.iter_mut().zip(&gait.channels) {
@@ -136,28 +137,28 @@ fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
 }
 
 /// Converts the slider of a side to integers; its stroke is rounded inward.
-fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
+fn convert_side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
     let scale = scale::side_scale(slider, limits.stroke_max);
-    let length = |mm: f64| steps(mm, scale);
+    let length_of = |mm: f64| to_steps(mm, scale);
     let per_mm = scale::steps_per_mm(scale);
     Slider {
         scale,
-        offset: length(slider.offset) as i16,
-        base: length(slider.base) as u16,
-        front: length(slider.front) as i16,
-        rear: length(slider.rear) as i16,
-        nominal: length(slider.nominal) as u16,
+        offset: length_of(slider.offset) as i16,
+        base: length_of(slider.base) as u16,
+        front: length_of(slider.front) as i16,
+        rear: length_of(slider.rear) as i16,
+        nominal: length_of(slider.nominal) as u16,
         min: ceil((slider.nominal + limits.stroke_min) * per_mm) as u16,
         max: floor((slider.nominal + limits.stroke_max) * per_mm) as u16,
     }
 }
 
-fn steps(mm: f64, scale: Scale) -> i32 {
+fn to_steps(mm: f64, scale: Scale) -> i32 {
     (mm * scale::steps_per_mm(scale)).round() as i32
 }
 
 /// Converts the limit of a margin to an integer, rounded up.
-fn sine(margin: f64) -> Sine {
+fn to_sine(margin: f64) -> Sine {
     Sine(ceil(margin * ONE_Q15) as i16)
 }
 
@@ -183,11 +184,11 @@ mod tests {
     #[test]
     fn every_link_goes_where_it_belongs() {
         let robot = robot("unequal");
-        let l = robot.lizard().links;
+        let links = robot.lizard().links;
         let content = robot.content();
         let loops = [
-            [l.l0, l.l1, l.l4, l.l2, l.l3],
-            [l.l5, l.l6, l.l9, l.l7, l.l8],
+            [links.l0, links.l1, links.l4, links.l2, links.l3],
+            [links.l5, links.l6, links.l9, links.l7, links.l8],
         ];
         for (bars, mm) in content.ends.iter().zip(loops) {
             let ([left, right], [a, b]) = (bars.cranks, bars.couplers);
@@ -195,10 +196,22 @@ mod tests {
             assert_eq!(steps.map(f64::from), mm.map(|mm| mm * PER_MM));
             assert_eq!(bars.scale.bits, 8);
         }
-        let aside = (l.l5 - l.l0) / 2.0;
+        let offset = (links.l5 - links.l0) / 2.0;
         let sides = [
-            [aside, l.l10, l.l14, l.l11, l.l12 + l.l13],
-            [-aside, l.l15, l.l19, l.l16, l.l17 + l.l18],
+            [
+                offset,
+                links.l10,
+                links.l14,
+                links.l11,
+                links.l12 + links.l13,
+            ],
+            [
+                -offset,
+                links.l15,
+                links.l19,
+                links.l16,
+                links.l17 + links.l18,
+            ],
         ];
         for (side, mm) in content.sides.iter().zip(sides) {
             let steps = [
@@ -222,8 +235,8 @@ mod tests {
             [10_486, 8_848, 12_452].map(Sine)
         );
         // An exact limit stays as it is.
-        let exact = with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]).expect("0.25");
-        assert_eq!(exact.firmware().limits().type2, Sine(8192));
+        let exact_robot = with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]).expect("0.25");
+        assert_eq!(exact_robot.firmware().limits().type2, Sine(8192));
     }
 
     #[test]
@@ -232,9 +245,9 @@ mod tests {
             ("stroke_min = -19.0", "stroke_min = -19.001"),
             ("stroke_max = 41.0", "stroke_max = 41.001"),
         ];
-        let inward = with("unequal", &changes).expect("a stroke");
+        let changed_robot = with("unequal", &changes).expect("a stroke");
         for side in [Side::Left, Side::Right] {
-            let slider = inward.firmware().side(side);
+            let slider = changed_robot.firmware().side(side);
             let nominal = slider.nominal;
             assert_eq!(slider.min, nominal - 19 * 256, "{side:?}");
             assert_eq!(slider.max, nominal + 41 * 256, "{side:?}");
@@ -246,15 +259,21 @@ mod tests {
         for (name, robot) in all() {
             let calibrations = robot.firmware().calibration();
             for (servo, calibration) in robot.servos().iter().zip(calibrations) {
-                let pulse = |sweep: i32| {
+                let pulse_at = |sweep: i32| {
                     servo.neutral_us + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0
                 };
-                let within = |sweep: i32| {
-                    (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse(sweep))
+                let is_within = |sweep: i32| {
+                    (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_at(sweep))
                 };
                 let (min, max) = (i32::from(calibration.min.0), i32::from(calibration.max.0));
-                assert!(within(min) && !within(min - 1), "{name} {servo:?} {min}");
-                assert!(within(max) && !within(max + 1), "{name} {servo:?} {max}");
+                assert!(
+                    is_within(min) && !is_within(min - 1),
+                    "{name} {servo:?} {min}"
+                );
+                assert!(
+                    is_within(max) && !is_within(max + 1),
+                    "{name} {servo:?} {max}"
+                );
             }
         }
     }
@@ -264,16 +283,16 @@ mod tests {
         // 9.2 and 10.4 us are not exact in binary, so the quotient may be slightly too small.
         for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
             for k in 1..=13 {
-                let way = f64::abs(us_per_degree) * 5.625 * f64::from(k);
+                let half_width_us = f64::abs(us_per_degree) * 5.625 * f64::from(k);
                 let servo = Servo {
                     pin: 9,
                     neutral: 135.0,
                     neutral_us: 1500.0,
                     us_per_degree,
-                    min_us: 1500.0 - way,
-                    max_us: 1500.0 + way,
+                    min_us: 1500.0 - half_width_us,
+                    max_us: 1500.0 + half_width_us,
                 };
-                let calibration = calibration(&servo);
+                let calibration = calibration_of(&servo);
                 let steps = 1024 * k as i16;
                 assert_eq!([calibration.min.0, calibration.max.0], [-steps, steps]);
             }
@@ -284,7 +303,7 @@ mod tests {
     fn a_loop_is_near_stretched_beyond_three_quarters_of_its_reach() {
         // The threshold is three quarters of the squared reach of the couplers, so base plus cranks must exceed 0.866
         // of the sum of both couplers.
-        for (bars, near) in [
+        for (bars, is_near) in [
             ([20.0, 30.0, 30.0], false),
             ([26.0, 30.0, 30.0], false),
             ([28.0, 30.0, 30.0], true),
@@ -299,7 +318,11 @@ mod tests {
                 coupler_right: 50.0,
                 crank_right,
             };
-            assert_eq!(five_bar(&bars).is_near_stretched, near, "{bars:?}");
+            assert_eq!(
+                convert_five_bar(&bars).is_near_stretched,
+                is_near,
+                "{bars:?}"
+            );
         }
     }
 
@@ -330,13 +353,13 @@ mod tests {
     fn the_reach_holds_every_phase_of_every_gait_and_is_reached() {
         for (name, robot) in all() {
             let firmware = robot.firmware();
-            let mut widest = [(0, 0); 4];
+            let mut widest_sweeps = [(0, 0); 4];
             for gait in GaitId::all(firmware.gait_count()) {
                 let gait = firmware.gait(gait);
                 for phase in (0..1 << 24).step_by(1 << 8) {
                     let pose = gait.pose(firmware.waves(), phase);
-                    for (widest, sweep) in widest.iter_mut().zip(pose.0) {
-                        *widest = (widest.0.min(sweep.0), widest.1.max(sweep.0));
+                    for (range, sweep) in widest_sweeps.iter_mut().zip(pose.0) {
+                        *range = (range.0.min(sweep.0), range.1.max(sweep.0));
                     }
                 }
             }
@@ -344,7 +367,7 @@ mod tests {
                 let reach = firmware.reach(servo);
                 (reach.min.0, reach.max.0)
             });
-            assert_eq!(reach, widest, "{name}");
+            assert_eq!(reach, widest_sweeps, "{name}");
         }
     }
 
@@ -357,8 +380,8 @@ mod tests {
 
     #[test]
     fn the_slowest_robot_is_one_that_the_core_can_move() {
-        let slow = with("paper", &[("\nslew = 300.0", "\nslew = 10.0")]).expect("slow");
-        assert!(slow.firmware().slew().per_frame >= Slew::SLOWEST);
+        let slow_robot = with("paper", &[("\nslew = 300.0", "\nslew = 10.0")]).expect("slow");
+        assert!(slow_robot.firmware().slew().per_frame >= Slew::SLOWEST);
     }
 
     /// Reads the numbers of a robot's section.
@@ -396,9 +419,13 @@ mod tests {
             assert_eq!(large.firmware().end(end).bars().scale().bits, 8);
         }
         for side in [Side::Left, Side::Right] {
-            let (small, long) = (paper.firmware().side(side), large.firmware().side(side));
-            assert_eq!(long.scale.bits, 7);
-            assert_eq!(4 * u32::from(long.nominal), 3 * u32::from(small.nominal));
+            let (paper_side, large_side) =
+                (paper.firmware().side(side), large.firmware().side(side));
+            assert_eq!(large_side.scale.bits, 7);
+            assert_eq!(
+                4 * u32::from(large_side.nominal),
+                3 * u32::from(paper_side.nominal)
+            );
         }
     }
 }

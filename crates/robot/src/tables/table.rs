@@ -68,7 +68,7 @@ impl Tables {
             .map(|(samples, peak)| {
                 samples.map(|value| (value * peak * STEPS_PER_DEGREE).round() as i16)
             });
-        let channel = |part: &Part| {
+        let channel_of = |part: &Part| {
             let gain = part.amplitude / peaks.get(part.wave).copied().unwrap_or(1.0);
             Channel {
                 wave: part.wave as u16,
@@ -78,19 +78,19 @@ impl Tables {
             }
         };
         let mut names = Vec::new();
-        let mut table = Vec::new();
+        let mut table_gaits = Vec::new();
         for (gait, parts) in gaits.iter().zip(parts.chunks(4)) {
-            table.push(TableGait {
+            table_gaits.push(TableGait {
                 name_start: names.len() as u16,
                 name_length: gait.name.len() as u16,
-                increment: increment(gait),
-                channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel),
+                increment: increment_of(gait),
+                channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel_of),
             });
             names.extend(gait.name.replace('-', " ").bytes());
         }
         Ok(Self {
             waves: waves.collect(),
-            gaits: table,
+            gaits: table_gaits,
             names,
         })
     }
@@ -108,7 +108,7 @@ impl Tables {
 }
 
 /// Computes a gait's phase increment per frame, in 1/2^24 cycle; negative if the gait is reversed.
-fn increment(gait: &Gait) -> i32 {
+fn increment_of(gait: &Gait) -> i32 {
     let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
     if gait.reversed { -step } else { step }
 }
@@ -133,8 +133,8 @@ impl WaveformBank {
     /// foot forward. `None` if the stride sweeps half a turn or more.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
         let (waveform, shift, sign) = canonicalize(&stride.waveform);
-        let samples = samples(&waveform);
-        let peak = peak(&samples);
+        let samples = sample_waveform(&waveform);
+        let peak = peak_of(&samples);
         let amplitude = stride.amplitude * peak * sign * forward;
         if amplitude == 0.0 || waveform == Waveform::Still {
             return Some(Part {
@@ -148,15 +148,19 @@ impl WaveformBank {
         }
         let offset = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
-        let shared = self.samples.iter().enumerate().find_map(|(wave, known)| {
-            let rotation = find_rotation(known, &samples, SAME_DEG / amplitude.abs())?;
-            Some(Part {
-                wave,
-                lead: offset + rotation as f64 / SAMPLES as f64,
-                amplitude,
-            })
-        });
-        Some(shared.unwrap_or_else(|| {
+        let shared_part = self
+            .samples
+            .iter()
+            .enumerate()
+            .find_map(|(wave, existing)| {
+                let rotation = find_rotation(existing, &samples, SAME_DEG / amplitude.abs())?;
+                Some(Part {
+                    wave,
+                    lead: offset + rotation as f64 / SAMPLES as f64,
+                    amplitude,
+                })
+            });
+        Some(shared_part.unwrap_or_else(|| {
             self.samples.push(samples);
             Part {
                 wave: self.samples.len() - 1,
@@ -169,13 +173,13 @@ impl WaveformBank {
     /// Computes the largest amplitude with which each waveform is used, deg. Tables are stored at that amplitude,
     /// so that no gain exceeds 1.
     fn peak_amplitudes(&self, parts: &[Part]) -> Vec<f64> {
-        let peak_amplitude = |wave| {
+        let peak_amplitude_of = |wave| {
             parts
                 .iter()
-                .filter(|p| p.wave == wave)
-                .fold(0.0f64, |max, p| max.max(p.amplitude.abs()))
+                .filter(|part| part.wave == wave)
+                .fold(0.0f64, |max, part| max.max(part.amplitude.abs()))
         };
-        (0..self.samples.len()).map(peak_amplitude).collect()
+        (0..self.samples.len()).map(peak_amplitude_of).collect()
     }
 }
 
@@ -185,19 +189,19 @@ impl WaveformBank {
 /// every stride too short (the paper's walk by 1 %). Each sample is moved outward by the mean distance between line
 /// and curve, a twelfth of the second difference, but not beyond the waveform's peak, because a servo's travel may
 /// end at the peak.
-fn samples(waveform: &Waveform) -> [f64; SAMPLES] {
-    let on: [f64; SAMPLES] = std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
-    let peak = peak(&on);
+fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES] {
+    let curve: [f64; SAMPLES] = std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
+    let peak = peak_of(&curve);
     std::array::from_fn(|i| {
-        let (before, after) = (on[(i + SAMPLES - 1) % SAMPLES], on[(i + 1) % SAMPLES]);
-        let outward = -(before - 2.0 * on[i] + after) / 12.0;
-        (on[i] + outward).clamp(-peak, peak)
+        let (previous, next) = (curve[(i + SAMPLES - 1) % SAMPLES], curve[(i + 1) % SAMPLES]);
+        let outward_shift = -(previous - 2.0 * curve[i] + next) / 12.0;
+        (curve[i] + outward_shift).clamp(-peak, peak)
     })
 }
 
-fn peak(samples: &[f64; SAMPLES]) -> f64 {
-    let larger = |peak: f64, value: &f64| peak.max(value.abs());
-    samples.iter().fold(0.0, larger)
+fn peak_of(samples: &[f64; SAMPLES]) -> f64 {
+    let larger_magnitude = |peak: f64, value: &f64| peak.max(value.abs());
+    samples.iter().fold(0.0, larger_magnitude)
 }
 
 /// Finds the number of samples by which to rotate `existing` so that it equals `samples` within `tolerance`.
@@ -217,34 +221,37 @@ mod tests {
     use crate::Robot;
     use crate::testing::{all, robot, text_before_gaits, with};
 
-    fn waves(robot: &Robot) -> usize {
+    fn wave_count(robot: &Robot) -> usize {
         robot.firmware().waves().len()
     }
 
     #[test]
     fn a_reversed_gait_is_its_table_with_the_phase_turned_round() {
         let robot = robot("own-gaits");
-        let gait = |name: &str| {
+        let table_gait = |name: &str| {
             let index = robot.gait(name).expect(name).index();
-            robot.firmware().gait(id(&robot, index))
+            robot.firmware().gait(gait_id(&robot, index))
         };
-        for (forth, back) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
-            let (forth, back) = (gait(forth), gait(back));
-            assert_eq!(forth.channels, back.channels);
-            assert!(forth.increment > 0);
-            assert_eq!(forth.increment, -back.increment);
+        for (forward, backward) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
+            let (forward, backward) = (table_gait(forward), table_gait(backward));
+            assert_eq!(forward.channels, backward.channels);
+            assert!(forward.increment > 0);
+            assert_eq!(forward.increment, -backward.increment);
         }
-        let (on, once) = (gait("stroll-on"), gait("stroll"));
-        assert_eq!(on.channels, once.channels);
+        let (stroll_on, stroll) = (table_gait("stroll-on"), table_gait("stroll"));
+        assert_eq!(stroll_on.channels, stroll.channels);
         // 1.28 s are 64 frames: 2^24 / 64.
-        assert_eq!(on.increment, 262_144);
+        assert_eq!(stroll_on.increment, 262_144);
     }
 
     #[test]
     fn increments_add_up_to_the_period() {
         for (name, robot) in all() {
             for gait in robot.gaits() {
-                let increment = robot.firmware().gait(id(&robot, gait.index())).increment;
+                let increment = robot
+                    .firmware()
+                    .gait(gait_id(&robot, gait.index()))
+                    .increment;
                 let frames = 50.0 * gait.period();
                 let error = f64::from(increment.abs()) * frames - f64::from(1 << 24);
                 assert!(error.abs() <= 0.5 * frames, "{name} {}", gait.name());
@@ -253,7 +260,7 @@ mod tests {
         }
     }
 
-    fn id(robot: &Robot, index: usize) -> lizard_core::numbers::gaits::GaitId {
+    fn gait_id(robot: &Robot, index: usize) -> lizard_core::numbers::gaits::GaitId {
         lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
             .nth(index)
             .expect("a gait")
@@ -264,9 +271,9 @@ mod tests {
         for (name, robot) in all() {
             for gait in robot.gaits() {
                 let firmware = robot.firmware();
-                let spoken: Vec<u8> = firmware.name(id(&robot, gait.index())).collect();
+                let console_name: Vec<u8> = firmware.name(gait_id(&robot, gait.index())).collect();
                 assert_eq!(
-                    String::from_utf8(spoken).expect("ASCII"),
+                    String::from_utf8(console_name).expect("ASCII"),
                     gait.name().replace('-', " "),
                     "{name}"
                 );
@@ -281,9 +288,9 @@ mod tests {
         for phase in 0..=u16::MAX {
             let [a1, a2, a3, a4] = walk.table_sweeps(phase);
             // LH starts at 0, LF a quarter of a cycle later, RH half a cycle, RF three quarters.
-            let hind_left = |later: u16| walk.table_sweeps(phase.wrapping_sub(later))[3];
-            assert_eq!([a1, a4], [hind_left(0x4000), hind_left(0)]);
-            assert_eq!([-a3, -a2], [hind_left(0x8000), hind_left(0xc000)]);
+            let hind_left_at = |delay: u16| walk.table_sweeps(phase.wrapping_sub(delay))[3];
+            assert_eq!([a1, a4], [hind_left_at(0x4000), hind_left_at(0)]);
+            assert_eq!([-a3, -a2], [hind_left_at(0x8000), hind_left_at(0xc000)]);
         }
     }
 
@@ -300,11 +307,11 @@ mod tests {
             let (a, b) = (robot.gait(a).expect(a), robot.gait(b).expect(b));
             for phase in 0..=u16::MAX {
                 let [a1, a2, a3, a4] = a.table_sweeps(phase);
-                let mirrored = [-a2, -a1, -a4, -a3];
-                let other = b.table_sweeps(phase);
+                let expected = [-a2, -a1, -a4, -a3];
+                let actual = b.table_sweeps(phase);
                 // The core rounds halves up on both sides of zero, so mirrored values may differ by a step.
                 assert!(
-                    mirrored.iter().zip(other).all(|(m, o)| m.abs_diff(o) <= 1),
+                    expected.iter().zip(actual).all(|(m, o)| m.abs_diff(o) <= 1),
                     "{name} {} at {phase}",
                     a.name()
                 );
@@ -316,35 +323,36 @@ mod tests {
     fn gaits_that_differ_only_in_amplitude_start_and_gain_share_a_waveform() {
         // Two waves, two waveforms with holds that four turning gaits share, and one path for two servos that mirror
         // each other.
-        assert_eq!(waves(&robot("paper")), 5);
-        let other = with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
-        assert_eq!(waves(&other), 5);
-        let duty = with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("a trot");
-        assert_eq!(waves(&duty), 5);
-        let more = with(
+        assert_eq!(wave_count(&robot("paper")), 5);
+        let other_robot =
+            with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
+        assert_eq!(wave_count(&other_robot), 5);
+        let duty_robot = with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("a trot");
+        assert_eq!(wave_count(&duty_robot), 5);
+        let robot_with_step = with(
             "paper",
             &[(
                 "[gait.trot]",
                 "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]",
             )],
         );
-        assert_eq!(waves(&more.expect("a step")), 6);
+        assert_eq!(wave_count(&robot_with_step.expect("a step")), 6);
     }
 
     #[test]
     fn a_waveform_is_kept_at_its_largest_so_no_gain_exceeds_1() {
         for (name, robot) in all() {
             let firmware = robot.firmware();
-            let mut largest = vec![0; waves(&robot)];
+            let mut max_gains = vec![0; wave_count(&robot)];
             for gait in robot.gaits() {
-                for channel in firmware.gait(id(&robot, gait.index())).channels {
-                    let max_gain = &mut largest[usize::from(channel.wave)];
+                for channel in firmware.gait(gait_id(&robot, gait.index())).channels {
+                    let max_gain = &mut max_gains[usize::from(channel.wave)];
                     *max_gain = channel.gain.unsigned_abs().max(*max_gain);
                 }
             }
             assert!(
-                largest.iter().all(|gain| *gain == 16384),
-                "{name} {largest:?}"
+                max_gains.iter().all(|gain| *gain == 16384),
+                "{name} {max_gains:?}"
             );
         }
     }
@@ -354,7 +362,7 @@ mod tests {
         let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         let robot =
             Robot::parse(&format!("{}{stand}", text_before_gaits("unequal"))).expect("it stands");
-        assert_eq!(waves(&robot), 1);
+        assert_eq!(wave_count(&robot), 1);
         let stand = &robot.gaits()[0];
         assert!(!stand.moves());
         assert_eq!(stand.table_sweeps(12_345), [0; 4]);
@@ -363,12 +371,12 @@ mod tests {
     #[test]
     fn a_leg_may_not_sweep_half_a_turn() {
         let gait = "[gait.whirl]\nperiod = 9.0\nwaveform = \"wave\"\nduty = 0.5\namplitude = 90.0\nstart = { LF = 0, RF = 0, RH = 0, LH = 0 }\ngain = { RH = -2.5 }\n[gait.walk]";
-        let refused = with("unequal", &[("[gait.walk]", gait)])
+        let message = with("unequal", &[("[gait.walk]", gait)])
             .expect_err("half a turn")
             .to_string();
         assert!(
-            refused.starts_with("in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more ("),
-            "{refused}"
+            message.starts_with("in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more ("),
+            "{message}"
         );
     }
 }

@@ -12,12 +12,12 @@ const TWIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/twin.md");
 const LIMITS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
 const END: &str = "<!-- end -->";
 
-fn fenced(text: String) -> String {
+fn fence(text: String) -> String {
     format!("```text\n{text}```\n")
 }
 
 /// Returns a page in which `text` replaces everything between a marker and the next end marker.
-fn filled(page: &str, marker: &str, text: &str) -> String {
+fn fill_block(page: &str, marker: &str, text: &str) -> String {
     let marker = format!("<!-- {marker} -->\n");
     let start = page.find(&marker).expect(&marker) + marker.len();
     let end = start + page[start..].find(END).expect(END);
@@ -28,42 +28,51 @@ fn filled(page: &str, marker: &str, text: &str) -> String {
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_gaits_shows_the_output_of_the_commands() {
     let page = std::fs::read_to_string(PAGE).expect(PAGE);
-    let mut now = filled(
+    let mut new_page = fill_block(
         &page,
         "lizard gaits",
-        &fenced(Report::of(paper()).to_string()),
+        &fence(Report::of(paper()).to_string()),
     );
-    now = filled(
-        &now,
+    new_page = fill_block(
+        &new_page,
         "lizard gaits --sensitivity",
-        &fenced(Sensitivity::of(paper()).to_string()),
+        &fence(Sensitivity::of(paper()).to_string()),
     );
-    now = filled(
-        &now,
+    new_page = fill_block(
+        &new_page,
         "lizard gaits --servos",
-        &fenced(ServoTable::of(paper()).to_string()),
+        &fence(ServoTable::of(paper()).to_string()),
     );
-    check(PAGE, &page, &now);
+    check(PAGE, &page, &new_page);
 }
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_limits_lists_the_assumptions_that_matter() {
     let page = std::fs::read_to_string(LIMITS).expect(LIMITS);
-    let text = fenced(Assumptions::of(paper()).to_string());
-    let now = filled(&page, "lizard gaits --assumptions", &text);
-    check(LIMITS, &page, &now);
+    let text = fence(Assumptions::of(paper()).to_string());
+    let new_page = fill_block(&page, "lizard gaits --assumptions", &text);
+    check(LIMITS, &page, &new_page);
 }
 
 /// Asserts that a page is up to date. With the environment variable `BLESS_GAITS`, writes the page instead.
-fn check(path: &str, page: &str, new: &str) {
+fn check(path: &str, page: &str, new_page: &str) {
     let (_, name) = path.split_once("/../../").expect("a page");
     if std::env::var_os("BLESS_GAITS").is_some() {
-        std::fs::write(path, new).expect(path);
-    } else if let Some((was, is)) = page.lines().zip(new.lines()).find(|(was, is)| was != is) {
-        panic!("{name} is out of date; run with BLESS_GAITS=1.\n  was {was}\n  is  {is}");
+        std::fs::write(path, new_page).expect(path);
+    } else if let Some((old_line, new_line)) = page
+        .lines()
+        .zip(new_page.lines())
+        .find(|(old_line, new_line)| old_line != new_line)
+    {
+        panic!(
+            "{name} is out of date; run with BLESS_GAITS=1.\n  was {old_line}\n  is  {new_line}"
+        );
     } else {
-        assert_eq!(page, new, "{name} is out of date; run with BLESS_GAITS=1");
+        assert_eq!(
+            page, new_page,
+            "{name} is out of date; run with BLESS_GAITS=1"
+        );
     }
 }
 
@@ -72,7 +81,7 @@ const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Som
 
 /// Makes the cells of a row of the table of slotted struts: one figure of a gait for each spring force. The springs
 /// have the rate of the paper's coil.
-fn slotted(name: &str, figure: fn(SimulatedCycle) -> f64) -> String {
+fn strut_cells(name: &str, figure_of: fn(SimulatedCycle) -> f64) -> String {
     let rate = paper().parts().spring.rate();
     let cells = PULLS.map(|force| {
         let kind = force.map_or(DriveKind::Rigid, |force| {
@@ -84,7 +93,7 @@ fn slotted(name: &str, figure: fn(SimulatedCycle) -> f64) -> String {
         };
         format!(
             " {:.1} |",
-            figure(gait(paper(), name).simulate_cycle(&ground))
+            figure_of(gait(paper(), name).simulate_cycle(&ground))
         )
     });
     cells.concat()
@@ -103,13 +112,13 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
         ground.body.mass,
         ground.friction,
         grip * leg,
-        slotted("walk", |walked| walked.lag),
-        slotted("walk", |walked| walked.travel.forward),
-        slotted("trot", |walked| walked.travel.forward),
-        slotted("left", |walked| walked.travel.turn),
+        strut_cells("walk", |cycle| cycle.lag),
+        strut_cells("walk", |cycle| cycle.travel.forward),
+        strut_cells("trot", |cycle| cycle.travel.forward),
+        strut_cells("left", |cycle| cycle.travel.turn),
     );
-    let now = filled(&page, "springs of robots/paper.toml", &text);
-    check(TWIN, &page, &now);
+    let new_page = fill_block(&page, "springs of robots/paper.toml", &text);
+    check(TWIN, &page, &new_page);
     assert!(
         page.contains(&format!("| mass | {} g, what", ground.body.mass)),
         "{TWIN}"
@@ -118,10 +127,10 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
 
 /// Makes a robot's row of the table of paces: the gait that loads the servos most at the supply at which the robot
 /// stops, and the highest pace at which every gait leaves the servos enough torque at that supply.
-fn slow_pace(file: &str) -> String {
+fn slow_pace_row(file: &str) -> String {
     let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let robot = Robot::load(&path).unwrap_or_else(|error| panic!("{error}"));
-    let [own, _, stop] = robot.reported_volts();
+    let [own_volts, _, stop_volts] = robot.reported_volts();
     let efforts: Vec<_> = robot
         .gaits()
         .iter()
@@ -130,33 +139,36 @@ fn slow_pace(file: &str) -> String {
             (gait.name(), effort)
         })
         .collect();
-    let line = |effort: &Effort, pace| effort.line_share(pace, stop / own);
-    let (name, hardest) = efforts
+    let share_at = |effort: &Effort, pace| effort.line_share(pace, stop_volts / own_volts);
+    let (name, hardest_effort) = efforts
         .iter()
-        .max_by(|(_, a), (_, b)| line(a, 1.0).total_cmp(&line(b, 1.0)))
+        .max_by(|(_, a), (_, b)| share_at(a, 1.0).total_cmp(&share_at(b, 1.0)))
         .expect("a gait");
     let is_within = |percent: &u8| {
         let pace = f64::from(*percent) / 100.0;
         efforts
             .iter()
-            .all(|(_, effort)| line(effort, pace) <= HIGH_LINE_SHARE)
+            .all(|(_, effort)| share_at(effort, pace) <= HIGH_LINE_SHARE)
     };
     let percent = (10..=100).rev().find(is_within).expect("a pace");
     if robot.supplies().rail.is_some() {
         assert_eq!(robot.supplies().slow_pace, percent, "{file}");
     }
-    let [full, slow] = [1.0, f64::from(percent) / 100.0].map(|pace| line(hardest, pace));
-    format!("| `{file}` | `{name}` | {stop:.1} | {full:.2} | {percent} | {slow:.2} |\n")
+    let [full_share, slow_share] =
+        [1.0, f64::from(percent) / 100.0].map(|pace| share_at(hardest_effort, pace));
+    format!(
+        "| `{file}` | `{name}` | {stop_volts:.1} | {full_share:.2} | {percent} | {slow_share:.2} |\n"
+    )
 }
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_the_twin_shows_the_paces_of_a_low_supply() {
     let page = std::fs::read_to_string(TWIN).expect(TWIN);
-    let rows = ["paper", "own-gaits", "unequal", "large", "grain"].map(slow_pace);
+    let rows = ["paper", "own-gaits", "unequal", "large", "grain"].map(slow_pace_row);
     let text = format!(
         "| file | hardest gait | `stop`, V | its line at full pace | pace, % | its line then |\n|---|---|---|---|---|---|\n{}",
         rows.concat()
     );
-    check(TWIN, &page, &filled(&page, "paces", &text));
+    check(TWIN, &page, &fill_block(&page, "paces", &text));
 }

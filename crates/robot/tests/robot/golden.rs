@@ -22,11 +22,11 @@ fn snapshot(gait: &CheckedGait) -> String {
 
 #[test]
 fn every_gait_of_the_papers_robot_is_as_its_snapshot_says() {
-    let bless = std::env::var_os("BLESS_GAITS").is_some();
+    let is_blessing = std::env::var_os("BLESS_GAITS").is_some();
     for gait in paper().gaits() {
         let path = format!("{FOLDER}/{}.csv", gait.name());
         let current = snapshot(gait);
-        if bless {
+        if is_blessing {
             std::fs::write(&path, &current).expect(&path);
         }
         let stored = std::fs::read_to_string(&path).unwrap_or_default();

@@ -15,10 +15,10 @@ fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
 /// Returns the error message for these tables, with its line number counted from their first line.
 fn refusal(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
-    let before = paper_text().trim_end().lines().count() + 1;
-    let line = error.line.expect("a line") - before;
+    let lines_before = paper_text().trim_end().lines().count() + 1;
+    let line = error.line.expect("a line") - lines_before;
     error.to_string().replacen(
-        &format!("robot.toml:{}", line + before),
+        &format!("robot.toml:{}", line + lines_before),
         &line.to_string(),
         1,
     )
@@ -32,47 +32,53 @@ fn records(step: &str) -> Vec<(u8, u8, u16)> {
         panic!("one routine");
     };
     assert_eq!(routine.count(), 1);
-    let fields = |step: &Step| (step.kind, step.gait, step.count);
-    routine.steps().iter().map(fields).collect()
+    let fields_of = |step: &Step| (step.kind, step.gait, step.count);
+    routine.steps().iter().map(fields_of).collect()
 }
 
 #[test]
 fn a_step_with_an_input_is_two_records_the_input_first() {
     let (button, nose) = (Input::button(15), Input::nose(16));
-    let until = |input: Input| (Step::UNTIL, input.byte(), 0);
-    let gait = |name: &str| paper().gait(name).expect(name).index() as u8;
+    let until_record = |input: Input| (Step::UNTIL, input.byte(), 0);
+    let gait_index = |name: &str| paper().gait(name).expect(name).index() as u8;
     for (step, expected) in [
         (
             "wait button",
-            vec![until(button), (Step::WAIT, 0, Step::ENDLESS)],
+            vec![until_record(button), (Step::WAIT, 0, Step::ENDLESS)],
         ),
         (
             " wait  nose ",
-            vec![until(nose), (Step::WAIT, 0, Step::ENDLESS)],
+            vec![until_record(nose), (Step::WAIT, 0, Step::ENDLESS)],
         ),
         (
             "walk until nose",
-            vec![until(nose), (Step::FRAMES, gait("walk"), Step::ENDLESS)],
+            vec![
+                until_record(nose),
+                (Step::FRAMES, gait_index("walk"), Step::ENDLESS),
+            ],
         ),
         (
             "walk 10 until nose",
-            vec![until(nose), (Step::CYCLES, gait("walk"), 10)],
+            vec![until_record(nose), (Step::CYCLES, gait_index("walk"), 10)],
         ),
         (
             "arc left 2.5 s until button",
-            vec![until(button), (Step::FRAMES, gait("arc-left"), 125)],
+            vec![
+                until_record(button),
+                (Step::FRAMES, gait_index("arc-left"), 125),
+            ],
         ),
         (
             "stand until button",
-            vec![until(button), (Step::FRAMES, 0, Step::ENDLESS)],
+            vec![until_record(button), (Step::FRAMES, 0, Step::ENDLESS)],
         ),
         (
             "rest until button",
-            vec![until(button), (Step::REST, 0, Step::ENDLESS)],
+            vec![until_record(button), (Step::REST, 0, Step::ENDLESS)],
         ),
         (
             "rest 5 s until button",
-            vec![until(button), (Step::REST, 0, 250)],
+            vec![until_record(button), (Step::REST, 0, 250)],
         ),
         ("rest", vec![(Step::REST, 0, 1)]),
     ] {
@@ -86,8 +92,8 @@ fn a_step_with_an_input_is_two_records_the_input_first() {
 fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
     let robot = paper_with_tables(INPUTS).expect("inputs");
     assert_eq!(robot.section(), paper().section());
-    let each: Vec<_> = robot.inputs().each().collect();
-    assert_eq!(each, [("button", 15), ("nose", 16)]);
+    let named_pins: Vec<_> = robot.inputs().each().collect();
+    assert_eq!(named_pins, [("button", 15), ("nose", 16)]);
     assert_eq!(paper().inputs().each().count(), 0);
 }
 
@@ -128,17 +134,17 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
             assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
-    let free = [
+    let free_pins = [
         "D2", "D4", "D5", "D6", "D7", "D8", "D12", "A0", "A1", "A2", "A4", "A5",
     ];
-    for pin in free {
+    for pin in free_pins {
         let robot =
             paper_with_tables(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
-    let twice = refusal("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
+    let message = refusal("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
     assert_eq!(
-        twice,
+        message,
         "4: input.nose.pin is \"A1\", which input.button already has"
     );
 }
@@ -210,26 +216,28 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
 
 #[test]
 fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_way_without_an_end() {
-    let round = |steps: &str| {
+    let round_of = |steps: &str| {
         let robot = paper_with_tables(&format!(
             "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
         ));
         let robot = robot.expect(steps);
         Round::of(&robot, &robot.routines()[0])
     };
-    let text = |tables: &str| Report::of(&paper_with_tables(tables).expect(tables)).to_string();
-    let patrol = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
-    assert!(text(&patrol).contains(WITHOUT_CONTACTS));
-    assert!(!text(INPUTS).contains(WITHOUT_CONTACTS));
-    let with_inputs =
-        round("\"wait button\", \"walk until nose\", \"left 3 until nose\", \"rest until button\"");
-    let without = round("\"walk 1\", \"left 3\", \"rest\"");
-    assert!(with_inputs.has_inputs && !without.has_inputs);
-    assert_eq!((with_inputs.steps, without.steps), (4, 3));
-    let longer = with_inputs.seconds - without.seconds;
-    assert!((0.0..0.1).contains(&longer), "{longer}");
-    let turned = |round: &Round| round.movement.turn.expect("known");
-    assert!((turned(&with_inputs) - turned(&without)).abs() < 0.1);
+    let report_of =
+        |tables: &str| Report::of(&paper_with_tables(tables).expect(tables)).to_string();
+    let tables = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
+    assert!(report_of(&tables).contains(WITHOUT_CONTACTS));
+    assert!(!report_of(INPUTS).contains(WITHOUT_CONTACTS));
+    let round_with_inputs = round_of(
+        "\"wait button\", \"walk until nose\", \"left 3 until nose\", \"rest until button\"",
+    );
+    let plain_round = round_of("\"walk 1\", \"left 3\", \"rest\"");
+    assert!(round_with_inputs.has_inputs && !plain_round.has_inputs);
+    assert_eq!((round_with_inputs.steps, plain_round.steps), (4, 3));
+    let extra_seconds = round_with_inputs.seconds - plain_round.seconds;
+    assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds}");
+    let turn_of = |round: &Round| round.movement.turn.expect("known");
+    assert!((turn_of(&round_with_inputs) - turn_of(&plain_round)).abs() < 0.1);
 }
 
 #[test]
@@ -249,7 +257,7 @@ fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
     let core = robot.core();
     let ids = lizard_core::numbers::gaits::GaitId::all(core.gait_count());
     let record = core.gait(ids.last().expect("the routine"));
-    let [_, steps, _, again] = record.channels.map(|channel| channel.offset);
-    assert_eq!((steps, again), (6, 2));
-    assert_eq!(core.step(&record, again).kind, Step::UNTIL);
+    let [_, steps, _, repeat_from] = record.channels.map(|channel| channel.offset);
+    assert_eq!((steps, repeat_from), (6, 2));
+    assert_eq!(core.step(&record, repeat_from).kind, Step::UNTIL);
 }

@@ -23,12 +23,13 @@ const EXPECTED: [(&str, f64, f64); 9] = [
 /// Returns the predicted movement of one cycle of a gait. Panics if a component of the movement is undecided.
 fn predict(robot: &Robot, name: &str) -> Travel {
     let movement = robot.predict(gait(robot, name));
-    let known =
-        |part: Option<f64>| part.unwrap_or_else(|| panic!("{name} is undecided: {movement:?}"));
+    let require_decided = |component: Option<f64>| {
+        component.unwrap_or_else(|| panic!("{name} is undecided: {movement:?}"))
+    };
     Travel {
-        forward: known(movement.forward),
-        left: known(movement.left),
-        turn: known(movement.turn),
+        forward: require_decided(movement.forward),
+        left: require_decided(movement.left),
+        turn: require_decided(movement.turn),
     }
 }
 
@@ -66,29 +67,29 @@ fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
     let look = report.lines().find(|line| line.starts_with("look"));
     let cells: Vec<&str> = look.expect("look").split_whitespace().collect();
     // The distance with ideal servos, and with the robot's own servos.
-    let [ideal, real] = [6, 2].map(|behind| cells[cells.len() - behind]);
-    assert_eq!((ideal, real), ("-", "-"), "{cells:?}");
+    let [ideal_cell, real_cell] = [6, 2].map(|from_end| cells[cells.len() - from_end]);
+    assert_eq!((ideal_cell, real_cell), ("-", "-"), "{cells:?}");
     assert!(report.contains("\n- undecided: two feet against two"));
 }
 
 #[test]
 fn a_table_read_backwards_leads_back() {
     let robot = paper();
-    let forth = predict(robot, "walk");
+    let walk = predict(robot, "walk");
     let back = predict(robot, "back");
     assert!(
-        (forth.forward + back.forward).abs() < 1e-6,
-        "{forth:?} {back:?}"
+        (walk.forward + back.forward).abs() < 1e-6,
+        "{walk:?} {back:?}"
     );
     // One cycle forward and the same cycle in reverse, for a gait that also turns.
     let arc = gait(robot, "arc-left");
     let cycle: Vec<[f64; 4]> = (0..=500).map(|i| arc.sweeps(i as f64 / 500.0)).collect();
-    let home = robot
+    let travel = robot
         .ground()
         .travel(cycle.iter().chain(cycle.iter().rev()).copied());
     assert!(
-        home.forward.hypot(home.left) < 1e-5 && home.turn.abs() < 1e-6,
-        "{home:?}"
+        travel.forward.hypot(travel.left) < 1e-5 && travel.turn.abs() < 1e-6,
+        "{travel:?}"
     );
 }
 
@@ -105,11 +106,11 @@ fn left_and_right_are_mirror_images() {
 #[test]
 fn a_sine_trot_gets_nowhere() {
     let robot = paper();
-    let sine = |i: i32| {
+    let sweeps_at = |i: i32| {
         let psi = 20.0 * (f64::from(i) * std::f64::consts::TAU / 400.0).sin();
         [psi, -psi, psi, -psi]
     };
-    let travel = robot.ground().travel((0..=400).map(sine));
+    let travel = robot.ground().travel((0..=400).map(sweeps_at));
     assert!(
         travel.forward.abs() < 1e-5 && travel.left.abs() < 1e-5 && travel.turn.abs() < 1e-5,
         "{travel:?}"
@@ -121,19 +122,20 @@ fn a_finer_cycle_changes_no_prediction_by_a_hundredth() {
     let robot = paper();
     for gait in robot.gaits() {
         let sweeps_at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
-        let coarse = robot.ground().travel((0..=1000).map(sweeps_at));
+        let coarse_travel = robot.ground().travel((0..=1000).map(sweeps_at));
         let sweeps_at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 2000.0));
-        let fine = robot.ground().travel((0..=2000).map(sweeps_at));
-        let error = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
+        let fine_travel = robot.ground().travel((0..=2000).map(sweeps_at));
+        let error = (coarse_travel.forward - fine_travel.forward)
+            .hypot(coarse_travel.left - fine_travel.left);
         assert!(
-            error < 0.01 && (coarse.turn - fine.turn).abs() < 0.01,
+            error < 0.01 && (coarse_travel.turn - fine_travel.turn).abs() < 0.01,
             "{} {error}",
             gait.name()
         );
     }
 }
 
-fn forward(robot: &Robot, name: &str) -> f64 {
+fn forward_of(robot: &Robot, name: &str) -> f64 {
     let forward = robot.predict(gait(robot, name)).forward;
     forward.unwrap_or_else(|| panic!("{name} is undecided"))
 }
@@ -142,28 +144,28 @@ fn forward(robot: &Robot, name: &str) -> f64 {
 fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
     for mount in ["41.0", "49.0"] {
         let robot = paper_with("mount = 0.0", &format!("mount = {mount}")).expect("a mount");
-        assert!((4.0..=6.5).contains(&forward(&robot, "walk")));
-        assert!((21.0..=25.0).contains(&forward(&robot, "crawl")));
+        assert!((4.0..=6.5).contains(&forward_of(&robot, "walk")));
+        assert!((21.0..=25.0).contains(&forward_of(&robot, "crawl")));
     }
 }
 
 #[test]
 fn pads_that_grip_backward_help_forward_gaits_until_reverse_collapses() {
-    let even = paper();
-    let ratio = |ratio: &str| {
+    let even_robot = paper();
+    let robot_with_ratio = |ratio: &str| {
         paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("a ratio")
     };
     for rho in ["1.1", "1.25", "1.5"] {
-        let robot = ratio(rho);
-        assert!(forward(&robot, "walk") > forward(even, "walk"));
+        let robot = robot_with_ratio(rho);
+        assert!(forward_of(&robot, "walk") > forward_of(even_robot, "walk"));
         assert!(
-            forward(&robot, "back") > forward(even, "back"),
+            forward_of(&robot, "back") > forward_of(even_robot, "back"),
             "costs reverse"
         );
-        assert!(forward(&robot, "back") < -30.0, "but does not stop it");
+        assert!(forward_of(&robot, "back") < -30.0, "but does not stop it");
     }
     assert!(
-        forward(&ratio("2.0"), "back") > 0.0,
+        forward_of(&robot_with_ratio("2.0"), "back") > 0.0,
         "now back walks forward"
     );
 }

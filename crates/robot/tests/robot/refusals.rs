@@ -16,49 +16,53 @@ struct Mistake {
 
 /// Reads the mistakes from mistakes.txt. There, `-` marks the text of the file, `+` its replacement and `=` the
 /// message.
-fn mistakes() -> impl Iterator<Item = Mistake> {
+fn read_mistakes() -> impl Iterator<Item = Mistake> {
     let blocks = include_str!("mistakes.txt").split("\n\n");
     blocks.filter(|block| block.starts_with('-')).map(|block| {
-        let lines = |mark: char| -> String {
-            let of_mark = block.lines().filter_map(|line| line.strip_prefix(mark));
-            let text = of_mark.map(|line| line.strip_prefix(' ').unwrap_or(line));
+        let lines_with = |mark: char| -> String {
+            let marked_lines = block.lines().filter_map(|line| line.strip_prefix(mark));
+            let text = marked_lines.map(|line| line.strip_prefix(' ').unwrap_or(line));
             text.collect::<Vec<_>>().join("\n")
         };
         Mistake {
-            from: lines('-'),
-            to: lines('+'),
-            message: lines('='),
+            from: lines_with('-'),
+            to: lines_with('+'),
+            message: lines_with('='),
         }
     })
 }
 
 #[test]
 fn every_mistake_gets_its_message() {
-    assert!(mistakes().count() > 100);
-    for Mistake { from, to, message } in mistakes() {
+    assert!(read_mistakes().count() > 100);
+    for Mistake { from, to, message } in read_mistakes() {
         let error = paper_with(&from, &to)
             .err()
             .unwrap_or_else(|| panic!("{to:?} was accepted"));
-        let place = format!("robot.toml:{}: ", error.line.expect("a line"));
-        let whole = error.to_string();
+        let location = format!("robot.toml:{}: ", error.line.expect("a line"));
+        let full_message = error.to_string();
         // The place is at the start, or at the end if the message begins with the consequence for the robot.
-        assert!(whole.contains(&place), "{whole}");
-        assert_eq!(whole.replacen(&place, "", 1), message, "for {to:?}");
+        assert!(full_message.contains(&location), "{full_message}");
+        assert_eq!(
+            full_message.replacen(&location, "", 1),
+            message,
+            "for {to:?}"
+        );
     }
 }
 
 #[test]
 fn every_mistake_gets_the_line_of_its_key_or_table() {
-    for Mistake { from, to, .. } in mistakes() {
+    for Mistake { from, to, .. } in read_mistakes() {
         let text = paper_text().replacen(&from, &to, 1);
         let error = Robot::parse(&text).expect_err(&to);
         let line = text.lines().nth(error.line.expect("a line") - 1);
         let line = line.expect("a line of the file");
         let mut names = error.key.split(['.', '[']).filter(|name| *name != "gait");
-        let named = names.any(|name| line.contains(name))
+        let is_named = names.any(|name| line.contains(name))
             || line.contains("[gait")
             || line.contains("amplitude =");
-        assert!(named, "{line:?} for {error}");
+        assert!(is_named, "{line:?} for {error}");
     }
 }
 
@@ -74,13 +78,13 @@ fn a_missing_file_is_named() {
 }
 
 /// Writes a temporary file with these bytes, under a name that no other test process uses.
-fn file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
+fn temporary_file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
     let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
     std::fs::write(&path, bytes).expect("a temporary file");
     path
 }
 
-fn refused(path: &std::path::Path) -> String {
+fn refusal_of(path: &std::path::Path) -> String {
     Robot::load(path)
         .expect_err("it is no robot")
         .to_string()
@@ -91,29 +95,29 @@ fn refused(path: &std::path::Path) -> String {
 fn a_file_that_is_not_text_is_refused_without_reading_all_of_it() {
     // Without a limit, reading would continue until memory is full.
     assert_eq!(
-        refused("/dev/zero".as_ref()),
+        refusal_of("/dev/zero".as_ref()),
         "FILE: is longer than 1 MiB, so it is not a robot file"
     );
-    let folder = refused(&std::env::temp_dir());
-    assert!(folder.starts_with("FILE: cannot be read: "), "{folder}");
-    let latin = file("latin", b"# one\n# caf\xe9\n");
+    let message = refusal_of(&std::env::temp_dir());
+    assert!(message.starts_with("FILE: cannot be read: "), "{message}");
+    let latin_path = temporary_file("latin", b"# one\n# caf\xe9\n");
     assert_eq!(
-        refused(&latin),
+        refusal_of(&latin_path),
         "FILE: is not UTF-8 text: line 2 holds other bytes"
     );
-    let mut long = paper_text().into_bytes();
-    long.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');
-    let long = file("long", &long);
-    assert!(Robot::load(&long).is_ok(), "1 MiB is allowed");
-    for path in [latin, long] {
+    let mut bytes = paper_text().into_bytes();
+    bytes.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');
+    let long_path = temporary_file("long", &bytes);
+    assert!(Robot::load(&long_path).is_ok(), "1 MiB is allowed");
+    for path in [latin_path, long_path] {
         std::fs::remove_file(path).expect("it was there");
     }
 }
 
 #[test]
 fn a_byte_order_mark_changes_nothing() {
-    let marked = format!("\u{feff}{}", paper_text());
-    assert_eq!(Robot::parse(&marked), Robot::parse(&paper_text()));
+    let marked_text = format!("\u{feff}{}", paper_text());
+    assert_eq!(Robot::parse(&marked_text), Robot::parse(&paper_text()));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use lizard_kinematics::Check;
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE};
 
 /// Lists the files in robots/, and robot.toml.
-fn files() -> Vec<PathBuf> {
+fn list_files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = std::fs::read_dir(root.join("robots")).expect("robots/");
     let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("a file").path()).collect();
@@ -22,7 +22,7 @@ fn for_each_robot(test: impl Fn(&str, &Robot)) {
             let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
             (file.display().to_string(), robot)
         };
-        files().into_iter().map(load).collect()
+        list_files().into_iter().map(load).collect()
     });
     for (file, robot) in ROBOTS.iter() {
         test(file, robot);
@@ -54,8 +54,12 @@ fn every_gait_is_safe_between_its_samples_too() {
             let solution = robot.lizard().solve(&pose).expect("it closes");
             if let Some(violation) = robot.limits().violations(&solution).next() {
                 // The check samples 1024 phases. Between two samples, a margin changes by less than 0.01.
-                let by = (violation.value - violation.limit).abs();
-                assert!(by < 0.01, "{file} {} at {phase}: {violation}", gait.name());
+                let excess = (violation.value - violation.limit).abs();
+                assert!(
+                    excess < 0.01,
+                    "{file} {} at {phase}: {violation}",
+                    gait.name()
+                );
             }
         }
     });
@@ -66,35 +70,39 @@ fn an_audit_has_the_least_margins_of_all_phases() {
     for_each_gait(|file, robot, gait| {
         let audit = gait.audit();
         let mut least_margins = [f64::INFINITY; 3];
-        let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut smallest_stroke, mut largest_stroke) = (f64::INFINITY, f64::NEG_INFINITY);
         for phase in (0..=u16::MAX).step_by(64) {
             let pose = gait.table_angles(phase).into();
-            let s = robot.lizard().solve(&pose).expect("it closes");
-            for (index, margins) in [&s.margins.type2[..], &s.margins.type1, &s.margins.leg]
-                .into_iter()
-                .enumerate()
+            let solution = robot.lizard().solve(&pose).expect("it closes");
+            for (index, margins) in [
+                &solution.margins.type2[..],
+                &solution.margins.type1,
+                &solution.margins.leg,
+            ]
+            .into_iter()
+            .enumerate()
             {
                 least_margins[index] = margins.iter().fold(least_margins[index], |a, b| a.min(*b));
             }
-            smallest = smallest.min(s.left.s).min(s.right.s);
-            largest = largest.max(s.left.s).max(s.right.s);
+            smallest_stroke = smallest_stroke.min(solution.left.s).min(solution.right.s);
+            largest_stroke = largest_stroke.max(solution.left.s).max(solution.right.s);
         }
-        let found = [audit.type2.value, audit.type1.value, audit.leg.value];
-        for (found, sampled) in found.into_iter().zip(least_margins) {
+        let audited_margins = [audit.type2.value, audit.type1.value, audit.leg.value];
+        for (audited, sampled) in audited_margins.into_iter().zip(least_margins) {
             // The audit samples more phases than this test, so its minimum may be smaller.
             assert!(
-                (0.0..0.002).contains(&(sampled - found)),
+                (0.0..0.002).contains(&(sampled - audited)),
                 "{file} {}",
                 gait.name()
             );
         }
         assert!(
-            (0.0..0.1).contains(&(smallest - audit.stroke.0)),
+            (0.0..0.1).contains(&(smallest_stroke - audit.stroke.0)),
             "{file} {}",
             gait.name()
         );
         assert!(
-            (0.0..0.1).contains(&(audit.stroke.1 - largest)),
+            (0.0..0.1).contains(&(audit.stroke.1 - largest_stroke)),
             "{file} {}",
             gait.name()
         );
@@ -105,19 +113,19 @@ fn an_audit_has_the_least_margins_of_all_phases() {
 #[test]
 fn the_fastest_frame_is_the_fastest_in_either_direction() {
     for_each_gait(|file, robot, gait| {
-        let frame = 0.02 / gait.period();
-        let mut largest = 0.0f64;
+        let phase_per_frame = 0.02 / gait.period();
+        let mut largest_speed = 0.0f64;
         for i in 0..1000 {
             let phase = f64::from(i) / 1000.0;
-            let (from, to) = (gait.angles(phase), gait.angles(phase + frame));
+            let (from, to) = (gait.angles(phase), gait.angles(phase + phase_per_frame));
             for servo in 0..4 {
-                largest = largest.max((to[servo] - from[servo]).abs() * 50.0);
+                largest_speed = largest_speed.max((to[servo] - from[servo]).abs() * 50.0);
             }
         }
         let peak = gait.audit().peak;
         assert!(
-            (peak.speed - largest).abs() <= 0.005 * largest,
-            "{file} {}: {peak:?}, but {largest}",
+            (peak.speed - largest_speed).abs() <= 0.005 * largest_speed,
+            "{file} {}: {peak:?}, but {largest_speed}",
             gait.name()
         );
         assert!(peak.speed <= robot.pace().gait_slew);
@@ -141,8 +149,8 @@ fn every_gait_has_its_place_its_name_and_its_travel() {
     for_each_robot(|file, robot| {
         for (index, gait) in robot.gaits().iter().enumerate() {
             assert_eq!(gait.index(), index);
-            let spoken = gait.name().replace('-', " ");
-            assert_eq!(robot.gait(&spoken), Some(gait), "{file}");
+            let spoken_name = gait.name().replace('-', " ");
+            assert_eq!(robot.gait(&spoken_name), Some(gait), "{file}");
             for phase in (0..=u16::MAX).step_by(64) {
                 for (servo, sweep) in robot.servos().iter().zip(gait.table_sweeps(phase)) {
                     let pulse = servo.neutral_us
@@ -165,8 +173,8 @@ fn a_robots_sweeps_are_zero_where_it_stands_and_positive_ahead() {
         let neutral: [f64; 4] = robot.neutral().into();
         assert_eq!(robot.sweeps(neutral), [0.0; 4], "{file}");
         // theta1 and theta5 fall, theta4 and theta8 rise, as the feet go forward.
-        let ahead = [-3.0, 3.0, 3.0, -3.0];
-        let angles = std::array::from_fn(|i| neutral[i] + ahead[i]);
+        let forward_change_deg = [-3.0, 3.0, 3.0, -3.0];
+        let angles = std::array::from_fn(|i| neutral[i] + forward_change_deg[i]);
         for sweep in robot.sweeps(angles) {
             assert!((sweep - 3.0).abs() < 1e-9, "{file}");
         }

@@ -12,9 +12,9 @@ fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
 }
 
 /// Returns the error message for a routine `patrol` with these lines.
-fn refusal(lines: &str) -> String {
-    let refused = paper_with_tables(&format!("[routine.patrol]\n{lines}"));
-    refused.map(|_| ()).expect_err(lines).to_string()
+fn refusal_of(lines: &str) -> String {
+    let result = paper_with_tables(&format!("[routine.patrol]\n{lines}"));
+    result.map(|_| ()).expect_err(lines).to_string()
 }
 
 const PATROL: &str = r#"
@@ -27,24 +27,24 @@ repeat = 3
 fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
     let robot = paper_with_tables(PATROL).expect("a routine");
     let routine = robot.routine("patrol").expect("it is there");
-    let gait = |name: &str| robot.gait(name).expect(name).index() as u8;
+    let gait_index_of = |name: &str| robot.gait(name).expect(name).index() as u8;
     let steps = [
-        (Step::FRAMES, gait("stand"), 50),
-        (Step::CYCLES, gait("walk"), 4),
-        (Step::CYCLES, gait("left"), 6),
-        (Step::CYCLES, gait("look"), 1),
+        (Step::FRAMES, gait_index_of("stand"), 50),
+        (Step::CYCLES, gait_index_of("walk"), 4),
+        (Step::CYCLES, gait_index_of("left"), 6),
+        (Step::CYCLES, gait_index_of("look"), 1),
         (Step::REST, 0, 1),
     ]
     .map(|(kind, gait, count)| Step { kind, gait, count });
     assert_eq!(routine.steps(), steps);
     assert_eq!(routine.rounds(), Some(3));
-    let rounds = |repeat: &str| {
+    let rounds_of = |repeat: &str| {
         let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
         paper_with_tables(&text).expect(repeat).routines()[0].rounds()
     };
-    assert_eq!(rounds(""), Some(1));
-    assert_eq!(rounds("repeat = 999"), Some(999));
-    assert_eq!(rounds("repeat = \"for ever\""), None);
+    assert_eq!(rounds_of(""), Some(1));
+    assert_eq!(rounds_of("repeat = 999"), Some(999));
+    assert_eq!(rounds_of("repeat = \"for ever\""), None);
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn names_of_two_words_and_times_with_decimals_are_read() {
     let text = r#"[routine.about-face]
 steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
     let robot = paper_with_tables(text).expect("a routine");
-    let arc = robot.gait("arc-left").expect("it is there").index() as u8;
+    let arc_index = robot.gait("arc-left").expect("it is there").index() as u8;
     let steps: Vec<_> = robot
         .routine("about face")
         .expect("it is there")
@@ -63,9 +63,9 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
         .map(|step| (step.kind, step.gait, step.count))
         .collect();
     let expected = [
-        (Step::CYCLES, arc, 2),
-        (Step::FRAMES, arc, 125),
-        (Step::CYCLES, arc, 999),
+        (Step::CYCLES, arc_index, 2),
+        (Step::FRAMES, arc_index, 125),
+        (Step::CYCLES, arc_index, 999),
         (Step::REST, 0, 1),
         (Step::FRAMES, 0, 49_950),
     ];
@@ -83,8 +83,8 @@ fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
     for (index, id) in ids.iter().enumerate() {
         assert_eq!(core.gait(*id).is_routine(), index >= gaits);
         if index < gaits {
-            let same = paper().core().gait(*id);
-            assert_eq!(core.gait(*id), same);
+            let paper_gait = paper().core().gait(*id);
+            assert_eq!(core.gait(*id), paper_gait);
         }
     }
     for (id, routine) in ids[gaits..].iter().zip(robot.routines()) {
@@ -160,7 +160,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
         // The paper's file is followed by a blank line, the header of the routine's table, and then its first key.
         let line = paper_text().lines().count() + 3;
         let expected = format!("robot.toml:{line}: routine.patrol.steps: {message}");
-        assert_eq!(refusal(lines), expected);
+        assert_eq!(refusal_of(lines), expected);
     }
     for (lines, message) in [
         (
@@ -200,12 +200,12 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
             "routine.patrol.speed is not a known key; allowed are steps, repeat, repeat_from",
         ),
     ] {
-        let actual = refusal(lines);
+        let actual = refusal_of(lines);
         assert!(actual.ends_with(message), "{actual}");
         assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
-    let many = "\"walk 1\", ".repeat(100);
-    let actual = refusal(&format!("steps = [{many}]"));
+    let many_steps = "\"walk 1\", ".repeat(100);
+    let actual = refusal_of(&format!("steps = [{many_steps}]"));
     assert!(
         actual.ends_with("has 100 steps; it must have 1 to 99"),
         "{actual}"
@@ -248,23 +248,32 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
         .routines()
         .iter()
         .map(|routine| Round::of(&robot, routine));
-    let [ahead, about, gaze]: [Round; 3] = rounds.collect::<Vec<_>>().try_into().expect("three");
-    let walk = robot
+    let [ahead_round, about_round, gaze_round]: [Round; 3] =
+        rounds.collect::<Vec<_>>().try_into().expect("three");
+    let walk_forward = robot
         .predict(robot.gait("walk").expect("it is there"))
         .forward
         .expect("known");
-    let left = robot
+    let left_turn = robot
         .predict(robot.gait("left").expect("it is there"))
         .turn
         .expect("known");
     // Ten cycles of one second each, and the changes from and to the neutral pose.
-    assert!((10.0..11.0).contains(&ahead.seconds), "{}", ahead.seconds);
-    let share = ahead.movement.forward.expect("known") / (10.0 * walk);
+    assert!(
+        (10.0..11.0).contains(&ahead_round.seconds),
+        "{}",
+        ahead_round.seconds
+    );
+    let share = ahead_round.movement.forward.expect("known") / (10.0 * walk_forward);
     assert!((0.95..1.05).contains(&share), "{share}");
-    assert!((7.0..8.0).contains(&about.seconds), "{}", about.seconds);
-    let share = about.movement.turn.expect("known") / (5.0 * left);
+    assert!(
+        (7.0..8.0).contains(&about_round.seconds),
+        "{}",
+        about_round.seconds
+    );
+    let share = about_round.movement.turn.expect("known") / (5.0 * left_turn);
     assert!((0.9..1.1).contains(&share), "{share}");
-    assert_eq!((about.rounds, about.steps), (None, 2));
+    assert_eq!((about_round.rounds, about_round.steps), (None, 2));
     // Two feet pull against two: unmeasurable differences between the pads decide whether the robot moves.
-    assert_eq!(gaze.movement.forward, None);
+    assert_eq!(gaze_round.movement.forward, None);
 }

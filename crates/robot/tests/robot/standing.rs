@@ -63,9 +63,9 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
     assert_eq!((stiffness, twist), (0.5, 0.0));
     for name in GAITS {
         let gait = gait(paper(), name);
-        let level = cycle_movement(gait, paper().ground());
+        let level_movement = cycle_movement(gait, paper().ground());
         for twist in [1.0, -1.0] {
-            let share = cycle_movement(gait, &ground_with(stiffness, twist)) / level;
+            let share = cycle_movement(gait, &ground_with(stiffness, twist)) / level_movement;
             assert!((0.97..1.03).contains(&share), "{name} {twist} {share}");
         }
     }
@@ -73,11 +73,11 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
 
 #[test]
 fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
-    let share = |name: &str| {
+    let share_of = |name: &str| {
         let gait = gait(paper(), name);
         cycle_movement(gait, &ground_with(3.3, 0.6)) / cycle_movement(gait, paper().ground())
     };
-    assert!(share("walk") < 0.25 && share("crawl") < 0.15 && share("left") < 0.25);
+    assert!(share_of("walk") < 0.25 && share_of("crawl") < 0.15 && share_of("left") < 0.25);
     // Feet can be adjusted to a fifth of a millimetre; an error of this size does not matter.
     let gait = gait(paper(), "walk");
     assert!(cycle_movement(gait, &ground_with(3.3, 0.2)) > 33.5);
@@ -86,16 +86,16 @@ fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
 #[test]
 fn the_cost_depends_on_stiffness_times_length_over_weight() {
     let gait = gait(paper(), "walk");
-    let one = cycle_movement(gait, &ground_with(2.0, 0.6));
-    assert!((cycle_movement(gait, &ground_with(0.5, 2.4)) - one).abs() < 1e-6);
-    let heavy = Ground {
+    let movement = cycle_movement(gait, &ground_with(2.0, 0.6));
+    assert!((cycle_movement(gait, &ground_with(0.5, 2.4)) - movement).abs() < 1e-6);
+    let heavy_ground = Ground {
         body: Body {
             mass: 614.0,
             ..Body::DEFAULT
         },
         ..ground_with(2.0, 1.2)
     };
-    assert!((cycle_movement(gait, &heavy) - one).abs() < 1e-6);
+    assert!((cycle_movement(gait, &heavy_ground) - movement).abs() < 1e-6);
     // If all feet are level and equally stiff, their stiffness does not matter.
     assert_eq!(
         cycle_movement(gait, &ground_with(50.0, 0.0)),

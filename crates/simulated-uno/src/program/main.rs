@@ -26,7 +26,7 @@ struct Arguments {
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=3_600_000))]
     ms: u64,
     /// Send a line after this many milliseconds: --say 500:walk. May be given repeatedly.
-    #[arg(long, value_name = "MS:LINE", value_parser = line)]
+    #[arg(long, value_name = "MS:LINE", value_parser = parse_line)]
     say: Vec<Line>,
     /// The rate at which lines are sent, in baud; that of answers is the program's.
     #[arg(long, default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
@@ -46,7 +46,7 @@ struct Line {
     text: String,
 }
 
-fn line(argument: &str) -> Result<Line, String> {
+fn parse_line(argument: &str) -> Result<Line, String> {
     let message = "a line has its time in ms before it, as in 500:walk";
     let (ms, text) = argument.split_once(':').ok_or(message)?;
     let ms = ms.parse().map_err(|_| message)?;
@@ -82,7 +82,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
         true => Fidelity::Stock,
         false => Fidelity::DataSheet,
     };
-    let flash = image.flash_used();
+    let flash_bytes = image.flash_used();
     let mut uno = Uno::with_image(image, fidelity);
     uno.set_baud(f64::from(arguments.baud));
     let mut lines = arguments.say.clone();
@@ -97,8 +97,8 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
     let mut edges = Vec::new();
     let mut text = report::Text::default();
     let mut lines = lines.into_iter().peekable();
-    let end = arguments.ms * CYCLES_PER_MS;
-    while *uno.state() == State::Alive && uno.cycle() < end {
+    let end_cycle = arguments.ms * CYCLES_PER_MS;
+    while *uno.state() == State::Alive && uno.cycle() < end_cycle {
         if let Some(line) = lines.next_if(|line| line.ms * CYCLES_PER_MS <= uno.cycle()) {
             writeln!(
                 out,
@@ -109,13 +109,13 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
             uno.send(line.text.as_bytes());
             uno.send(b"\n");
         }
-        uno.run_until_cycle(end.min(uno.cycle() + CYCLES_PER_MS));
+        uno.run_until_cycle(end_cycle.min(uno.cycle() + CYCLES_PER_MS));
         edges.append(&mut uno.take_edges());
         text.print(&uno.take_transmitted(), out)?;
     }
     text.finish(out)?;
     report::print_pins(&edges, arguments.pulses, out)?;
-    report::end(&uno, flash, out)?;
+    report::end(&uno, flash_bytes, out)?;
     out.flush()?;
     Ok(match uno.state() {
         State::Crashed { .. } => ExitCode::FAILURE,

@@ -66,7 +66,7 @@ pub fn escape(text: &str) -> String {
 
 /// Prints the pulses of all pins that have changed: one line for each pulse if `shows_all`, else one for each pin.
 pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
-    let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
+    let us_of = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
     if edges.is_empty() {
         return writeln!(out, "No pin from D2 to A5 has moved.");
@@ -78,46 +78,50 @@ pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::
     for pin in (0..=19).map(Pin::arduino) {
         let pulses = pulses(edges, pin);
         let widths = pulses.iter().map(|pulse| pulse.width);
-        let (Some(shortest), Some(longest)) = (widths.clone().min(), widths.max()) else {
+        let (Some(shortest_width), Some(longest_width)) = (widths.clone().min(), widths.max())
+        else {
             if edges.iter().any(|edge| edge.pin == pin) {
                 writeln!(out, "{pin:<4} no pulse has begun and ended")?;
             }
             continue;
         };
-        let (first, last) = (pulses[0].start, pulses[pulses.len() - 1].start);
+        let (first_start, last_start) = (pulses[0].start, pulses[pulses.len() - 1].start);
         if shows_all {
             for pulse in &pulses {
                 let start = pulse.start as f64 / CYCLES_PER_MS as f64;
-                writeln!(out, "{pin:<4} {start:>12.4} {:>13.4}", us(pulse.width))?;
+                writeln!(out, "{pin:<4} {start:>12.4} {:>13.4}", us_of(pulse.width))?;
             }
             continue;
         }
         let period = match pulses.len() {
             1 => "-".to_owned(),
-            several => format!("{:.4}", us(last - first) / (several - 1) as f64),
+            count => format!(
+                "{:.4}",
+                us_of(last_start - first_start) / (count - 1) as f64
+            ),
         };
         writeln!(
             out,
             "{pin:<4} {:>8} {:>12.4} {:>12.4} {period:>12}",
             pulses.len(),
-            us(shortest),
-            us(longest)
+            us_of(shortest_width),
+            us_of(longest_width)
         )?;
     }
     Ok(())
 }
 
 /// Prints the UNO's final state and the resources used: time, flash, SRAM, CPU time.
-pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
+pub fn end(uno: &Uno, flash_bytes: u32, out: &mut impl Write) -> io::Result<()> {
     let state = match uno.state() {
         State::Alive => "It runs on.".to_owned(),
         State::Halted => "It sleeps with interrupts off: nothing but a reset ends this.".to_owned(),
         State::Crashed { pc, message } => format!("It has crashed at {pc:#06x}: {message}."),
         State::Off => "The power is off.".to_owned(),
     };
-    let awake = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
+    let awake_percent = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
     // Intel HEX does not contain the size of the static data, so the room for the stack is unknown.
-    let memory = match uno.image().symbols() {
+    let memory_text = match uno.image().symbols() {
         [] => String::new(),
         _ => format!(
             " data {} bytes, stack {} bytes at most,",
@@ -127,7 +131,7 @@ pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
     };
     writeln!(
         out,
-        "\n{:.2} ms, flash {flash} bytes,{memory} awake {awake:.1} % of the time. {state}",
+        "\n{:.2} ms, flash {flash_bytes} bytes,{memory_text} awake {awake_percent:.1} % of the time. {state}",
         uno.ms(),
     )
 }

@@ -6,7 +6,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 use super::{causes, distances, mark_cycles, marks, uno};
 
 /// ADC clock of 125 kHz: prescaler 128.
-const CLOCK: u64 = 128;
+const CLOCK_CYCLES: u64 = 128;
 
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
 /// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
@@ -30,10 +30,10 @@ pub fn with(body: &str) -> Uno {
 
 /// Returns a UNO whose main program runs these statements once, with these voltages (mV) at A0 and the following
 /// pins.
-fn run_once(body: &str, volts: &[u16]) -> Uno {
+fn run_once(body: &str, pin_mv: &[u16]) -> Uno {
     let mut uno = with(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
-    for (n, mv) in (0..).zip(volts) {
-        uno.set_analog_mv(Pin::a(n), *mv);
+    for (number, mv) in (0..).zip(pin_mv) {
+        uno.set_analog_mv(Pin::a(number), *mv);
     }
     uno
 }
@@ -48,8 +48,8 @@ fn results(uno: &Uno) -> Vec<u16> {
 }
 
 /// Returns the conversion results of statements that the main program runs once.
-fn results_of(body: &str, volts: &[u16]) -> Vec<u16> {
-    let mut uno = run_once(body, volts);
+fn results_of(body: &str, pin_mv: &[u16]) -> Vec<u16> {
+    let mut uno = run_once(body, pin_mv);
     uno.run_ms(3);
     results(&uno)
 }
@@ -62,17 +62,17 @@ const BANDGAP: &str = "int main(void) {
 #[test]
 fn the_bandgap_against_avcc_tells_the_supply() {
     // "ADC = VIN * 1024 / VREF" (24.7), rounded down.
-    for (supply, bandgap) in [
+    for (supply_mv, bandgap_mv) in [
         (5000.0, 1100.0),
         (3300.0, 1100.0),
         (4500.0, 1017.0),
         (2800.0, 1200.0),
     ] {
         let mut uno = with(BANDGAP);
-        uno.set_supply_mv(supply);
-        uno.set_bandgap_mv(bandgap);
+        uno.set_supply_mv(supply_mv);
+        uno.set_bandgap_mv(bandgap_mv);
         uno.run_ms(3);
-        let expected = (bandgap * 1024.0 / supply) as u16;
+        let expected = (bandgap_mv * 1024.0 / supply_mv) as u16;
         assert!(results(&uno).len() > 2);
         assert!(results(&uno).iter().all(|result| *result == expected));
     }
@@ -92,7 +92,7 @@ fn a_digital_pin_has_no_voltage_to_set() {
 
 #[test]
 fn conversions_have_the_results_of_the_data_sheet() {
-    for (message, body, volts, expected) in [
+    for (message, body, pin_mv, expected) in [
         (
             "each analogue pin is measured on its own channel, and too much reads 1023",
             "for (unsigned char i = 0; i < 6; i++) { ADMUX = 0x40 | i; convert(); }",
@@ -120,13 +120,13 @@ fn conversions_have_the_results_of_the_data_sheet() {
             &[512],
         ),
     ] {
-        assert_eq!(results_of(body, volts), expected, "{message}");
+        assert_eq!(results_of(body, pin_mv), expected, "{message}");
     }
 }
 
 #[test]
 fn registers_read_as_the_data_sheet_says() {
-    for (message, body, volts, expected) in [
+    for (message, body, pin_mv, expected) in [
         (
             // "ADSC will read as one as long as a conversion is in progress. When the
             // conversion is complete, it returns to zero. Writing zero to this bit has no
@@ -176,7 +176,7 @@ fn registers_read_as_the_data_sheet_says() {
             &[0xa8, 0xc0, 0xa8],
         ),
     ] {
-        let mut uno = run_once(body, volts);
+        let mut uno = run_once(body, pin_mv);
         uno.run_ms(2);
         assert_eq!(marks(&uno), expected, "{message}");
     }
@@ -196,7 +196,7 @@ fn the_first_conversion_takes_25_clocks_and_others_13() {
     uno.run_ms(2);
     let lengths = distances(&mark_cycles(&uno));
     for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
-        let range = clocks * CLOCK - 4..(clocks + 1) * CLOCK + 12;
+        let range = clocks * CLOCK_CYCLES - 4..(clocks + 1) * CLOCK_CYCLES + 12;
         assert!(range.contains(&length), "{length}, not {clocks} clocks");
     }
 }
@@ -214,14 +214,15 @@ fn the_prescaler_divides_by_table_24_5() {
         );
         uno.run_ms(2);
         let cycles = mark_cycles(&uno);
-        let (first, last, count) = (cycles[1], cycles[cycles.len() - 1], cycles.len() as u64 - 2);
+        let (first_cycle, last_cycle, count) =
+            (cycles[1], cycles[cycles.len() - 1], cycles.len() as u64 - 2);
         // Free running: "a new conversion will be started immediately". With the smallest divisors, the program's
         // loop is slower than a conversion.
-        let is_right = match divisor {
-            8.. => (last - first).abs_diff(count * 13 * divisor) < 40,
+        let is_expected = match divisor {
+            8.. => (last_cycle - first_cycle).abs_diff(count * 13 * divisor) < 40,
             _ => count > 500,
         };
-        assert!(is_right, "{divisor}");
+        assert!(is_expected, "{divisor}");
     }
 }
 
@@ -256,7 +257,7 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
 fn a_voltage_is_sampled_when_table_24_1_says() {
     // "Sample & Hold (Cycles from Start of Conversion)": 1.5 clocks, in the first conversion 13.5. A conversion
     // starts at the next clock edge, at most one clock after ADSC is set.
-    for (body, sampled, too_late) in [
+    for (body, sampled_clock, too_late_clock) in [
         (
             "start(); wait(); GPIOR0 = 0; start(); wait(); show();",
             1,
@@ -264,16 +265,20 @@ fn a_voltage_is_sampled_when_table_24_1_says() {
         ),
         ("GPIOR0 = 0; convert();", 13, 15),
     ] {
-        let result = |change: u64| {
+        let result_after = |change_clock: u64| {
             let mut uno = run_once(&format!("ADMUX = 0x40; {body}"), &[]);
             uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
             uno.take_marks();
-            uno.run_cycles(change * CLOCK);
+            uno.run_cycles(change_clock * CLOCK_CYCLES);
             uno.set_analog_mv(Pin::a(0), 2500);
             uno.run_ms(1);
             results(&uno)[0]
         };
-        assert_eq!((result(sampled), result(too_late)), (512, 0), "{body}");
+        assert_eq!(
+            (result_after(sampled_clock), result_after(too_late_clock)),
+            (512, 0),
+            "{body}"
+        );
     }
 }
 
@@ -295,7 +300,7 @@ fn conversions_keep_step_with_the_adc_clock() {
     let cycles = mark_cycles(&uno);
     assert_eq!(cycles.len(), 20);
     for cycle in &cycles {
-        let error = (cycle - cycles[0] + 10) % CLOCK;
+        let error = (cycle - cycles[0] + 10) % CLOCK_CYCLES;
         assert!(error <= 20, "{cycles:?}");
     }
 }
@@ -306,48 +311,51 @@ fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
     // a certain time for the voltage to stabilize. If not stabilized, the first
     // value read after the first conversion may be wrong"; 29.5: start-up
     // time at most 70 us.
-    let results = |wait: u32, previous: u16| {
+    let results_after = |wait_us: u32, previous_mv: u16| {
         let body = format!(
             "ADMUX = 0x40; start(); wait(); _delay_ms(1);
-            ADMUX = 0x4e; _delay_us({wait});
+            ADMUX = 0x4e; _delay_us({wait_us});
             start(); wait(); show(); start(); wait(); show();"
         );
-        results_of(&body, &[previous])
+        results_of(&body, &[previous_mv])
     };
-    assert_eq!(results(72, 0), [225, 225]);
-    let hasty = results(30, 0);
-    assert!((80..160).contains(&hasty[0]), "{hasty:?}");
-    assert_eq!(hasty[1], 225, "a second one is right");
-    assert!(results(30, 5000)[0] > 400, "from the previous channel");
+    assert_eq!(results_after(72, 0), [225, 225]);
+    let hasty_results = results_after(30, 0);
+    assert!((80..160).contains(&hasty_results[0]), "{hasty_results:?}");
+    assert_eq!(hasty_results[1], 225, "a second one is right");
+    assert!(
+        results_after(30, 5000)[0] > 400,
+        "from the previous channel"
+    );
 }
 
 #[test]
 fn the_bandgap_has_settled_after_70_us_and_not_before() {
     // With an ADC clock of 1 MHz, the start of a conversion is known to a microsecond.
-    let first = |wait: u32| {
+    let first_result_after = |wait_us: u32| {
         let body = format!(
             "ADMUX = 0x40; ADCSRA = 0xc4; wait();
-            ADMUX = 0x4e; _delay_us({wait}); ADCSRA = 0xc4; wait(); show();"
+            ADMUX = 0x4e; _delay_us({wait_us}); ADCSRA = 0xc4; wait(); show();"
         );
         results_of(&body, &[5000])[0]
     };
-    assert!((226..250).contains(&first(68)));
-    assert_eq!(first(71), 225);
+    assert!((226..250).contains(&first_result_after(68)));
+    assert_eq!(first_result_after(71), 225);
 }
 
 #[test]
 fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
     // "after ... enabling the ADC, the user must always allow the reference to start
     // up before the output ... is used" (11.7.1).
-    let first = |wait: u32| {
+    let first_result_after = |wait_us: u32| {
         let body = format!(
-            "ADMUX = 0x4e; _delay_ms(1); ADCSRA = 0x87; _delay_us({wait});
+            "ADMUX = 0x4e; _delay_ms(1); ADCSRA = 0x87; _delay_us({wait_us});
             start(); wait(); show();"
         );
         results_of(&body, &[])[0]
     };
-    assert_eq!(first(72), 225);
-    assert_ne!(first(20), 225);
+    assert_eq!(first_result_after(72), 225);
+    assert_ne!(first_result_after(20), 225);
 }
 
 #[test]
@@ -357,7 +365,7 @@ fn a_reset_switches_the_adc_off() {
         ADMUX = 0x40; start(); wait(); GPIOR0 = ADCL; start();",
         &[2500],
     );
-    uno.run_cycles(30 * CLOCK);
+    uno.run_cycles(30 * CLOCK_CYCLES);
     uno.reset();
     uno.take_marks();
     uno.run_ms(1);

@@ -6,7 +6,7 @@ use super::adc::with;
 use super::{causes, marks};
 
 /// Sets the supply voltage and runs for a millisecond.
-fn supply(uno: &mut Uno, mv: f64) {
+fn set_supply(uno: &mut Uno, mv: f64) {
     uno.set_supply_mv(mv);
     uno.run_ms(1);
 }
@@ -19,9 +19,9 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     // with 2.7 V and 50 mV.
     let body = "int main(void) { DDRB = 2; PORTB = 2; for (;;) GPIOR0 = MCUSR; }";
     let mut uno = with(body);
-    supply(&mut uno, 2676.0);
+    set_supply(&mut uno, 2676.0);
     assert!(!uno.is_held_in_reset() && uno.is_high(Pin::d(9)));
-    supply(&mut uno, 2674.0);
+    set_supply(&mut uno, 2674.0);
     assert!(uno.is_held_in_reset() && !uno.is_high(Pin::d(9)));
     uno.set_supply_mv(2724.0);
     uno.take_marks();
@@ -29,7 +29,7 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     assert!(uno.is_held_in_reset() && uno.marks().is_empty());
     assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes");
     assert_eq!(uno.asleep_cycles(), 0, "but not asleep");
-    supply(&mut uno, 2726.0);
+    set_supply(&mut uno, 2726.0);
     assert!(!uno.is_held_in_reset());
     assert_eq!(marks(&uno)[0], 0x05);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::BrownOut]);
@@ -49,23 +49,26 @@ fn a_ramp_resets_at_the_cycle_at_which_it_crosses_the_level() {
     uno.ramp_supply_mv(5000.0, 3_000_000);
     let start = uno.cycle();
     uno.run_cycles(3_000_000);
-    let back = uno.reset_events()[1];
-    assert_eq!(back.cause, ResetCause::BrownOut);
-    assert!((back.cycle - start).abs_diff(725_000) < 100, "{back:?}");
+    let restart = uno.reset_events()[1];
+    assert_eq!(restart.cause, ResetCause::BrownOut);
+    assert!(
+        (restart.cycle - start).abs_diff(725_000) < 100,
+        "{restart:?}"
+    );
 }
 
 #[test]
 fn the_sram_survives_a_brown_out_and_not_a_loss_of_power() {
     let body = "static volatile unsigned char kept __attribute__((section(\".noinit\")));
         int main(void) { GPIOR0 = kept == 0x5a; GPIOR0 = MCUSR; kept = 0x5a; for (;;) {} }";
-    for (lowest, kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
+    for (lowest_mv, kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
         let mut uno = with(body);
         uno.run_ms(1);
-        supply(&mut uno, lowest);
-        supply(&mut uno, 5000.0);
+        set_supply(&mut uno, lowest_mv);
+        set_supply(&mut uno, 5000.0);
         assert_eq!(marks(&uno)[2..], [kept, flags]);
-        supply(&mut uno, 2000.0);
-        supply(&mut uno, 5000.0);
+        set_supply(&mut uno, 2000.0);
+        set_supply(&mut uno, 5000.0);
         assert_eq!(
             marks(&uno)[4..],
             [1, flags | 0x04],
@@ -79,7 +82,7 @@ fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
     let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
     uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
-    supply(&mut uno, 2000.0);
+    set_supply(&mut uno, 2000.0);
     uno.ramp_supply_mv(5000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
@@ -89,13 +92,13 @@ fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
 fn without_the_fuse_the_chip_runs_down_to_power_on_reset() {
     let mut uno = with("int main(void) { for (;;) GPIOR0 = 1; }");
     uno.set_brown_out_mv(None);
-    supply(&mut uno, 1310.0);
+    set_supply(&mut uno, 1310.0);
     assert!(!uno.is_held_in_reset());
-    supply(&mut uno, 1290.0);
+    set_supply(&mut uno, 1290.0);
     assert!(uno.is_held_in_reset());
-    supply(&mut uno, 1390.0);
+    set_supply(&mut uno, 1390.0);
     assert!(uno.is_held_in_reset());
-    supply(&mut uno, 1410.0);
+    set_supply(&mut uno, 1410.0);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
     uno.set_brown_out_mv(Some(4300.0));
     uno.run_cycles(10);
@@ -108,11 +111,11 @@ fn an_eeprom_write_survives_a_brown_out_but_not_less_than_1_8_v() {
         if (MCUSR & 4) for (;;) {}
         EEAR = 0; EEDR = 0x0f; EECR = 4; EECR |= 2;
         for (;;) {} }";
-    for (lowest, expected) in [(1810.0, 0x0f), (1790.0, 0x4f)] {
+    for (lowest_mv, expected) in [(1810.0, 0x0f), (1790.0, 0x4f)] {
         let mut uno = with(body);
         uno.set_torn_bits(0x40);
         uno.run_ms(3);
-        supply(&mut uno, lowest);
+        set_supply(&mut uno, lowest_mv);
         uno.set_supply_mv(5000.0);
         uno.run_ms(2);
         assert_eq!(uno.eeprom()[0], expected);
@@ -168,7 +171,8 @@ fn a_ramp_reaches_a_firmware_that_sleeps_forever() {
     uno.ramp_supply_mv(2000.0, CYCLES_PER_MS);
     assert_eq!(*uno.run_ms(2), State::Alive);
     assert!(uno.is_held_in_reset());
-    let mut cut = with("int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
-    cut.cut_power(PowerCut::AtCycle(1000 * CYCLES_PER_US), 0);
-    assert_eq!(*cut.run_ms(2), State::Off);
+    let mut sleeping_uno =
+        with("int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
+    sleeping_uno.cut_power(PowerCut::AtCycle(1000 * CYCLES_PER_US), 0);
+    assert_eq!(*sleeping_uno.run_ms(2), State::Off);
 }

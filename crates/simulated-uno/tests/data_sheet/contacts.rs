@@ -25,16 +25,20 @@ fn a_closed_contact_pulls_its_pin_low_and_the_pull_up_raises_it_again() {
     let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
     for fidelity in BOTH {
         let mut uno = Uno::with_image(image.clone(), fidelity);
-        let level = |uno: &mut Uno, closed: u8| {
+        let levels_with = |uno: &mut Uno, closed_contacts: u8| {
             for (bit, pin) in pins.into_iter().enumerate() {
-                uno.set_contact(pin, closed & 1 << bit != 0);
+                uno.set_contact(pin, closed_contacts & 1 << bit != 0);
             }
             uno.run_cycles(1_000);
             marks(uno).last().copied()
         };
         for _ in 0..2 {
-            for closed in [0, 1, 2, 4, 7, 3, 0, 5] {
-                assert_eq!(level(&mut uno, closed), Some(7 & !closed), "{fidelity:?}");
+            for closed_contacts in [0, 1, 2, 4, 7, 3, 0, 5] {
+                assert_eq!(
+                    levels_with(&mut uno, closed_contacts),
+                    Some(7 & !closed_contacts),
+                    "{fidelity:?}"
+                );
             }
             uno.reset();
         }

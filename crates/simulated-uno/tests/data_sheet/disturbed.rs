@@ -38,17 +38,17 @@ const COUNT: &str = "#include <avr/io.h>
 fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
     let image = assembler(PULSES);
     for fidelity in BOTH {
-        for at in 300..600 {
+        for cycle in 300..600 {
             let mut uno = Uno::with_image(image.clone(), fidelity);
-            uno.run_until_cycle(at);
+            uno.run_until_cycle(cycle);
             uno.block_interrupts(5000);
             uno.run_until_cycle(10_000);
             let widths = widths(&uno);
-            assert!(widths.iter().all(|width| *width == widths[0]), "at {at}");
+            assert!(widths.iter().all(|width| *width == widths[0]), "at {cycle}");
             let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
             let periods = distances(&starts);
-            let longer: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
-            assert_eq!(longer, [&(periods[0] + 5000)], "at {at}");
+            let longer_periods: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
+            assert_eq!(longer_periods, [&(periods[0] + 5000)], "at {cycle}");
         }
     }
 }

@@ -100,7 +100,7 @@ fn registers_read_as_the_data_sheet_says() {
 
 /// Returns a UNO that has set EEMPE and, `count + 2` cycles later, EEPE: the program runs `count` nops between the
 /// two instructions `sbi`.
-fn armed_then(count: usize) -> Uno {
+fn set_eempe_then_eepe(count: usize) -> Uno {
     let nops = "nop\n".repeat(count);
     let source = format!(
         "ldi r16, 0x5a $ out EEDR, r16
@@ -116,11 +116,11 @@ fn eepe_must_be_set_within_four_cycles_after_eempe() {
     // "When EEMPE is set, setting EEPE within four clock cycles will write data to
     // the EEPROM at the selected address. If EEMPE is zero, setting EEPE will have
     // no effect" (8.6.3).
-    for (nops, written) in [(0, true), (1, true), (2, true), (3, false), (9, false)] {
-        let uno = armed_then(nops);
-        let expected = if written { 0x5a } else { 0xff };
+    for (nops, is_written) in [(0, true), (1, true), (2, true), (3, false), (9, false)] {
+        let uno = set_eempe_then_eepe(nops);
+        let expected = if is_written { 0x5a } else { 0xff };
         assert_eq!(uno.eeprom()[0], expected, "{nops} nops");
-        assert_eq!(uno.eeprom_operations().len(), usize::from(written));
+        assert_eq!(uno.eeprom_operations().len(), usize::from(is_written));
     }
 }
 
@@ -161,7 +161,7 @@ fn nothing_is_written_without_the_timed_sequence() {
 #[test]
 fn eepe_reads_one_for_as_long_as_table_8_1_says() {
     // EEPM1:0 is 00 for erase and write (3.4 ms), 01 for erase only (1.8 ms), 10 for write only (1.8 ms).
-    for (mode, duration, kind) in [
+    for (mode, duration, expected_mode) in [
         (0, ATOMIC, EepromMode::EraseAndWrite),
         (1, SINGLE, EepromMode::EraseOnly),
         (2, SINGLE, EepromMode::WriteOnly),
@@ -169,9 +169,12 @@ fn eepe_reads_one_for_as_long_as_table_8_1_says() {
         let body = format!("set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1;");
         let uno = run_once(&body, 5);
         let operation = uno.eeprom_operations()[0];
-        assert_eq!((operation.address, operation.mode), (7, kind));
-        let busy = uno.marks()[0].cycle - operation.cycle;
-        assert!((duration..duration + 10).contains(&busy), "{busy}");
+        assert_eq!((operation.address, operation.mode), (7, expected_mode));
+        let busy_cycles = uno.marks()[0].cycle - operation.cycle;
+        assert!(
+            (duration..duration + 10).contains(&busy_cycles),
+            "{busy_cycles}"
+        );
     }
 }
 
@@ -183,20 +186,20 @@ fn erasing_sets_all_bits_and_writing_alone_clears_some() {
     let uno = run_once(body, 30);
     assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
     let operations = uno.eeprom_operations();
-    let old: Vec<u8> = operations.iter().map(|operation| operation.old).collect();
-    let new: Vec<u8> = operations.iter().map(|operation| operation.new).collect();
-    assert_eq!(old, [0xff, 0x0f, 0xff, 0x0f, 0xff, 0x0f]);
-    assert_eq!(new, [0x0f, 0x05, 0x0f, 0xff, 0x0f, 0xf0]);
+    let old_values: Vec<u8> = operations.iter().map(|operation| operation.old).collect();
+    let new_values: Vec<u8> = operations.iter().map(|operation| operation.new).collect();
+    assert_eq!(old_values, [0xff, 0x0f, 0xff, 0x0f, 0xff, 0x0f]);
+    assert_eq!(new_values, [0x0f, 0x05, 0x0f, 0xff, 0x0f, 0xf0]);
 }
 
 #[test]
 fn a_byte_has_its_old_value_until_its_time_is_over() {
     let mut uno = uno(program("int main(void) { set(9, 0x21, 0); for (;;) {} }"));
     uno.run_until(1000, 1, |uno| !uno.eeprom_operations().is_empty());
-    let end = uno.eeprom_operations()[0].cycle + ATOMIC;
-    uno.run_until_cycle(end - 10);
+    let end_cycle = uno.eeprom_operations()[0].cycle + ATOMIC;
+    uno.run_until_cycle(end_cycle - 10);
     assert_eq!(uno.eeprom()[9], 0xff);
-    uno.run_until_cycle(end + 10);
+    uno.run_until_cycle(end_cycle + 10);
     assert_eq!(uno.eeprom()[9], 0x21);
 }
 
@@ -256,8 +259,8 @@ fn the_ready_interrupt_is_a_level_while_eepe_is_zero() {
     let uno = after_ms(15, image);
     assert_eq!(marks(&uno), [0, 1, 2, 3]);
     assert_eq!(uno.eeprom()[..4], [1, 2, 3, 0xff]);
-    let asleep = uno.asleep_cycles() as f64 / uno.cycle() as f64;
-    assert!(asleep > 0.6, "it sleeps while a byte is programmed");
+    let asleep_share = uno.asleep_cycles() as f64 / uno.cycle() as f64;
+    assert!(asleep_share > 0.6, "it sleeps while a byte is programmed");
     let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
     for distance in distances(&starts) {
         assert!((ATOMIC..ATOMIC + 150).contains(&distance));
@@ -306,8 +309,8 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     assert_eq!(marks(&uno), [0x00, 0x22]);
     uno.run_ms(5);
     assert_eq!(uno.eeprom()[3], 0x42);
-    let end = uno.marks()[2].cycle - uno.eeprom_operations()[0].cycle;
-    assert!((SINGLE..SINGLE + 20).contains(&end), "{end}");
+    let duration = uno.marks()[2].cycle - uno.eeprom_operations()[0].cycle;
+    assert!((SINGLE..SINGLE + 20).contains(&duration), "{duration}");
     uno.reset();
     uno.run_cycles(100);
     assert_eq!(marks(&uno)[3], 0x00, "EEPM after a reset when idle");

@@ -62,11 +62,11 @@ fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
     end: rjmp end",
     );
     let uno = after(100, image);
-    let (one, two) = (
+    let (first_edges, last_edges) = (
         [(3, true), (9, true), (3, false)],
         [(9, false), (11, true), (11, false)],
     );
-    assert_eq!(edges(&uno), [one, two].concat());
+    assert_eq!(edges(&uno), [first_edges, last_edges].concat());
     assert_eq!(most_pins_high(&uno.edges()), 2);
 }
 
@@ -77,11 +77,11 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
         String::from("ldi r16, 0xff $ out DDRD, r16 $ out DDRB, r16 $ out DDRC, r16\n");
     let ports = [("PORTD", 2..8, 0), ("PORTB", 0..6, 8), ("PORTC", 0..6, 14)];
     let mut expected = Vec::new();
-    for (port, bits, first) in ports {
+    for (port, bits, first_number) in ports {
         for bit in bits {
             source += &format!("sbi {port}, {bit} $ cbi {port}, {bit}\n");
             let start = 4 + 4 * expected.len() as u64 + 2;
-            expected.push((Pin::arduino(first + bit), start, 2));
+            expected.push((Pin::arduino(first_number + bit), start, 2));
         }
     }
     source += "end: rjmp end";
@@ -89,11 +89,11 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
     for uno in both_after(200, &image) {
         for (pin, start, width) in &expected {
             let pulses = uno.pulses(*pin);
-            let found: Vec<_> = pulses
+            let found_pulses: Vec<_> = pulses
                 .iter()
                 .map(|pulse| (pulse.start, pulse.width))
                 .collect();
-            assert_eq!(found, [(*start, *width)], "{pin}");
+            assert_eq!(found_pulses, [(*start, *width)], "{pin}");
         }
         assert_eq!(uno.edges().len(), 2 * 18, "D2 to D13, A0 to A5");
         assert_eq!(most_pins_high(&uno.edges()), 1);
@@ -120,8 +120,8 @@ fn the_level_of_an_analogue_pin_is_seen_and_toggled_alone() {
     let mut uno = uno(image);
     assert!(!uno.is_high(Pin::a(0)));
     uno.run_cycles(100);
-    let high: Vec<u8> = (2..20).filter(|n| uno.is_high(Pin::arduino(*n))).collect();
-    assert_eq!(high, [14, 19]);
+    let high_pins: Vec<u8> = (2..20).filter(|n| uno.is_high(Pin::arduino(*n))).collect();
+    assert_eq!(high_pins, [14, 19]);
 }
 
 #[test]
@@ -192,8 +192,8 @@ fn sizes_come_from_the_elf() {
         static volatile unsigned char given[20] = {1};
         int main(void) { return zeroed[3] + given[4]; }");
     assert_eq!(image.static_ram(), 120);
-    let flash = image.flash_used();
-    assert!((200..500).contains(&flash), "{flash}");
+    let flash_bytes = image.flash_used();
+    assert!((200..500).contains(&flash_bytes), "{flash_bytes}");
     assert_eq!(image.symbol("given").map(|symbol| symbol.size), Some(20));
 }
 
@@ -268,13 +268,13 @@ fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
 
 #[test]
 fn only_an_avr_elf_is_loaded() {
-    let own = std::env::current_exe().expect("the test has a name");
-    assert!(Image::read(own).is_err());
+    let own_program = std::env::current_exe().expect("the test has a name");
+    assert!(Image::read(own_program).is_err());
     let error = Image::read("no/such.elf").expect_err("it does not exist");
     assert!(error.to_string().starts_with("cannot read no/such.elf"));
-    let endless = Image::read("/dev/zero").expect_err("it never ends");
+    let endless_error = Image::read("/dev/zero").expect_err("it never ends");
     assert_eq!(
-        endless.to_string(),
+        endless_error.to_string(),
         "not an ELF file of an AVR: it is longer than 4 MiB"
     );
 }

@@ -50,34 +50,37 @@ fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
     assert_eq!(starts, expected);
 
     // The CPU is awake for 20 cycles per interrupt: entry 8, jmp 3, out 1, out 1, reti 4, rjmp 2, sleep 1.
-    let before = (uno.awake_cycles(), uno.cycle());
+    let counts_before = (uno.awake_cycles(), uno.cycle());
     uno.run_cycles(1_000_000);
-    assert_eq!(uno.awake_cycles() - before.0, 20 * 100);
+    assert_eq!(uno.awake_cycles() - counts_before.0, 20 * 100);
 }
 
 #[test]
 fn stock_simavr_enters_an_interrupt_in_no_time() {
     let mut uno = Uno::with_image(assembler(TICK), Fidelity::Stock);
     uno.run_cycles(100_000);
-    let first = uno.pulses(LED)[0].start;
+    let first_cycle = uno.pulses(LED)[0].start;
     // In stock simavr, entry takes no time and waking from sleep takes 1 cycle; then jmp 3, out 1.
-    assert_eq!(first, 23 + 10_000 + 1 + 4);
+    assert_eq!(first_cycle, 23 + 10_000 + 1 + 4);
 }
 
 #[test]
 fn interrupts_are_counted_with_their_cycles() {
     let uno = after(100_000, assembler(TICK));
-    let used = uno.interrupts();
-    assert_eq!(used.len(), 1);
-    assert_eq!(simulated_uno::vector_name(used[0].vector), "TIMER1_COMPA");
-    assert_eq!(used[0].entries, 9);
+    let statistics = uno.interrupts();
+    assert_eq!(statistics.len(), 1);
+    assert_eq!(
+        simulated_uno::vector_name(statistics[0].vector),
+        "TIMER1_COMPA"
+    );
+    assert_eq!(statistics[0].entries, 9);
     // Each interrupt takes entry 8, jmp 3, out 1, out 1, reti 4.
-    assert_eq!(used[0].cycles, 9 * 17);
+    assert_eq!(statistics[0].cycles, 9 * 17);
 }
 
 #[test]
 fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
-    let source = |count: usize| {
+    let source_of = |count: usize| {
         format!(
             "jmp start
              .org 0x2c
@@ -100,16 +103,16 @@ fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
     };
     // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED is
     // switched on only if that instruction is `sbi PORTB, 5`.
-    for (nops, up) in [(0, true), (1, false)] {
-        let mut uno = Uno::with_image(assembler(&source(nops)), Fidelity::DataSheet);
+    for (nops, has_edge) in [(0, true), (1, false)] {
+        let mut uno = Uno::with_image(assembler(&source_of(nops)), Fidelity::DataSheet);
         uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
-        assert_eq!(!uno.edges().is_empty(), up, "{nops} nops");
+        assert_eq!(!uno.edges().is_empty(), has_edge, "{nops} nops");
     }
 }
 
 #[test]
 fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
-    for (message, program, expected, stock) in [
+    for (message, program, expected, expected_of_stock) in [
         (
             "an interrupt that is enabled fires if its flag is set",
             "ISR(TIMER1_OVF_vect) { GPIOR0 = 1; }
@@ -140,9 +143,9 @@ fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
         let image = c(&format!(
             "#include <avr/io.h>\n#include <avr/interrupt.h>\n{program}"
         ));
-        let [by_simavr, by_data_sheet] = both_after(100_000, &image).map(|uno| marks(&uno));
-        assert_eq!(by_data_sheet, expected, "{message}");
-        assert_eq!(by_simavr, stock, "{FIXED}");
+        let [simavr_marks, data_sheet_marks] = both_after(100_000, &image).map(|uno| marks(&uno));
+        assert_eq!(data_sheet_marks, expected, "{message}");
+        assert_eq!(simavr_marks, expected_of_stock, "{FIXED}");
     }
 }
 
@@ -189,16 +192,16 @@ fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
 #[test]
 fn a_run_cut_into_pieces_gives_the_same_edges() {
     for fidelity in BOTH {
-        let mut whole = Uno::with_image(assembler(TICK), fidelity);
-        whole.run_until_cycle(400_000);
-        let mut pieces = Uno::with_image(assembler(TICK), fidelity);
-        let mut step = 1;
-        while pieces.cycle() < 400_000 {
-            pieces.run_until_cycle((pieces.cycle() + step).min(400_000));
-            step = step % 997 + 13;
+        let mut unbroken_uno = Uno::with_image(assembler(TICK), fidelity);
+        unbroken_uno.run_until_cycle(400_000);
+        let mut stepped_uno = Uno::with_image(assembler(TICK), fidelity);
+        let mut step_cycles = 1;
+        while stepped_uno.cycle() < 400_000 {
+            stepped_uno.run_until_cycle((stepped_uno.cycle() + step_cycles).min(400_000));
+            step_cycles = step_cycles % 997 + 13;
         }
-        assert_eq!(pieces.edges(), whole.edges());
-        assert_eq!(pieces.asleep_cycles(), whole.asleep_cycles());
+        assert_eq!(stepped_uno.edges(), unbroken_uno.edges());
+        assert_eq!(stepped_uno.asleep_cycles(), unbroken_uno.asleep_cycles());
     }
 }
 
@@ -209,12 +212,12 @@ fn boards_on_several_threads_do_not_disturb_each_other() {
         uno.run_cycles(3_000_000);
         (uno.edges(), uno.asleep_cycles())
     };
-    let alone = BOTH.map(run);
+    let expected = BOTH.map(run);
     let threads: Vec<_> = (0..6)
         .map(|n| std::thread::spawn(move || (n % 2, run(BOTH[n % 2]))))
         .collect();
     for thread in threads {
-        let (n, result) = thread.join().expect("the thread ends");
-        assert_eq!(result, alone[n]);
+        let (index, result) = thread.join().expect("the thread ends");
+        assert_eq!(result, expected[index]);
     }
 }

@@ -12,7 +12,7 @@ const TWO_BYTES: &str = "int main(void) {
     set(0, 0x35, 0); set(1, 0x5c, 0); while (busy()) {}
     for (;;) {} }";
 
-fn two_bytes() -> Uno {
+fn uno_with_two_bytes() -> Uno {
     let mut uno = uno(program(TWO_BYTES));
     let mut contents = [0xff; EEPROM_SIZE];
     contents[0] = 0xa6;
@@ -23,7 +23,7 @@ fn two_bytes() -> Uno {
 #[test]
 fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
     for ones in [0, 0x01, 0x58, 0x0f, 0xff] {
-        let mut uno = two_bytes();
+        let mut uno = uno_with_two_bytes();
         uno.cut_power(PowerCut::InErase(0), ones);
         assert_eq!(*uno.run_ms(20), State::Off);
         assert_eq!(uno.eeprom()[..2], [0xa6 | ones, 0xff]);
@@ -31,15 +31,15 @@ fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
         assert_eq!(operations.len(), 1);
         assert!(operations[0].is_torn);
         assert_eq!(operations[0].new, 0xa6 | ones);
-        let after = uno.cycle() - operations[0].cycle;
-        assert!(after.abs_diff(ATOMIC / 4) < 10, "{after}");
+        let elapsed_cycles = uno.cycle() - operations[0].cycle;
+        assert!(elapsed_cycles.abs_diff(ATOMIC / 4) < 10, "{elapsed_cycles}");
     }
 }
 
 #[test]
 fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
     for ones in [0, 0x80, 0x4a, 0xff] {
-        let mut uno = two_bytes();
+        let mut uno = uno_with_two_bytes();
         uno.cut_power(PowerCut::InWrite(1), ones);
         assert_eq!(*uno.run_ms(20), State::Off);
         assert_eq!(uno.eeprom()[..2], [0x35, 0x5c | ones]);
@@ -48,56 +48,59 @@ fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
             [operations[0].is_torn, operations[1].is_torn],
             [false, true]
         );
-        let after = uno.cycle() - operations[1].cycle;
-        assert!(after.abs_diff(ATOMIC / 4 * 3) < 10, "{after}");
+        let elapsed_cycles = uno.cycle() - operations[1].cycle;
+        assert!(
+            elapsed_cycles.abs_diff(ATOMIC / 4 * 3) < 10,
+            "{elapsed_cycles}"
+        );
     }
 }
 
 #[test]
 fn a_power_cut_at_a_cycle_takes_the_phase_of_that_moment() {
-    let mut whole = two_bytes();
-    whole.run_ms(20);
-    let start = whole.eeprom_operations()[1].cycle;
-    for (after, expected) in [
+    let mut unbroken_uno = uno_with_two_bytes();
+    unbroken_uno.run_ms(20);
+    let start = unbroken_uno.eeprom_operations()[1].cycle;
+    for (delay_cycles, expected) in [
         (100, 0xff),
         (ATOMIC / 2 - 100, 0xff),
         (ATOMIC / 2 + 100, 0x5e),
         (ATOMIC - 100, 0x5e),
         (ATOMIC + 100, 0x5c),
     ] {
-        let mut uno = two_bytes();
-        uno.cut_power(PowerCut::AtCycle(start + after), 0x02);
+        let mut uno = uno_with_two_bytes();
+        uno.cut_power(PowerCut::AtCycle(start + delay_cycles), 0x02);
         assert_eq!(*uno.run_ms(20), State::Off);
-        assert!(uno.cycle() - (start + after) < 5);
-        assert_eq!(uno.eeprom()[..2], [0x35, expected], "{after}");
+        assert!(uno.cycle() - (start + delay_cycles) < 5);
+        assert_eq!(uno.eeprom()[..2], [0x35, expected], "{delay_cycles}");
     }
 }
 
 #[test]
 fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
-    let torn = |mode: u8, when: PowerCut, ones: u8| {
+    let torn_byte_of = |mode: u8, cut: PowerCut, ones: u8| {
         let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
         let mut uno = uno(program(&body));
         uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
-        uno.cut_power(when, ones);
+        uno.cut_power(cut, ones);
         assert_eq!(*uno.run_ms(5), State::Off);
         uno.eeprom()[0]
     };
-    for when in [PowerCut::InErase(0), PowerCut::InWrite(0)] {
-        assert_eq!(torn(1, when, 0x11), 0xa6 | 0x11);
-        assert_eq!(torn(2, when, 0x82), 0xa6 & (0x35 | 0x82));
-        assert_eq!(torn(2, when, 0x00), 0xa6 & 0x35);
+    for cut in [PowerCut::InErase(0), PowerCut::InWrite(0)] {
+        assert_eq!(torn_byte_of(1, cut, 0x11), 0xa6 | 0x11);
+        assert_eq!(torn_byte_of(2, cut, 0x82), 0xa6 & (0x35 | 0x82));
+        assert_eq!(torn_byte_of(2, cut, 0x00), 0xa6 & 0x35);
     }
 }
 
 #[test]
 fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
-    let mut uno = two_bytes();
+    let mut uno = uno_with_two_bytes();
     uno.cut_power(PowerCut::InWrite(0), 0x08);
     uno.run_ms(20);
-    let point = uno.cycle();
+    let cut_cycle = uno.cycle();
     assert_eq!(*uno.run_ms(20), State::Off, "nothing runs without power");
-    assert_eq!(uno.cycle(), point);
+    assert_eq!(uno.cycle(), cut_cycle);
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);
     assert_eq!(marks(&uno), [0x35 | 0x08]);
@@ -107,9 +110,9 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
 #[test]
 fn a_power_cut_comes_once() {
     let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
-    for when in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
+    for cut in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
         let mut uno = uno(program(body));
-        uno.cut_power(when, 0xff);
+        uno.cut_power(cut, 0xff);
         assert_eq!(*uno.run_ms(5), State::Off);
         uno.power_cycle();
         assert_eq!(*uno.run_ms(5), State::Alive);
@@ -119,9 +122,9 @@ fn a_power_cut_comes_once() {
 
 #[test]
 fn a_reset_before_a_power_cut_does_not_prevent_it() {
-    for when in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
-        let mut uno = two_bytes();
-        uno.cut_power(when, 0x02);
+    for cut in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
+        let mut uno = uno_with_two_bytes();
+        uno.cut_power(cut, 0x02);
         uno.run_ms(1);
         uno.reset();
         assert_eq!(*uno.run_ms(20), State::Off);
@@ -132,7 +135,7 @@ fn a_reset_before_a_power_cut_does_not_prevent_it() {
 
 #[test]
 fn a_power_cut_that_is_taken_back_does_not_come() {
-    let mut uno = two_bytes();
+    let mut uno = uno_with_two_bytes();
     uno.cut_power(PowerCut::AtCycle(60_000), 0);
     uno.cut_power(PowerCut::InErase(1), 0);
     uno.cancel_power_cut();
@@ -142,7 +145,7 @@ fn a_power_cut_that_is_taken_back_does_not_come() {
 
 #[test]
 fn a_power_cycle_in_a_write_tears_it() {
-    let mut uno = two_bytes();
+    let mut uno = uno_with_two_bytes();
     uno.set_torn_bits(0x40);
     uno.run_ms(1);
     uno.power_cycle();

@@ -97,19 +97,28 @@ fn sram_and_registers_survive_every_reset_but_power_on() {
 
 #[test]
 fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
-    let sram = |seed: Option<u64>| {
+    let sram_after_seed = |seed: Option<u64>| {
         let mut uno = uno(assembler("end: rjmp end"));
         if let Some(seed) = seed {
             uno.set_noise_seed(seed);
             uno.power_cycle();
         }
-        let bytes: Vec<u8> = (SRAM_START..SRAM_END).map(|at| uno.peek(at)).collect();
+        let bytes: Vec<u8> = (SRAM_START..SRAM_END)
+            .map(|address| uno.peek(address))
+            .collect();
         bytes
     };
-    assert_eq!(sram(None), sram(None), "the same in every run");
-    assert_eq!(sram(Some(1)), sram(Some(1)));
-    assert_ne!(sram(Some(1)), sram(Some(2)));
-    let ones: u32 = sram(Some(0)).iter().map(|byte| byte.count_ones()).sum();
+    assert_eq!(
+        sram_after_seed(None),
+        sram_after_seed(None),
+        "the same in every run"
+    );
+    assert_eq!(sram_after_seed(Some(1)), sram_after_seed(Some(1)));
+    assert_ne!(sram_after_seed(Some(1)), sram_after_seed(Some(2)));
+    let ones: u32 = sram_after_seed(Some(0))
+        .iter()
+        .map(|byte| byte.count_ones())
+        .sum();
     assert!((7_500..8_900).contains(&ones), "{ones} of 16 384 bits");
 }
 
@@ -121,16 +130,16 @@ fn each_power_on_leaves_other_noise_and_restarts_the_measurement_of_the_stack() 
     end: rjmp end",
     );
     let mut uno = uno(image);
-    let first = uno.peek(0x300);
+    let first_byte = uno.peek(0x300);
     uno.run_ms(1);
     assert_eq!(uno.stack_used(), 3);
     uno.reset();
     assert_eq!(uno.stack_used(), 3, "since power-on");
     uno.power_cycle();
     assert_eq!(uno.stack_used(), 0);
-    let second = uno.peek(0x300);
+    let second_byte = uno.peek(0x300);
     uno.power_cycle();
-    assert!(first != second || second != uno.peek(0x300));
+    assert!(first_byte != second_byte || second_byte != uno.peek(0x300));
 }
 
 #[test]
@@ -188,14 +197,14 @@ fn temp_is_cleared_by_a_reset() {
 
 #[test]
 fn a_reset_revives_a_firmware_that_has_halted_or_crashed() {
-    for (source, halts) in [
+    for (source, is_halt) in [
         ("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep", true),
         ("ldi r16, 1 $ sts 0x0fff, r16", false),
     ] {
         let image = assembler(&format!("out GPIOR0, r1\n{source}\nend: rjmp end"));
         let mut uno = after_ms(1, image);
         assert_ne!(*uno.state(), State::Alive);
-        assert_eq!(*uno.state() == State::Halted, halts, "{source}");
+        assert_eq!(*uno.state() == State::Halted, is_halt, "{source}");
         uno.reset();
         assert_eq!(*uno.state(), State::Alive);
         assert_ne!(*uno.run_ms(1), State::Alive);
@@ -210,9 +219,9 @@ fn a_board_that_sleeps_is_reset_at_the_cycle_reached() {
     end: sleep $ rjmp end",
     );
     let mut uno = after(12_345, image);
-    let asleep = uno.asleep_cycles();
+    let asleep_cycles = uno.asleep_cycles();
     uno.reset();
-    assert_eq!((uno.cycle(), uno.asleep_cycles()), (12_345, asleep));
+    assert_eq!((uno.cycle(), uno.asleep_cycles()), (12_345, asleep_cycles));
     uno.run_cycles(100);
     assert_eq!(uno.marks()[1].cycle, 12_345 + 1);
 }

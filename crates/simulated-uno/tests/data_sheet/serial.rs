@@ -6,9 +6,9 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 use super::{BOTH, after, after_ms, both_after, distances, marks, text, uno};
 
 /// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's rate.
-const FRAME: f64 = 10.0 * 16_000_000.0 / 115_200.0;
+const FRAME_CYCLES: f64 = 10.0 * 16_000_000.0 / 115_200.0;
 /// Cycles of a 10-bit frame that the UNO sends with UBRR = 16 and U2X: 136 cycles for each bit.
-const UNO_FRAME: u64 = 10 * 17 * 8;
+const UNO_FRAME_CYCLES: u64 = 10 * 17 * 8;
 
 /// Compiles a program at 115 200 baud that runs `body` in an endless loop; `get()` receives a byte, `put()` sends
 /// one.
@@ -46,12 +46,12 @@ fn an_echo_arrives_a_frame_after_its_byte() {
     let start = uno.cycle();
     uno.send(b"x");
     uno.run_ms(1);
-    let echo = uno.transmitted()[0].cycle - start;
+    let echo_cycles = uno.transmitted()[0].cycle - start;
     // The byte is received in the middle of its stop bit; the polling loop takes up to about 20 cycles.
-    let earliest = (0.95 * FRAME) as u64 + UNO_FRAME;
+    let earliest_cycles = (0.95 * FRAME_CYCLES) as u64 + UNO_FRAME_CYCLES;
     assert!(
-        (earliest..earliest + 30).contains(&echo),
-        "{echo}, not {earliest}"
+        (earliest_cycles..earliest_cycles + 30).contains(&echo_cycles),
+        "{echo_cycles}, not {earliest_cycles}"
     );
 }
 
@@ -65,7 +65,7 @@ fn bytes_go_out_back_to_back_at_ten_bits_each() {
     assert!(
         distances(&stamps)
             .iter()
-            .all(|distance| *distance == UNO_FRAME)
+            .all(|distance| *distance == UNO_FRAME_CYCLES)
     );
 }
 
@@ -74,33 +74,37 @@ fn the_sender_keeps_the_baud_rate_in_the_long_run() {
     let mut uno = Uno::with_image(program("get();"), Fidelity::DataSheet);
     uno.flood(b"0123456789");
     uno.run_ms(1000);
-    let sent = uno.bytes_sent();
-    assert!(sent.abs_diff(11_520) <= 1, "{sent}");
+    let sent_count = uno.bytes_sent();
+    assert!(sent_count.abs_diff(11_520) <= 1, "{sent_count}");
     uno.flood(b"");
     uno.run_ms(10);
-    assert!(uno.bytes_sent() <= sent + 1, "the flood has ended");
+    assert!(uno.bytes_sent() <= sent_count + 1, "the flood has ended");
 }
 
 #[test]
 fn two_bytes_wait_and_a_third_in_the_shift_register() {
     // The program reads nothing for 2 ms, in which 20 bytes can arrive.
-    let late = "_delay_ms(2); for (unsigned char i = 0; i < 5; i++) put(get());";
-    for (sent, kept, lost) in [
+    let late_body = "_delay_ms(2); for (unsigned char i = 0; i < 5; i++) put(get());";
+    for (sent_text, kept_bytes, lost_count) in [
         ("abc", &b"abc"[..], 0),
         ("abcd", b"abd", 1),   // c is overwritten by d
         ("abcdef", b"abf", 3), // then d is overwritten by e, and e by f
     ] {
-        let mut uno = after(3200, program(late));
-        uno.send(sent.as_bytes());
+        let mut uno = after(3200, program(late_body));
+        uno.send(sent_text.as_bytes());
         uno.run_ms(4);
-        assert_eq!((&*text(&uno), uno.overruns()), (kept, lost), "{sent}");
+        assert_eq!(
+            (&*text(&uno), uno.overruns()),
+            (kept_bytes, lost_count),
+            "{sent_text}"
+        );
     }
-    let mut uno = Uno::with_image(program(late), Fidelity::Stock);
+    let mut uno = Uno::with_image(program(late_body), Fidelity::Stock);
     uno.run_cycles(3200);
     uno.send(b"abcde");
     uno.run_ms(5);
-    let hidden = (text(&uno).len(), uno.overruns());
-    assert_eq!(hidden, (5, 0), "stock simavr hides the loss");
+    let stock_result = (text(&uno).len(), uno.overruns());
+    assert_eq!(stock_result, (5, 0), "stock simavr hides the loss");
 }
 
 #[test]
@@ -148,7 +152,7 @@ fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
     let uno = after_ms(20, image);
     assert_eq!(text(&uno), (0..100).collect::<Vec<u8>>());
     let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
-    assert_eq!(distances(&stamps), [UNO_FRAME; 99]);
+    assert_eq!(distances(&stamps), [UNO_FRAME_CYCLES; 99]);
 }
 
 #[test]
@@ -161,7 +165,7 @@ fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
 
 /// Sends a byte at this baud rate to a program that runs `body` in a loop, and returns the first byte that the
 /// program writes to GPIOR0.
-fn shown_at(baud: f64, byte: u8, body: &str) -> u8 {
+fn first_mark_at(baud: f64, byte: u8, body: &str) -> u8 {
     let mut uno = uno(program(body));
     uno.set_baud(baud);
     uno.run_ms(1);
@@ -173,21 +177,21 @@ fn shown_at(baud: f64, byte: u8, body: &str) -> u8 {
 #[test]
 fn a_wrong_baud_rate_is_a_framing_error() {
     let body = "while (!(UCSR0A & 0x80)) {} GPIOR0 = UCSR0A & 0x10; (void)UDR0;";
-    let fast = shown_at(115_200.0, b'x', body);
-    assert_eq!(fast, 0, "UBRR 16 is 2.1 % fast: good enough");
-    assert_eq!(shown_at(57_600.0, b'x', body), 0x10);
+    let fast_mark = first_mark_at(115_200.0, b'x', body);
+    assert_eq!(fast_mark, 0, "UBRR 16 is 2.1 % fast: good enough");
+    assert_eq!(first_mark_at(57_600.0, b'x', body), 0x10);
 }
 
 #[test]
 fn at_a_wrong_baud_rate_other_bytes_are_read() {
-    let read = |baud| shown_at(baud, b'0', "GPIOR0 = get();");
-    assert_eq!(read(115_200.0), b'0');
+    let byte_read_at = |baud| first_mark_at(baud, b'0', "GPIOR0 = get();");
+    assert_eq!(byte_read_at(115_200.0), b'0');
     // '0' is 0b0011_0000. The UNO takes its eight samples while a sender with half its baud rate sends its start bit
     // and four data bits, all 0: the samples are at 0.73, 1.22, ... 4.16 bits of the sender.
-    assert_eq!(read(57_600.0), 0);
+    assert_eq!(byte_read_at(57_600.0), 0);
     // With a sender at twice the baud rate, the samples are at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) bits of the
     // sender, and then on the idle line (1).
-    assert_eq!(read(230_400.0), 0b1111_0100);
+    assert_eq!(byte_read_at(230_400.0), 0b1111_0100);
 }
 
 #[test]
@@ -215,10 +219,10 @@ fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
     let body = "_delay_ms(2);
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
-    let statuses = |broken: usize| {
+    let statuses_with = |broken_index: usize| {
         let mut uno = after(3200, program(body));
-        for (at, byte) in b"abc".iter().enumerate() {
-            if at == broken {
+        for (index, byte) in b"abc".iter().enumerate() {
+            if index == broken_index {
                 uno.send_with_framing_error(&[*byte]);
             } else {
                 uno.send(&[*byte]);
@@ -228,10 +232,10 @@ fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
         marks(&uno)
     };
     // Two bytes wait in the buffer, the third in the shift register.
-    assert_eq!(statuses(0), [0x90, 0x80, 0x80, 0]);
-    assert_eq!(statuses(1), [0x80, 0x90, 0x80, 0]);
-    assert_eq!(statuses(2), [0x80, 0x80, 0x90, 0]);
-    assert_eq!(statuses(3), [0x80, 0x80, 0x80, 0], "none");
+    assert_eq!(statuses_with(0), [0x90, 0x80, 0x80, 0]);
+    assert_eq!(statuses_with(1), [0x80, 0x90, 0x80, 0]);
+    assert_eq!(statuses_with(2), [0x80, 0x80, 0x90, 0]);
+    assert_eq!(statuses_with(3), [0x80, 0x80, 0x80, 0], "none");
 }
 
 #[test]
@@ -239,7 +243,7 @@ fn a_line_is_waited_for_no_longer_than_it_takes() {
     let mut uno = uno(program("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
     assert!(uno.run_until_line(20 * CYCLES_PER_MS));
     assert_eq!(text(&uno), b"ok\n");
-    assert!(uno.cycle() < 4 * UNO_FRAME);
+    assert!(uno.cycle() < 4 * UNO_FRAME_CYCLES);
     assert!(!uno.run_until_line(20 * CYCLES_PER_MS), "50 ms of silence");
     assert!(uno.run_until_line(40 * CYCLES_PER_MS));
 }
@@ -262,13 +266,13 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
         }
         uno.marks()
     };
-    let whole = run(1);
-    assert_eq!(whole.len(), 5);
-    let arrival = 12_345 + (0.95 * FRAME).ceil() as u64;
+    let whole_marks = run(1);
+    assert_eq!(whole_marks.len(), 5);
+    let arrival_cycle = 12_345 + (0.95 * FRAME_CYCLES).ceil() as u64;
     // From arrival to mark: entry from sleep 8, jmp 3, a few pushes and the read of UDR0.
     assert!(
-        (arrival..arrival + 40).contains(&whole[0].cycle),
-        "{whole:?}"
+        (arrival_cycle..arrival_cycle + 40).contains(&whole_marks[0].cycle),
+        "{whole_marks:?}"
     );
-    assert_eq!(run(1000), whole);
+    assert_eq!(run(1000), whole_marks);
 }

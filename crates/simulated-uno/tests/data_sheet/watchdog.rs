@@ -11,8 +11,8 @@ const MIN_TIMEOUT: u64 = 16 * CYCLES_PER_MS;
 /// Returns the cycles at which the watchdog has reset the chip.
 fn watchdog_resets(uno: &Uno) -> Vec<u64> {
     let resets = uno.reset_events().into_iter();
-    let bites = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
-    bites.map(|reset| reset.cycle).collect()
+    let watchdog_events = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
+    watchdog_events.map(|reset| reset.cycle).collect()
 }
 
 /// Compiles a program in which the macro `set(value)` runs the timed sequence of 11.8.2 and writes `value` to WDTCSR.
@@ -101,7 +101,7 @@ fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() 
 
 /// Returns a UNO after 17 ms of a program that starts the watchdog with 16 ms, sets WDCE and WDE, and writes 0 to
 /// WDTCSR after `count` nops.
-fn off_after(count: usize) -> Uno {
+fn switch_off_after(count: usize) -> Uno {
     let source = format!(
         "ldi r16, 0 $ out MCUSR, r16
          ldi r17, 0x18 $ ldi r18, 0
@@ -119,10 +119,10 @@ fn off_after(count: usize) -> Uno {
 fn wde_is_cleared_only_within_four_cycles_after_wdce() {
     // "Within the next four clock cycles, write the WDE and Watchdog prescaler bits
     // (WDP) as desired, but with the WDCE bit cleared" (11.8.2).
-    for (nops, off) in [(0, true), (2, true), (3, false), (8, false)] {
+    for (nops, is_off) in [(0, true), (2, true), (3, false), (8, false)] {
         assert_eq!(
-            watchdog_resets(&off_after(nops)).is_empty(),
-            off,
+            watchdog_resets(&switch_off_after(nops)).is_empty(),
+            is_off,
             "{nops} nops"
         );
     }
@@ -166,8 +166,8 @@ fn wdtcsr_reads_as_the_data_sheet_says() {
     ] {
         assert_eq!(marks(&run_once(body, ms)), expected, "{message}");
     }
-    let never_cleared = run_once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
-    assert_eq!(watchdog_resets(&never_cleared).len(), 1);
+    let uncleared_uno = run_once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
+    assert_eq!(watchdog_resets(&uncleared_uno).len(), 1);
 }
 
 #[test]
@@ -235,19 +235,25 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
         for (;;) {} }";
     let uno = run(body, 128 + 40);
     assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
-    let bites = watchdog_resets(&uno);
+    let reset_cycles = watchdog_resets(&uno);
     // The reset comes at the end of the instruction in which the time-out occurs.
-    assert!((bites[1] - bites[0]).abs_diff(MIN_TIMEOUT) < 3, "{bites:?}");
-    assert!((bites[2] - bites[1]).abs_diff(MIN_TIMEOUT) < 3, "{bites:?}");
+    assert!(
+        (reset_cycles[1] - reset_cycles[0]).abs_diff(MIN_TIMEOUT) < 3,
+        "{reset_cycles:?}"
+    );
+    assert!(
+        (reset_cycles[2] - reset_cycles[1]).abs_diff(MIN_TIMEOUT) < 3,
+        "{reset_cycles:?}"
+    );
 
-    let cleared = run(
+    let cleared_uno = run(
         "int main(void) {
             if (!(MCUSR & 8)) { set(8); for (;;) {} }
             MCUSR = 0; GPIOR0 = WDTCSR & 0x2f; set(0); GPIOR0 = WDTCSR & 0x2f; for (;;) {} }",
         100,
     );
-    assert_eq!(marks(&cleared), [8, 0]);
-    assert_eq!(cleared.watchdog_resets(), 1);
+    assert_eq!(marks(&cleared_uno), [8, 0]);
+    assert_eq!(cleared_uno.watchdog_resets(), 1);
 }
 
 #[test]
@@ -259,8 +265,8 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
     assert_eq!(*uno.run_ms(40), State::Alive);
     assert_eq!(uno.watchdog_resets(), 2);
     assert!(uno.marks().is_empty());
-    let mut stock = Uno::with_image(image, Fidelity::Stock);
-    assert_eq!(*stock.run_ms(40), State::Halted);
+    let mut stock_uno = Uno::with_image(image, Fidelity::Stock);
+    assert_eq!(*stock_uno.run_ms(40), State::Halted);
 }
 
 #[test]
@@ -295,17 +301,17 @@ fn an_interrupt_in_the_very_cycle_of_a_sleep_does_not_end_it_either() {
 #[test]
 fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
     let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
-    let mut whole = uno(image.clone());
-    whole.run_until_cycle(50 * CYCLES_PER_MS);
-    let mut pieces = uno(image.clone());
-    while pieces.cycle() < 50 * CYCLES_PER_MS {
-        pieces.run_until_cycle((pieces.cycle() + 997).min(50 * CYCLES_PER_MS));
+    let mut unbroken_uno = uno(image.clone());
+    unbroken_uno.run_until_cycle(50 * CYCLES_PER_MS);
+    let mut stepped_uno = uno(image.clone());
+    while stepped_uno.cycle() < 50 * CYCLES_PER_MS {
+        stepped_uno.run_until_cycle((stepped_uno.cycle() + 997).min(50 * CYCLES_PER_MS));
     }
-    assert_eq!(pieces.reset_events(), whole.reset_events());
-    let mut exact = uno(image);
-    exact.run_until_cycle(watchdog_resets(&whole)[0]);
-    assert_eq!(exact.watchdog_resets(), 1, "by the last cycle of a run");
-    assert_eq!(pieces.marks(), whole.marks());
+    assert_eq!(stepped_uno.reset_events(), unbroken_uno.reset_events());
+    let mut exact_uno = uno(image);
+    exact_uno.run_until_cycle(watchdog_resets(&unbroken_uno)[0]);
+    assert_eq!(exact_uno.watchdog_resets(), 1, "by the last cycle of a run");
+    assert_eq!(stepped_uno.marks(), unbroken_uno.marks());
 }
 
 #[test]

@@ -99,7 +99,7 @@ impl Run {
 /// The robot of the robot file of this name.
 pub(crate) fn robot(name: &str) -> Robot {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots"));
-    Robot::load(&folder.join(format!("{name}.toml"))).expect("it is right")
+    Robot::load(folder.join(format!("{name}.toml"))).expect("it is right")
 }
 
 /// A board with the firmware and the robot of this name.

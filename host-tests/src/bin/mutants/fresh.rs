@@ -7,7 +7,7 @@ use super::list::Mutant;
 
 /// Starts of the paths, in the core, of files that only produce the console's text. All other files of the core, of
 /// the board's code and of the pulses can move a servo or change a saved value.
-const TEXT: [&str; 8] = [
+const TEXT_FILES: [&str; 8] = [
     "answer.rs",
     "console.rs",
     "console/",
@@ -55,14 +55,14 @@ const SWAPS: [(&str, &str); 19] = [
 /// True if the file has code in which mistakes are generated.
 pub fn is_firmware(file: &str) -> bool {
     let folders = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
-    let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
-    file.ends_with(".rs") && folders.iter().any(|folder| file.starts_with(folder)) && !host_only
+    let is_host_only = HOST_ONLY.iter().any(|part| file.contains(part));
+    file.ends_with(".rs") && folders.iter().any(|folder| file.starts_with(folder)) && !is_host_only
 }
 
 /// True if a mistake in the file can move a servo or change a saved value.
 pub fn affects_motion(file: &str) -> bool {
     let name = file.strip_prefix("crates/core/src/").unwrap_or(file);
-    !TEXT.iter().any(|part| name.starts_with(part))
+    !TEXT_FILES.iter().any(|part| name.starts_with(part))
 }
 
 /// Returns every mistake that can be generated in a file.
@@ -70,25 +70,27 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
     let mut mutants = Vec::new();
-    for (n, line) in lines.iter().enumerate() {
-        for (wrong, changed) in changes(line) {
+    for (index, line) in lines.iter().enumerate() {
+        for (description, changed_line) in changes_of(line) {
             // Includes as many previous lines as make the text unique.
-            let mut first = n;
-            while first > 0 && text.matches(&lines[first..=n].join("\n")).count() > 1 {
-                first -= 1;
+            let mut first_index = index;
+            while first_index > 0
+                && text.matches(&lines[first_index..=index].join("\n")).count() > 1
+            {
+                first_index -= 1;
             }
-            let before = lines[first..n].iter().copied();
+            let previous_lines = lines[first_index..index].iter().copied();
             mutants.push(Mutant {
                 file: file.into(),
-                description: format!("line {}: {wrong}", n + 1),
+                description: format!("line {}: {description}", index + 1),
                 package: file
                     .starts_with("crates/core/")
                     .then(|| "lizard-core".into()),
                 is_fresh: true,
-                line: n + 1,
-                old: lines[first..=n].join("\n"),
-                new: before
-                    .chain([changed.as_str()])
+                line: index + 1,
+                old: lines[first_index..=index].join("\n"),
+                new: previous_lines
+                    .chain([changed_line.as_str()])
                     .collect::<Vec<_>>()
                     .join("\n"),
                 ..Mutant::default()
@@ -99,10 +101,10 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
 }
 
 /// Returns every changed form of a line of code, each with a description.
-fn changes(line: &str) -> Vec<(String, String)> {
+fn changes_of(line: &str) -> Vec<(String, String)> {
     let code = line.split("//").next().unwrap_or_default();
     let trimmed = code.trim();
-    let idle = [
+    let skipped_starts = [
         "#",
         "use ",
         "assert!",
@@ -111,42 +113,53 @@ fn changes(line: &str) -> Vec<(String, String)> {
         "type ",
         "impl",
     ];
-    if trimmed.contains('"') || idle.iter().any(|start| trimmed.starts_with(start)) {
+    if trimmed.contains('"')
+        || skipped_starts
+            .iter()
+            .any(|start| trimmed.starts_with(start))
+    {
         return Vec::new();
     }
     let mut changes = Vec::new();
     let mut swap = |offset: usize, old: &str, new: &str| {
-        let changed = format!("{}{new}{}", &line[..offset], &line[offset + old.len()..]);
-        changes.push((format!("`{}` for `{}`", new.trim(), old.trim()), changed));
+        let changed_line = format!("{}{new}{}", &line[..offset], &line[offset + old.len()..]);
+        changes.push((
+            format!("`{}` for `{}`", new.trim(), old.trim()),
+            changed_line,
+        ));
     };
     for (old, new) in SWAPS {
         for (offset, _) in code.match_indices(old) {
             swap(offset, old, new);
         }
     }
-    for (offset, number) in numbers(code) {
-        let next = number.parse::<u32>().map_or(1, |number| number + 1);
-        swap(offset, number, &next.to_string());
+    for (offset, number) in numbers_in(code) {
+        let next_number = number.parse::<u32>().map_or(1, |number| number + 1);
+        swap(offset, number, &next_number.to_string());
     }
     let is_call = trimmed.ends_with(';') && trimmed.contains('(') && trimmed.contains('.');
-    let starts = ["let ", "return ", "pub ", "}", ")", "."];
-    if is_call && !starts.iter().any(|start| trimmed.starts_with(start)) {
+    let excluded_starts = ["let ", "return ", "pub ", "}", ")", "."];
+    if is_call
+        && !excluded_starts
+            .iter()
+            .any(|start| trimmed.starts_with(start))
+    {
         changes.push((format!("no `{trimmed}`"), String::new()));
     }
     changes
 }
 
 /// Returns the decimal numbers in a line of code, each with its byte offset.
-fn numbers(code: &str) -> Vec<(usize, &str)> {
-    let mut found = Vec::new();
+fn numbers_in(code: &str) -> Vec<(usize, &str)> {
+    let mut numbers = Vec::new();
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     for piece in code.split(|c: char| !is_name(c)) {
         let offset = piece.as_ptr() as usize - code.as_ptr() as usize;
         if !piece.is_empty() && piece.bytes().all(|byte| byte.is_ascii_digit()) {
-            found.push((offset, piece));
+            numbers.push((offset, piece));
         }
     }
-    found
+    numbers
 }
 
 /// Shuffles the mistakes by a seed.
@@ -161,9 +174,9 @@ pub fn wilson_interval(noticed: usize, tried: usize) -> (f64, f64) {
     let n = tried.max(1) as f64;
     let rate = noticed as f64 / n;
     let middle = rate + Z * Z / (2.0 * n);
-    let half = Z * (rate * (1.0 - rate) / n + Z * Z / (4.0 * n * n)).sqrt();
+    let half_width = Z * (rate * (1.0 - rate) / n + Z * Z / (4.0 * n * n)).sqrt();
     let scale = 1.0 + Z * Z / n;
-    ((middle - half) / scale, (middle + half) / scale)
+    ((middle - half_width) / scale, (middle + half_width) / scale)
 }
 
 #[cfg(test)]
@@ -174,33 +187,33 @@ mod tests {
     fn every_place_of_a_line_that_can_be_another_is_found_once() {
         let text =
             "fn f() {\n    a.b(1); // 2 < 3\n    if x < 17 && y {}\n}\n#[cfg(test)]\n1 < 2\n";
-        let mut made: Vec<String> = all("crates/core/src/motion/frames.rs", text)
+        let mut actual: Vec<String> = all("crates/core/src/motion/frames.rs", text)
             .iter()
             .map(|mutant| mutant.apply(text).expect("it is there once"))
             .collect();
-        made.sort();
-        let with = |old, new| text.replacen(old, new, 1);
-        let mut wanted = vec![
-            with("    a.b(1); // 2 < 3", ""),
-            with("b(1)", "b(2)"),
-            with("x < 17", "x <= 17"),
-            with("17", "18"),
-            with("&&", "||"),
+        actual.sort();
+        let text_with = |old, new| text.replacen(old, new, 1);
+        let mut expected = vec![
+            text_with("    a.b(1); // 2 < 3", ""),
+            text_with("b(1)", "b(2)"),
+            text_with("x < 17", "x <= 17"),
+            text_with("17", "18"),
+            text_with("&&", "||"),
         ];
-        wanted.sort();
-        assert_eq!(made, wanted);
+        expected.sort();
+        assert_eq!(actual, expected);
     }
 
     #[test]
     fn a_line_that_occurs_twice_is_identified_by_the_lines_before_it() {
         let text = "one\na = b + c;\ntwo\na = b + c;\n";
-        let made: Vec<String> = all("crates/pulses/src/lib.rs", text)
+        let changed_texts: Vec<String> = all("crates/pulses/src/lib.rs", text)
             .iter()
             .map(|mutant| mutant.apply(text).expect("it is there once"))
             .collect();
-        assert_eq!(made.len(), 2);
-        assert_eq!(made[1], "one\na = b + c;\ntwo\na = b - c;\n");
-        assert_eq!(made[0], "one\na = b - c;\ntwo\na = b + c;\n");
+        assert_eq!(changed_texts.len(), 2);
+        assert_eq!(changed_texts[1], "one\na = b + c;\ntwo\na = b - c;\n");
+        assert_eq!(changed_texts[0], "one\na = b - c;\ntwo\na = b + c;\n");
     }
 
     #[test]

@@ -44,7 +44,7 @@ impl Mutant {
         match text.matches(&self.old).count() {
             1 => Ok(text.replace(&self.old, &self.new)),
             0 => Err("the old text is missing".into()),
-            n => Err(format!("the old text occurs {n} times")),
+            count => Err(format!("the old text occurs {count} times")),
         }
     }
 }
@@ -55,14 +55,14 @@ impl Mutant {
 /// Fails for an unknown line, or an entry without a file, a description or an old text.
 pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     let mut mutants = Vec::new();
-    let mut open: Option<Mutant> = None;
-    for (n, line) in list.lines().chain([""]).enumerate() {
-        let line_number = n + 1;
+    let mut open_mutant: Option<Mutant> = None;
+    for (index, line) in list.lines().chain([""]).enumerate() {
+        let line_number = index + 1;
         if line.starts_with('#') {
             continue;
         }
         if line.is_empty() {
-            if let Some(mutant) = open.take() {
+            if let Some(mutant) = open_mutant.take() {
                 if mutant.file.is_empty() || mutant.description.is_empty() || mutant.old.is_empty()
                 {
                     let line_number = mutant.line;
@@ -74,7 +74,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
             }
             continue;
         }
-        let mutant = open.get_or_insert_with(|| Mutant {
+        let mutant = open_mutant.get_or_insert_with(|| Mutant {
             line: line_number,
             ..Mutant::default()
         });
@@ -118,14 +118,14 @@ mod tests {
             (mutants[0].line, mutants[0].test.as_deref()),
             (3, Some("one"))
         );
-        let made = mutants[0].apply("let b = 0;\nlet a = 1;\n");
-        assert_eq!(made.as_deref(), Ok("let b = 0;\nlet a = 2;"));
-        let gone = mutants[0].apply("let a = 3;\n").expect_err("it is gone");
-        assert!(gone.contains("missing"), "{gone}");
-        let twice = mutants[0]
+        let changed_text = mutants[0].apply("let b = 0;\nlet a = 1;\n");
+        assert_eq!(changed_text.as_deref(), Ok("let b = 0;\nlet a = 2;"));
+        let missing_error = mutants[0].apply("let a = 3;\n").expect_err("it is gone");
+        assert!(missing_error.contains("missing"), "{missing_error}");
+        let duplicate_error = mutants[0]
             .apply("let a = 1;\nlet a = 1;\n\n")
             .expect_err("it is there twice");
-        assert!(twice.contains("2 times"), "{twice}");
+        assert!(duplicate_error.contains("2 times"), "{duplicate_error}");
     }
 
     #[test]

@@ -45,10 +45,14 @@ enum Outcome {
 }
 
 fn main() -> ExitCode {
-    let parts: Vec<String> = std::env::args().skip(1).collect();
-    let outcome = match number("SAMPLE") {
-        Some(count) => sample(&parts, count as usize, number("SEED").unwrap_or(1)),
-        None => run(&parts),
+    let name_parts: Vec<String> = std::env::args().skip(1).collect();
+    let outcome = match read_number("SAMPLE") {
+        Some(count) => sample(
+            &name_parts,
+            count as usize,
+            read_number("SEED").unwrap_or(1),
+        ),
+        None => run(&name_parts),
     };
     match outcome {
         Ok(0) => ExitCode::SUCCESS,
@@ -60,23 +64,23 @@ fn main() -> ExitCode {
     }
 }
 
-fn number(name: &str) -> Option<u64> {
+fn read_number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
 }
 
 /// Tries `count` generated mistakes. Returns the number that no test notices.
-fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
+fn sample(name_parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = Scratch::copy()?;
     let mut mutants = Vec::new();
     for file in scratch.files.iter().filter(|file| fresh::is_firmware(file)) {
-        if parts.is_empty() || parts.iter().any(|part| file.contains(part)) {
-            mutants.extend(fresh::all(file, &text(&root().join(file))?));
+        if name_parts.is_empty() || name_parts.iter().any(|part| file.contains(part)) {
+            mutants.extend(fresh::all(file, &read_text(&root().join(file))?));
         }
     }
     println!("seed {seed}: {count} of {} fresh mistakes", mutants.len());
     let unchanged = Mutant::unchanged(
         "crates/core/src/lib.rs",
-        text(&root().join("crates/core/src/lib.rs"))?,
+        read_text(&root().join("crates/core/src/lib.rs"))?,
     );
     if !matches!(scratch.judge(&unchanged)?, Outcome::Unnoticed) {
         return Err("a test fails without any mistake".into());
@@ -85,8 +89,8 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     // code that only produces text.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::shuffle(mutants, seed) {
-        let [moving, rest] = tally;
-        if moving[1] + rest[1] == count {
+        let [motion_counts, text_counts] = tally;
+        if motion_counts[1] + text_counts[1] == count {
             break;
         }
         let outcome = match scratch.judge(&mutant)? {
@@ -98,17 +102,17 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
             Outcome::Unnoticed => "LIVES".to_owned(),
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
-        let of = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
-        of[0] += usize::from(outcome != "LIVES");
-        of[1] += 1;
+        let counts = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
+        counts[0] += usize::from(outcome != "LIVES");
+        counts[1] += 1;
     }
-    for ([noticed, tried], kind) in tally
+    for ([noticed, tried], code_kind) in tally
         .into_iter()
         .zip(["that move a servo or a saved value", "in text"])
     {
         let (min, max) = fresh::wilson_interval(noticed, tried);
         println!(
-            "mistakes {kind}: {noticed} of {tried} noticed, {:.1} to {:.1} % (Wilson, 95 %)",
+            "mistakes {code_kind}: {noticed} of {tried} noticed, {:.1} to {:.1} % (Wilson, 95 %)",
             100.0 * min,
             100.0 * max
         );
@@ -117,19 +121,21 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
 }
 
 /// Tries the listed mistakes. Returns the number that no test notices.
-fn run(parts: &[String]) -> Result<usize, String> {
+fn run(name_parts: &[String]) -> Result<usize, String> {
     let list = read_list()?;
-    let wanted = |mutant: &&Mutant| {
+    let is_wanted = |mutant: &&Mutant| {
         let is_named =
             |part: &String| mutant.file.contains(part) || mutant.description.contains(part);
-        parts.is_empty() || parts.iter().any(is_named)
+        name_parts.is_empty() || name_parts.iter().any(is_named)
     };
-    let list: Vec<&Mutant> = list.iter().filter(wanted).collect();
+    let list: Vec<&Mutant> = list.iter().filter(is_wanted).collect();
     let scratch = Scratch::copy()?;
     let is_of_board = |mutant: &&&Mutant| mutant.package.is_none();
     if list.iter().find(is_of_board).is_some()
-        && let elf = scratch.firmware()?.ok_or("the firmware does not build")?
-        && !tests(&elf, "")?.is_none_or(|failed| failed.is_empty())
+        && let elf = scratch
+            .build_firmware()?
+            .ok_or("the firmware does not build")?
+        && !run_tests(&elf, "")?.is_none_or(|failed| failed.is_empty())
     {
         return Err("a test fails without any mistake".into());
     }
@@ -170,15 +176,15 @@ fn run(parts: &[String]) -> Result<usize, String> {
 /// if only some of its mistakes are tried.
 fn read_list() -> Result<Vec<Mutant>, String> {
     let path = root().join("host-tests/mutants.txt");
-    let list = list::read(&text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
+    let list = list::read(&read_text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
     for mutant in &list {
-        let made = mutant.apply(&text(&root().join(&mutant.file))?);
-        made.map_err(|e| format!("mutants.txt, line {}: {}: {e}", mutant.line, mutant.file))?;
+        let result = mutant.apply(&read_text(&root().join(&mutant.file))?);
+        result.map_err(|e| format!("mutants.txt, line {}: {}: {e}", mutant.line, mutant.file))?;
     }
     Ok(list)
 }
 
-fn text(path: &Path) -> Result<String, String> {
+fn read_text(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
@@ -193,13 +199,13 @@ impl Scratch {
     /// Copies all files that git tracks, as they are in the working tree.
     fn copy() -> Result<Self, String> {
         let folder = root().join("target/mutants");
-        let listed = Command::new("git")
+        let output = Command::new("git")
             .args(["ls-files", "-z"])
             .current_dir(root())
             .output()
             .map_err(|error| format!("git: {error}"))?;
-        let listed = String::from_utf8_lossy(&listed.stdout);
-        let names = listed.split_terminator('\0');
+        let listing = String::from_utf8_lossy(&output.stdout);
+        let names = listing.split_terminator('\0');
         let files = names.filter(|name| root().join(name).is_file());
         let files = files.map(str::to_owned).collect();
         let scratch = Self { folder, files };
@@ -214,16 +220,16 @@ impl Scratch {
     /// time.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.join("tree").join(name);
-        if fs::read(&path).is_ok_and(|before| before == bytes) {
+        if fs::read(&path).is_ok_and(|old_bytes| old_bytes == bytes) {
             return Ok(());
         }
         let parent = path.parent().ok_or("a file is in a folder")?;
-        let written = fs::create_dir_all(parent).and_then(|()| fs::write(&path, bytes));
-        written.map_err(|error| format!("{}: {error}", path.display()))
+        let result = fs::create_dir_all(parent).and_then(|()| fs::write(&path, bytes));
+        result.map_err(|error| format!("{}: {error}", path.display()))
     }
 
     /// Builds the firmware of the copy. Returns `None` if it does not compile.
-    fn firmware(&self) -> Result<Option<PathBuf>, String> {
+    fn build_firmware(&self) -> Result<Option<PathBuf>, String> {
         let build = self.folder.join("build");
         let status = Command::new("cargo")
             .args(["build", "--release", "--quiet"])
@@ -240,26 +246,26 @@ impl Scratch {
     /// Makes a mistake, runs the tests and undoes the mistake.
     fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
         // Reads the text from the copy, since the original tree may be edited during the run.
-        let right = text(&self.folder.join("tree").join(&mutant.file))?;
-        self.write(&mutant.file, mutant.apply(&right)?.as_bytes())?;
+        let correct_text = read_text(&self.folder.join("tree").join(&mutant.file))?;
+        self.write(&mutant.file, mutant.apply(&correct_text)?.as_bytes())?;
         let outcome = match &mutant.package {
-            Some(package) => self.in_its_package(package, mutant),
-            None => self.in_the_firmware(mutant),
+            Some(package) => self.judge_in_package(package, mutant),
+            None => self.judge_in_firmware(mutant),
         };
-        self.write(&mutant.file, right.as_bytes())?;
+        self.write(&mutant.file, correct_text.as_bytes())?;
         outcome.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.description))
     }
 
-    fn in_the_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
-        let Some(elf) = self.firmware()? else {
+    fn judge_in_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
+        let Some(elf) = self.build_firmware()? else {
             return Ok(Outcome::NoProgram);
         };
         // The likely tests run first, since all of them together take a minute.
         for filter in mutant.test.as_deref().into_iter().chain([""]) {
-            match tests(&elf, filter)? {
+            match run_tests(&elf, filter)? {
                 None => return Ok(Outcome::Caught("tests that hang".into())),
-                Some(failed) if !failed.is_empty() => {
-                    return Ok(Outcome::Caught(failed.join(", ")));
+                Some(failed_tests) if !failed_tests.is_empty() => {
+                    return Ok(Outcome::Caught(failed_tests.join(", ")));
                 }
                 Some(_) => {}
             }
@@ -269,7 +275,7 @@ impl Scratch {
 
     /// Runs the tests of a package of the copy: first those that should notice the mistake, then all. For a generated
     /// mistake, also runs the tests of the model checker and of the running firmware.
-    fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
+    fn judge_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !self
             .cargo_test(package, &["--no-run"])?
             .is_some_and(|run| run.0)
@@ -282,21 +288,23 @@ impl Scratch {
         for (package, filter) in runs.chain(is_fresh.then_some(("lizard-explore", ""))) {
             match self.cargo_test(package, &["--no-fail-fast", "--", filter])? {
                 None => return Ok(Outcome::Caught("tests that hang".into())),
-                Some((false, printed)) => {
-                    let failed = failures(&printed);
-                    return Ok(Outcome::Caught(match failed.is_empty() {
+                Some((false, output_text)) => {
+                    let failed_tests = failed_tests_in(&output_text);
+                    return Ok(Outcome::Caught(match failed_tests.is_empty() {
                         true => format!("{package}, which crashes"),
-                        false => failed.join(", "),
+                        false => failed_tests.join(", "),
                     }));
                 }
-                Some((true, printed)) if !printed.lines().any(|line| line.starts_with("test ")) => {
+                Some((true, output_text))
+                    if !output_text.lines().any(|line| line.starts_with("test ")) =>
+                {
                     return Err(format!("no test of {package} has {filter:?} in its name"));
                 }
                 Some(_) => {}
             }
         }
         if is_fresh {
-            self.in_the_firmware(mutant)
+            self.judge_in_firmware(mutant)
         } else {
             Ok(Outcome::Unnoticed)
         }
@@ -319,7 +327,7 @@ impl Scratch {
 
 /// Runs the firmware's tests whose names contain `filter`. Returns the names of the tests that fail, or `None` if
 /// the tests do not end.
-fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
+fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     let arguments = [
         "-p",
         "lizard-host-tests",
@@ -328,7 +336,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         "--test",
         "trouble",
     ];
-    let run = run_limited(
+    let result = run_limited(
         &root().join("crates"),
         &[&arguments[..], &["--", filter]].concat(),
         // Five times the default number of random inputs.
@@ -337,17 +345,17 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
             ("LIZARD_FUZZ", "5".as_ref()),
         ],
     )?;
-    let Some((_, printed)) = run else {
+    let Some((_, output_text)) = result else {
         return Ok(None);
     };
-    if !printed.contains("test result:") {
+    if !output_text.contains("test result:") {
         // The limit of processor time has ended a test that had started.
-        if printed.contains("running ") {
+        if output_text.contains("running ") {
             return Ok(None);
         }
         return Err("the tests of the firmware do not run; try make test".into());
     }
-    Ok(Some(failures(&printed)))
+    Ok(Some(failed_tests_in(&output_text)))
 }
 
 /// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if the tests do not end
@@ -358,8 +366,8 @@ fn run_limited(
     variables: &[(&str, &OsStr)],
 ) -> Result<Option<(bool, String)>, String> {
     /// The exit code of `timeout` after a time-out. `timeout` also ends the tests that cargo has started.
-    const TOO_LONG: i32 = 124;
-    let run = Command::new("prlimit")
+    const TIMEOUT_CODE: i32 = 124;
+    let output = Command::new("prlimit")
         .arg(format!("--cpu={CPU_TIMEOUT}"))
         .args(["timeout", "--kill-after=5", &TIMEOUT.to_string()])
         .args(["cargo", "test"])
@@ -371,21 +379,21 @@ fn run_limited(
         .stderr(Stdio::null())
         .output()
         .map_err(|error| format!("cargo: {error}"))?;
-    let printed = String::from_utf8_lossy(&run.stdout).into_owned();
-    let is_over = run.status.code() != Some(TOO_LONG);
-    Ok(is_over.then_some((run.status.success(), printed)))
+    let output_text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let is_over = output.status.code() != Some(TIMEOUT_CODE);
+    Ok(is_over.then_some((output.status.success(), output_text)))
 }
 
 /// Returns the names of the tests that failed, from the output of the test harness.
-fn failures(printed: &str) -> Vec<String> {
-    let name = |line: &str| {
+fn failed_tests_in(output_text: &str) -> Vec<String> {
+    let failed_name_of = |line: &str| {
         Some(
             line.strip_prefix("test ")?
                 .strip_suffix(" ... FAILED")?
                 .to_owned(),
         )
     };
-    printed.lines().filter_map(name).collect()
+    output_text.lines().filter_map(failed_name_of).collect()
 }
 
 #[cfg(test)]

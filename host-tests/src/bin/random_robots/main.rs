@@ -30,11 +30,14 @@ fn run(arguments: &[String]) -> Result<(), String> {
     let [folder, seed, count] = arguments else {
         return Err("the arguments are a folder, a seed, how many robots".into());
     };
-    let number = |text: &String, what: &str| {
+    let parse_number = |text: &String, name: &str| {
         let number = text.parse::<u64>();
-        number.map_err(|_| format!("{what} is a whole number, not {text:?}"))
+        number.map_err(|_| format!("{name} is a whole number, not {text:?}"))
     };
-    let (seed, count) = (number(seed, "the seed")?, number(count, "COUNT")?);
+    let (seed, count) = (
+        parse_number(seed, "the seed")?,
+        parse_number(count, "COUNT")?,
+    );
     if count == 0 {
         return Err("COUNT is at least 1".into());
     }
@@ -46,20 +49,20 @@ fn run(arguments: &[String]) -> Result<(), String> {
         check_features(&robots)?;
     }
     let folder = Path::new(folder);
-    let written = |error: std::io::Error| format!("{}: {error}", folder.display());
-    std::fs::create_dir_all(folder).map_err(written)?;
-    for (n, (text, _)) in robots.iter().enumerate() {
-        std::fs::write(folder.join(format!("{n}.toml")), text).map_err(written)?;
+    let message_of = |error: std::io::Error| format!("{}: {error}", folder.display());
+    std::fs::create_dir_all(folder).map_err(message_of)?;
+    for (number, (text, _)) in robots.iter().enumerate() {
+        std::fs::write(folder.join(format!("{number}.toml")), text).map_err(message_of)?;
     }
     Ok(())
 }
 
 /// A test whether a robot has a feature.
-type Has = fn(&Robot) -> bool;
+type FeatureTest = fn(&Robot) -> bool;
 
 /// Checks that each rare feature occurs in one of the robots. The error names the first missing feature.
 fn check_features(robots: &[(String, Robot)]) -> Result<(), String> {
-    let of_interest: [(&str, Has); 5] = [
+    let rare_features: [(&str, FeatureTest); 5] = [
         ("a servo that is reversed", |robot| {
             robot.servos().iter().any(|servo| servo.us_per_degree < 0.0)
         }),
@@ -72,10 +75,10 @@ fn check_features(robots: &[(String, Robot)]) -> Result<(), String> {
         ("no rail", |robot| robot.supplies().rail.is_none()),
         ("a gait of its own", |robot| robot.gaits().len() > 1),
     ];
-    for (what, has) in of_interest {
-        if !robots.iter().any(|(_, robot)| has(robot)) {
+    for (feature, has_feature) in rare_features {
+        if !robots.iter().any(|(_, robot)| has_feature(robot)) {
             return Err(format!(
-                "none of these robots has {what}; take another seed"
+                "none of these robots has {feature}; take another seed"
             ));
         }
     }

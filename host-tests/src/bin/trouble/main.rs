@@ -15,9 +15,9 @@ use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
 /// Number of failing scenarios that are printed in full.
-const PRINTED: usize = 5;
+const PRINTED_FAILURES: usize = 5;
 
-fn number(name: &str) -> Option<u64> {
+fn read_number(name: &str) -> Option<u64> {
     let text = std::env::var(name).ok().filter(|text| !text.is_empty())?;
     Some(
         text.parse()
@@ -27,31 +27,31 @@ fn number(name: &str) -> Option<u64> {
 
 fn main() -> ExitCode {
     let image = FirmwareBench::image_with(patrolling());
-    let seed = number("SEED").unwrap_or(1);
-    if let Some(only) = number("ONLY") {
-        return play_scenario(&image, seed, only);
+    let seed = read_number("SEED").unwrap_or(1);
+    if let Some(scenario_number) = read_number("ONLY") {
+        return play_scenario(&image, seed, scenario_number);
     }
-    let count = number("COUNT").unwrap_or(10_000);
-    let threads = thread::available_parallelism().map_or(1, |n| n.get());
-    let begin = Instant::now();
+    let count = read_number("COUNT").unwrap_or(10_000);
+    let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
+    let start = Instant::now();
     let summary = campaign(
         &image,
         patrolling(),
         seed,
         count,
-        threads,
-        |done, failure| {
+        thread_count,
+        |done_count, failure| {
             if let Some(failure) = failure {
                 let number = failure.scenario.number;
-                let (activity, broken) = (failure.scenario.activity, &failure.broken[0]);
-                println!("scenario {number} ({activity}): broken: {broken}");
-            } else if done.is_multiple_of(100) && std::io::stdout().is_terminal() {
-                print!("{done} of {count}\r");
+                let (activity, broken_rule) = (failure.scenario.activity, &failure.broken[0]);
+                println!("scenario {number} ({activity}): broken: {broken_rule}");
+            } else if done_count.is_multiple_of(100) && std::io::stdout().is_terminal() {
+                print!("{done_count} of {count}\r");
                 _ = std::io::stdout().flush();
             }
         },
     );
-    for failure in summary.failures.iter().take(PRINTED) {
+    for failure in summary.failures.iter().take(PRINTED_FAILURES) {
         println!(
             "\n{failure}  alone: make trouble SEED={seed} ONLY={}",
             failure.scenario.number
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
     }
     println!("\n{summary}");
     let seconds = summary.cycles / FREQUENCY;
-    let elapsed = begin.elapsed().as_secs_f64();
+    let elapsed = start.elapsed().as_secs_f64();
     println!("seed {seed}: {count} scenarios, {seconds} s simulated in {elapsed:.0} s");
     if summary.failures.is_empty() {
         ExitCode::SUCCESS
@@ -73,19 +73,19 @@ fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::of(seed, number, patrolling());
     print!("{scenario}");
     let record = lizard_host_tests::trouble::play(image, patrolling(), &scenario);
-    let mut last = [Time::MIN / 2; 4];
-    for (at, event) in events(&record) {
+    let mut last_pulse_times = [Time::MIN / 2; 4];
+    for (time, event) in events(&record) {
         let is_reported = match event {
             Event::Byte | Event::Pass => false,
             // Of a servo's pulses, only the first after more than 30 ms without a pulse is printed.
             Event::Pulse(pulse) => {
-                let before = std::mem::replace(&mut last[pulse.servo], at);
-                at - before > 30 * MS
+                let previous_time = std::mem::replace(&mut last_pulse_times[pulse.servo], time);
+                time - previous_time > 30 * MS
             }
             _ => true,
         };
         if is_reported {
-            println!("{:10.3} ms  {event:?}", at as f64 / MS as f64);
+            println!("{:10.3} ms  {event:?}", time as f64 / MS as f64);
         }
     }
     match judge(image, patrolling(), &scenario).1 {

@@ -66,22 +66,22 @@ impl Script<'_> {
 
     /// Lowers the supply for a while, then briefly to a second, mostly lower level, and restores it.
     fn add_sag(&mut self) {
-        let [slow, stop, rest] = self.levels();
-        let first = self.rng.u16(stop - 50..slow + 50);
-        let second = self.rng.u16(rest - 400..stop);
-        self.steps.push(Step::Supply(first));
+        let [slow_mv, stop_mv, rest_mv] = self.levels();
+        let first_mv = self.rng.u16(stop_mv - 50..slow_mv + 50);
+        let second_mv = self.rng.u16(rest_mv - 400..stop_mv);
+        self.steps.push(Step::Supply(first_mv));
         // The first level often counts only after one or two readings.
         self.wait(50);
         self.wait_up_to(100);
-        self.steps.push(Step::Supply(second));
+        self.steps.push(Step::Supply(second_mv));
         self.wait_up_to(60);
         self.steps.push(Step::Supply(5_000));
     }
 
     /// Lowers the supply for a long time to a level that allows moving but not writing the EEPROM, and orders both.
     fn add_low_supply(&mut self) {
-        let [slow, stop, _] = self.levels();
-        let mv = self.rng.u16(stop + 50..slow - 50);
+        let [slow_mv, stop_mv, _] = self.levels();
+        let mv = self.rng.u16(stop_mv + 50..slow_mv - 50);
         self.steps.push(Step::Supply(mv));
         self.wait(250);
         for line in ["rest", "stand", "save"] {

@@ -42,7 +42,7 @@ pub(super) fn limits(robot: &Robot) -> Limits {
 }
 
 /// Returns a number that is the same for equal states of main.
-fn fingerprint(running: &RunningRobot) -> u64 {
+fn main_fingerprint(running: &RunningRobot) -> u64 {
     fingerprint::coarse_fingerprint(&running.main)
 }
 
@@ -76,7 +76,7 @@ impl World {
             return broken(Rule::Allowed, text);
         }
         if is_done && effect == Effect::Moves {
-            let stack = self.running.board.is_stack_intact;
+            let is_stack_intact = self.running.board.is_stack_intact;
             if is_late {
                 self.observe(Event::Fault);
             }
@@ -86,7 +86,7 @@ impl World {
                 || self.observer.was_low(1, SUPPLY_SETTLING)
             {
                 self.observer.drop_pending();
-            } else if text == "ok stand" && stack {
+            } else if text == "ok stand" && is_stack_intact {
                 self.check_stands_after(text)?;
             } else if COUNTED.contains(&line) {
                 self.check_ends_after(text)?;
@@ -106,9 +106,9 @@ impl World {
     pub(super) fn look_ahead(&mut self) -> Verdict {
         self.observer.verdict()?;
         if let Some(time) = self.observer.due_in() {
-            let mut later = self.clone();
+            let mut future_world = self.clone();
             for _ in 0..=time / FRAME {
-                later.frame()?;
+                future_world.frame()?;
             }
         }
         self.observer.drop_pending();
@@ -117,18 +117,18 @@ impl World {
 
     /// Checks that `limit` accepts everything that `cal` prints.
     fn check_loaded_limits(&self) -> Verdict {
-        let mut later = self.running.clone();
-        later.board.transmitter.text.clear();
-        for line in later.send(b"cal\r") {
+        let mut future_robot = self.running.clone();
+        future_robot.board.transmitter.text.clear();
+        for line in future_robot.send(b"cal\r") {
             let Some((servo, rest)) = line
                 .strip_prefix("# A")
-                .and_then(|of| of.split_at_checked(1))
+                .and_then(|tail| tail.split_at_checked(1))
             else {
                 continue;
             };
             let (_, limit) = rest.split_once(" limit ").expect("cal prints it");
             let (limit, _) = limit.split_once(" dir ").expect("it ends there");
-            let answer = later.send_line(&format!("limit {servo} {limit}"));
+            let answer = future_robot.send_line(&format!("limit {servo} {limit}"));
             if answer.starts_with("err ") {
                 return broken(Rule::Load, answer);
             }
@@ -137,21 +137,21 @@ impl World {
     }
 
     /// Closes or opens a contact. Unless a routine runs, checks that the contact has no effect on the robot.
-    pub(super) fn set_contact(&mut self, pin: u8, closed: bool) -> Verdict {
-        let mut without = self.running.clone();
-        let others = self.running.board.closed & !(1 << pin);
-        self.running.board.closed = others | u32::from(closed) << pin;
+    pub(super) fn set_contact(&mut self, pin: u8, is_closed: bool) -> Verdict {
+        let mut unchanged = self.running.clone();
+        let other_contacts = self.running.board.closed & !(1 << pin);
+        self.running.board.closed = other_contacts | u32::from(is_closed) << pin;
         let robot = self.robot();
         let activity = self.running.main.control().activity();
         if matches!(activity, Activity::Gait(id) if robot.gait(id).is_routine()) {
             return Ok(());
         }
-        let mut with = self.running.clone();
-        for running in [&mut without, &mut with] {
+        let mut changed = self.running.clone();
+        for running in [&mut unchanged, &mut changed] {
             running.run_without_reader(u32::from(DEBOUNCED));
         }
-        if with.board.started_pulses() != without.board.started_pulses()
-            || fingerprint(&with) != fingerprint(&without)
+        if changed.board.started_pulses() != unchanged.board.started_pulses()
+            || main_fingerprint(&changed) != main_fingerprint(&unchanged)
         {
             return broken(Rule::Contacts, format!("{activity:?}"));
         }
@@ -163,44 +163,46 @@ impl World {
         let memory = &self.running.board.memory;
         let motion = self.running.motion();
         // A busy EEPROM cannot be read, but a copy of its bytes can.
-        let readable = Eeprom::with(*memory.bytes());
+        let readable_memory = Eeprom::with(*memory.bytes());
         motion.is_resting()
-            && copies::last_rest_pose(motion.robot(), &readable) == Some(*motion.pose())
+            && copies::last_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
     }
 
     fn check_stands_after(&self, answer: &str) -> Verdict {
-        let mut later = self.running.clone();
+        let mut future_robot = self.running.clone();
         for _ in 0..MOTION_FRAMES {
-            later.frame();
+            future_robot.frame();
         }
-        let motion = later.motion();
-        let standing = Pose::NEUTRAL.pulses(motion.calibration());
+        let motion = future_robot.motion();
+        let standing_pulses = Pose::NEUTRAL.pulses(motion.calibration());
         let activity = motion.activity();
         // A gait that robot.toml could not have may have left the safe poses while it braked.
         if motion.hazard().is_some() {
             return Ok(());
         }
-        if later.board.started_pulses() != standing || activity != Activity::Gait(GaitId::STAND) {
-            let status = later.send_line("status");
+        if future_robot.board.started_pulses() != standing_pulses
+            || activity != Activity::Gait(GaitId::STAND)
+        {
+            let status = future_robot.send_line("status");
             return broken(Rule::Stands, format!("{answer}, and then {status}"));
         }
         Ok(())
     }
 
     fn check_ends_after(&self, answer: &str) -> Verdict {
-        let mut later = self.running.clone();
-        later.run_without_reader(MOTION_FRAMES);
-        if later.main.control().activity() != Activity::Stop {
+        let mut future_robot = self.running.clone();
+        future_robot.run_without_reader(MOTION_FRAMES);
+        if future_robot.main.control().activity() != Activity::Stop {
             return broken(
                 Rule::Ends,
-                format!("{answer}, and then {}", later.send_line("status")),
+                format!("{answer}, and then {}", future_robot.send_line("status")),
             );
         }
         Ok(())
     }
 
-    /// Judges the pulses of a frame. `main_ran` is false if main was stalled in it.
-    pub(super) fn judge_pulses(&mut self, main_ran: bool) -> Verdict {
+    /// Judges the pulses of a frame. `has_main_run` is false if main was stalled in it.
+    pub(super) fn judge_pulses(&mut self, has_main_run: bool) -> Verdict {
         self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
@@ -210,10 +212,10 @@ impl World {
         }
         self.observer.observe_frame(self.now, widths);
         self.now += FRAME;
-        self.is_late |= !main_ran;
+        self.is_late |= !has_main_run;
         let motion = self.running.motion();
         let robot = self.robot();
-        let is_sent = main_ran && widths.iter().any(|width| *width > 0);
+        let is_sent = has_main_run && widths.iter().any(|width| *width > 0);
         if is_sent
             && Clearance::of(&robot, motion.pose())
                 .first_hazard(&robot)

@@ -11,7 +11,7 @@ use crate::fingerprint;
 impl World {
     /// Sends a line and runs main up to the line's immediate effect.
     pub(super) fn say(&mut self, line: &'static str, bytes: &[u8]) -> Verdict {
-        let before = self.settled();
+        let robot_before = self.settled_clone();
         self.running.board.send(bytes);
         self.running.board.send(b"\n");
         self.observe(Event::Byte);
@@ -29,7 +29,7 @@ impl World {
             }
         }
         if self.running.board.unread() == 0 {
-            self.predict(line, &before)?;
+            self.predict(line, &robot_before)?;
         }
         if self.unread.is_some() {
             let effect = effect(line, &self.robot());
@@ -40,36 +40,36 @@ impl World {
 
     /// Sends a line at a rate other than the rate of the robot's receiver, and checks that the robot ignores it.
     pub(super) fn say_at_another_rate(&mut self) -> Verdict {
-        let before = self.settled();
+        let robot_before = self.settled_clone();
         self.running.board.send(&UNREADABLE);
         self.observe(Event::Byte);
-        let after = self.settled();
-        let fingerprint =
+        let robot_after = self.settled_clone();
+        let fingerprint_of =
             |running: &RunningRobot| fingerprint::fingerprint_without_line_arrival(&running.main);
-        if fingerprint(&after) != fingerprint(&before) {
-            return broken(Rule::OtherRate, after.board.transmitter.text);
+        if fingerprint_of(&robot_after) != fingerprint_of(&robot_before) {
+            return broken(Rule::OtherRate, robot_after.board.transmitter.text);
         }
         Ok(())
     }
 
     /// Checks that the robot finds the sender's rate and answers, if it is asked repeatedly.
     pub(super) fn check_rate_is_found(&self) -> Verdict {
-        let mut asked = self.running.clone();
-        asked.board.transmitter.is_held = false;
+        let mut asked_robot = self.running.clone();
+        asked_robot.board.transmitter.is_held = false;
         for _ in 0..MAX_LINES_TO_FIND_RATE {
-            if asked.is_stopped_by_watchdog() {
+            if asked_robot.is_stopped_by_watchdog() {
                 return Ok(());
             }
-            let line: &[u8] = if asked.board.rate == self.sender_rate {
+            let line: &[u8] = if asked_robot.board.rate == self.sender_rate {
                 b"status\n"
             } else {
                 &UNREADABLE
             };
-            asked.board.send(line);
+            asked_robot.board.send(line);
             for _ in 0..4 {
-                asked.frame();
+                asked_robot.frame();
             }
-            if asked.board.transmitter.text.contains("ok gait=") {
+            if asked_robot.board.transmitter.text.contains("ok gait=") {
                 return Ok(());
             }
         }
@@ -77,26 +77,26 @@ impl World {
     }
 
     /// Returns a clone of the robot that has printed all its output.
-    fn settled(&self) -> RunningRobot {
-        let mut settled = self.running.clone();
-        settled.board.transmitter.text.clear();
-        settled.settle();
-        settled
+    fn settled_clone(&self) -> RunningRobot {
+        let mut clone = self.running.clone();
+        clone.board.transmitter.text.clear();
+        clone.settle();
+        clone
     }
 
     /// Judges the answer that the robot is about to print, if it answers at once: the robot's
     /// state must already match that answer.
-    fn predict(&mut self, line: &'static str, before: &RunningRobot) -> Verdict {
-        let after = self.settled();
-        let text = &after.board.transmitter.text;
+    fn predict(&mut self, line: &'static str, robot_before: &RunningRobot) -> Verdict {
+        let robot_after = self.settled_clone();
+        let text = &robot_after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
             return Ok(());
         };
-        let fingerprint =
+        let fingerprint_of =
             |running: &RunningRobot| fingerprint::fingerprint_without_line_arrival(&running.main);
         if answer.starts_with("err ")
-            && (fingerprint(&after) != fingerprint(before)
-                || after.board.memory.bytes() != before.board.memory.bytes())
+            && (fingerprint_of(&robot_after) != fingerprint_of(robot_before)
+                || robot_after.board.memory.bytes() != robot_before.board.memory.bytes())
         {
             return broken(Rule::Refused, text.clone());
         }
@@ -114,15 +114,15 @@ impl World {
     pub(super) fn listen(&mut self, since: Time) -> Verdict {
         let text = std::mem::take(&mut self.running.board.transmitter.text);
         // The last line may have been printed only in part.
-        let (whole, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
+        let (complete_lines, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
         rest.clone_into(&mut self.running.board.transmitter.text);
-        for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
+        for line in complete_lines.split("\r\n").filter(|line| !line.is_empty()) {
             self.observe(Event::Printed(since, line));
             if is_final(line) {
                 if self.judged_answers > 0 && !line.starts_with("ok gait=") {
                     self.judged_answers -= 1;
-                } else if let Some(asked) = self.unread.take() {
-                    self.judge_answer(asked, line)?;
+                } else if let Some(asked_line) = self.unread.take() {
+                    self.judge_answer(asked_line, line)?;
                 }
             }
         }

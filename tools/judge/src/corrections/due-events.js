@@ -6,13 +6,13 @@ const I = 0x80;
 export function dueEvents({ cpu }) {
   const tick = cpu.tick.bind(cpu);
   cpu.tick = () => {
-    const on = cpu.data[SREG] & I;
+    const enabledBit = cpu.data[SREG] & I;
     // All events but the last, without interrupts, which are to see all of them.
     while (cpu.nextClockEvent?.next && cpu.nextClockEvent.next.cycles <= cpu.cycles) {
       cpu.data[SREG] &= ~I;
       tick();
     }
-    cpu.data[SREG] |= on;
+    cpu.data[SREG] |= enabledBit;
     tick();
   };
 }

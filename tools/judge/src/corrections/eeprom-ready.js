@@ -6,8 +6,8 @@ export function eepromReady({ cpu, eeprom }) {
   const { EECR } = eeprom.config;
   const write = cpu.writeHooks[EECR];
   cpu.writeHooks[EECR] = (...args) => {
-    const done = write(...args);
+    const isWritten = write(...args);
     if (cpu.data[EECR] & EEPE) cpu.clearInterrupt(eeprom.EER, false);
-    return done;
+    return isWritten;
   };
 }

@@ -18,18 +18,18 @@ export function interruptWaits(uno) {
   const { cpu } = uno;
   const { data } = cpu;
   /** The cycle at which the instruction ended that has just switched interrupts on. */
-  let on = -1;
+  let enabledCycle = -1;
   const execute = () => {
-    const wasOn = data[SREG] & I;
+    const wasEnabled = data[SREG] & I;
     avrInstruction(cpu);
-    if (!wasOn && data[SREG] & I) on = cpu.cycles;
+    if (!wasEnabled && data[SREG] & I) enabledCycle = cpu.cycles;
   };
   uno.executeBy(execute, mayEnable);
   const tick = cpu.tick.bind(cpu);
   cpu.tick = () => {
-    const justOn = cpu.cycles === on;
-    if (justOn) data[SREG] &= ~I;
+    const isJustEnabled = cpu.cycles === enabledCycle;
+    if (isJustEnabled) data[SREG] &= ~I;
     tick();
-    if (justOn) data[SREG] |= I;
+    if (isJustEnabled) data[SREG] |= I;
   };
 }

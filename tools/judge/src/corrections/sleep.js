@@ -5,18 +5,18 @@ import { avrInstruction } from 'avr8js';
 const SLEEP = 0x9588;
 const SMCR = 0x53;
 const SE = 1;
-const WAKING = 4;
+const WAKING_CYCLES = 4;
 
 export function sleep(uno) {
   const { cpu } = uno;
-  const pass = () => {
-    const next = cpu.nextClockEvent?.cycles ?? Infinity;
-    cpu.cycles = Math.max(cpu.cycles, Math.min(next, uno.until));
+  const passTime = () => {
+    const nextCycle = cpu.nextClockEvent?.cycles ?? Infinity;
+    cpu.cycles = Math.max(cpu.cycles, Math.min(nextCycle, uno.until));
   };
   const execute = () => {
-    const sleeps = cpu.data[SMCR] & SE;
+    const isSleepEnabled = cpu.data[SMCR] & SE;
     avrInstruction(cpu);
-    if (sleeps && cpu.nextInterrupt < 0) uno.sleep = pass;
+    if (isSleepEnabled && cpu.nextInterrupt < 0) uno.sleep = passTime;
   };
   uno.executeBy(execute, (opcode) => opcode === SLEEP);
   const tick = cpu.tick.bind(cpu);
@@ -25,7 +25,7 @@ export function sleep(uno) {
     tick();
     if (uno.sleep !== null && cpu.pc !== pc) {
       uno.sleep = null;
-      cpu.cycles += WAKING;
+      cpu.cycles += WAKING_CYCLES;
     }
   };
 }

@@ -2,31 +2,31 @@
 // second one, and bytes are sent back to back. avr8js holds one, so a gap follows each byte.
 
 export function transmitBuffer({ cpu, usart }) {
-  let busy = false;
-  let next = null;
+  let isBusy = false;
+  let nextByte = null;
   // The line's own time: an event is seen only at the end of an instruction.
-  let due;
-  const shift = (byte) => {
-    busy = true;
-    due += usart.cyclesPerChar;
+  let dueCycle;
+  const shiftOut = (byte) => {
+    isBusy = true;
+    dueCycle += usart.cyclesPerChar;
     cpu.addClockEvent(() => {
-      usart.onByteTransmit?.(byte, due);
-      busy = false;
-      if (next === null) {
+      usart.onByteTransmit?.(byte, dueCycle);
+      isBusy = false;
+      if (nextByte === null) {
         cpu.setInterruptFlag(usart.TXC);
       } else {
-        shift(next);
-        next = null;
+        shiftOut(nextByte);
+        nextByte = null;
         cpu.setInterruptFlag(usart.UDRE);
       }
-    }, due - cpu.cycles);
+    }, dueCycle - cpu.cycles);
   };
   cpu.writeHooks[usart.config.UDR] = (byte) => {
-    if (!busy) {
-      due = cpu.cycles;
-      shift(byte);
-    } else if (next === null) {
-      next = byte;
+    if (!isBusy) {
+      dueCycle = cpu.cycles;
+      shiftOut(byte);
+    } else if (nextByte === null) {
+      nextByte = byte;
       cpu.clearInterrupt(usart.UDRE);
     }
     return true;

@@ -7,9 +7,9 @@ export function waitingByte({ cpu, usart }) {
   const { UCSRA, UCSRB } = usart.config;
   const write = cpu.writeHooks[UCSRB];
   cpu.writeHooks[UCSRB] = (value, ...rest) => {
-    const waits = cpu.data[UCSRA] & RXC && value & RXEN;
-    const done = write(value, ...rest);
-    if (waits) cpu.setInterruptFlag(usart.RXC);
-    return done;
+    const isWaiting = cpu.data[UCSRA] & RXC && value & RXEN;
+    const isWritten = write(value, ...rest);
+    if (isWaiting) cpu.setInterruptFlag(usart.RXC);
+    return isWritten;
   };
 }

@@ -11,15 +11,15 @@ export const firmware: Step = {
   parts({ session, write, go }) {
     const { link, banner, hasThisRobot } = session;
     if (link.kind === 'radio') return [words(answerOf(session)), warning(`Nothing can be written here: ${BY_CABLE}.`)];
-    const all = button('Write firmware and robot', () => write('all'), !session.answers);
-    const robot = button('Write this robot alone', () => write('robot'), !hasThisRobot);
+    const allButton = button('Write firmware and robot', () => write('all'), !session.answers);
+    const robotButton = button('Write this robot alone', () => write('robot'), !hasThisRobot);
     return [
       words(answerOf(session)),
       words(
         `This writes ${nameOf(session)} to the ${link.name}, reads it back and starts it. A calibration that was saved on it stays. ` +
           'The firmware is the same for every robot: where it is there already, the robot alone takes about a second.',
       ),
-      row(...(banner && session.answers ? [robot] : []), all, ...(hasThisRobot ? [button('Go on', () => go('Horns'), true)] : [])),
+      row(...(banner && session.answers ? [robotButton] : []), allButton, ...(hasThisRobot ? [button('Go on', () => go('Horns'), true)] : [])),
       note('Is it another robot that you have built? Choose it at the top of the page first, or open its robot.toml.'),
     ];
   },

@@ -25,16 +25,16 @@ export const keep: Step = {
         done('Keep');
         return 'Saved: the board begins with it from now on, also after new firmware.';
       });
-    const file = make('input', { type: 'file', accept: '.toml' });
-    file.addEventListener('change', () => {
-      const chosen = file.files?.[0];
-      if (chosen) void chosen.text().then((text) => setCalibration(text, chosen.name));
+    const fileInput = make('input', { type: 'file', accept: '.toml' });
+    fileInput.addEventListener('change', () => {
+      const chosenFile = fileInput.files?.[0];
+      if (chosenFile) void chosenFile.text().then((text) => setCalibration(text, chosenFile.name));
     });
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
       words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
       row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [calibrationText(guide.calibration)], 'application/toml'))),
-      row(make('label', { className: 'file' }, 'Open a saved file ', file)),
+      row(make('label', { className: 'file' }, 'Open a saved file ', fileInput)),
       note('The file is the same as that of `lizard calibrate backup`. A file that you open takes effect at once; the button saves it in the board.'),
     ];
   },

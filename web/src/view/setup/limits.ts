@@ -5,7 +5,7 @@ import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';
 
 /** Turn of the servo per press of a button, deg. */
-const STEP = 5;
+const STEP_DEG = 5;
 
 export class Limits implements Step {
   readonly name = 'Limits';
@@ -26,25 +26,25 @@ export class Limits implements Step {
   parts(tools: Tools): Node[] {
     const { guide, servo, session } = tools;
     const limit = guide?.calibration.servos[servo].limit ?? null;
-    const place = this.at?.servo === servo ? this.at.degrees : session.description.servos[servo].neutral;
+    const currentAngle = this.at?.servo === servo ? this.at.degrees : session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
-    const box = (label: string, value: number, set: (value: number) => void) => number(label, value, '0.01', set);
+    const makeBox = (label: string, value: number, act: (value: number) => void) => number(label, value, '0.01', act);
     return [
       words(`Turn ${nameOf(servo)} until a part of your print is about to touch another, and let it go no further. Where nothing touches, there is nothing to do.`),
       row(
-        button(`↺ ${STEP}°`, () => this.turn(tools, place + STEP)),
-        button(`↻ ${STEP}°`, () => this.turn(tools, place - STEP)),
+        button(`↺ ${STEP_DEG}°`, () => this.turn(tools, currentAngle + STEP_DEG)),
+        button(`↻ ${STEP_DEG}°`, () => this.turn(tools, currentAngle - STEP_DEG)),
         button('Stand', () => this.stand(tools)),
       ),
       ...(limit
         ? [
             row(
-              button('Not further ↺ than here', () => this.set(tools, from, place)),
-              button('Not further ↻ than here', () => this.set(tools, place, to)),
+              button('Not further ↺ than here', () => this.set(tools, from, currentAngle)),
+              button('Not further ↻ than here', () => this.set(tools, currentAngle, to)),
             ),
             row(
-              box('From, degrees', from, (value) => this.set(tools, value, to)),
-              box('to, degrees', to, (value) => this.set(tools, from, value)),
+              makeBox('From, degrees', from, (value) => this.set(tools, value, to)),
+              makeBox('to, degrees', to, (value) => this.set(tools, from, value)),
             ),
           ]
         : []),

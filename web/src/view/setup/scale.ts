@@ -21,31 +21,31 @@ export class Scale implements Step {
 
   parts(tools: Tools): Node[] {
     const { guide, servo } = tools;
-    const has = guide?.calibration.servos[servo].scale;
+    const currentScale = guide?.calibration.servos[servo].scale;
     const isTurned = this.turned?.servo === servo;
     return [
       words(`Mark where the crank of ${nameOf(servo)} points, turn it, and measure how far it went.`),
       row(button(`Turn A${servo + 1} by 20°`, () => this.turn(tools), !isTurned)),
-      ...(isTurned ? [row(number('It turned by, degrees', null, '0.1', (degrees) => this.measured(tools, degrees)))] : []),
-      words(`Scale: ${has === undefined ? '–' : `${has.toFixed(2)} µs per degree`}`),
+      ...(isTurned ? [row(number('It turned by, degrees', null, '0.1', (degrees) => this.setMeasuredTurn(tools, degrees)))] : []),
+      words(`Scale: ${currentScale === undefined ? '–' : `${currentScale.toFixed(2)} µs per degree`}`),
       note('Most servos are near 10. Without a protractor, leave this step out.'),
     ];
   }
 
   private turn({ servo, run }: Tools): void {
     run(async (guide) => {
-      const by = await guide.span(servo);
-      this.turned = { servo, by };
-      return `A${servo + 1} was told to turn ${Math.abs(by)}°. Measure it.`;
+      const turn = await guide.span(servo);
+      this.turned = { servo, by: turn };
+      return `A${servo + 1} was told to turn ${Math.abs(turn)}°. Measure it.`;
     });
   }
 
-  private measured({ servo, run, done }: Tools, degrees: number): void {
+  private setMeasuredTurn({ servo, run, done }: Tools, degrees: number): void {
     run(async (guide) => {
       if (!this.turned || degrees <= 0) return 'Give how far it turned, in degrees, more than 0.';
-      const asked = this.turned.by;
+      const askedTurn = this.turned.by;
       this.forget();
-      const scale = await guide.scale(servo, asked, degrees);
+      const scale = await guide.scale(servo, askedTurn, degrees);
       done(this.name);
       return `The scale of A${servo + 1} is ${scale.toFixed(2)} µs per degree.`;
     });

@@ -42,8 +42,8 @@ export class Signs implements Step {
   private question(tools: Tools): Node[] {
     const { servo, session } = tools;
     const { pin } = session.description.servos[servo];
-    const say = (what: 'other' | 'none') => () => {
-      this.observed = what;
+    const observe = (observation: 'other' | 'none') => () => {
+      this.observed = observation;
       tools.show();
     };
     const advice = {
@@ -53,10 +53,10 @@ export class Signs implements Step {
     return [
       words('Did it turn as the arrow shows?'),
       row(
-        button('Yes', () => this.proven(tools), true),
+        button('Yes', () => this.markProven(tools), true),
         button('No, the other way', () => this.reverse(tools)),
-        button('Another servo turned', say('other')),
-        button('Nothing turned', say('none')),
+        button('Another servo turned', observe('other')),
+        button('Nothing turned', observe('none')),
       ),
       ...(this.observed ? [words(advice[this.observed])] : []),
     ];
@@ -65,10 +65,10 @@ export class Signs implements Step {
   private turn(tools: Tools): void {
     const { servo } = tools;
     tools.run(async (guide) => {
-      const by = await guide.prove(servo);
+      const turn = await guide.prove(servo);
       this.observed = null;
-      this.moved = { servo, by };
-      return `A${servo + 1} was told to turn ${Math.abs(by)}° ${by > 0 ? 'counter-clockwise' : 'clockwise'}.`;
+      this.moved = { servo, by: turn };
+      return `A${servo + 1} was told to turn ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });
   }
 
@@ -82,12 +82,12 @@ export class Signs implements Step {
   }
 
   /** Marks this sign as proven and goes to the next unproven servo, or to the next step. */
-  private proven(tools: Tools): void {
+  private markProven(tools: Tools): void {
     tools.done(doneWord(tools.servo));
     this.forget();
-    const [first] = unproven(tools);
-    if (first !== undefined) {
-      tools.servo = first;
+    const [nextServo] = unproven(tools);
+    if (nextServo !== undefined) {
+      tools.servo = nextServo;
       return tools.show();
     }
     tools.done(this.name);

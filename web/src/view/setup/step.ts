@@ -14,7 +14,7 @@ export interface Tools {
   /** Connects or disconnects a board on USB. */
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
-  write(what: WriteContent): void;
+  write(content: WriteContent): void;
   /** Runs an action with the robot's guide; shows the returned message or the reason of a failure. */
   run(act: (guide: Guide) => Promise<string>): void;
   /** Sets the calibration in the text of a file, without saving it in the board. */

@@ -4,7 +4,7 @@ import { button, note, row, words } from '../make';
 import type { Step } from './step';
 
 /** Coarse and fine changes of the trim, deg counter-clockwise. */
-const BY = [0.5, 0.1, -0.1, -0.5];
+const TRIM_CHANGES = [0.5, 0.1, -0.1, -0.5];
 
 export const trims: Step = {
   name: 'Trims',
@@ -15,9 +15,9 @@ export const trims: Step = {
   parts({ guide, servo, run, done, session }) {
     const trim = guide?.calibration.servos[servo].trim;
     const neutral = session.description.servos[servo].neutral.toFixed(1);
-    const turn = (by: number) => () =>
+    const turn = (change: number) => () =>
       run(async (guide) => {
-        await guide.trim(servo, by);
+        await guide.trim(servo, change);
         done('Trims');
         return `The trim of A${servo + 1} is ${guide.calibration.servos[servo].trim.toFixed(2)}°.`;
       });
@@ -29,7 +29,7 @@ export const trims: Step = {
     return [
       words(`Let the robot stand, and turn the crank of ${nameOf(servo)} until it points to ${neutral}°, or mirrors the one on the other side.`),
       row(button('Stand', stand, true)),
-      row(...BY.map((by) => button(`${by > 0 ? '↺' : '↻'} ${Math.abs(by)}°`, turn(by)))),
+      row(...TRIM_CHANGES.map((change) => button(`${change > 0 ? '↺' : '↻'} ${Math.abs(change)}°`, turn(change)))),
       words(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
       note('↺ is counter-clockwise seen from above. A trim above 7.2° would be less on the next tooth: fit that horn again.'),
     ];

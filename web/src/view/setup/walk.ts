@@ -9,7 +9,7 @@ export const walk: Step = {
   needsRobot: true,
   parts(tools) {
     const { run, done, session } = tools;
-    const left = unproven(tools);
+    const unprovenServos = unproven(tools);
     const isWalking = session.description.gaits.some(({ command, moves }) => moves && command === session.gait);
     const begin = () =>
       run(async (guide) => {
@@ -31,7 +31,7 @@ export const walk: Step = {
     return [
       words('Put the robot together now (quickstart, step 7). Let it walk first on a box, its feet in the air, then on the floor with room in front of it.'),
       ...(isUnsaved ? [words('Will it be without power for that? What was set is lost then, unless it is saved.'), row(button('Save it before', store))] : []),
-      ...(left.length > 0 ? [warning(`Not proven yet: the sign of ${left.map((servo) => `A${servo + 1}`).join(', ')}. Go back to Signs first.`)] : []),
+      ...(unprovenServos.length > 0 ? [warning(`Not proven yet: the sign of ${unprovenServos.map((servo) => `A${servo + 1}`).join(', ')}. Go back to Signs first.`)] : []),
       row(isWalking ? button('Let it stand', end, true) : button('Let it walk', begin, true)),
       note('Esc and the red stop button end it at any moment.'),
     ];

@@ -6,19 +6,19 @@ use crate::solids::Triangles;
 
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
-fn model(drive: &str) -> Model {
+fn model_of(drive: &str) -> Model {
     Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\"")).expect("paper")
 }
 
 /// Transforms a point from a mount's frame to the chassis frame.
-fn mapped([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
-    let (at, turn) = (Vector::new(x, y), Vector::new(cos, sin));
-    at + turn * point.x + turn.rotated_left() * point.y
+fn to_chassis([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
+    let (origin, x_axis) = (Vector::new(x, y), Vector::new(cos, sin));
+    origin + x_axis * point.x + x_axis.rotated_left() * point.y
 }
 
 #[test]
 fn legs_that_lag_are_where_the_drawing_has_them() {
-    let model = model("strut");
+    let model = model_of("strut");
     let robot = model.assembly().robot().clone();
     let neutral: [f64; 4] = robot.neutral().into();
     let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
@@ -26,66 +26,65 @@ fn legs_that_lag_are_where_the_drawing_has_them() {
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
     twin.push_angles(angles);
     let sweeps = [0, 1, 2, 3].map(|i| FORWARD[i] * (angles[i] - neutral[i]) - lag[i]);
-    let drawn = Shape::of(&robot, angles, sweeps).expect("closes");
+    let shape = Shape::of(&robot, angles, sweeps).expect("closes");
     let places = model.pose(angles, lag).expect("closes");
-    let place = |mount| places[model.mount(mount)];
+    let place_of = |mount| places[model.mount(mount)];
     for servo in 0..4 {
-        let (leg, plan) = (drawn.legs[servo], &model.assembly().layout().legs[servo]);
+        let (leg, plan) = (shape.legs[servo], &model.assembly().layout().legs[servo]);
         for (joint, mount) in leg
             .joints
             .into_iter()
             .zip([Mount::Crank(servo), Mount::Follower(servo)])
         {
-            let error = (mapped(place(mount), plan.joint) - joint).length();
+            let error = (to_chassis(place_of(mount), plan.joint) - joint).length();
             assert!(error < 1e-9, "{mount:?} is off by {error} mm");
         }
-        let error = (mapped(place(Mount::Foot(servo)), plan.foot) - leg.foot).length();
+        let error = (to_chassis(place_of(Mount::Foot(servo)), plan.foot) - leg.foot).length();
         assert!(error < 1e-9, "foot {servo} is off by {error} mm");
         let [from, to] = leg.strut;
-        let along = Vector::new((to - from).length(), 0.0);
-        let strut = place(Mount::Strut(servo));
-        let error = (mapped(strut, Vector::default()) - from).length()
-            + (mapped(strut, along) - to).length();
+        let strut_end = Vector::new((to - from).length(), 0.0);
+        let strut = place_of(Mount::Strut(servo));
+        let error = (to_chassis(strut, Vector::default()) - from).length()
+            + (to_chassis(strut, strut_end) - to).length();
         assert!(error < 1e-9, "strut {servo} is off by {error} mm");
     }
 }
 
 #[test]
 fn without_lag_every_mount_is_where_the_assembly_has_it() {
-    let model = model("rigid");
+    let model = model_of("rigid");
     let robot = model.assembly().robot();
     let angles = [130.0, 45.0, 322.0, 219.0];
     let pose = robot.lizard().solve(&angles.into()).expect("closes");
     let places = model.pose(angles, [0.0; 4]).expect("closes");
     assert_eq!(places.len(), model.mounts.len());
     for (mount, place) in model.mounts.iter().zip(places) {
-        let Placement {
-            origin: at,
-            x_axis: turn,
-        } = model.assembly().place(*mount, &pose);
-        let error = [at.x, at.y, turn.x, turn.y].into_iter().zip(place);
+        let Placement { origin, x_axis } = model.assembly().place(*mount, &pose);
+        let error = [origin.x, origin.y, x_axis.x, x_axis.y]
+            .into_iter()
+            .zip(place);
         let error = error.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-9, "{mount:?}: {place:?}");
     }
 }
 
 /// Returns the corners of each solid.
-fn corners(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
+fn corners_of(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
     let corners = solids.iter().map(|solid| solid.corners.as_chunks().0);
     corners.map(<[_]>::to_vec).collect()
 }
 
 #[test]
 fn a_printed_solid_is_placed_exactly_into_its_body() {
-    let model = model("strut");
-    let (entry, solids) = (model.entry(), corners(&model.solids().expect("closed")));
+    let model = model_of("strut");
+    let (entry, solids) = (model.entry(), corners_of(&model.solids().expect("closed")));
     let largest = entry.bodies.iter().map(|body| body.solid).max();
     assert_eq!(largest, Some(solids.len() - 1));
-    for (known, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
-        let m = known.place;
-        let z = solids[known.solid].iter().map(|corner| {
+    for (body_entry, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
+        let matrix = body_entry.place;
+        let z = solids[body_entry.solid].iter().map(|corner| {
             let [x, y, z] = corner.map(f64::from);
-            m[2] * x + m[6] * y + m[10] * z + m[14]
+            matrix[2] * x + matrix[6] * y + matrix[10] * z + matrix[14]
         });
         let (low, high) = z.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
             (low.min(z), high.max(z))
@@ -97,12 +96,15 @@ fn a_printed_solid_is_placed_exactly_into_its_body() {
             body.name
         );
         // Seen from above, each corner must lie on or within the body's own shapes.
-        for corner in &solids[known.solid] {
+        for corner in &solids[body_entry.solid] {
             let [x, y, _] = corner.map(f64::from);
-            let at = Vector::new(m[0] * x + m[4] * y + m[12], m[1] * x + m[5] * y + m[13]);
+            let point = Vector::new(
+                matrix[0] * x + matrix[4] * y + matrix[12],
+                matrix[1] * x + matrix[5] * y + matrix[13],
+            );
             let shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
             let error = shapes
-                .map(|shape| shape.distance(&lizard_parts::Shape::disc(at, 0.0)))
+                .map(|shape| shape.distance(&lizard_parts::Shape::disc(point, 0.0)))
                 .fold(f64::INFINITY, f64::min);
             assert!(
                 error < 1e-3,
@@ -115,7 +117,7 @@ fn a_printed_solid_is_placed_exactly_into_its_body() {
 
 #[test]
 fn a_printed_body_is_that_of_its_part_and_in_one_step() {
-    let model = model("strut");
+    let model = model_of("strut");
     let entry = model.entry();
     assert_eq!(entry.steps.len(), 15);
     assert!(
@@ -124,8 +126,8 @@ fn a_printed_body_is_that_of_its_part_and_in_one_step() {
             .iter()
             .all(|body| (1..=14).contains(&body.step))
     );
-    let counts = entry.parts.iter().enumerate().map(|(number, part)| {
-        let bodies = entry.bodies.iter().filter(|body| body.part == Some(number));
+    let counts = entry.parts.iter().enumerate().map(|(index, part)| {
+        let bodies = entry.bodies.iter().filter(|body| body.part == Some(index));
         (part, bodies.count())
     });
     for (part, count) in counts {
@@ -136,12 +138,12 @@ fn a_printed_body_is_that_of_its_part_and_in_one_step() {
 
 #[test]
 fn a_robot_without_possible_parts_is_refused_with_the_message_of_lizard_parts() {
-    let low = format!("{PAPER}\n[parts]\nheight = 10.0");
-    let refused = Model::read(&low).err().expect("refused");
+    let toml = format!("{PAPER}\n[parts]\nheight = 10.0");
+    let refusal = Model::read(&toml).err().expect("refused");
     assert!(
-        refused.refused.contains("parts.height is 10 mm"),
+        refusal.refused.contains("parts.height is 10 mm"),
         "{}",
-        refused.refused
+        refusal.refused
     );
     assert!(Model::read("[links]").is_err());
 }

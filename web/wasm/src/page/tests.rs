@@ -16,32 +16,35 @@ fn a_refused_robot_leaves_the_previous_one() {
     assert!(page.pulses([24_000; 4]).is_some());
 }
 
-fn page() -> Page {
+fn page_of_paper() -> Page {
     let mut page = Page::default();
     page.read(PAPER).expect("right");
     page
 }
 
 /// Returns the index of a gait.
-fn index(page: &Page, name: &str) -> usize {
+fn index_of(page: &Page, name: &str) -> usize {
     let gait = page.robot().and_then(|robot| robot.gait(name));
     gait.expect(name).index()
 }
 
 #[test]
 fn pulses_that_end_leave_a_servo_where_it_is() {
-    let mut page = page();
+    let mut page = page_of_paper();
     page.set_servos("ideal");
-    let scene = |frame: Option<Frame>| frame.and_then(|frame| frame.scene).expect("closes");
-    let first = scene(page.pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
-    assert!((first.angles[0] - 148.590378).abs() < 1e-9, "{first:?}");
-    assert_eq!(scene(page.pulses([0; 4])), first);
+    let scene_of = |frame: Option<Frame>| frame.and_then(|frame| frame.scene).expect("closes");
+    let first_scene = scene_of(page.pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
+    assert!(
+        (first_scene.angles[0] - 148.590378).abs() < 1e-9,
+        "{first_scene:?}"
+    );
+    assert_eq!(scene_of(page.pulses([0; 4])), first_scene);
 }
 
 #[test]
 fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
-    let mut page = page();
-    let turned = |page: &mut Page, cycles: u32| {
+    let mut page = page_of_paper();
+    let turn_and_error = |page: &mut Page, cycles: u32| {
         let frame = page.pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
         let frame = frame.expect("a robot");
         (
@@ -49,32 +52,32 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
             frame.errors[0],
         )
     };
-    let near = |(turned, error): (f64, f64), wanted: [f64; 2]| {
-        assert!((turned - wanted[0]).abs() < 1e-9, "{turned}");
-        assert!((error - wanted[1]).abs() < 1e-9, "{error}");
+    let assert_near = |(turn, error): (f64, f64), expected: [f64; 2]| {
+        assert!((turn - expected[0]).abs() < 1e-9, "{turn}");
+        assert!((error - expected[1]).abs() < 1e-9, "{error}");
     };
     // 4 us are less than half of the servo's dead band of 10 us.
-    near(turned(&mut page, 64), [0.0, 0.4]);
+    assert_near(turn_and_error(&mut page, 64), [0.0, 0.4]);
     // A step of 20 deg: less than 10 in the first 20 ms at 500 deg/s, as the rotor must spin up; then it stays within
     // the dead band plus the error that the servo needs to hold its pad against friction.
-    let (first, _) = turned(&mut page, 3200);
-    assert!((1.0..10.0).contains(&first), "{first}");
+    let (first_turn, _) = turn_and_error(&mut page, 3200);
+    assert!((1.0..10.0).contains(&first_turn), "{first_turn}");
     for _ in 0..20 {
-        turned(&mut page, 3200);
+        turn_and_error(&mut page, 3200);
     }
-    let (last, error) = turned(&mut page, 3200);
-    assert!((18.8..20.6).contains(&last), "{last}");
-    assert!((last + error - 20.0).abs() < 1e-9);
+    let (last_turn, error) = turn_and_error(&mut page, 3200);
+    assert!((18.8..20.6).contains(&last_turn), "{last_turn}");
+    assert!((last_turn + error - 20.0).abs() < 1e-9);
     page.set_servos("ideal");
-    near(turned(&mut page, 3200), [20.0, 0.0]);
+    assert_near(turn_and_error(&mut page, 3200), [20.0, 0.0]);
     // An unknown model changes nothing: the servos stay ideal.
     page.set_servos("better");
-    near(turned(&mut page, 0), [0.0, 0.0]);
+    assert_near(turn_and_error(&mut page, 0), [0.0, 0.0]);
 }
 
 /// Lets the page follow two cycles of a gait with ideal servos, by poses `frames` frames apart. Returns the
 /// second cycle's displacement, its slide of each foot per pose, mm, and its largest lag, deg.
-fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
+fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
     let poses: Vec<[f64; 4]> = gait
@@ -82,98 +85,118 @@ fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f6
         .step_by(frames as usize)
         .map(|(_, phase)| gait.table_angles(phase))
         .collect();
-    let mut follow = || -> Vec<Frame> {
-        let follow = |angles: &[f64; 4]| page.pose(*angles, frames).expect("a robot");
-        poses.iter().map(follow).collect()
+    let mut follow_cycle = || -> Vec<Frame> {
+        let frame_at = |angles: &[f64; 4]| page.pose(*angles, frames).expect("a robot");
+        poses.iter().map(frame_at).collect()
     };
-    let (first, second) = (follow(), follow());
-    let end = |frames: &[Frame]| frames.last().expect("frames").place;
+    let (first, second) = (follow_cycle(), follow_cycle());
+    let end_place = |frames: &[Frame]| frames.last().expect("frames").place;
     let slides = second.iter().map(|frame| frame.slides).collect();
-    let lag = second.iter().flat_map(|frame| frame.lag);
-    let lag = lag.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
-    (end(&first).movement_to(end(&second)), slides, lag)
+    let lags = second.iter().flat_map(|frame| frame.lag);
+    let largest_lag = lags.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
+    (
+        end_place(&first).movement_to(end_place(&second)),
+        slides,
+        largest_lag,
+    )
 }
 
 #[test]
 fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
     for name in ["walk", "left", "arc-right", "back"] {
-        let mut page = page();
+        let mut page = page_of_paper();
         let robot = page.robot().expect("a robot");
-        let wanted = robot.predict(robot.gait(name).expect("a gait"));
+        let prediction = robot.predict(robot.gait(name).expect("a gait"));
         // A pose in every frame, and in every second frame, as a board on USB reports.
         for frames in [1, 2] {
-            let (movement, _, _) = cycle(&mut page, name, frames);
-            let near = |got: f64, wanted: Option<f64>, within: f64| {
-                let deviation = got - wanted.expect("decided");
-                assert!(deviation.abs() < within, "{name} {frames} {movement:?}");
+            let (movement, _, _) = follow_cycles(&mut page, name, frames);
+            let assert_near = |value: f64, expected: Option<f64>, tolerance: f64| {
+                let deviation = value - expected.expect("decided");
+                assert!(deviation.abs() < tolerance, "{name} {frames} {movement:?}");
             };
             // The poses in between are interpolated.
-            near(movement.forward, wanted.forward, 0.4 * f64::from(frames));
-            near(movement.left, wanted.left, 0.5);
-            near(movement.turn, wanted.turn, 0.3);
+            assert_near(
+                movement.forward,
+                prediction.forward,
+                0.4 * f64::from(frames),
+            );
+            assert_near(movement.left, prediction.left, 0.5);
+            assert_near(movement.turn, prediction.turn, 0.3);
         }
     }
 }
 
 #[test]
 fn servos_with_a_dead_band_are_predicted_to_lose_it() {
-    let mut page = page();
-    let walk = index(&page, "walk");
-    let forward = |page: &Page| {
+    let mut page = page_of_paper();
+    let walk = index_of(&page, "walk");
+    let forward_of = |page: &Page| {
         page.predict(walk)
             .and_then(|movement| movement.movement.forward())
     };
-    let sg90 = forward(&page).expect("decided");
+    let sg90_mm = forward_of(&page).expect("decided");
     page.set_servos("ideal");
-    let ideal = forward(&page).expect("decided");
+    let ideal_mm = forward_of(&page).expect("decided");
     // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % where the samples
     // of a waveform cut its corners; the prediction for ideal servos has no such samples.
-    assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.02, "{sg90} {ideal}");
+    assert!(
+        (sg90_mm / ideal_mm - 39.0 / 40.0).abs() < 0.02,
+        "{sg90_mm} {ideal_mm}"
+    );
     page.set_servos("copy");
-    let copy = page.predict(walk).expect("decided");
-    let copy = copy.lines.expect("shares");
+    let copy_prediction = page.predict(walk).expect("decided");
+    let copy_lines = copy_prediction.lines.expect("shares");
     page.set_servos("own");
-    let own = page
+    let own_lines = page
         .predict(walk)
         .and_then(|movement| movement.lines)
         .expect("shares");
-    for (copy, own) in copy.into_iter().zip(own) {
-        assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
+    for (copy_share, own_share) in copy_lines.into_iter().zip(own_lines) {
+        assert!(
+            copy_share > 1.3 * own_share,
+            "a weaker servo uses more: {copy_share} {own_share}"
+        );
     }
     // docs/gaits.md lists these two values, for half and full pace, and also the value for 4 V that is checked below.
     assert!(
-        (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
-        "{own:?}"
+        (own_lines[9] - 0.45).abs() < 0.005 && (own_lines[19] - 0.72).abs() < 0.005,
+        "{own_lines:?}"
     );
     page.set_servos("own at 4.0");
-    let weak = page.predict(walk).and_then(|movement| movement.lines);
-    assert!((weak.expect("shares")[19] - 0.87).abs() < 0.005, "{weak:?}");
+    let weak_lines = page.predict(walk).and_then(|movement| movement.lines);
+    assert!(
+        (weak_lines.expect("shares")[19] - 0.87).abs() < 0.005,
+        "{weak_lines:?}"
+    );
     // An unknown supply changes nothing.
     page.set_servos("own at 12");
     page.set_servos("own at a wall");
-    assert_eq!(page.predict(walk).and_then(|movement| movement.lines), weak);
+    assert_eq!(
+        page.predict(walk).and_then(|movement| movement.lines),
+        weak_lines
+    );
 }
 
 #[test]
 fn in_a_walk_most_feet_hold() {
-    let (_, slides, _) = cycle(&mut page(), "walk", 1);
-    let mut slid = [0.0; 4];
-    for frame in slides {
-        let holds = frame.iter().filter(|mm| **mm < 0.3).count();
-        assert!(holds >= 2, "{frame:?}");
-        slid = [0, 1, 2, 3].map(|i| slid[i] + frame[i]);
+    let (_, slides, _) = follow_cycles(&mut page_of_paper(), "walk", 1);
+    let mut slid_mm = [0.0; 4];
+    for frame_slides in slides {
+        let holding = frame_slides.iter().filter(|mm| **mm < 0.3).count();
+        assert!(holding >= 2, "{frame_slides:?}");
+        slid_mm = [0, 1, 2, 3].map(|i| slid_mm[i] + frame_slides[i]);
     }
     assert!(
-        slid.iter().all(|mm| *mm > 20.0),
-        "each foot is dragged once: {slid:?}"
+        slid_mm.iter().all(|mm| *mm > 20.0),
+        "each foot is dragged once: {slid_mm:?}"
     );
 }
 
 #[test]
 fn springs_that_are_set_act_and_are_predicted() {
-    let mut page = page();
+    let mut page = page_of_paper();
     page.set_servos("ideal");
-    let walk = index(&page, "walk");
+    let walk = index_of(&page, "walk");
     let rigid = page.predict(walk).expect("a gait");
     assert_eq!((rigid.lag, rigid.share), (None, None));
     for force in [0.35, 0.55] {
@@ -183,17 +206,17 @@ fn springs_that_are_set_act_and_are_predicted() {
             ..Floor::of(page.robot().expect("a robot"))
         });
         let soft = page.predict(walk).expect("a gait");
-        let (movement, _, lag) = cycle(&mut page, "walk", 1);
-        let forward = |movement: &GaitPrediction| movement.movement.forward().expect("decided");
+        let (movement, _, lag) = follow_cycles(&mut page, "walk", 1);
+        let forward_of = |movement: &GaitPrediction| movement.movement.forward().expect("decided");
         assert!(
-            (movement.forward - forward(&soft)).abs() < 0.5,
+            (movement.forward - forward_of(&soft)).abs() < 0.5,
             "{movement:?} {soft:?}"
         );
         assert!(
             (lag / soft.lag.expect("springs") - 1.0).abs() < 0.05,
             "{lag} {soft:?}"
         );
-        let share = forward(&soft) / forward(&rigid);
+        let share = forward_of(&soft) / forward_of(&rigid);
         assert!(
             (soft.share.expect("springs") - share).abs() < 0.01,
             "{soft:?}"
@@ -203,21 +226,21 @@ fn springs_that_are_set_act_and_are_predicted() {
 
 #[test]
 fn a_strut_that_bears_the_friction_is_as_good_as_rigid() {
-    let mut page = page();
+    let mut page = page_of_paper();
     let floor = Floor {
         kind: Legs::Strut,
         force: 3.0,
         ..Floor::of(page.robot().expect("a robot"))
     };
     page.set_floor(floor);
-    let strut = page.predict(index(&page, "walk")).expect("a gait");
-    assert!(strut.share.expect("springs") > 0.99, "{strut:?}");
+    let prediction = page.predict(index_of(&page, "walk")).expect("a gait");
+    assert!(prediction.share.expect("springs") > 0.99, "{prediction:?}");
 }
 
 #[test]
 fn weight_and_friction_matter_to_springs_alone() {
-    let walked = |kind: Legs, mass: f64, friction: f64, force: f64| {
-        let mut page = page();
+    let forward_with = |kind: Legs, mass: f64, friction: f64, force: f64| {
+        let mut page = page_of_paper();
         page.set_servos("ideal");
         let floor = Floor {
             kind,
@@ -228,41 +251,44 @@ fn weight_and_friction_matter_to_springs_alone() {
             ..Floor::of(page.robot().expect("a robot"))
         };
         page.set_floor(floor);
-        let movement = page.predict(index(&page, "walk")).expect("a gait").movement;
+        let movement = page
+            .predict(index_of(&page, "walk"))
+            .expect("a gait")
+            .movement;
         movement.forward().expect("decided")
     };
     let [rigid, strut] = [Legs::Rigid, Legs::Strut];
-    let own = walked(rigid, 280.0, 0.7, 1.0);
-    assert_eq!(own, walked(rigid, 560.0, 0.2, 1.0));
-    let light = walked(strut, 280.0, 0.7, 0.5);
-    assert!((light - walked(strut, 140.0, 1.4, 0.5)).abs() < 1e-6);
-    assert!((light - walked(strut, 280.0, 1.4, 1.0)).abs() < 1e-6);
-    assert!((light - walked(strut, 280.0, 1.4, 0.5)).abs() > 1.0);
+    let rigid_mm = forward_with(rigid, 280.0, 0.7, 1.0);
+    assert_eq!(rigid_mm, forward_with(rigid, 560.0, 0.2, 1.0));
+    let strut_mm = forward_with(strut, 280.0, 0.7, 0.5);
+    assert!((strut_mm - forward_with(strut, 140.0, 1.4, 0.5)).abs() < 1e-6);
+    assert!((strut_mm - forward_with(strut, 280.0, 1.4, 1.0)).abs() < 1e-6);
+    assert!((strut_mm - forward_with(strut, 280.0, 1.4, 0.5)).abs() > 1.0);
 }
 
 #[test]
 fn friction_that_differs_by_direction_changes_the_prediction() {
-    let mut page = page();
-    let walk = index(&page, "walk");
-    let even = page.predict(walk);
+    let mut page = page_of_paper();
+    let walk = index_of(&page, "walk");
+    let even_prediction = page.predict(walk);
     let floor = Floor {
         ratio: 1.4,
         ..Floor::of(page.robot().expect("a robot"))
     };
     page.set_floor(floor);
-    assert_ne!(page.predict(walk), even);
+    assert_ne!(page.predict(walk), even_prediction);
     assert_eq!(page.predict(99), None);
 }
 
 #[test]
 fn a_written_floor_is_read_back_and_everything_else_stays() {
-    let own = |text: &str| Floor::of(&Robot::parse(text).expect("right"));
-    let written = |text: &str, floor| {
+    let floor_of = |text: &str| Floor::of(&Robot::parse(text).expect("right"));
+    let write_floor = |text: &str, floor| {
         let edited = Page::edit_floor(text, floor).expect("it has room");
         assert_eq!(edited.refusal, None);
         edited.text
     };
-    assert_eq!(written(PAPER, own(PAPER)), PAPER);
+    assert_eq!(write_floor(PAPER, floor_of(PAPER)), PAPER);
     let floor = Floor {
         friction: 0.55,
         ratio: 1.5,
@@ -274,22 +300,32 @@ fn a_written_floor_is_read_back_and_everything_else_stays() {
         rate: 0.25,
         play: 0.5,
     };
-    let slotted = written(PAPER, floor);
-    assert_eq!(own(&slotted), floor);
-    let rigid = written(&slotted, own(PAPER));
-    assert_eq!(own(&rigid), own(PAPER));
-    assert!(!rigid.contains("\nforce ="), "{rigid}");
+    let slotted_toml = write_floor(PAPER, floor);
+    assert_eq!(floor_of(&slotted_toml), floor);
+    let rigid_toml = write_floor(&slotted_toml, floor_of(PAPER));
+    assert_eq!(floor_of(&rigid_toml), floor_of(PAPER));
+    assert!(!rigid_toml.contains("\nforce ="), "{rigid_toml}");
 }
 
 #[test]
 fn a_foot_that_is_too_long_is_predicted() {
-    let mut page = page();
-    let (walk, own) = (index(&page, "walk"), Floor::of(page.robot().expect("one")));
-    let mut ahead = |leaf: f64, twist: f64| {
-        page.set_floor(Floor { leaf, twist, ..own });
+    let mut page = page_of_paper();
+    let (walk, own_floor) = (
+        index_of(&page, "walk"),
+        Floor::of(page.robot().expect("one")),
+    );
+    let mut forward_with = |leaf: f64, twist: f64| {
+        page.set_floor(Floor {
+            leaf,
+            twist,
+            ..own_floor
+        });
         let movement = page.predict(walk).expect("a gait").movement;
         movement.forward().expect("decided")
     };
-    let level = ahead(2.0, 0.0);
-    assert!(ahead(3.3, 1.0) < 0.3 * level && ahead(own.leaf, 1.0) > 0.9 * level);
+    let level_mm = forward_with(2.0, 0.0);
+    assert!(
+        forward_with(3.3, 1.0) < 0.3 * level_mm
+            && forward_with(own_floor.leaf, 1.0) > 0.9 * level_mm
+    );
 }

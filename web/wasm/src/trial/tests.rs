@@ -3,19 +3,19 @@
 use super::*;
 use crate::paper::{TEXT, paper, with_twin};
 
-fn bars(robot: &Robot, name: &str) -> Bars {
+fn bars_of(robot: &Robot, name: &str) -> Bars {
     robot.gait(name).expect(name).bars().expect("bars")
 }
 
-fn trial(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
-    let made = EditedGait::Bars(bars.clone());
-    made.trial(twin).expect("bars always have a table")
+fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
+    let gait = EditedGait::Bars(bars.clone());
+    gait.trial(twin).expect("bars always have a table")
 }
 
 /// Puts a gait into the text of a robot.toml.
 fn put_into(bars: &Bars, text: &str) -> String {
-    let made = EditedGait::Bars(bars.clone());
-    made.put_into(text, &paper()).expect("a table")
+    let gait = EditedGait::Bars(bars.clone());
+    gait.put_into(text, &paper()).expect("a table")
 }
 
 #[test]
@@ -23,9 +23,9 @@ fn a_gait_taken_apart_and_put_together_is_the_same() {
     let (robot, twin) = with_twin();
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect(name);
-        let known = trial(&bars(&robot, name), &twin).expect("it walks");
-        assert_eq!(known.outlook, GaitPrediction::of(&twin, gait), "{name}");
-        assert_eq!(known.speed, gait.audit().peak.speed, "{name}");
+        let trial = try_bars(&bars_of(&robot, name), &twin).expect("it walks");
+        assert_eq!(trial.outlook, GaitPrediction::of(&twin, gait), "{name}");
+        assert_eq!(trial.speed, gait.audit().peak.speed, "{name}");
     }
     for name in ["stand", "look"] {
         let gait = robot.gait(name).expect(name);
@@ -38,29 +38,36 @@ fn a_gait_taken_apart_and_put_together_is_the_same() {
 fn a_reversed_gait_walks_as_the_core_in_reverse() {
     let (robot, twin) = with_twin();
     let back = robot.gait("back").expect("there");
-    let known = GaitPrediction::of(&twin, back)
+    let predicted_mm = GaitPrediction::of(&twin, back)
         .movement
         .forward()
         .expect("decided");
-    let tried = trial(&bars(&robot, "back"), &twin).expect("it walks");
-    let movement = tried.outlook.movement.forward().expect("decided");
+    let trial = try_bars(&bars_of(&robot, "back"), &twin).expect("it walks");
+    let trial_mm = trial.outlook.movement.forward().expect("decided");
     assert!(
-        known < -5.0 && (movement - known).abs() < 0.1,
-        "{movement} and {known} mm"
+        predicted_mm < -5.0 && (trial_mm - predicted_mm).abs() < 0.1,
+        "{trial_mm} and {predicted_mm} mm"
     );
-    assert!((tried.speed - back.audit().peak.speed).abs() < 2.0);
+    assert!((trial.speed - back.audit().peak.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
-        let bars = bars(&robot, name);
-        let ahead = trial(&bars, &twin).expect("it walks");
-        let turned = trial(&bars.reversed(), &twin).expect("it walks");
-        let [ahead, turned] = [ahead, turned].map(|t| t.outlook.movement.forward());
-        let sum = ahead.expect("decided") + turned.expect("decided");
-        assert!(sum.abs() < 0.2, "{name}: {ahead:?} and {turned:?} mm");
-        let again = bars.reversed().reversed();
-        assert_eq!(again.gain, bars.gain, "{name}");
-        for (again, start) in again.start.into_iter().zip(bars.start) {
-            let error = (again - start).rem_euclid(1.0);
-            assert!(error.min(1.0 - error) < 1e-9, "{name}: {again} and {start}");
+        let bars = bars_of(&robot, name);
+        let forward_trial = try_bars(&bars, &twin).expect("it walks");
+        let reversed_trial = try_bars(&bars.reversed(), &twin).expect("it walks");
+        let [forward_mm, reversed_mm] =
+            [forward_trial, reversed_trial].map(|trial| trial.outlook.movement.forward());
+        let sum = forward_mm.expect("decided") + reversed_mm.expect("decided");
+        assert!(
+            sum.abs() < 0.2,
+            "{name}: {forward_mm:?} and {reversed_mm:?} mm"
+        );
+        let twice_reversed = bars.reversed().reversed();
+        assert_eq!(twice_reversed.gain, bars.gain, "{name}");
+        for (twice_start, start) in twice_reversed.start.into_iter().zip(bars.start) {
+            let error = (twice_start - start).rem_euclid(1.0);
+            assert!(
+                error.min(1.0 - error) < 1e-9,
+                "{name}: {twice_start} and {start}"
+            );
         }
     }
 }
@@ -68,29 +75,36 @@ fn a_reversed_gait_walks_as_the_core_in_reverse() {
 #[test]
 fn a_refusal_offers_the_nearest_values_that_are_possible() {
     let (robot, twin) = with_twin();
-    let wanted = Bars {
+    let too_large = Bars {
         amplitude: 60.0,
-        ..bars(&robot, "walk")
+        ..bars_of(&robot, "walk")
     };
     {
-        let no = trial(&wanted, &twin).expect_err("refused");
-        assert!(no.refused.key.starts_with("gait.walk"), "{:?}", no.refused);
-        assert!(!no.instead.is_empty(), "{:?}", no.refused);
-        for Alternative { what, value } in no.instead {
-            let with = |value: f64| match what {
+        let refusal = try_bars(&too_large, &twin).expect_err("refused");
+        assert!(
+            refusal.refused.key.starts_with("gait.walk"),
+            "{:?}",
+            refusal.refused
+        );
+        assert!(!refusal.instead.is_empty(), "{:?}", refusal.refused);
+        for Alternative { what, value } in refusal.instead {
+            let with_value = |value: f64| match what {
                 "amplitude" => Bars {
                     amplitude: value,
-                    ..wanted.clone()
+                    ..too_large.clone()
                 },
                 _ => Bars {
                     period: value,
-                    ..wanted.clone()
+                    ..too_large.clone()
                 },
             };
-            let towards = if what == "amplitude" { 0.1 } else { -0.01 };
-            assert!(trial(&with(value), &twin).is_ok(), "{what} {value}");
+            let step = if what == "amplitude" { 0.1 } else { -0.01 };
             assert!(
-                trial(&with(value + towards), &twin).is_err(),
+                try_bars(&with_value(value), &twin).is_ok(),
+                "{what} {value}"
+            );
+            assert!(
+                try_bars(&with_value(value + step), &twin).is_err(),
                 "{what} {value}"
             );
         }
@@ -103,10 +117,10 @@ fn the_table_is_valid_in_a_robot_toml() {
     let mine = Bars {
         name: "mine".to_string(),
         amplitude: 18.5,
-        ..bars(&robot, "arc-left")
+        ..bars_of(&robot, "arc-left")
     };
     let robot = Robot::parse(&format!("{TEXT}\n{}", mine.table())).expect("right");
-    assert_eq!(bars(&robot, "mine"), mine);
+    assert_eq!(bars_of(&robot, "mine"), mine);
 }
 
 #[test]
@@ -114,34 +128,37 @@ fn a_gait_takes_the_place_of_the_one_of_its_name() {
     let robot = paper();
     let walk = Bars {
         amplitude: 15.0,
-        ..bars(&robot, "walk")
+        ..bars_of(&robot, "walk")
     };
     let text = put_into(&walk, TEXT);
-    let changed = Robot::parse(&text).expect("right");
-    assert_eq!(bars(&changed, "walk"), walk);
-    let names = |robot: &Robot| -> Vec<_> {
+    let changed_robot = Robot::parse(&text).expect("right");
+    assert_eq!(bars_of(&changed_robot, "walk"), walk);
+    let gait_names = |robot: &Robot| -> Vec<_> {
         let names = robot.gaits().iter().map(|gait| gait.name().to_string());
         names.collect()
     };
-    assert_eq!(names(&changed), names(&robot));
+    assert_eq!(gait_names(&changed_robot), gait_names(&robot));
     let mine = Bars {
         name: "mine".to_string(),
         ..walk
     };
-    let more = Robot::parse(&put_into(&mine, &text)).expect("right");
-    assert_eq!(names(&more).len(), names(&robot).len() + 1);
-    assert_eq!(bars(&more, "mine"), mine);
+    let extended_robot = Robot::parse(&put_into(&mine, &text)).expect("right");
+    assert_eq!(
+        gait_names(&extended_robot).len(),
+        gait_names(&robot).len() + 1
+    );
+    assert_eq!(bars_of(&extended_robot, "mine"), mine);
 }
 
 #[test]
 fn an_invalid_name_is_refused_without_other_values() {
     let (robot, twin) = with_twin();
-    let no = trial(
+    let result = try_bars(
         &Bars {
             name: "Wa lk".to_string(),
-            ..bars(&robot, "walk")
+            ..bars_of(&robot, "walk")
         },
         &twin,
     );
-    assert_eq!(no.expect_err("refused").instead, []);
+    assert_eq!(result.expect_err("refused").instead, []);
 }

@@ -13,7 +13,7 @@ fn read(line: &str) -> Result<Command, Misread> {
 }
 
 /// The command of a gait.
-fn gait_of(gait: GaitId) -> Command {
+fn command_of_gait(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }
 
@@ -77,48 +77,61 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
             "{example}"
         );
 
-        let longer = std::format!("{text} on");
-        let other = Sample::paper().with_gait(&longer);
+        let longer_name = std::format!("{text} on");
+        let robot_with_longer = Sample::paper().with_gait(&longer_name);
         assert_eq!(
-            parse_by_priority(example, &other),
+            parse_by_priority(example, &robot_with_longer),
             [command; 3],
             "{example}"
         );
 
-        let named = Sample::paper().with_gait(text).with_gait(&longer);
-        let since = [0, Word::Cal as usize, Word::ALL.len()];
-        for (line, as_gait) in [
-            (text, Ok(gait_of(named.id(text)))),
-            (&*longer, Ok(gait_of(named.id(&longer)))),
+        let robot_with_both = Sample::paper().with_gait(text).with_gait(&longer_name);
+        let first_yielding = [0, Word::Cal as usize, Word::ALL.len()];
+        for (line, gait_result) in [
+            (text, Ok(command_of_gait(robot_with_both.id(text)))),
+            (
+                &*longer_name,
+                Ok(command_of_gait(robot_with_both.id(&longer_name))),
+            ),
             (
                 &std::format!("{text} 1 2"),
                 Err(Misread::WrongArguments(Text::CountWants)),
             ),
         ] {
-            let as_word = parse(line.as_bytes(), &robot);
-            let expected = since.map(|since| if number < since { as_word } else { as_gait });
-            assert_eq!(parse_by_priority(line, &named), expected, "{line}");
+            let word_result = parse(line.as_bytes(), &robot);
+            let expected = first_yielding.map(|first| {
+                if number < first {
+                    word_result
+                } else {
+                    gait_result
+                }
+            });
+            assert_eq!(
+                parse_by_priority(line, &robot_with_both),
+                expected,
+                "{line}"
+            );
         }
     }
 }
 
 /// An angle as the console reads it.
-fn angle(degrees: f64) -> Angle {
+fn angle_of(degrees: f64) -> Angle {
     Angle::from_centideg((degrees * 100.0).round() as i32)
 }
 
 #[test]
 fn every_setting_is_read_with_its_servo() {
     use Servo::{A1, A2, A3, A4};
-    let trim = |degrees| Setting::Trim(Sweep(angle(degrees).0 as i16));
-    let limit = |from, to| Setting::Limit(angle(from), angle(to));
+    let trim_of = |degrees| Setting::Trim(Sweep(angle_of(degrees).0 as i16));
+    let limit_of = |from, to| Setting::Limit(angle_of(from), angle_of(to));
     for (line, servo, setting) in [
-        ("trim 1 0", A1, trim(0.0)),
-        ("trim 2 -3.5", A2, trim(-3.5)),
-        ("trim 3 +20", A3, trim(20.0)),
-        ("trim 4 -20.00", A4, trim(-20.0)),
-        ("limit 2 311.41 131.41", A2, limit(311.41, 131.41)),
-        ("limit 1 -48.6 360", A1, limit(-48.6, 0.0)),
+        ("trim 1 0", A1, trim_of(0.0)),
+        ("trim 2 -3.5", A2, trim_of(-3.5)),
+        ("trim 3 +20", A3, trim_of(20.0)),
+        ("trim 4 -20.00", A4, trim_of(-20.0)),
+        ("limit 2 311.41 131.41", A2, limit_of(311.41, 131.41)),
+        ("limit 1 -48.6 360", A1, limit_of(-48.6, 0.0)),
         ("dir 3 +", A3, Setting::Direction(true)),
         ("dir 3 -", A3, Setting::Direction(false)),
         ("scale 4 5", A4, Setting::Scale(500)),
@@ -132,7 +145,7 @@ fn every_setting_is_read_with_its_servo() {
 
 #[test]
 fn a_missing_malformed_or_surplus_argument_is_answered_by_the_syntax() {
-    for (wants, lines) in [
+    for (usage, lines) in [
         (
             Text::TrimWants,
             "trim|trim 1|trim 0 1|trim 5 1|trim 11 1|trim a 1",
@@ -160,7 +173,7 @@ fn a_missing_malformed_or_surplus_argument_is_answered_by_the_syntax() {
         ),
     ] {
         for line in lines.split('|') {
-            assert_eq!(read(line), Err(Misread::WrongArguments(wants)), "{line}");
+            assert_eq!(read(line), Err(Misread::WrongArguments(usage)), "{line}");
         }
     }
 }
@@ -195,7 +208,7 @@ fn a_setting_out_of_range_is_answered_by_the_range() {
 fn every_gait_is_a_command_and_any_blanks_between_its_words_will_do() {
     let robot = Sample::odd();
     for name in GAITS {
-        let command = Ok(gait_of(robot.id(name)));
+        let command = Ok(command_of_gait(robot.id(name)));
         for blank in [" ", "   ", "\t", " \t "] {
             let line = name.replace(' ', blank);
             assert_eq!(parse(line.as_bytes(), &robot), command, "{line:?}");
@@ -228,11 +241,14 @@ fn the_first_words_of_a_longer_name_are_incomplete() {
     let read = |line: &str| parse(line.as_bytes(), &robot);
     assert_eq!(read("arc"), Err(Misread::IncompleteName));
     assert_eq!(read("arc to"), Err(Misread::IncompleteName));
-    assert_eq!(read("arc  to\tleft"), Ok(gait_of(robot.id("arc to left"))));
+    assert_eq!(
+        read("arc  to\tleft"),
+        Ok(command_of_gait(robot.id("arc to left")))
+    );
     assert_eq!(read("arc t"), Err(Misread::UnknownCommand));
     assert_eq!(read("arc left"), Err(Misread::UnknownCommand));
-    let wants = Err(Misread::WrongArguments(Text::CountWants));
-    assert_eq!(read("arc to left too"), wants);
+    let count_error = Err(Misread::WrongArguments(Text::CountWants));
+    assert_eq!(read("arc to left too"), count_error);
 }
 
 #[test]
@@ -248,8 +264,8 @@ fn every_gait_takes_every_count_from_1_to_999_and_no_other() {
             assert_eq!(read(&count.to_string()), expected, "{name} {count}");
         }
         for count in ["-1", "+1", "1.0", "1,", "x", "1 1", "0x1", "1s"] {
-            let wants = Err(Misread::WrongArguments(Text::CountWants));
-            assert_eq!(read(count), wants, "{name} {count}");
+            let count_error = Err(Misread::WrongArguments(Text::CountWants));
+            assert_eq!(read(count), count_error, "{name} {count}");
         }
     }
 }
@@ -258,11 +274,11 @@ fn every_gait_takes_every_count_from_1_to_999_and_no_other() {
 fn a_gait_whose_name_is_anothers_with_a_number_comes_before_the_others_count() {
     let robot = Sample::paper().with_gait("step 2").with_gait("step");
     let read = |line: &str| parse(line.as_bytes(), &robot);
-    let go = |name, cycles| Ok(Command::Order(Order::Gait(robot.id(name), cycles)));
-    assert_eq!(read("step  2"), go("step 2", 0));
-    assert_eq!(read("step 02"), go("step", 2));
-    assert_eq!(read("step 3"), go("step", 3));
-    assert_eq!(read("step 2 3"), go("step 2", 3));
+    let gait_command = |name, cycles| Ok(Command::Order(Order::Gait(robot.id(name), cycles)));
+    assert_eq!(read("step  2"), gait_command("step 2", 0));
+    assert_eq!(read("step 02"), gait_command("step", 2));
+    assert_eq!(read("step 3"), gait_command("step", 3));
+    assert_eq!(read("step 2 3"), gait_command("step 2", 3));
 }
 
 #[test]
@@ -288,10 +304,10 @@ fn speed_and_watch_want_one_whole_number() {
     for argument in [
         "", " fast", " 5o", " 50%", " 50.5", " -50", " +50", " 50 60", " 0x20", " 5 0",
     ] {
-        for (word, wants) in [("speed", Text::SpeedWants), ("watch", Text::WatchWants)] {
+        for (word, usage) in [("speed", Text::SpeedWants), ("watch", Text::WatchWants)] {
             assert_eq!(
                 read(&format!("{word}{argument}")),
-                Err(Misread::WrongArguments(wants))
+                Err(Misread::WrongArguments(usage))
             );
         }
     }
@@ -300,16 +316,16 @@ fn speed_and_watch_want_one_whole_number() {
 #[test]
 fn every_speed_and_every_watch_is_read_and_no_other() {
     for number in (0..=70_000).chain([655_350, 99_999_999]) {
-        let speed = match number {
+        let expected_speed = match number {
             10..=100 => Ok(Command::Order(Order::Speed(number as u8))),
             _ => Err(Misread::OutOfRange(Text::SpeedRange)),
         };
-        assert_eq!(read_number("speed", number), speed);
-        let watch = match number {
+        assert_eq!(read_number("speed", number), expected_speed);
+        let expected_watch = match number {
             0..=10_000 => Ok(Command::Watch(number as u16)),
             _ => Err(Misread::OutOfRange(Text::WatchRange)),
         };
-        assert_eq!(read_number("watch", number), watch);
+        assert_eq!(read_number("watch", number), expected_watch);
     }
     assert_eq!(
         read("speed 99999999999999999999"),
@@ -322,9 +338,9 @@ fn read_number(word: &str, number: u32) -> Result<Command, Misread> {
 }
 
 /// Calls a function with a shared robot, since making one takes longer than reading a line.
-fn with_shared_robot<T>(of: impl FnOnce(&Sample) -> T) -> T {
+fn with_shared_robot<T>(call: impl FnOnce(&Sample) -> T) -> T {
     std::thread_local!(static ROBOT: Sample = Sample::odd());
-    ROBOT.with(of)
+    ROBOT.with(call)
 }
 
 #[test]
@@ -337,8 +353,8 @@ fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
         ("70000", u16::MAX),
         ("655360", u16::MAX),
     ] {
-        let read = parse_number(digits.as_bytes(), Syntax::Whole);
-        assert_eq!(read, Some((value, false)));
+        let parsed = parse_number(digits.as_bytes(), Syntax::Whole);
+        assert_eq!(parsed, Some((value, false)));
     }
     assert_eq!(parse_number(b"12x", Syntax::Whole), None);
     assert_eq!(

@@ -40,8 +40,8 @@ fn the_banner_names_version_and_robot_once() {
         let version = env!("CARGO_PKG_VERSION");
         let banner =
             format!("# lizard {version} robot sample {hash:08x}, send help for the commands");
-        let blank = "# calibration: none is saved, robot.toml's is in use".to_string();
-        assert_eq!(dialogue.read_lines(), [banner, blank]);
+        let calibration_line = "# calibration: none is saved, robot.toml's is in use".to_string();
+        assert_eq!(dialogue.read_lines(), [banner, calibration_line]);
         assert!(dialogue.run_frames(50).is_empty());
     }
 }
@@ -59,9 +59,9 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
     ];
     for command in commands.into_iter().chain(GAITS) {
         assert_eq!(wake_odd_robot().send_line(command), format!("ok {command}"));
-        let shouted = format!("  {}\t", command.to_uppercase());
+        let upper_case_line = format!("  {}\t", command.to_uppercase());
         assert_eq!(
-            wake_odd_robot().send_line(&shouted),
+            wake_odd_robot().send_line(&upper_case_line),
             format!("ok {command}")
         );
     }
@@ -70,17 +70,17 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
 #[test]
 fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
     let mut dialogue = wake_odd_robot();
-    let printed = dialogue.send(b"help\r");
-    let gaits = format!("# gaits: {}", GAITS.join("|"));
+    let printed_lines = dialogue.send(b"help\r");
+    let gaits_line = format!("# gaits: {}", GAITS.join("|"));
     let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
-    let others = format!("# others: {}", words.join("|"));
+    let words_line = format!("# others: {}", words.join("|"));
     let expected = [
-        gaits.as_str(),
-        others.as_str(),
+        gaits_line.as_str(),
+        words_line.as_str(),
         "# a word alone tells what it wants, the docs what it does",
         "ok help",
     ];
-    assert_eq!(printed, expected);
+    assert_eq!(printed_lines, expected);
     assert_eq!(dialogue.send(b"?\r"), expected);
 }
 
@@ -102,8 +102,8 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
         let names: Vec<String> = crate::numbers::gaits::GaitId::all(robot.gait_count())
             .map(|id| robot.name(id).map(char::from).collect())
             .collect();
-        let printed = wake_robot(robot).send(b"help\r");
-        let lines: Vec<&str> = printed
+        let printed_lines = wake_robot(robot).send(b"help\r");
+        let lines: Vec<&str> = printed_lines
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "))
             .collect();
@@ -111,15 +111,18 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
         assert_eq!(listed, names);
         // A line ends only where the prefix, its names, a bar and the next name would be too long.
         for pair in lines.windows(2) {
-            let next = pair[1].split('|').next().expect("a name");
-            let whole = "# gaits: ".len() + pair[0].len() + 1 + next.len();
-            assert!(whole > usize::from(print::LONGEST_NAMES), "{pair:?}");
+            let next_name = pair[1].split('|').next().expect("a name");
+            let joined_length = "# gaits: ".len() + pair[0].len() + 1 + next_name.len();
+            assert!(
+                joined_length > usize::from(print::LONGEST_NAMES),
+                "{pair:?}"
+            );
         }
     }
 }
 
 /// A robot that the guard has just stopped, and whose output has not been read since.
-fn guarded() -> Dialogue {
+fn run_until_guarded() -> Dialogue {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("stray");
     for _ in 0..200 {
@@ -133,14 +136,16 @@ fn guarded() -> Dialogue {
 
 #[test]
 fn the_guards_reason_is_printed_once_and_stays_in_status() {
-    let mut dialogue = guarded();
-    let printed = dialogue.read_lines();
-    assert_eq!(printed.len(), 1);
+    let mut dialogue = run_until_guarded();
+    let printed_lines = dialogue.read_lines();
+    assert_eq!(printed_lines.len(), 1);
     assert!(
-        printed[0].starts_with("# held in the last safe pose: "),
-        "{printed:?}"
+        printed_lines[0].starts_with("# held in the last safe pose: "),
+        "{printed_lines:?}"
     );
-    assert!(printed[0].contains(" margin of ") || printed[0].contains(" slider is at "));
+    assert!(
+        printed_lines[0].contains(" margin of ") || printed_lines[0].contains(" slider is at ")
+    );
     assert!(dialogue.run_frames(100).is_empty());
     assert_eq!(dialogue.status("guard"), "held");
     assert_eq!(dialogue.status("fault"), "guard");
@@ -159,13 +164,13 @@ fn the_guards_reason_is_printed_once_and_stays_in_status() {
 
 #[test]
 fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
-    let mut dialogue = guarded();
+    let mut dialogue = run_until_guarded();
     dialogue.board.send(b"stand\r");
     dialogue.run_without_reader(3);
-    let printed = dialogue.read_lines();
-    assert_eq!(printed.len(), 2);
-    assert!(printed[0].starts_with("# held in the last safe pose: "));
-    assert_eq!(printed[1], "ok stand");
+    let printed_lines = dialogue.read_lines();
+    assert_eq!(printed_lines.len(), 2);
+    assert!(printed_lines[0].starts_with("# held in the last safe pose: "));
+    assert_eq!(printed_lines[1], "ok stand");
     assert!(!dialogue.has_output());
     dialogue.run_frames(3);
     assert_eq!(dialogue.status("guard"), "clear");
@@ -176,22 +181,25 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
     // Every line is read as soon as it is written, until the first line of the help.
-    let mut printed = Vec::new();
-    let mut line = |dialogue: &mut Dialogue| {
+    let mut printed_lines = Vec::new();
+    let mut reads_gaits_line = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
             assert_eq!(dialogue.main.step(&mut dialogue.board), Step::Worked);
         }
-        printed.push(core::mem::take(&mut dialogue.board.transmitter.text));
-        printed.last().expect("a line").starts_with("# gaits: ")
+        printed_lines.push(core::mem::take(&mut dialogue.board.transmitter.text));
+        printed_lines
+            .last()
+            .expect("a line")
+            .starts_with("# gaits: ")
     };
-    while !line(&mut dialogue) {}
+    while !reads_gaits_line(&mut dialogue) {}
     // From here nobody reads. Meanwhile the guard stops the robot, an edge comes late, and a report is due.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late_edges = 1;
     dialogue.run_without_reader(1);
-    let rest = dialogue.read_lines();
-    let starts = [
+    let later_lines = dialogue.read_lines();
+    let expected_starts = [
         "# lizard ",
         "# calibration: ",
         "ok stray",
@@ -204,9 +212,13 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
         "# held ",
         "# t=200 pose=",
     ];
-    printed.extend(rest);
-    assert_eq!(printed.len(), starts.len(), "{printed:?}");
-    for (line, start) in printed.iter().zip(starts) {
+    printed_lines.extend(later_lines);
+    assert_eq!(
+        printed_lines.len(),
+        expected_starts.len(),
+        "{printed_lines:?}"
+    );
+    for (line, start) in printed_lines.iter().zip(expected_starts) {
         assert!(line.starts_with(start), "{line}");
     }
 }
@@ -239,10 +251,10 @@ fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
     let mut dialogue = wake_odd_robot();
     dialogue.expect_refused("pose 400 1 1 1", "3 A1 reaches 61.37..215.36");
     dialogue.expect_refused("pose 132 47 200 226", "3 A3 reaches 235.64..18.64");
-    let refused = dialogue.send_line("pose 132.37 4 309.64 226.18");
+    let message = dialogue.send_line("pose 132.37 4 309.64 226.18");
     assert!(
-        refused.starts_with("err 4 ") || refused.starts_with("err 5 "),
-        "{refused}"
+        message.starts_with("err 4 ") || message.starts_with("err 5 "),
+        "{message}"
     );
     assert_eq!(dialogue.status("gait"), "stand");
 }

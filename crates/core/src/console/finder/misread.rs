@@ -42,10 +42,10 @@ enum LineReading {
 
 impl LineReading {
     /// The reading after another byte.
-    fn after_byte(self, byte: u8, text: &LineAutomaton) -> Self {
+    fn after_byte(self, byte: u8, automaton: &LineAutomaton) -> Self {
         match (byte.to_ascii_lowercase(), self) {
             (b'\r' | b'\n', Self::CommandPrefix(state))
-                if text.accepting_states.contains(&state) =>
+                if automaton.accepting_states.contains(&state) =>
             {
                 Self::CompleteCommand(state)
             }
@@ -53,16 +53,18 @@ impl LineReading {
             (b'\r' | b'\n', _) => Self::CommandPrefix(LineAutomaton::START),
             (0x80.., _) | (_, Self::Garbled) => Self::Garbled,
             (_, Self::Deleted) => Self::Deleted,
-            (0x08 | 0x7f, Self::CommandPrefix(state)) => text
+            (0x08 | 0x7f, Self::CommandPrefix(state)) => automaton
                 .previous_state(state)
                 .map_or(Self::Deleted, Self::CommandPrefix),
             (0x08 | 0x7f, Self::Mismatch(state, 1)) => Self::CommandPrefix(state),
-            (0x08 | 0x7f, Self::Mismatch(state, more)) => Self::Mismatch(state, more - 1),
-            (_, Self::Mismatch(state, more)) => Self::Mismatch(state, more + 1),
-            (byte, Self::CommandPrefix(state)) => text.transitions[state]
+            (0x08 | 0x7f, Self::Mismatch(state, count)) => Self::Mismatch(state, count - 1),
+            (_, Self::Mismatch(state, count)) => Self::Mismatch(state, count + 1),
+            (byte, Self::CommandPrefix(state)) => automaton.transitions[state]
                 .get(&byte)
-                .map_or(Self::Mismatch(state, 1), |to| Self::CommandPrefix(*to)),
-            (_, read) => read,
+                .map_or(Self::Mismatch(state, 1), |next_state| {
+                    Self::CommandPrefix(*next_state)
+                }),
+            (_, reading) => reading,
         }
     }
 }
@@ -78,55 +80,64 @@ struct BitGraph {
 
 impl BitGraph {
     /// The bits of a text sent without pauses, and silence after its end.
-    fn of(text: &LineAutomaton) -> Self {
+    fn of(automaton: &LineAutomaton) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
-        for (state, next) in text.transitions.iter().enumerate() {
-            bytes.extend(next.iter().map(|(byte, to)| (state, *byte, Some(*to))));
+        for (state, transitions) in automaton.transitions.iter().enumerate() {
+            bytes.extend(
+                transitions
+                    .iter()
+                    .map(|(byte, next_state)| (state, *byte, Some(*next_state))),
+            );
         }
         // CR, LF, or both.
-        let return_sent = text.transitions.len();
-        for end in &text.accepting_states {
+        let return_state = automaton.transitions.len();
+        for end_state in &automaton.accepting_states {
             bytes.extend([
-                (*end, b'\n', None),
-                (*end, b'\r', None),
-                (*end, b'\r', Some(return_sent)),
+                (*end_state, b'\n', None),
+                (*end_state, b'\r', None),
+                (*end_state, b'\r', Some(return_state)),
             ]);
         }
-        bytes.push((return_sent, b'\n', None));
-        let mut bits = Self {
+        bytes.push((return_state, b'\n', None));
+        let mut graph = Self {
             levels: vec![true],
             next: vec![vec![0]],
             first_start_bits: Vec::new(),
         };
-        let start = |index: usize| 1 + 10 * index;
-        let followers = |state: usize| {
-            let follows = bytes
+        let start_bit_of = |index: usize| 1 + 10 * index;
+        let followers_of = |state: usize| {
+            let following_bytes = bytes
                 .iter()
                 .enumerate()
                 .filter(move |(_, byte)| byte.0 == state);
-            follows.map(|(index, _)| start(index)).collect::<Vec<_>>()
+            following_bytes
+                .map(|(index, _)| start_bit_of(index))
+                .collect::<Vec<_>>()
         };
-        for (index, (_, byte, to)) in bytes.iter().enumerate() {
-            let line = 1 << 9 | u16::from(*byte) << 1;
-            bits.levels.extend((0..10).map(|bit| line >> bit & 1 == 1));
-            bits.next
-                .extend((1..10).map(|bit| vec![start(index) + bit]));
-            bits.next.push(to.map_or(vec![0], followers));
+        for (index, (_, byte, next_state)) in bytes.iter().enumerate() {
+            let frame_bits = 1 << 9 | u16::from(*byte) << 1;
+            graph
+                .levels
+                .extend((0..10).map(|bit| frame_bits >> bit & 1 == 1));
+            graph
+                .next
+                .extend((1..10).map(|bit| vec![start_bit_of(index) + bit]));
+            graph.next.push(next_state.map_or(vec![0], followers_of));
         }
-        bits.first_start_bits = followers(LineAutomaton::START);
-        bits
+        graph.first_start_bits = followers_of(LineAutomaton::START);
+        graph
     }
 
     /// The bits of any 7-bit bytes in any order, with or without pauses.
     fn with_any_bytes() -> Self {
-        let mut text = LineAutomaton::new();
-        text.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
-        let mut bits = Self::of(&text);
-        bits.next[0].extend(bits.first_start_bits.clone());
+        let mut automaton = LineAutomaton::new();
+        automaton.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
+        let mut graph = Self::of(&automaton);
+        graph.next[0].extend(graph.first_start_bits.clone());
         for index in 0..0x80 {
-            bits.next[10 + 10 * index].push(0);
+            graph.next[10 + 10 * index].push(0);
         }
-        bits
+        graph
     }
 }
 
@@ -134,19 +145,20 @@ impl BitGraph {
 /// clocks and every position of the middle.
 fn sampled_bits(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     // The rate that the chip's divider can produce, as in src/board/serial.rs.
-    let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
-    let ratio = f64::from(sender.baud()) / chip;
-    let mut all = BTreeSet::new();
-    for step in 0..=400 {
-        let ratio = ratio * (1.0 + CLOCK_ERROR * (f64::from(step) / 200.0 - 1.0));
-        for step in 0..=32 {
-            let middle = BIT_MIDDLE[0] + (BIT_MIDDLE[1] - BIT_MIDDLE[0]) * f64::from(step) / 32.0;
-            all.insert(core::array::from_fn(|bit| {
+    let chip_baud = 2e6 / (2e6 / f64::from(receiver.baud())).round();
+    let ratio = f64::from(sender.baud()) / chip_baud;
+    let mut samples = BTreeSet::new();
+    for clock_step in 0..=400 {
+        let ratio = ratio * (1.0 + CLOCK_ERROR * (f64::from(clock_step) / 200.0 - 1.0));
+        for middle_step in 0..=32 {
+            let middle =
+                BIT_MIDDLE[0] + (BIT_MIDDLE[1] - BIT_MIDDLE[0]) * f64::from(middle_step) / 32.0;
+            samples.insert(core::array::from_fn(|bit| {
                 ((bit as f64 + middle) * ratio) as usize
             }));
         }
     }
-    all
+    samples
 }
 
 /// A receiver's reading, and the bit that the sender sends at that time.
@@ -155,54 +167,64 @@ type ReceiverState = (LineReading, usize);
 /// Reads a byte from each of these start edges; returns the states after it.
 fn read_byte(
     edges: &BTreeSet<ReceiverState>,
-    bits: &BitGraph,
-    text: &LineAutomaton,
-    look: [usize; 10],
+    graph: &BitGraph,
+    automaton: &LineAutomaton,
+    sample_times: [usize; 10],
 ) -> BTreeSet<ReceiverState> {
-    let mut current: BTreeSet<(LineReading, usize, u16)> =
-        edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
+    let mut current: BTreeSet<(LineReading, usize, u16)> = edges
+        .iter()
+        .map(|(reading, bit_index)| (*reading, *bit_index, 0))
+        .collect();
     let mut time = 0;
-    for (bit, at) in look.into_iter().enumerate() {
-        while time < at {
+    for (bit, sample_time) in sample_times.into_iter().enumerate() {
+        while time < sample_time {
             time += 1;
-            let next = |(read, at, line): &(LineReading, usize, u16)| {
-                let (read, line) = (*read, *line);
-                bits.next[*at].iter().map(move |next| (read, *next, line))
+            let advance = |(reading, bit_index, level_bits): &(LineReading, usize, u16)| {
+                let (reading, level_bits) = (*reading, *level_bits);
+                graph.next[*bit_index]
+                    .iter()
+                    .map(move |next| (reading, *next, level_bits))
             };
-            current = current.iter().flat_map(next).collect();
+            current = current.iter().flat_map(advance).collect();
         }
-        let look = |(read, at, line)| (read, at, line | u16::from(bits.levels[at]) << bit);
+        let sample = |(reading, bit_index, level_bits)| {
+            (
+                reading,
+                bit_index,
+                level_bits | u16::from(graph.levels[bit_index]) << bit,
+            )
+        };
         current = current
             .into_iter()
-            .map(look)
-            .filter(|(.., line)| line & 1 == 0)
+            .map(sample)
+            .filter(|(.., level_bits)| level_bits & 1 == 0)
             .collect();
     }
-    let end = |(read, at, line): (LineReading, usize, u16)| {
+    let finish_byte = |(reading, bit_index, level_bits): (LineReading, usize, u16)| {
         // A byte without a stop bit is garbled.
-        let byte = if line >> 9 == 1 {
-            (line >> 1) as u8
+        let byte = if level_bits >> 9 == 1 {
+            (level_bits >> 1) as u8
         } else {
             0xff
         };
-        (read.after_byte(byte, text), at)
+        (reading.after_byte(byte, automaton), bit_index)
     };
-    current.into_iter().map(end).collect()
+    current.into_iter().map(finish_byte).collect()
 }
 
 /// The start edges that can follow these states.
-fn edges_from(states: BTreeSet<ReceiverState>, bits: &BitGraph) -> BTreeSet<ReceiverState> {
+fn edges_from(states: BTreeSet<ReceiverState>, graph: &BitGraph) -> BTreeSet<ReceiverState> {
     let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
     let mut to_visit: Vec<ReceiverState> = states.into_iter().collect();
-    while let Some((read, at)) = to_visit.pop() {
-        if !visited.insert((read, at)) {
+    while let Some((reading, bit_index)) = to_visit.pop() {
+        if !visited.insert((reading, bit_index)) {
             continue;
         }
-        for next in &bits.next[at] {
-            if bits.levels[at] && !bits.levels[*next] {
-                edges.insert((read, *next));
+        for next in &graph.next[bit_index] {
+            if graph.levels[bit_index] && !graph.levels[*next] {
+                edges.insert((reading, *next));
             } else {
-                to_visit.push((read, *next));
+                to_visit.push((reading, *next));
             }
         }
     }
@@ -210,33 +232,33 @@ fn edges_from(states: BTreeSet<ReceiverState>, bits: &BitGraph) -> BTreeSet<Rece
 }
 
 /// The commands that a receiver can read at another rate, over all states that it can reach.
-fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
-    let (bits, text) = (
+fn find_readable_commands(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
+    let (graph, automaton) = (
         BitGraph::of(&LineAutomaton::all_commands()),
         LineAutomaton::accepted_lines(),
     );
-    let before = [
+    let initial_readings = [
         LineReading::CommandPrefix(LineAutomaton::START),
         LineReading::Mismatch(LineAutomaton::START, 1),
         LineReading::Garbled,
     ];
-    let mut to_visit: BTreeSet<ReceiverState> = (bits.first_start_bits.iter())
-        .flat_map(|state| before.map(|read| (read, *state)))
+    let mut to_visit: BTreeSet<ReceiverState> = (graph.first_start_bits.iter())
+        .flat_map(|state| initial_readings.map(|reading| (reading, *state)))
         .collect();
     let (mut visited, mut commands) = (to_visit.clone(), BTreeSet::new());
     while !to_visit.is_empty() {
-        let mut ends = BTreeSet::new();
-        for look in sampled_bits(sender, receiver) {
-            ends.extend(read_byte(&to_visit, &bits, &text, look));
+        let mut end_states = BTreeSet::new();
+        for sample_times in sampled_bits(sender, receiver) {
+            end_states.extend(read_byte(&to_visit, &graph, &automaton, sample_times));
         }
-        ends.retain(|(read, _)| match read {
+        end_states.retain(|(reading, _)| match reading {
             LineReading::CompleteCommand(command) => {
                 commands.insert(*command);
                 false
             }
             _ => true,
         });
-        to_visit = edges_from(ends, &bits);
+        to_visit = edges_from(end_states, &graph);
         to_visit.retain(|state| visited.insert(*state));
     }
     println!(
@@ -251,8 +273,8 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
 /// The pairs (sender, receiver) of different rates whose sender is the faster one, or the slower one if `is_faster`
 /// is false.
 fn rate_pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
-    let all = Rate::ALL.into_iter();
-    let pairs = all.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));
+    let senders = Rate::ALL.into_iter();
+    let pairs = senders.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));
     pairs.filter(move |(sender, receiver)| {
         sender != receiver && (sender.baud() > receiver.baud()) == is_faster
     })
@@ -260,53 +282,57 @@ fn rate_pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
 
 #[test]
 fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
-    let bits = BitGraph::with_any_bytes();
-    let text = LineAutomaton::accepted_lines();
+    let graph = BitGraph::with_any_bytes();
+    let automaton = LineAutomaton::accepted_lines();
     for (sender, receiver) in rate_pairs(false) {
-        let edges: BTreeSet<ReceiverState> = (0..bits.levels.len())
-            .filter(|state| bits.levels[*state])
-            .flat_map(|state| bits.next[state].iter().filter(|next| !bits.levels[**next]))
+        let edges: BTreeSet<ReceiverState> = (0..graph.levels.len())
+            .filter(|state| graph.levels[*state])
+            .flat_map(|state| {
+                graph.next[state]
+                    .iter()
+                    .filter(|next| !graph.levels[**next])
+            })
             .map(|state| (LineReading::Garbled, *state))
             .collect();
         assert!(edges.len() > 128);
-        for look in sampled_bits(sender, receiver) {
-            let read = read_byte(&edges, &bits, &text, look);
-            let ends = read
+        for sample_times in sampled_bits(sender, receiver) {
+            let end_states = read_byte(&edges, &graph, &automaton, sample_times);
+            let is_line_end_read = end_states
                 .iter()
-                .any(|(read, _)| *read == LineReading::CommandPrefix(LineAutomaton::START));
-            assert!(!ends, "{sender:?} read at {receiver:?}");
+                .any(|(reading, _)| *reading == LineReading::CommandPrefix(LineAutomaton::START));
+            assert!(!is_line_end_read, "{sender:?} read at {receiver:?}");
         }
     }
 }
 
 #[test]
 fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
-    let mut text = LineAutomaton::accepted_lines();
+    let mut automaton = LineAutomaton::accepted_lines();
     let words = Word::ALL.iter().map(|word| word.text());
     let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
-    let short: BTreeSet<usize> = words
+    let short_words: BTreeSet<usize> = words
         .filter(is_short)
-        .map(|word| text.add_word(word))
+        .map(|word| automaton.add_word(word))
         .collect();
     for (sender, receiver) in rate_pairs(true) {
-        let read = commands_read(sender, receiver);
+        let commands = find_readable_commands(sender, receiver);
         assert!(
-            read.is_subset(&short),
-            "{sender:?} at {receiver:?}: {read:?}"
+            commands.is_subset(&short_words),
+            "{sender:?} at {receiver:?}: {commands:?}"
         );
     }
 }
 
 #[test]
 fn every_command_is_read_at_its_own_rate() {
-    let mut text = LineAutomaton::accepted_lines();
+    let mut automaton = LineAutomaton::accepted_lines();
     for rate in Rate::ALL {
-        let read = commands_read(rate, rate);
+        let commands = find_readable_commands(rate, rate);
         let words = Word::ALL.iter().map(|word| word.text());
         for word in GAITS.iter().map(String::as_str).chain(words) {
-            let end = text.add_word(word);
-            let with_arguments = text.transitions[end][&b' '];
-            let is_read = read.contains(&end) || read.contains(&with_arguments);
+            let end_state = automaton.add_word(word);
+            let argument_state = automaton.transitions[end_state][&b' '];
+            let is_read = commands.contains(&end_state) || commands.contains(&argument_state);
             assert!(is_read, "{word} at {rate:?}");
         }
     }

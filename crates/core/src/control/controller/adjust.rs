@@ -16,7 +16,7 @@ impl Control {
         let mut adjustment = settings.servo(servo);
         match setting {
             Setting::Trim(trim) => adjustment.trim = trim,
-            Setting::Direction(direct) => adjustment.set_direct(direct),
+            Setting::Direction(is_direct) => adjustment.set_direct(is_direct),
             Setting::Scale(scale) => adjustment.set_scale(scale),
             Setting::Limit(clockwise, counter_clockwise) => {
                 let neutral = self.motion.robot().neutral_of(servo);

@@ -37,11 +37,11 @@ impl Control {
     /// turns out to be a low supply. Meanwhile there is nothing to do before the next frame.
     pub fn waits_for_supply(&self) -> bool {
         let supply = self.safety.supply();
-        let will_know = match supply.measured_level() {
+        let will_be_measured = match supply.measured_level() {
             None => self.motion.frames() < MEASURING_FRAMES,
             Some(level) => level == Level::Good && !supply.is_steady(),
         };
-        self.job.is_some() && will_know
+        self.job.is_some() && will_be_measured
     }
 
     /// Does a step of the EEPROM operation: one byte at most. Returns the outcome of an order
@@ -53,8 +53,8 @@ impl Control {
         }
         let may_write = self.safety.allows_writing_now();
         if may_write && let Some(writing) = &mut self.rest_record {
-            let pose = Settings::of_pose(self.motion.pose(), self.motion.robot());
-            match writing.step(pose.bytes(), memory) {
+            let rest_settings = Settings::of_pose(self.motion.pose(), self.motion.robot());
+            match writing.step(rest_settings.bytes(), memory) {
                 Progress::InProgress => return None,
                 Progress::Done => {}
                 Progress::Failed => self.safety.notify(Notice::NotKept),
@@ -65,13 +65,14 @@ impl Control {
         let outcome = match &mut self.job {
             None => return None,
             Some(Job::Load) => {
-                let mut saved = Settings::NONE;
-                match copies::read(self.motion.robot(), memory, &mut saved) {
-                    SavedState::Latest | SavedState::OneCopy => match self.replace_settings(&saved)
-                    {
-                        Err(Refusal::TravelTooNarrow(_)) => Err(Refusal::NothingSaved),
-                        outcome => outcome,
-                    },
+                let mut saved_settings = Settings::NONE;
+                match copies::read(self.motion.robot(), memory, &mut saved_settings) {
+                    SavedState::Latest | SavedState::OneCopy => {
+                        match self.replace_settings(&saved_settings) {
+                            Err(Refusal::TravelTooNarrow(_)) => Err(Refusal::NothingSaved),
+                            outcome => outcome,
+                        }
+                    }
                     _ => Err(Refusal::NothingSaved),
                 }
             }

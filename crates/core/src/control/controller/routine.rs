@@ -46,7 +46,7 @@ impl Control {
             let [_, _, rounds, _] = gait.channels;
             self.routine.id = id;
             self.routine.rounds_left = if count == 0 { rounds.offset } else { count };
-            self.next_step();
+            self.begin_next_step();
         } else {
             self.motion.start_gait(id, count);
         }
@@ -68,12 +68,12 @@ impl Control {
             }
         };
         if self.contact.count_frame(is_closed) || is_over {
-            self.next_step();
+            self.begin_next_step();
         }
     }
 
     #[inline(never)]
-    fn next_step(&mut self) {
+    fn begin_next_step(&mut self) {
         let robot = *self.motion.robot();
         let gait = robot.gait(self.routine.id);
         let [_, steps, _, first_of_round] = &gait.channels;

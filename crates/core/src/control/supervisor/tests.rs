@@ -34,34 +34,37 @@ const fn event_text(event: Event) -> &'static str {
 }
 
 fn response_text(response: Response, state: State) -> String {
-    let rests = state == State::Resting;
+    let is_resting = state == State::Resting;
     match response {
         Response::Nothing => "-".into(),
         Response::Obey => "done".into(),
         Response::RefuseResting => "refused, 7".into(),
         Response::RefuseSupply => "refused, 8".into(),
-        Response::Freeze(fault) if rests => format!("fault {}", fault.code()),
+        Response::Freeze(fault) if is_resting => format!("fault {}", fault.code()),
         Response::Freeze(fault) => format!("frozen, fault {}", fault.code()),
-        Response::EndPulses(fault) if rests => format!("fault {}", fault.code()),
+        Response::EndPulses(fault) if is_resting => format!("fault {}", fault.code()),
         Response::EndPulses(fault) => format!("pulses end, fault {}", fault.code()),
     }
 }
 
 /// The rows of an event in the table of events: one for each set of supplies with equal reactions.
-fn rows(event: Event) -> Vec<String> {
-    let cells = |supply| {
-        let text = |state| response_text(response(event, supply, state), state);
-        State::ALL.map(text).join(" | ")
+fn rows_of(event: Event) -> Vec<String> {
+    let cells_of = |supply| {
+        let text_of = |state| response_text(response(event, supply, state), state);
+        State::ALL.map(text_of).join(" | ")
     };
-    let mut ways: Vec<(Vec<&str>, String)> = Vec::new();
+    let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
     for (supply, name) in SUPPLIES {
-        let cells = cells(supply);
-        match ways.iter_mut().find(|(_, known)| *known == cells) {
+        let cells = cells_of(supply);
+        match groups
+            .iter_mut()
+            .find(|(_, group_cells)| *group_cells == cells)
+        {
             Some((names, _)) => names.push(name),
-            None => ways.push((Vec::from([name]), cells)),
+            None => groups.push((Vec::from([name]), cells)),
         }
     }
-    let row = |(names, cells): &(Vec<&str>, String)| {
+    let row_of = |(names, cells): &(Vec<&str>, String)| {
         let supply = if names.len() == SUPPLIES.len() {
             "any".into()
         } else {
@@ -69,15 +72,15 @@ fn rows(event: Event) -> Vec<String> {
         };
         format!("| {} | {supply} | {cells} |", event_text(event))
     };
-    ways.iter().map(row).collect()
+    groups.iter().map(row_of).collect()
 }
 
 #[test]
 fn the_docs_print_the_table_of_events() {
-    let rows: Vec<String> = Event::ALL.into_iter().flat_map(rows).collect();
-    let head =
+    let rows: Vec<String> = Event::ALL.into_iter().flat_map(rows_of).collect();
+    let header =
         "| what happens | supply | resting | standing, holding, moving to a pose | walking |";
-    let table = format!("{head}\n|---|---|---|---|---|\n{}\n", rows.join("\n"));
+    let table = format!("{header}\n|---|---|---|---|---|\n{}\n", rows.join("\n"));
     assert!(DOCS.contains(&table), "docs/faults.md wants:\n{table}");
 }
 
@@ -85,25 +88,25 @@ fn the_docs_print_the_table_of_events() {
 fn the_docs_print_the_table_of_restarts() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
-        for (brown_outs, often) in [
+        for (brown_outs, frequency) in [
             (0, "once, twice"),
             (BROWN_OUTS_TO_REST, "three times in a row"),
         ] {
-            let action = |before| first_action(cause, brown_outs, before);
+            let action_after = |servos| first_action(cause, brown_outs, servos);
             if brown_outs > 0
-                && ServosBefore::ALL.map(action)
-                    == ServosBefore::ALL.map(|before| first_action(cause, 0, before))
+                && ServosBefore::ALL.map(action_after)
+                    == ServosBefore::ALL.map(|servos| first_action(cause, 0, servos))
             {
                 continue;
             }
-            let depends = matches!(cause, Cause::External | Cause::BrownOut);
-            let cells = ServosBefore::ALL.map(|before| match action(before).0 {
+            let depends_on_count = matches!(cause, Cause::External | Cause::BrownOut);
+            let cells = ServosBefore::ALL.map(|servos| match action_after(servos).0 {
                 FirstAction::Wake => "wakes, stands",
                 FirstAction::WakeInPlace => "wakes where it was, stands",
                 FirstAction::Hold => "held",
                 FirstAction::Rest => "rests",
             });
-            let fault = action(ServosBefore::Held).1;
+            let fault = action_after(ServosBefore::Held).1;
             rows.push(format!(
                 "| {} | {} | {} | {} |",
                 match cause {
@@ -112,14 +115,14 @@ fn the_docs_print_the_table_of_restarts() {
                     Cause::BrownOut => "`brownout`",
                     Cause::Watchdog => "`watchdog`",
                 },
-                if depends { often } else { "any" },
+                if depends_on_count { frequency } else { "any" },
                 cells.join(" | "),
                 fault.map_or("-".into(), |fault| format!("{}", fault.code())),
             ));
         }
     }
-    let head = "| reset | maybe by the supply | nothing known | rested | held | fault |";
-    let table = format!("{head}\n|---|---|---|---|---|---|\n{}\n", rows.join("\n"));
+    let header = "| reset | maybe by the supply | nothing known | rested | held | fault |";
+    let table = format!("{header}\n|---|---|---|---|---|---|\n{}\n", rows.join("\n"));
     assert!(DOCS.contains(&table), "docs/faults.md wants:\n{table}");
 }
 
@@ -139,10 +142,10 @@ fn only_stand_and_boot_give_a_robot_without_pulses_any() {
 fn the_reaction_never_relaxes_as_the_supply_sinks() {
     for event in [Event::Stand, Event::Move, Event::Save, Event::Boot] {
         for state in State::ALL {
-            let obeys = |(supply, _)| response(event, supply, state) == Response::Obey;
-            let sinking = [SUPPLIES[0], SUPPLIES[2], SUPPLIES[3], SUPPLIES[4]].map(obeys);
+            let is_obeyed = |(supply, _)| response(event, supply, state) == Response::Obey;
+            let are_obeyed = [SUPPLIES[0], SUPPLIES[2], SUPPLIES[3], SUPPLIES[4]].map(is_obeyed);
             assert!(
-                sinking.is_sorted_by(|before, after| before >= after),
+                are_obeyed.is_sorted_by(|higher, lower| higher >= lower),
                 "{event:?}"
             );
         }
@@ -153,18 +156,22 @@ fn the_reaction_never_relaxes_as_the_supply_sinks() {
 fn servos_wake_only_if_nothing_held_them_and_are_taken_over_only_if_held() {
     for cause in Cause::ALL {
         for brown_outs in 0..=BROWN_OUTS_TO_REST {
-            for before in ServosBefore::ALL {
-                let case = format!("{cause:?}, {brown_outs} brown-outs, {before:?}");
-                let (begins, fault) = first_action(cause, brown_outs, before);
-                let nothing_known = before == ServosBefore::Unknown && fault.is_none();
-                let wakes = cause == Cause::Power || nothing_known;
-                match begins {
-                    FirstAction::Wake => assert!(wakes, "must not wake: {case}"),
+            for servos_before in ServosBefore::ALL {
+                let case = format!("{cause:?}, {brown_outs} brown-outs, {servos_before:?}");
+                let (action, fault) = first_action(cause, brown_outs, servos_before);
+                let is_unknown = servos_before == ServosBefore::Unknown && fault.is_none();
+                let must_wake = cause == Cause::Power || is_unknown;
+                match action {
+                    FirstAction::Wake => assert!(must_wake, "must not wake: {case}"),
                     FirstAction::WakeInPlace | FirstAction::Hold => {
-                        assert_eq!(before, ServosBefore::Held, "nothing to take over: {case}");
-                        assert!(!wakes, "must wake: {case}");
+                        assert_eq!(
+                            servos_before,
+                            ServosBefore::Held,
+                            "nothing to take over: {case}"
+                        );
+                        assert!(!must_wake, "must wake: {case}");
                     }
-                    FirstAction::Rest => assert!(!wakes, "must wake: {case}"),
+                    FirstAction::Rest => assert!(!must_wake, "must wake: {case}"),
                 }
             }
         }

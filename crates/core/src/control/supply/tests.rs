@@ -17,24 +17,24 @@ const SUPPLIES: Supplies = Supplies {
     rail: thresholds([0; 3]),
 };
 
-const WITH_RAIL: Supplies = Supplies {
+const SUPPLIES_WITH_RAIL: Supplies = Supplies {
     rail_reference: 2200,
     rail: thresholds([6400, 6200, 6000]),
     ..SUPPLIES
 };
 
-/// The converter's reading of a board at `volts` with a rail at `rail` volts.
-fn reading(volts: f64, rail: f64) -> Reading {
+/// The converter's reading of a board at `volts` with a rail at `rail_volts` volts.
+fn reading_at(volts: f64, rail_volts: f64) -> Reading {
     Reading {
         reference: (1.1 / volts * 1024.0) as u16,
-        rail: (rail / 2.0 / volts * 1024.0) as u16,
+        rail: (rail_volts / 2.0 / volts * 1024.0) as u16,
     }
 }
 
 /// Measures a board without a measured rail until its level changes; returns the number of frames, 0 if it has not
 /// changed after 200, and the level.
 fn measure_board_until_change(supply: &mut Supply, volts: f64) -> (usize, Level) {
-    measure_until_change(supply, reading(volts, 0.0), &SUPPLIES)
+    measure_until_change(supply, reading_at(volts, 0.0), &SUPPLIES)
 }
 
 /// Measures until the level changes; returns the number of frames, 0 if it has not changed after 200, and the level.
@@ -54,25 +54,29 @@ fn measure_until_change(
 #[test]
 fn every_voltage_is_printed_with_two_decimals() {
     for reference in 1..=1023u16 {
-        for mv in [1000, 1080, 1100, 1200] {
+        for reference_mv in [1000, 1080, 1100, 1200] {
             let supplies = Supplies {
-                reference: mv,
+                reference: reference_mv,
                 ..SUPPLIES
             };
             let rail = 700;
             let reading = Reading { reference, rail };
-            let exact = 1024.0 * f64::from(mv) / f64::from(reference) / 10.0;
-            let printed = Voltage::of_board(reading, &supplies).hundredths();
+            let exact = 1024.0 * f64::from(reference_mv) / f64::from(reference) / 10.0;
+            let hundredths = Voltage::of_board(reading, &supplies).hundredths();
             // Higher voltages are printed as 81.91 V.
             let expected = exact.floor().min(8191.0);
-            assert_eq!(f64::from(printed), expected, "{reference} {mv}");
-            let rail = Voltage::of_rail(reading, &WITH_RAIL).hundredths();
+            assert_eq!(
+                f64::from(hundredths),
+                expected,
+                "{reference} {reference_mv}"
+            );
+            let rail_hundredths = Voltage::of_rail(reading, &SUPPLIES_WITH_RAIL).hundredths();
             let exact = 700.0 * 2200.0 / f64::from(reference) / 10.0;
-            assert_eq!(f64::from(rail), exact.floor().min(8191.0));
+            assert_eq!(f64::from(rail_hundredths), exact.floor().min(8191.0));
         }
     }
-    let unknown = Voltage::of_board(Reading::default(), &SUPPLIES);
-    assert_eq!(unknown.hundredths(), 0);
+    let unknown_voltage = Voltage::of_board(Reading::default(), &SUPPLIES);
+    assert_eq!(unknown_voltage.hundredths(), 0);
 }
 
 proptest! {
@@ -102,32 +106,36 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
 
 #[test]
 fn one_reading_decides_nothing_and_six_frames_do() {
-    for (others, one, level) in [
+    for (other_volts, odd_volts, level) in [
         (4.45, 3.5, Level::Slow),
         (4.25, 3.5, Level::Stop),
         (3.5, 4.45, Level::Slow),
     ] {
-        for odd in 0..6 {
+        for odd_frame in 0..6 {
             let mut supply = Supply::default();
             for frame in 0..6 {
-                let volts = if frame == odd { one } else { others };
-                supply.measure(reading(volts, 0.0), &SUPPLIES);
+                let volts = if frame == odd_frame {
+                    odd_volts
+                } else {
+                    other_volts
+                };
+                supply.measure(reading_at(volts, 0.0), &SUPPLIES);
             }
-            assert_eq!(supply.level(), level, "{one} V in frame {odd}");
+            assert_eq!(supply.level(), level, "{odd_volts} V in frame {odd_frame}");
         }
     }
 }
 
 #[test]
 fn one_reading_does_not_recover_a_supply_either() {
-    for odd in 0..50 {
+    for odd_frame in 0..50 {
         let mut supply = Supply::default();
         measure_board_until_change(&mut supply, 4.2);
         for frame in 0..50 {
-            let volts = if frame == odd { 4.5 } else { 5.0 };
-            supply.measure(reading(volts, 0.0), &SUPPLIES);
+            let volts = if frame == odd_frame { 4.5 } else { 5.0 };
+            supply.measure(reading_at(volts, 0.0), &SUPPLIES);
         }
-        assert_eq!(supply.level(), Level::Slow, "4.5 V in frame {odd}");
+        assert_eq!(supply.level(), Level::Slow, "4.5 V in frame {odd_frame}");
     }
 }
 
@@ -136,7 +144,7 @@ fn a_short_dip_changes_nothing() {
     let mut supply = Supply::default();
     for _ in 0..100 {
         for volts in [4.0, 4.0, 4.0, 4.0, 4.0, 5.0] {
-            assert!(!supply.measure(reading(volts, 0.0), &SUPPLIES));
+            assert!(!supply.measure(reading_at(volts, 0.0), &SUPPLIES));
         }
     }
     assert_eq!(supply.level(), Level::Good);
@@ -149,11 +157,11 @@ fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold()
     assert_eq!(supply.level(), Level::Stop);
     // Between the threshold and 0.15 V above it, the level stays as it is.
     assert_eq!(measure_board_until_change(&mut supply, 4.40).0, 0);
-    let slow = measure_board_until_change(&mut supply, 4.5);
-    assert_eq!(slow, (50, Level::Slow));
+    let slow_change = measure_board_until_change(&mut supply, 4.5);
+    assert_eq!(slow_change, (50, Level::Slow));
     assert_eq!(measure_board_until_change(&mut supply, 4.6).0, 0);
-    let good = measure_board_until_change(&mut supply, 4.7);
-    assert_eq!(good, (50, Level::Good));
+    let good_change = measure_board_until_change(&mut supply, 4.7);
+    assert_eq!(good_change, (50, Level::Good));
 }
 
 #[test]
@@ -162,7 +170,7 @@ fn a_supply_that_wavers_around_a_threshold_changes_once() {
     let mut levels = Vec::new();
     for frame in 0..2000 {
         let volts = if frame % 20 < 10 { 4.47 } else { 4.60 };
-        if supply.measure(reading(volts, 0.0), &SUPPLIES) {
+        if supply.measure(reading_at(volts, 0.0), &SUPPLIES) {
             levels.push(supply.level());
         }
     }
@@ -171,24 +179,27 @@ fn a_supply_that_wavers_around_a_threshold_changes_once() {
 
 #[test]
 fn the_worse_of_two_supplies_counts_and_is_reported() {
-    let supplies = WITH_RAIL;
-    for (board, rail, level, worst) in [
+    let supplies = SUPPLIES_WITH_RAIL;
+    for (board_volts, rail_volts, level, worst_volts) in [
         (5.0, 6.6, Level::Good, 5.0),
         (5.0, 6.3, Level::Slow, 6.3),
         (4.25, 6.3, Level::Stop, 4.25),
         (4.45, 5.0, Level::Rest, 5.0),
     ] {
         let mut supply = Supply::default();
-        measure_until_change(&mut supply, reading(board, rail), &supplies);
+        measure_until_change(&mut supply, reading_at(board_volts, rail_volts), &supplies);
         assert_eq!(supply.level(), level);
-        let reported = f64::from(supply.worst_voltage(&supplies).hundredths()) / 100.0;
-        assert!((reported - worst).abs() < 0.05, "{reported} {worst}");
+        let reported_volts = f64::from(supply.worst_voltage(&supplies).hundredths()) / 100.0;
+        assert!(
+            (reported_volts - worst_volts).abs() < 0.05,
+            "{reported_volts} {worst_volts}"
+        );
     }
 }
 
 #[test]
 fn a_supply_that_is_not_measured_yet_is_not_low() {
-    let supplies = WITH_RAIL;
+    let supplies = SUPPLIES_WITH_RAIL;
     let mut supply = Supply::default();
     let (frames, _) = measure_until_change(&mut supply, Reading::default(), &supplies);
     assert_eq!(frames, 0);

@@ -41,7 +41,7 @@ impl ChangedSection {
 }
 
 /// True if the odd robot's section still opens with this word at that offset.
-fn opens_with(offset: u16, word: u16) -> bool {
+fn is_accepted_with(offset: u16, word: u16) -> bool {
     ChangedSection::new().put(offset, word).is_accepted()
 }
 
@@ -49,30 +49,38 @@ fn opens_with(offset: u16, word: u16) -> bool {
 fn a_pin_is_free_used_once_and_not_the_rails() {
     // D0 and D1 are the serial line, D13 is the LED.
     let is_free = |pin: u8| (2..=12).contains(&pin) || (14..=19).contains(&pin);
-    let others = |servo: u16| {
+    let other_pins_of = |servo: u16| {
         let pins = Sample::odd().content.pins;
         (0..4)
-            .filter(move |other| *other != usize::from(servo))
-            .map(move |other| pins[other])
+            .filter(move |index| *index != usize::from(servo))
+            .map(move |index| pins[index])
     };
     for rail in [0, 14, 19] {
         for servo in 0..4 {
             for pin in 0..=u8::MAX {
-                let changed = ChangedSection::new().put(offset!(rail), rail);
-                let opens = changed.put_byte(offset!(pins) + servo, pin).is_accepted();
-                let used = others(servo).chain([rail as u8]).any(|other| other == pin);
-                let all_free = others(servo).all(|other| u16::from(other) != rail);
-                let wanted = is_free(pin) && !used && all_free;
-                assert_eq!(opens, wanted, "A{} on {pin}, the rail on {rail}", servo + 1);
+                let section = ChangedSection::new().put(offset!(rail), rail);
+                let is_accepted = section.put_byte(offset!(pins) + servo, pin).is_accepted();
+                let is_used = other_pins_of(servo)
+                    .chain([rail as u8])
+                    .any(|other_pin| other_pin == pin);
+                let is_rail_unused =
+                    other_pins_of(servo).all(|other_pin| u16::from(other_pin) != rail);
+                let expected = is_free(pin) && !is_used && is_rail_unused;
+                assert_eq!(
+                    is_accepted,
+                    expected,
+                    "A{} on {pin}, the rail on {rail}",
+                    servo + 1
+                );
             }
         }
     }
     let pins = Sample::odd().content.pins;
     for rail in 0..=u8::MAX {
-        let measures = (14..=19).contains(&rail) && !pins.contains(&rail);
+        let is_valid_rail = (14..=19).contains(&rail) && !pins.contains(&rail);
         assert_eq!(
-            opens_with(offset!(rail), rail.into()),
-            rail == 0 || measures,
+            is_accepted_with(offset!(rail), rail.into()),
+            rail == 0 || is_valid_rail,
             "{rail}"
         );
     }
@@ -81,7 +89,7 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
 #[test]
 fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
     for servo in 0..4 {
-        let opens = |change: &dyn Fn(&mut Calibration)| {
+        let is_accepted_with_change = |change: &dyn Fn(&mut Calibration)| {
             let mut content = Sample::odd().content.clone();
             let calibration = &mut content.calibration[servo];
             calibration.gain = 11_395;
@@ -89,26 +97,32 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
             change(calibration);
             ChangedSection(content.section()).is_accepted()
         };
-        assert!(opens(&|_| {}));
-        for smallest in [7_999, 8_000] {
+        assert!(is_accepted_with_change(&|_| {}));
+        for min_pulse in [7_999, 8_000] {
             // The shortest pulse is that of the travel's clockwise limit.
-            let at_end = |calibration: &mut Calibration| {
-                let short = calibration.neutral.0 - calibration.pulse(calibration.min);
-                calibration.neutral.0 = smallest + short;
+            let move_to_end = |calibration: &mut Calibration| {
+                let pulse_below_neutral =
+                    calibration.neutral.0 - calibration.pulse(calibration.min);
+                calibration.neutral.0 = min_pulse + pulse_below_neutral;
             };
-            assert!(opens(&at_end), "{servo} {smallest}");
+            assert!(is_accepted_with_change(&move_to_end), "{servo} {min_pulse}");
         }
-        let too_short = |calibration: &mut Calibration| {
-            let short = calibration.neutral.0 - calibration.pulse(calibration.min);
-            calibration.neutral.0 = 7_998 + short;
+        let shorten_too_far = |calibration: &mut Calibration| {
+            let pulse_below_neutral = calibration.neutral.0 - calibration.pulse(calibration.min);
+            calibration.neutral.0 = 7_998 + pulse_below_neutral;
         };
-        assert!(!opens(&too_short), "{servo}");
-        for (largest, bears) in [(40_001, true), (40_002, false)] {
-            let at_end = |calibration: &mut Calibration| {
-                let long = calibration.pulse(calibration.max) - calibration.neutral.0;
-                calibration.neutral.0 = largest - long;
+        assert!(!is_accepted_with_change(&shorten_too_far), "{servo}");
+        for (max_pulse, is_tolerated) in [(40_001, true), (40_002, false)] {
+            let move_to_end = |calibration: &mut Calibration| {
+                let pulse_above_neutral =
+                    calibration.pulse(calibration.max) - calibration.neutral.0;
+                calibration.neutral.0 = max_pulse - pulse_above_neutral;
             };
-            assert_eq!(opens(&at_end), bears, "{servo} {largest}");
+            assert_eq!(
+                is_accepted_with_change(&move_to_end),
+                is_tolerated,
+                "{servo} {max_pulse}"
+            );
         }
         // The neutral angle is within the travel, even if no gait needs it.
         for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
@@ -124,9 +138,15 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
             );
         }
         let reach = Sample::odd().content.reach[servo];
-        for (beyond, within) in [(0, true), (1, false)] {
-            assert_eq!(opens(&|servo| servo.min.0 = reach.min.0 + beyond), within);
-            assert_eq!(opens(&|servo| servo.max.0 = reach.max.0 - beyond), within);
+        for (excess, is_within) in [(0, true), (1, false)] {
+            assert_eq!(
+                is_accepted_with_change(&|calibration| calibration.min.0 = reach.min.0 + excess),
+                is_within
+            );
+            assert_eq!(
+                is_accepted_with_change(&|calibration| calibration.max.0 = reach.max.0 - excess),
+                is_within
+            );
         }
     }
 }

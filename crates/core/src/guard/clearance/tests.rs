@@ -35,27 +35,27 @@ impl Bounds {
     fn of(robot: &Sample, pose: &Pose) -> Self {
         let [a1, a2, a3, a4] = robot.degrees(pose);
         let lizard = robot.measures.lizard;
-        let end = |index: usize, end, angles| {
+        let end_errors_of = |index: usize, end, angles| {
             bounds::EndErrors::of(&lizard.end(end), &robot.ends[index], angles)
         };
-        let side = |index: usize, side| {
+        let slider_error_of = |index: usize, side| {
             bounds::slider_error(&lizard.side(side), &robot.content.sides[index])
         };
         Self {
             ends: [
-                end(0, kinematics::End::Head, [a1, a2]),
+                end_errors_of(0, kinematics::End::Head, [a1, a2]),
                 // In the tail's own frame.
-                end(1, kinematics::End::Tail, [-a4, -a3]),
+                end_errors_of(1, kinematics::End::Tail, [-a4, -a3]),
             ],
             sliders: [
-                side(0, kinematics::Side::Left),
-                side(1, kinematics::Side::Right),
+                slider_error_of(0, kinematics::Side::Left),
+                slider_error_of(1, kinematics::Side::Right),
             ],
         }
     }
 
-    fn max_of_ends(&self, of: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
-        of(&self.ends[0]).max(of(&self.ends[1]))
+    fn max_of_ends(&self, error_of: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
+        error_of(&self.ends[0]).max(error_of(&self.ends[1]))
     }
 }
 
@@ -68,11 +68,11 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
         return (bounds.max_of_ends(|end| end.type2) < robot.measures.limits.type2)
             .then_some(false);
     };
-    let truths = [&solution.head, &solution.tail];
-    let crossing = |(truth, bound): (&&kinematics::FiveBarPose, &bounds::EndErrors)| {
-        truth.gap.x.abs() <= bound.along
+    let exact_poses = [&solution.head, &solution.tail];
+    let is_crossing = |(exact_pose, bound): (&&kinematics::FiveBarPose, &bounds::EndErrors)| {
+        exact_pose.gap.x.abs() <= bound.along
     };
-    if truths.iter().zip(&bounds.ends).any(crossing) {
+    if exact_poses.iter().zip(&bounds.ends).any(is_crossing) {
         return None;
     }
     // Limits are rounded up to a step, strokes inwards.
@@ -99,16 +99,16 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
 /// Checks that every margin and slider of a pose is within the bounds of its error.
 fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
     let clearance = Clearance::of(robot, pose);
-    let Some(truth) = robot.solve(pose) else {
+    let Some(solution) = robot.solve(pose) else {
         return Ok(());
     };
     let bounds = Bounds::of(robot, pose);
-    for (index, (what, exact)) in truth.margins.iter().enumerate() {
+    for (index, (name, exact)) in solution.margins.iter().enumerate() {
         let end = match index {
             0 | 1 => index,
             index => kinematics::End::of_servo((index - 2) % 4) as usize,
         };
-        let bars = [&truth.head, &truth.tail][end];
+        let bars = [&solution.head, &solution.tail][end];
         let bound = &bounds.ends[end];
         let is_leg = index >= 6;
         if !is_leg && !bound.is_known {
@@ -131,10 +131,10 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let error = sine(clearance.margins[index]) - exact;
         prop_assert!(
             error.abs() <= max_error,
-            "{what} is off by {error} of {max_error}"
+            "{name} is off by {error} of {max_error}"
         );
     }
-    for (index, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
+    for (index, exact) in [solution.left.d, solution.right.d].into_iter().enumerate() {
         let length = f64::from(clearance.sliders_sq[index]).sqrt();
         let error = length / per_mm(robot.content.sides[index].scale) - exact;
         let max_error = bounds.sliders[index];
@@ -163,9 +163,9 @@ proptest! {
         (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
-            if let Some(safe) = decide_safety(&robot, pose) {
+            if let Some(is_safe) = decide_safety(&robot, pose) {
                 let hazard = Clearance::of(&robot, pose).first_hazard(&robot);
-                prop_assert_eq!(hazard.is_none(), safe, "{:?}", hazard);
+                prop_assert_eq!(hazard.is_none(), is_safe, "{:?}", hazard);
             }
         }
     }
@@ -174,29 +174,29 @@ proptest! {
 #[test]
 fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     let mut runner = TestRunner::deterministic();
-    let mut decided = 0;
+    let mut decided_count = 0;
     for _ in 0..250 {
         let (robot, poses) = robots_with_poses()
             .new_tree(&mut runner)
             .expect("a pose")
             .current();
-        let known = poses
+        let decided_poses = poses
             .iter()
             .filter(|pose| decide_safety(&robot, pose).is_some());
-        decided += known.count();
-        let standing = Bounds::of(&robot, &Pose::NEUTRAL);
+        decided_count += decided_poses.count();
+        let standing_bounds = Bounds::of(&robot, &Pose::NEUTRAL);
         let (type2, type1) = (
-            standing.max_of_ends(|end| end.type2),
-            standing.max_of_ends(bounds::EndErrors::type1),
+            standing_bounds.max_of_ends(|end| end.type2),
+            standing_bounds.max_of_ends(bounds::EndErrors::type1),
         );
         assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
         assert!(
-            standing.sliders.iter().all(|mm| *mm < 0.05),
+            standing_bounds.sliders.iter().all(|mm| *mm < 0.05),
             "{:?}",
-            standing.sliders
+            standing_bounds.sliders
         );
     }
-    assert!(decided > 1900, "{decided} of 2000");
+    assert!(decided_count > 1900, "{decided_count} of 2000");
 }
 
 /// Floating point calls this sample safe, the integers do not: a stroke that ends where the
@@ -204,16 +204,16 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
 #[test]
 fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
     let mut measures = Measures::paper();
-    let standing = Sample::new(measures);
-    assert!(standing.stands_safely());
-    let truth = standing.solve(&Pose::NEUTRAL).expect("it stands");
-    measures.limits.stroke_max = truth.left.s.max(truth.right.s) + 1e-9;
-    assert!(measures.limits.is_safe(&truth));
+    let robot = Sample::new(measures);
+    assert!(robot.stands_safely());
+    let solution = robot.solve(&Pose::NEUTRAL).expect("it stands");
+    measures.limits.stroke_max = solution.left.s.max(solution.right.s) + 1e-9;
+    assert!(measures.limits.is_safe(&solution));
     assert!(!Sample::new(measures).stands_safely());
 }
 
 /// A robot and a clearance far from every limit.
-fn clear_robot() -> (Sample, Clearance) {
+fn measure_safe_robot() -> (Sample, Clearance) {
     let robot = Sample::odd();
     let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
     assert_eq!(clearance.first_hazard(&robot), None);
@@ -221,7 +221,7 @@ fn clear_robot() -> (Sample, Clearance) {
 }
 
 /// The ten margins by name and limit, in the order in which they are checked.
-fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
+fn margins_with_limits(limits: &Limits) -> [(Margin, Sine); 10] {
     use Servo::{A1, A2, A3, A4};
     [
         (Margin::Type2(End::Head), limits.type2),
@@ -239,15 +239,15 @@ fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
 
 #[test]
 fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
-    let (robot, clear) = clear_robot();
-    for (index, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
-        let mut at_limit = clear;
-        at_limit.margins[index] = limit;
-        assert_eq!(at_limit.first_hazard(&robot), None, "{margin:?}");
+    let (robot, safe_clearance) = measure_safe_robot();
+    for (index, (margin, limit)) in margins_with_limits(&robot.limits()).into_iter().enumerate() {
+        let mut limit_clearance = safe_clearance;
+        limit_clearance.margins[index] = limit;
+        assert_eq!(limit_clearance.first_hazard(&robot), None, "{margin:?}");
         let value = Sine(limit.0 - 1);
-        at_limit.margins[index] = value;
+        limit_clearance.margins[index] = value;
         assert_eq!(
-            at_limit.first_hazard(&robot),
+            limit_clearance.first_hazard(&robot),
             Some(Hazard::Margin { margin, value })
         );
     }
@@ -255,28 +255,32 @@ fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
 
 #[test]
 fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
-    let (robot, clear) = clear_robot();
+    let (robot, safe_clearance) = measure_safe_robot();
     for (index, side) in Side::ALL.into_iter().enumerate() {
         let Slider { min, max, .. } = robot.content.sides[index];
-        for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
-            let mut at_end = clear;
-            at_end.sliders_sq[index] = u32::from(length) * u32::from(length);
-            let expected = (!allowed).then_some(Hazard::Stroke { side, length });
-            assert_eq!(at_end.first_hazard(&robot), expected);
+        for (length, is_allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
+            let mut end_clearance = safe_clearance;
+            end_clearance.sliders_sq[index] = u32::from(length) * u32::from(length);
+            let expected = (!is_allowed).then_some(Hazard::Stroke { side, length });
+            assert_eq!(end_clearance.first_hazard(&robot), expected);
         }
     }
 }
 
 #[test]
 fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
-    let (robot, mut clearance) = clear_robot();
+    let (robot, mut clearance) = measure_safe_robot();
     let mut expected: Vec<Hazard> = Vec::new();
     for (index, side) in Side::ALL.into_iter().enumerate().rev() {
         clearance.sliders_sq[index] = 100;
         expected.push(Hazard::Stroke { side, length: 10 });
         assert_eq!(clearance.first_hazard(&robot).as_ref(), expected.last());
     }
-    for (index, (margin, _)) in margins(&robot.limits()).into_iter().enumerate().rev() {
+    for (index, (margin, _)) in margins_with_limits(&robot.limits())
+        .into_iter()
+        .enumerate()
+        .rev()
+    {
         let value = Sine(-1);
         clearance.margins[index] = value;
         expected.push(Hazard::Margin { margin, value });
@@ -286,9 +290,9 @@ fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
 
 #[test]
 fn the_smallest_margin_is_found_at_every_index() {
-    let (_, clear) = clear_robot();
+    let (_, safe_clearance) = measure_safe_robot();
     for index in 0..10 {
-        let mut clearance = clear;
+        let mut clearance = safe_clearance;
         clearance.margins[index] = Sine(-20_000 + index as i16);
         assert_eq!(clearance.smallest_margin(), Sine(-20_000 + index as i16));
     }
@@ -299,20 +303,20 @@ fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
     let robot = Sample::odd();
     for servo in 0..4 {
         // Beyond the x axis of the chassis, y is negative in the frame of the leg's five-bar.
-        let neutral = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
-        let axis = if (90.0..270.0).contains(&neutral) {
+        let neutral_deg = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
+        let axis_deg = if (90.0..270.0).contains(&neutral_deg) {
             180.0
         } else {
             360.0
         };
-        let axis = if neutral < 90.0 { 0.0 } else { axis };
-        for (aside, positive) in [(-2.0f64, false), (2.0, true)] {
-            let towards = (neutral - axis).signum();
-            let turned = axis + aside * towards - neutral;
+        let axis_deg = if neutral_deg < 90.0 { 0.0 } else { axis_deg };
+        for (offset_deg, is_positive) in [(-2.0f64, false), (2.0, true)] {
+            let direction = (neutral_deg - axis_deg).signum();
+            let turn_deg = axis_deg + offset_deg * direction - neutral_deg;
             let mut pose = Pose::NEUTRAL;
-            pose.0[servo] = Sweep((turned * 65536.0 / 360.0) as i16);
+            pose.0[servo] = Sweep((turn_deg * 65536.0 / 360.0) as i16);
             let margin = Clearance::of(&robot, &pose).margins[6 + servo];
-            assert_eq!(margin > Sine(0), positive, "A{} {margin:?}", servo + 1);
+            assert_eq!(margin > Sine(0), is_positive, "A{} {margin:?}", servo + 1);
         }
     }
 }

@@ -8,21 +8,28 @@ use crate::numbers::units::Angle;
 use crate::sample::{SampleFiveBar, bounds, degrees, sine};
 
 /// Random bars, mm, with couplers that are long enough for the other bars.
-fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
-    let crank = || 1.0..100.0f64;
-    let coupler = || 5.0..120.0f64;
-    let unequal = (0.0..100.0f64, crank(), coupler(), coupler(), crank()).prop_map(
-        |(base, crank_left, coupler_left, coupler_right, crank_right)| kinematics::FiveBar {
-            base,
-            crank_left,
-            coupler_left,
-            coupler_right,
-            crank_right,
-        },
-    );
-    (unequal, 0u8..3)
-        .prop_map(|(bars, alike)| {
-            let coupler_right = match alike {
+fn any_bars() -> impl Strategy<Value = kinematics::FiveBar> {
+    let any_crank = || 1.0..100.0f64;
+    let any_coupler = || 5.0..120.0f64;
+    let unequal_bars = (
+        0.0..100.0f64,
+        any_crank(),
+        any_coupler(),
+        any_coupler(),
+        any_crank(),
+    )
+        .prop_map(
+            |(base, crank_left, coupler_left, coupler_right, crank_right)| kinematics::FiveBar {
+                base,
+                crank_left,
+                coupler_left,
+                coupler_right,
+                crank_right,
+            },
+        );
+    (unequal_bars, 0u8..3)
+        .prop_map(|(bars, variant)| {
+            let coupler_right = match variant {
                 0 => bars.coupler_left,
                 1 => bars.coupler_left + bars.base / 500.0,
                 _ => bars.coupler_right,
@@ -35,7 +42,7 @@ fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
         .prop_filter("long couplers", |bars| SampleFiveBar::new(bars).is_some())
 }
 
-fn margins(bars: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
+fn margins_of(bars: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
     let [left, right] = [left, right].map(Direction::of);
     bars.five_bar().margins(&left, &right)
 }
@@ -45,13 +52,13 @@ proptest! {
 
     #[test]
     fn the_margins_are_those_of_the_real_linkage_for_any_bars(
-        bars in bars(),
+        bars in any_bars(),
         left: u16,
         right: u16,
     ) {
         let [left, right] = [left, right].map(Angle);
         let integers = SampleFiveBar::new(&bars).expect("fits");
-        let actual = margins(&integers, left, right);
+        let actual = margins_of(&integers, left, right);
         let angles = [left, right].map(degrees);
         let bound = bounds::EndErrors::of(&bars, &integers, angles);
         let Ok(pose) = bars.forward(angles[0], angles[1]) else {
@@ -74,12 +81,12 @@ proptest! {
         if pose.gap.x.abs() > bound.along && pose.type2 > bound.type2 {
             prop_assert_eq!(actual.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", actual, pose);
         }
-        for (what, actual, exact, bound) in [
+        for (side, actual, exact, bound) in [
             ("left", actual.type1_left, pose.type1_left(), bound.type1_left),
             ("right", actual.type1_right, pose.type1_right(), bound.type1_right),
         ] {
             let error = sine(actual) - exact;
-            prop_assert!(error.abs() <= bound, "type-1, {what}, off by {error} of {bound}");
+            prop_assert!(error.abs() <= bound, "type-1, {side}, off by {error} of {bound}");
         }
     }
 }
@@ -88,7 +95,7 @@ proptest! {
 /// A search over random bars found them; their errors exceeded an earlier bound, a guess from trials.
 #[test]
 fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
-    for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, found) in [
+    for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, known_error) in [
         (
             [
                 85.13013589423028,
@@ -121,13 +128,13 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
         };
         let integers = SampleFiveBar::new(&bars).expect("fits");
         let angles = angles.map(Angle);
-        let actual = margins(&integers, angles[0], angles[1]);
+        let actual = margins_of(&integers, angles[0], angles[1]);
         let angles = angles.map(degrees);
         let bound = bounds::EndErrors::of(&bars, &integers, angles);
         let pose = bars.forward(angles[0], angles[1]).expect("closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
         // The case still has the error for which it was chosen.
-        assert!(error > found && pose.type2 > 0.1, "{error}");
+        assert!(error > known_error && pose.type2 > 0.1, "{error}");
         assert!(
             error <= bound.type2 && bound.type2 < 2.5 * error,
             "{error}: {bound:?}"
@@ -150,7 +157,7 @@ fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
         let pose = bars.forward(degrees(left), degrees(right)).expect("closes");
-        let actual = sine(margins(&integers, left, right).type2);
+        let actual = sine(margins_of(&integers, left, right).type2);
         if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
             sum += actual - pose.type2;
             count += 1.0;
@@ -170,12 +177,12 @@ fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
         crank_right: 30.0,
     };
     let bars = SampleFiveBar::new(&bars).expect("fits");
-    let at = |left, right| {
+    let margins_at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
-        margins(&bars, left, right)
+        margins_of(&bars, left, right)
     };
     // Both cranks point outward: their tips are 80 mm apart, more than the couplers reach.
-    assert_eq!(at(18_000, 0), EndMargins::default());
+    assert_eq!(margins_at(18_000, 0), EndMargins::default());
     // The cranks cross: the couplers close the loop upside down.
-    assert!(at(6_000, 12_000).type2 < Sine(0));
+    assert!(margins_at(6_000, 12_000).type2 < Sine(0));
 }

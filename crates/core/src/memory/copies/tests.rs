@@ -11,12 +11,12 @@ use crate::numbers::units::Sweep;
 use crate::sample::Sample;
 use crate::virtual_board::Eeprom;
 
-fn robot() -> Sample {
+fn odd_robot() -> Sample {
     Sample::odd()
 }
 
 /// The `n`-th of several settings that differ in everything.
-fn settings(robot: &Sample, n: i16) -> Settings {
+fn make_settings(robot: &Sample, n: i16) -> Settings {
     let mut settings = Settings::of(robot);
     for servo in Servo::ALL {
         let mut adjustment = settings.servo(servo);
@@ -33,17 +33,17 @@ fn settings(robot: &Sample, n: i16) -> Settings {
 
 /// Saves settings as the console does.
 fn save_all(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
-    let mut saved = *settings;
-    if let Some(mut writing) = save(&mut saved, eeprom) {
+    let mut saved_settings = *settings;
+    if let Some(mut writing) = save(&mut saved_settings, eeprom) {
         loop {
-            match writing.step(saved.bytes(), eeprom) {
+            match writing.step(saved_settings.bytes(), eeprom) {
                 Progress::InProgress => {}
                 Progress::Done => break,
                 Progress::Failed => panic!("worn"),
             }
         }
     }
-    saved
+    saved_settings
 }
 
 fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
@@ -53,7 +53,7 @@ fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
 }
 
 /// The settings with save number 0, so that settings of different saves can be compared.
-fn without_turn(settings: &Settings) -> Settings {
+fn clear_save_number(settings: &Settings) -> Settings {
     let mut copy = *settings;
     copy.set_save_number(0);
     copy
@@ -61,19 +61,22 @@ fn without_turn(settings: &Settings) -> Settings {
 
 #[test]
 fn the_last_of_a_thousand_saves_is_loaded() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(
         load_settings(&robot, &eeprom),
         (Settings::of(&robot), SavedState::Blank)
     );
     for n in 0..1000 {
-        let new = settings(&robot, n % 70);
-        let saved = save_all(&new, &mut eeprom);
-        assert_eq!(without_turn(&saved), without_turn(&new));
+        let new_settings = make_settings(&robot, n % 70);
+        let saved_settings = save_all(&new_settings, &mut eeprom);
+        assert_eq!(
+            clear_save_number(&saved_settings),
+            clear_save_number(&new_settings)
+        );
         assert_eq!(
             load_settings(&robot, &eeprom),
-            (saved, SavedState::Latest),
+            (saved_settings, SavedState::Latest),
             "{n}"
         );
     }
@@ -81,16 +84,16 @@ fn the_last_of_a_thousand_saves_is_loaded() {
 
 #[test]
 fn unchanged_bytes_are_not_written_again() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&settings(&robot, 3), &mut eeprom);
+    save_all(&make_settings(&robot, 3), &mut eeprom);
     eeprom.log.clear();
-    save_all(&settings(&robot, 3), &mut eeprom);
+    save_all(&make_settings(&robot, 3), &mut eeprom);
     assert!(eeprom.log.is_empty());
     // A save writes only the bytes that differ from the older copy, which it overwrites.
-    save_all(&settings(&robot, 4), &mut eeprom);
+    save_all(&make_settings(&robot, 4), &mut eeprom);
     eeprom.log.clear();
-    save_all(&settings(&robot, 5), &mut eeprom);
+    save_all(&make_settings(&robot, 5), &mut eeprom);
     assert!(eeprom.log.len() < usize::from(RECORD_BYTES));
     assert!(eeprom.log.iter().all(|(_, old, new)| old != new));
 }
@@ -103,98 +106,101 @@ fn torn_values(old: u8, new: u8) -> impl Iterator<Item = u8> {
 
 #[test]
 fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
-    let robot = robot();
-    for saved_before in 0..4 {
+    let robot = odd_robot();
+    for save_count in 0..4 {
         let mut eeprom = Eeprom::blank();
-        let mut old = (Settings::of(&robot), SavedState::Blank);
-        for n in 0..saved_before {
-            save_all(&settings(&robot, 10 + n), &mut eeprom);
-            old = load_settings(&robot, &eeprom);
+        let mut old_outcome = (Settings::of(&robot), SavedState::Blank);
+        for n in 0..save_count {
+            save_all(&make_settings(&robot, 10 + n), &mut eeprom);
+            old_outcome = load_settings(&robot, &eeprom);
         }
-        let before = *eeprom.bytes();
+        let bytes_before = *eeprom.bytes();
         eeprom.log.clear();
-        let new = save_all(&settings(&robot, 60), &mut eeprom);
+        let new_settings = save_all(&make_settings(&robot, 60), &mut eeprom);
         assert!(eeprom.log.len() > 10);
-        let mut olds = 0;
-        for (count, (address, from, to)) in eeprom.log.iter().enumerate() {
-            let mut bytes = before;
-            for (address, _, byte) in &eeprom.log[..count] {
+        let mut old_count = 0;
+        for (write_count, (address, old_byte, new_byte)) in eeprom.log.iter().enumerate() {
+            let mut bytes = bytes_before;
+            for (address, _, byte) in &eeprom.log[..write_count] {
                 bytes[usize::from(*address)] = *byte;
             }
-            for byte in torn_values(*from, *to) {
+            for byte in torn_values(*old_byte, *new_byte) {
                 bytes[usize::from(*address)] = byte;
                 let (settings, outcome) = load_settings(&robot, &Eeprom::with(bytes));
-                if settings == old.0 {
-                    olds += 1;
+                if settings == old_outcome.0 {
+                    old_count += 1;
                 } else {
-                    assert_eq!(settings, new, "cut in write {count}: {outcome:?}");
+                    assert_eq!(
+                        settings, new_settings,
+                        "cut in write {write_count}: {outcome:?}"
+                    );
                 }
             }
         }
-        assert!(olds > 4000);
+        assert!(old_count > 4000);
     }
 }
 
 #[test]
 fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&settings(&robot, 1), &mut eeprom);
-    save_all(&settings(&robot, 2), &mut eeprom);
-    let before = *eeprom.bytes();
+    save_all(&make_settings(&robot, 1), &mut eeprom);
+    save_all(&make_settings(&robot, 2), &mut eeprom);
+    let bytes_before = *eeprom.bytes();
     eeprom.log.clear();
-    save_all(&settings(&robot, 3), &mut eeprom);
-    for count in 0..eeprom.log.len() {
-        let mut cut = Eeprom::with(before);
-        for (address, _, byte) in &eeprom.log[..count] {
-            cut.bytes_mut()[usize::from(*address)] = *byte;
+    save_all(&make_settings(&robot, 3), &mut eeprom);
+    for write_count in 0..eeprom.log.len() {
+        let mut cut_eeprom = Eeprom::with(bytes_before);
+        for (address, _, byte) in &eeprom.log[..write_count] {
+            cut_eeprom.bytes_mut()[usize::from(*address)] = *byte;
         }
-        let new = save_all(&settings(&robot, 4), &mut cut);
-        assert_eq!(load_settings(&robot, &cut).0, new);
+        let new_settings = save_all(&make_settings(&robot, 4), &mut cut_eeprom);
+        assert_eq!(load_settings(&robot, &cut_eeprom).0, new_settings);
     }
 }
 
 #[test]
 fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let before = save_all(&settings(&robot, 1), &mut eeprom);
-    let last = save_all(&settings(&robot, 2), &mut eeprom);
-    let (mut lasts, mut befores) = (0, 0);
+    let previous_settings = save_all(&make_settings(&robot, 1), &mut eeprom);
+    let last_settings = save_all(&make_settings(&robot, 2), &mut eeprom);
+    let (mut last_count, mut previous_count) = (0, 0);
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
         let (settings, outcome) = load_settings(&robot, &Eeprom::with(bytes));
-        if settings == last {
-            lasts += 1;
+        if settings == last_settings {
+            last_count += 1;
         } else {
             assert_eq!(
                 (settings, outcome),
-                (before, SavedState::OneCopy),
+                (previous_settings, SavedState::OneCopy),
                 "bit {bit}"
             );
-            befores += 1;
+            previous_count += 1;
         }
     }
     // A flipped bit of the last copy leaves the previous settings, any other bit the last ones.
-    assert_eq!((befores, lasts), (45 * 8, 8 * (1024 - 45)));
+    assert_eq!((previous_count, last_count), (45 * 8, 8 * (1024 - 45)));
 }
 
 #[test]
 fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let only = save_all(&settings(&robot, 1), &mut eeprom);
+    let only_settings = save_all(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
         let outcome = load_settings(&robot, &Eeprom::with(bytes));
         let is_in_content = bit / 8 < 45;
-        let other = (64..109).contains(&(bit / 8));
-        let expected = match (is_in_content, other) {
+        let is_in_other_copy = (64..109).contains(&(bit / 8));
+        let expected = match (is_in_content, is_in_other_copy) {
             (true, _) => (Settings::of(&robot), SavedState::Damaged),
-            (_, true) => (only, SavedState::OneCopy),
-            _ => (only, SavedState::Latest),
+            (_, true) => (only_settings, SavedState::OneCopy),
+            _ => (only_settings, SavedState::Latest),
         };
         assert_eq!(outcome, expected, "bit {bit}");
     }
@@ -202,33 +208,33 @@ fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
 
 #[test]
 fn settings_for_other_servos_or_of_another_format_are_not_used() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&settings(&robot, 1), &mut eeprom);
-    let other = robot
+    save_all(&make_settings(&robot, 1), &mut eeprom);
+    let other_robot = robot
         .clone()
         .with(|content| content.servo_hash ^= 0x0001_0000);
-    let found = load_settings(&other, &eeprom);
-    assert_eq!(found, (Settings::of(&other), SavedState::Foreign));
-    let mut format = *settings(&robot, 1).bytes();
-    format[0] = 2;
-    save_all(&Settings::from_bytes(format), &mut eeprom);
+    let outcome = load_settings(&other_robot, &eeprom);
+    assert_eq!(outcome, (Settings::of(&other_robot), SavedState::Foreign));
+    let mut foreign_bytes = *make_settings(&robot, 1).bytes();
+    foreign_bytes[0] = 2;
+    save_all(&Settings::from_bytes(foreign_bytes), &mut eeprom);
     assert_eq!(load_settings(&robot, &eeprom).1, SavedState::Foreign);
     // Settings saved after that are used.
-    let own = save_all(&settings(&other, 5), &mut eeprom);
-    let (now, _) = load_settings(&other, &eeprom);
-    assert_eq!(now, own);
+    let own_settings = save_all(&make_settings(&other_robot, 5), &mut eeprom);
+    let (loaded_settings, _) = load_settings(&other_robot, &eeprom);
+    assert_eq!(loaded_settings, own_settings);
 }
 
 #[test]
 fn every_bit_of_the_servos_hash_tells_other_servos() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&settings(&robot, 1), &mut eeprom);
+    save_all(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
-        let other = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
+        let other_robot = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
         assert_eq!(
-            load_settings(&other, &eeprom).1,
+            load_settings(&other_robot, &eeprom).1,
             SavedState::Foreign,
             "bit {bit}"
         );
@@ -238,75 +244,84 @@ fn every_bit_of_the_servos_hash_tells_other_servos() {
 
 #[test]
 fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let mut narrow = settings(&robot, 1);
-    let mut adjustment = narrow.servo(Servo::A3);
+    let mut narrow_settings = make_settings(&robot, 1);
+    let mut adjustment = narrow_settings.servo(Servo::A3);
     adjustment.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
-    narrow.set_servo(Servo::A3, adjustment);
-    save_all(&narrow, &mut eeprom);
-    let found = load_settings(&robot, &eeprom);
-    assert_eq!(found, (Settings::of(&robot), SavedState::Unfit));
+    narrow_settings.set_servo(Servo::A3, adjustment);
+    save_all(&narrow_settings, &mut eeprom);
+    let outcome = load_settings(&robot, &eeprom);
+    assert_eq!(outcome, (Settings::of(&robot), SavedState::Unfit));
 }
 
 #[test]
 fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let saved = save_all(&settings(&robot, 1), &mut eeprom);
-    assert_eq!(saved.boot(&robot), Boot::Gait(robot.id("sway left")));
-    let fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
-    assert_eq!(saved.boot(&fewer), Boot::Gait(fewer.id("sway left")));
-    let fewer = fewer.with(|content| _ = content.gaits.remove(1));
-    assert_eq!(saved.boot(&fewer), Boot::Gait(GaitId::STAND));
-    let mut rests = saved;
-    rests.set_boot(Boot::Rest, &robot);
-    assert_eq!(rests.boot(&robot), Boot::Rest);
+    let saved_settings = save_all(&make_settings(&robot, 1), &mut eeprom);
+    assert_eq!(
+        saved_settings.boot(&robot),
+        Boot::Gait(robot.id("sway left"))
+    );
+    let robot_with_fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
+    assert_eq!(
+        saved_settings.boot(&robot_with_fewer),
+        Boot::Gait(robot_with_fewer.id("sway left"))
+    );
+    let robot_with_fewer = robot_with_fewer.with(|content| _ = content.gaits.remove(1));
+    assert_eq!(
+        saved_settings.boot(&robot_with_fewer),
+        Boot::Gait(GaitId::STAND)
+    );
+    let mut rest_settings = saved_settings;
+    rest_settings.set_boot(Boot::Rest, &robot);
+    assert_eq!(rest_settings.boot(&robot), Boot::Rest);
 }
 
 #[test]
 fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
-        let saved = Settings::of_pose(&rest_pose, &robot);
+        let saved_settings = Settings::of_pose(&rest_pose, &robot);
         let mut writing = REST_POSE.start_write();
-        while writing.step(saved.bytes(), &mut eeprom) == Progress::InProgress {}
+        while writing.step(saved_settings.bytes(), &mut eeprom) == Progress::InProgress {}
         assert_eq!(last_rest_pose(&robot, &eeprom), Some(rest_pose));
-        let other = robot.clone().with(|content| content.servo_hash = 7);
-        assert_eq!(last_rest_pose(&other, &eeprom), None);
+        let other_robot = robot.clone().with(|content| content.servo_hash = 7);
+        assert_eq!(last_rest_pose(&other_robot, &eeprom), None);
     }
     let mut writing = REST_POSE.start_invalidation();
     while writing.step(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
-    let outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
-    let touched: Vec<u16> = eeprom
+    let is_outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
+    let touched_addresses: Vec<u16> = eeprom
         .log
         .iter()
         .map(|(address, ..)| *address)
-        .filter(outside)
+        .filter(is_outside)
         .collect();
-    assert!(touched.is_empty());
+    assert!(touched_addresses.is_empty());
     assert_eq!(eeprom.bytes()[128], ERASED);
 }
 
 #[test]
 fn random_bytes_in_the_memory_are_not_read_as_settings() {
-    let robot = robot();
+    let robot = odd_robot();
     let mut state = 1u32;
     for _ in 0..2000 {
-        let bytes: [u8; 1024] = core::array::from_fn(|at| {
+        let bytes: [u8; 1024] = core::array::from_fn(|index| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             // With the marks in place, so that only the CRC can reject the bytes.
-            if at % 64 == 0 {
+            if index % 64 == 0 {
                 0xa5
             } else {
                 (state >> 24) as u8
             }
         });
-        let found = load_settings(&robot, &Eeprom::with(bytes));
-        assert_eq!(found, (Settings::of(&robot), SavedState::Damaged));
+        let outcome = load_settings(&robot, &Eeprom::with(bytes));
+        assert_eq!(outcome, (Settings::of(&robot), SavedState::Damaged));
     }
 }

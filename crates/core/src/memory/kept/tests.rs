@@ -42,7 +42,7 @@ impl Ram {
     }
 
     /// The memory as the next run finds it.
-    fn after_the_reset(&self) -> Self {
+    fn copy_after_reset(&self) -> Self {
         Self::of(self.bytes.borrow().clone())
     }
 }
@@ -68,7 +68,7 @@ const CAUSES: [Option<Cause>; 4] = [
     Some(Cause::Watchdog),
 ];
 
-fn stance(n: i16) -> Stance {
+fn make_stance(n: i16) -> Stance {
     Stance {
         is_resting: n % 3 == 0,
         frames_awake: (n % 21) as u8,
@@ -81,19 +81,22 @@ fn stance(n: i16) -> Stance {
 fn kept_state_survives_a_reset_but_not_a_loss_of_power() {
     let ram = Ram::powered();
     for n in 1..100 {
-        store_stance(&ram, &stance(n), n as u8);
-        for reported in CAUSES {
-            let again = ram.after_the_reset();
-            let restart = begin(&again, reported);
-            assert_eq!(restart.stance_before, Some(stance(n)));
+        store_stance(&ram, &make_stance(n), n as u8);
+        for reported_cause in CAUSES {
+            let restarted_ram = ram.copy_after_reset();
+            let restart = begin(&restarted_ram, reported_cause);
+            assert_eq!(restart.stance_before, Some(make_stance(n)));
             assert_eq!(restart.brown_outs, n as u8);
             // A second reset, before the program has stored anything.
-            assert_eq!(begin(&again, reported).stance_before, Some(stance(n)));
+            assert_eq!(
+                begin(&restarted_ram, reported_cause).stance_before,
+                Some(make_stance(n))
+            );
         }
-        let off = ram.after_the_reset();
-        assert_eq!(begin(&off, Some(Cause::Power)), Restart::NONE);
+        let unpowered_ram = ram.copy_after_reset();
+        assert_eq!(begin(&unpowered_ram, Some(Cause::Power)), Restart::NONE);
         assert_eq!(
-            begin(&off, Some(Cause::External)).stance_before,
+            begin(&unpowered_ram, Some(Cause::External)).stance_before,
             None,
             "nothing was kept since"
         );
@@ -103,45 +106,51 @@ fn kept_state_survives_a_reset_but_not_a_loss_of_power() {
 #[test]
 fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
     let ram = Ram::powered();
-    store_stance(&ram, &stance(1), 1);
-    let mut seen = [0; 2];
+    store_stance(&ram, &make_stance(1), 1);
+    let mut seen_counts = [0; 2];
     for n in 2..9 {
-        let whole = ram.with_reset_after(usize::MAX);
-        store_stance(&whole, &stance(n), n as u8);
-        for stores in 0..=whole.stores.get() {
-            let torn = ram.with_reset_after(stores);
-            store_stance(&torn, &stance(n), n as u8);
-            let found = begin(&torn.after_the_reset(), None).stance_before;
-            let index = usize::from(found == Some(stance(n)));
-            assert!(index == 1 || found == Some(stance(n - 1)), "{n} {stores}");
-            seen[index] += 1;
+        let complete_ram = ram.with_reset_after(usize::MAX);
+        store_stance(&complete_ram, &make_stance(n), n as u8);
+        for stores in 0..=complete_ram.stores.get() {
+            let torn_ram = ram.with_reset_after(stores);
+            store_stance(&torn_ram, &make_stance(n), n as u8);
+            let stance_found = begin(&torn_ram.copy_after_reset(), None).stance_before;
+            let index = usize::from(stance_found == Some(make_stance(n)));
+            assert!(
+                index == 1 || stance_found == Some(make_stance(n - 1)),
+                "{n} {stores}"
+            );
+            seen_counts[index] += 1;
         }
-        store_stance(&ram, &stance(n), n as u8);
+        store_stance(&ram, &make_stance(n), n as u8);
     }
-    assert!(seen[0] > 100 && seen[1] == 7, "{seen:?}");
+    assert!(
+        seen_counts[0] > 100 && seen_counts[1] == 7,
+        "{seen_counts:?}"
+    );
 }
 
 #[test]
 fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
     let ram = Ram::powered();
-    store_stance(&ram, &stance(5), 5);
+    store_stance(&ram, &make_stance(5), 5);
     mark_hung(&ram);
-    let whole = ram.with_reset_after(usize::MAX);
-    begin(&whole, None);
-    assert!(whole.stores.get() >= 3);
-    for stores in 0..=whole.stores.get() {
-        let torn = ram.with_reset_after(stores);
-        begin(&torn, None);
-        let found = begin(&torn.after_the_reset(), None);
-        assert_eq!(found.stance_before, Some(stance(5)), "{stores}");
-        assert!((1..=2).contains(&found.count));
-        assert!(matches!(found.cause, Cause::Watchdog | Cause::External));
+    let complete_ram = ram.with_reset_after(usize::MAX);
+    begin(&complete_ram, None);
+    assert!(complete_ram.stores.get() >= 3);
+    for stores in 0..=complete_ram.stores.get() {
+        let torn_ram = ram.with_reset_after(stores);
+        begin(&torn_ram, None);
+        let restart = begin(&torn_ram.copy_after_reset(), None);
+        assert_eq!(restart.stance_before, Some(make_stance(5)), "{stores}");
+        assert!((1..=2).contains(&restart.count));
+        assert!(matches!(restart.cause, Cause::Watchdog | Cause::External));
     }
 }
 
 #[test]
 fn every_cause_is_known_from_its_flag_or_from_ram() {
-    for (reported, hung, cause, may_be_supply) in [
+    for (reported_cause, has_hung, cause, may_be_supply) in [
         (Some(Cause::External), false, Cause::External, false),
         (Some(Cause::BrownOut), false, Cause::BrownOut, true),
         (Some(Cause::Watchdog), false, Cause::Watchdog, false),
@@ -151,10 +160,10 @@ fn every_cause_is_known_from_its_flag_or_from_ram() {
         (Some(Cause::External), true, Cause::External, false),
     ] {
         let ram = Ram::powered();
-        if hung {
+        if has_hung {
             mark_hung(&ram);
         }
-        let restart = begin(&ram, reported);
+        let restart = begin(&ram, reported_cause);
         assert_eq!(
             (restart.cause, restart.may_be_supply),
             (cause, may_be_supply)
@@ -178,27 +187,27 @@ proptest! {
     #[test]
     fn the_contents_of_ram_at_power_on_are_not_trusted(
         bytes in prop::collection::vec(any::<u8>(), CELLS),
-        reported in prop::sample::select(&CAUSES[..]),
+        reported_cause in prop::sample::select(&CAUSES[..]),
     ) {
         let mut bytes = bytes;
         // Random bytes contain the mark once in 256 times.
         prop_assume!(bytes[MARK_CELL] != POWERED_MARK);
         let ram = Ram::of(bytes.clone());
-        let restart = begin(&ram, reported);
+        let restart = begin(&ram, reported_cause);
         prop_assert_eq!((restart.count, restart.stance_before), (0, None));
         prop_assert_eq!(begin(&ram, Some(Cause::External)).stance_before, None);
         bytes[MARK_CELL] = POWERED_MARK;
         // Neither RUNNING nor HUNG.
         bytes[STATE_CELL] = 0x5b;
-        prop_assert_eq!(begin(&Ram::of(bytes), reported).stance_before, None);
+        prop_assert_eq!(begin(&Ram::of(bytes), reported_cause).stance_before, None);
     }
 
     #[test]
     fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY_CELLS, n in 1i16..100) {
         let ram = Ram::powered();
-        store_stance(&ram, &stance(n), n as u8);
-        let copy = FIRST_COPY_CELL + COPY_CELLS * usize::from(ram.get(VALID_COPY_CELL) & 1);
-        ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
+        store_stance(&ram, &make_stance(n), n as u8);
+        let copy_cell = FIRST_COPY_CELL + COPY_CELLS * usize::from(ram.get(VALID_COPY_CELL) & 1);
+        ram.set(copy_cell + bit / 8, ram.get(copy_cell + bit / 8) ^ (1 << (bit % 8)));
         prop_assert_eq!(begin(&ram, None).stance_before, None);
     }
 }

@@ -45,9 +45,9 @@ impl Motion {
         if gait.increment < 0 {
             advance = advance.wrapping_neg();
         }
-        let (covered, mut is_over) = count.phase_covered.overflowing_add(advance);
-        count.phase_covered = covered;
-        is_over |= count.cycles_left == 1 && covered.checked_add(3 * advance).is_none();
+        let (phase_covered, mut is_over) = count.phase_covered.overflowing_add(advance);
+        count.phase_covered = phase_covered;
+        is_over |= count.cycles_left == 1 && phase_covered.checked_add(3 * advance).is_none();
         if is_over {
             count.cycles_left -= 1;
             if count.cycles_left == 0 {

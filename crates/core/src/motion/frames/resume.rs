@@ -13,9 +13,9 @@ impl Motion {
     /// Wakes the servos one after the other in the pose in which the robot rested, if it is safe and within the
     /// travel, else in the neutral one; then the robot stands.
     #[inline(never)]
-    pub fn wake(&mut self, rested: Option<&Pose>) {
+    pub fn wake(&mut self, rest_pose: Option<&Pose>) {
         self.begin();
-        if let Some(pose) = rested
+        if let Some(pose) = rest_pose
             && self.may_hold(pose)
         {
             self.stance.pose = *pose;
@@ -52,8 +52,8 @@ impl Motion {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
             // The next servo to wake waits for a full interval.
-            let awake = stance.frames_awake.min(AWAKE_FRAMES);
-            self.stance.frames_awake = awake - awake % WAKE_INTERVAL_FRAMES;
+            let frames_awake = stance.frames_awake.min(AWAKE_FRAMES);
+            self.stance.frames_awake = frames_awake - frames_awake % WAKE_INTERVAL_FRAMES;
         }
         self.settle();
         true

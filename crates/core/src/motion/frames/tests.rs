@@ -91,12 +91,12 @@ const THERE: [i16; 4] = [900, -700, 800, -1100];
 const BACK: [i16; 4] = [-600, 500, -800, 700];
 
 /// Checks that two motions are the same for some frames.
-fn assert_same(mut first: Motion, mut other: Motion) {
+fn assert_same(mut first: Motion, mut second: Motion) {
     for _ in 0..100 {
-        assert_eq!(first.tick(), other.tick());
-        assert_eq!(first.activity(), other.activity());
-        assert_eq!(first.phase(), other.phase());
-        assert_eq!(first.hazard(), other.hazard());
+        assert_eq!(first.tick(), second.tick());
+        assert_eq!(first.activity(), second.activity());
+        assert_eq!(first.phase(), second.phase());
+        assert_eq!(first.hazard(), second.hazard());
     }
 }
 
@@ -111,15 +111,18 @@ fn resting() -> Motion {
 
 #[test]
 fn a_held_pose_stays_and_its_activity_is_pose_if_it_was_ordered_else_stop() {
-    let mut stopped = Motion::in_gait("sway", 90);
-    stopped.stop();
-    let mut posed = Motion::standing();
-    posed.head_for_pose(THERE);
-    posed.run(LONG_ENOUGH);
-    for (mut motion, activity) in [(stopped, Activity::Stop), (posed, Activity::Pose)] {
-        let held = motion.held();
+    let mut stopped_motion = Motion::in_gait("sway", 90);
+    stopped_motion.stop();
+    let mut posed_motion = Motion::standing();
+    posed_motion.head_for_pose(THERE);
+    posed_motion.run(LONG_ENOUGH);
+    for (mut motion, activity) in [
+        (stopped_motion, Activity::Stop),
+        (posed_motion, Activity::Pose),
+    ] {
+        let held_pulses = motion.held();
         for _ in 0..50 {
-            assert_eq!(motion.tick(), held);
+            assert_eq!(motion.tick(), held_pulses);
             assert_eq!(motion.activity(), activity);
         }
     }
@@ -127,19 +130,19 @@ fn a_held_pose_stays_and_its_activity_is_pose_if_it_was_ordered_else_stop() {
 
 #[test]
 fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
-    for gait in [false, true] {
+    for is_gait in [false, true] {
         let mut motion = Motion::in_gait("sway", 90);
         motion.stop();
         motion.run(5);
-        let held = *motion.pose();
-        if gait {
+        let held_pose = *motion.pose();
+        if is_gait {
             motion.start("sway");
         } else {
             motion.head_for_pose(THERE);
         }
         motion.tick();
         assert!(motion.is_moving());
-        assert_ne!(motion.pose(), &held);
+        assert_ne!(motion.pose(), &held_pose);
     }
 }
 
@@ -196,8 +199,8 @@ fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
             assert!(motion.is_moving() && motion.next.is_some());
             assert_eq!(motion.pace(), pace);
             // Still on the line: every servo has covered the same share of its distance.
-            let share = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
-            assert!((share(0) - share(3)).abs() < 0.002);
+            let share_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
+            assert!((share_of(0) - share_of(3)).abs() < 0.002);
         }
         motion.tick();
         assert!(motion.next.is_none());
@@ -217,9 +220,9 @@ fn a_move_to_a_gait_goes_on_when_that_gait_is_ordered_again() {
         assert!(motion.is_moving());
         motion
     };
-    let mut asked = build();
-    asked.start("sway");
-    assert_same(asked, build());
+    let mut repeated_motion = build();
+    repeated_motion.start("sway");
+    assert_same(repeated_motion, build());
 }
 
 // Cycling.
@@ -228,9 +231,9 @@ fn a_move_to_a_gait_goes_on_when_that_gait_is_ordered_again() {
 fn the_same_gait_ordered_again_goes_on_in_the_middle_of_its_cycle() {
     for name in GAITS.into_iter().filter(|name| *name != "stray") {
         let build = || Motion::in_gait(name, 60);
-        let mut asked = build();
-        asked.start(name);
-        assert_same(asked, build());
+        let mut repeated_motion = build();
+        repeated_motion.start(name);
+        assert_same(repeated_motion, build());
     }
 }
 
@@ -300,8 +303,8 @@ fn a_speed_is_gathered_and_lost_as_pace() {
 #[test]
 fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_every_move() {
     for name in GAITS {
-        let mut moving = Motion::standing();
-        moving.start(name);
+        let mut moving_motion = Motion::standing();
+        moving_motion.start(name);
         for frames in 0..140 {
             let mut motion = Motion::in_gait(name, frames);
             let pose = *motion.pose();
@@ -330,12 +333,12 @@ fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
 
 #[test]
 fn stop_and_rest_drop_the_next_motion() {
-    for ask in [Motion::stop, Motion::rest] {
+    for order in [Motion::stop, Motion::rest] {
         let mut motion = Motion::in_gait("sway", 90);
         motion.head_for_pose(THERE);
         motion.run(3);
         let pose = *motion.pose();
-        ask(&mut motion);
+        order(&mut motion);
         motion.run(LONG_ENOUGH);
         assert_eq!(motion.pose(), &pose);
     }
@@ -352,11 +355,11 @@ fn a_stopped_gait_restarts_at_its_first_pose() {
     while motion.is_moving() {
         motion.tick();
     }
-    let first = motion
+    let first_pose = motion
         .robot
         .gait(motion.robot.id("sway"))
         .pose(motion.robot.waves(), 0);
-    assert_eq!((motion.pose(), motion.phase()), (&first, 0));
+    assert_eq!((motion.pose(), motion.phase()), (&first_pose, 0));
 }
 
 #[test]

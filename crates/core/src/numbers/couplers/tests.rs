@@ -13,7 +13,7 @@ const MAX_COUPLER: i16 = 32_511;
 
 /// Computes rise and skew of couplers of these lengths directly from the triangle, with their crank tips at a
 /// distance whose squared half is `tips_sq`.
-fn truth(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
+fn exact_lean(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
     let distance = 2.0 * f64::from(tips_sq).sqrt();
     let foot = (distance * distance + left * left - right * right) / (2.0 * distance);
     let height_sq = left * left - foot * foot;
@@ -24,7 +24,7 @@ fn truth(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
 }
 
 /// The type-2 margin for a rise: 2 a b sin = rise s.
-fn type2(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
+fn type2_of(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
     2.0 * rise * f64::from(tips_sq) / (left * right)
 }
 
@@ -59,20 +59,20 @@ proptest! {
         let bound = bounds::LeanError::of(left, right, [f64::from(tips_sq); 2]);
         let (left, right) = (f64::from(left), f64::from(right));
         // A loop that just fails to close may close with rounded lengths.
-        let [rise, skew] = truth(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
+        let [rise, skew] = exact_lean(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(lean) = lean else {
-            prop_assert!(type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN, "a lean for {rise}");
+            prop_assert!(type2_of(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN, "a lean for {rise}");
             return Ok(());
         };
         let error = [
             f64::from(lean.rise) / 1024.0 - rise,
             f64::from(lean.skew) / 1024.0 - skew,
         ];
-        if type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN {
+        if type2_of(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN {
             // An entry above the largest number of a table is cut off, and below its peak the table keeps the largest
             // rise. No value there may give a margin above the threshold.
-            let read = f64::from(lean.rise) / 1024.0 - bound.rise;
-            prop_assert!(type2(left, right, tips_sq, read) < MIN_KNOWN_MARGIN, "rise {error:?}, {bound:?}");
+            let min_rise = f64::from(lean.rise) / 1024.0 - bound.rise;
+            prop_assert!(type2_of(left, right, tips_sq, min_rise) < MIN_KNOWN_MARGIN, "rise {error:?}, {bound:?}");
             return Ok(());
         }
         prop_assert!(error[0].abs() <= bound.rise, "rise {error:?}, {bound:?}");
@@ -87,12 +87,12 @@ proptest! {
     fn couplers_that_do_not_meet_have_no_lean(
         left in MIN_COUPLER..=MAX_COUPLER,
         right in MIN_COUPLER..=MAX_COUPLER,
-        beyond in 0u32..1 << 28,
+        excess_sq in 0u32..1 << 28,
     ) {
         let bars = SampleCouplers::new(left, right);
         let (reach, min) = (reach_sq(left, right), folded_sq(left, right));
-        prop_assert_eq!(bars.couplers().at(reach + beyond), None);
-        prop_assert_eq!(bars.couplers().at(min.saturating_sub(beyond)), None);
+        prop_assert_eq!(bars.couplers().at(reach + excess_sq), None);
+        prop_assert_eq!(bars.couplers().at(min.saturating_sub(excess_sq)), None);
     }
 }
 
@@ -106,36 +106,41 @@ fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
             folded(left, right),
             skew(left, right),
         ];
-        let exact = |tips_sq: u64| {
+        let exact_rise_at = |tips_sq: u64| {
             let [r, n, s] = [reach.into(), min.into(), tips_sq].map(|sq: u64| sq as f64);
             (1024.0 * ((r - s) * (s - n)).sqrt() / s).min(32_767.0)
         };
-        let within = |tips_sq: u64| (u64::from(min) + 1..u64::from(reach)).contains(&tips_sq);
+        let is_within_range =
+            |tips_sq: u64| (u64::from(min) + 1..u64::from(reach)).contains(&tips_sq);
         for index in 0..ENTRIES {
-            let [falling, stretched, folded, skew] = tables.map(|table| f64::from(table[index]));
+            let [falling_entry, stretched_entry, folded_entry, skew_entry] =
+                tables.map(|table| f64::from(table[index]));
             let tips_sq = argument(reach, index);
-            if within(tips_sq) && tips_sq >= peak_sq(left, right).into() {
+            if is_within_range(tips_sq) && tips_sq >= peak_sq(left, right).into() {
                 assert!(
-                    (0.0..1.0).contains(&(exact(tips_sq) - falling)),
+                    (0.0..1.0).contains(&(exact_rise_at(tips_sq) - falling_entry)),
                     "rise {index}"
                 );
             }
             let difference = (f64::from(left).powi(2) - f64::from(right).powi(2)) / 4.0;
             let exact_skew = 1024.0 * difference.abs() / tips_sq as f64;
             assert!(
-                (skew - exact_skew.min(32_767.0)).abs() <= 0.51,
+                (skew_entry - exact_skew.min(32_767.0)).abs() <= 0.51,
                 "skew {index}"
             );
             let tips_sq = u64::from(reach).saturating_sub(argument(reach / 4, index));
-            if within(tips_sq) {
+            if is_within_range(tips_sq) {
                 assert!(
-                    (stretched - exact(tips_sq)).abs() <= 0.51,
+                    (stretched_entry - exact_rise_at(tips_sq)).abs() <= 0.51,
                     "stretched {index}"
                 );
             }
             let tips_sq = u64::from(min) + argument(min, index);
-            if within(tips_sq) {
-                assert!((folded - exact(tips_sq)).abs() <= 0.51, "folded {index}");
+            if is_within_range(tips_sq) {
+                assert!(
+                    (folded_entry - exact_rise_at(tips_sq)).abs() <= 0.51,
+                    "folded {index}"
+                );
             }
         }
     }
@@ -143,15 +148,16 @@ fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
 
 #[test]
 fn couplers_that_differ_by_a_few_steps_are_couplers_too() {
-    for more in 0..300 {
-        let bars = SampleCouplers::new(12_800, 12_800 + more);
+    for extra_steps in 0..300 {
+        let bars = SampleCouplers::new(12_800, 12_800 + extra_steps);
         for tips_sq in [1 << 20, 1 << 24, 1 << 27] {
             let lean = bars.couplers().at(tips_sq).expect("closes");
-            let [rise, _] = truth(12_800.0, 12_800.0 + f64::from(more), tips_sq).expect("closes");
+            let [rise, _] =
+                exact_lean(12_800.0, 12_800.0 + f64::from(extra_steps), tips_sq).expect("closes");
             let error = f64::from(lean.rise) / 1024.0 - rise;
             assert!(
                 error.abs() <= 0.002 * rise.max(1.0),
-                "{more}: {error} of {rise}"
+                "{extra_steps}: {error} of {rise}"
             );
         }
     }

@@ -109,12 +109,13 @@ impl Loop {
 
     /// The tables that the couplers need: rise, stretched, folded, skew.
     fn tables(&self) -> [Option<Table>; CURVES] {
-        let [a, b] = self.couplers;
+        let [left, right] = self.couplers;
         [
-            Some(couplers::rise(a, b)),
-            self.is_near_stretched.then(|| couplers::stretched(a, b)),
-            Couplers::differ_much(a, b).then(|| couplers::folded(a, b)),
-            (a != b).then(|| couplers::skew(a, b)),
+            Some(couplers::rise(left, right)),
+            self.is_near_stretched
+                .then(|| couplers::stretched(left, right)),
+            Couplers::differ_much(left, right).then(|| couplers::folded(left, right)),
+            (left != right).then(|| couplers::skew(left, right)),
         ]
     }
 }
@@ -143,22 +144,23 @@ impl Content {
         let [head, tail] = &self.ends;
         let mut rest = Vec::new();
         let curves = self.curves(&mut rest);
-        let number = |value: usize| u16::try_from(value).expect("at most 65535");
-        let steps_at = usize::from(AFTER_NUMBERS) + rest.len() + size_of_val(self.gaits.as_slice());
+        let to_u16 = |value: usize| u16::try_from(value).expect("at most 65535");
+        let steps_offset =
+            usize::from(AFTER_NUMBERS) + rest.len() + size_of_val(self.gaits.as_slice());
         let mut gaits = self.gaits.clone();
         for routine in gaits.iter_mut().filter(|gait| gait.is_routine()) {
-            let first = &mut routine.channels[0].offset;
-            *first = number(steps_at + usize::from(*first) * size_of::<Step>());
+            let first_step = &mut routine.channels[0].offset;
+            *first_step = to_u16(steps_offset + usize::from(*first_step) * size_of::<Step>());
         }
         let gaits: Vec<u8> = gaits.iter().flat_map(Plain::bytes).copied().collect();
         let steps = self.steps.iter().flat_map(Plain::bytes).copied();
         let gaits: Vec<u8> = gaits.into_iter().chain(steps).collect();
-        let mut place = |count: usize, bytes: &[u8]| {
-            let at = usize::from(AFTER_NUMBERS) + rest.len();
+        let mut append_part = |count: usize, bytes: &[u8]| {
+            let offset = usize::from(AFTER_NUMBERS) + rest.len();
             rest.extend(bytes);
             PartRange {
-                at: number(at),
-                count: number(count),
+                at: to_u16(offset),
+                count: to_u16(count),
             }
         };
         let waves: Vec<u8> = self.waves.iter().flat_map(Plain::bytes).copied().collect();
@@ -170,10 +172,10 @@ impl Content {
             .collect();
         // The rows are the last part, because the hash does not cover them.
         let parts = [
-            place(self.gaits.len(), &gaits),
-            place(self.waves.len(), &waves),
-            place(self.names.len(), &self.names),
-            place(rows.len(), &columns),
+            append_part(self.gaits.len(), &gaits),
+            append_part(self.waves.len(), &waves),
+            append_part(self.names.len(), &self.names),
+            append_part(rows.len(), &columns),
         ];
         let numbers = Numbers {
             ends: [head.bars(), tail.bars()],
@@ -219,19 +221,19 @@ impl Content {
     /// Appends the tables of head and tail to `rest`, equal ones only once, and returns the address of each; 0 for a
     /// table that is not needed.
     fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
-        let mut written: Vec<(Table, u16)> = Vec::new();
+        let mut written_tables: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {
             end.tables().map(|table| {
                 let Some(table) = table else { return 0 };
-                if let Some((_, offset)) = written
+                if let Some((_, offset)) = written_tables
                     .iter()
-                    .find(|(other, _)| other.bytes() == table.bytes())
+                    .find(|(other_table, _)| other_table.bytes() == table.bytes())
                 {
                     return *offset;
                 }
                 let offset = AFTER_NUMBERS + rest.len() as u16;
                 rest.extend(table.bytes());
-                written.push((table, offset));
+                written_tables.push((table, offset));
                 offset
             })
         })

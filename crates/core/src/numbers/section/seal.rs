@@ -14,9 +14,9 @@ use crate::numbers::checksum::Checksum;
 const ERASED: u8 = 0xff;
 
 /// The offset of the length.
-const LENGTH: usize = offset_of!(Header, length);
+const LENGTH_OFFSET: usize = offset_of!(Header, length);
 /// The offset of the checksum, which covers all bytes after it.
-const CRC: usize = offset_of!(Header, crc);
+const CRC_OFFSET: usize = offset_of!(Header, crc);
 
 /// Writes the correct checksum into a section, whether its content is valid or not.
 ///
@@ -24,7 +24,7 @@ const CRC: usize = offset_of!(Header, crc);
 /// If the section is shorter than a header.
 pub fn seal(section: &mut [u8]) {
     let crc = Checksum::of(&section[CRC_COVERS_FROM..]).0;
-    section[CRC..CRC_COVERS_FROM].copy_from_slice(&crc.to_le_bytes());
+    section[CRC_OFFSET..CRC_COVERS_FROM].copy_from_slice(&crc.to_le_bytes());
 }
 
 /// Adds length and checksum to a section. Appends bytes until the checksum detects every write that ended early and
@@ -35,10 +35,10 @@ pub fn seal(section: &mut [u8]) {
 pub(super) fn add_seal(mut section: Vec<u8>) -> Vec<u8> {
     loop {
         let length = u16::try_from(section.len()).expect("at most 65535");
-        section[LENGTH..CRC].copy_from_slice(&length.to_le_bytes());
+        section[LENGTH_OFFSET..CRC_OFFSET].copy_from_slice(&length.to_le_bytes());
         seal(&mut section);
         let checked = &section[CRC_COVERS_FROM..];
-        let sums = sums(checked);
+        let sums = sums_of_prefixes(checked);
         if !has_undetected_prefix(checked, &sums) && !has_undetected_length(length, &sums) {
             return section;
         }
@@ -47,7 +47,7 @@ pub(super) fn add_seal(mut section: Vec<u8>) -> Vec<u8> {
 }
 
 /// The checksums of all prefixes of a section, from none of its bytes to all of them.
-fn sums(bytes: &[u8]) -> Vec<Checksum> {
+fn sums_of_prefixes(bytes: &[u8]) -> Vec<Checksum> {
     let mut sum = Checksum::EMPTY;
     let mut sums = Vec::with_capacity(bytes.len() + 1);
     sums.push(sum);
@@ -64,10 +64,10 @@ fn has_undetected_prefix(bytes: &[u8], sums: &[Checksum]) -> bool {
     // The checksum that a prefix must have so that the erased bytes after it give the checksum of all bytes.
     let mut needed = sums[bytes.len()];
     let mut is_tail_erased = true;
-    for (byte, beginning) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
+    for (byte, prefix_sum) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
         needed = without_last_byte(needed, ERASED);
         is_tail_erased &= *byte == ERASED;
-        if !is_tail_erased && *beginning == needed {
+        if !is_tail_erased && *prefix_sum == needed {
             return true;
         }
     }
@@ -89,11 +89,12 @@ const fn without_last_byte(sum: Checksum, byte: u8) -> Checksum {
 /// accepts more than [`SPACE`] bytes.
 fn has_undetected_length(length: u16, sums: &[Checksum]) -> bool {
     let own_sum = sums[usize::from(length) - CRC_COVERS_FROM];
-    let is_one_off = |other: u16| (other ^ length).is_power_of_two();
-    let shorter = (CRC_COVERS_FROM as u16 + 1..length)
-        .any(|other| is_one_off(other) && sums[usize::from(other) - CRC_COVERS_FROM] == own_sum);
+    let is_one_off = |other_length: u16| (other_length ^ length).is_power_of_two();
+    let has_shorter = (CRC_COVERS_FROM as u16 + 1..length).any(|other_length| {
+        is_one_off(other_length) && sums[usize::from(other_length) - CRC_COVERS_FROM] == own_sum
+    });
     let mut sum = own_sum;
-    shorter
+    has_shorter
         || (length..SPACE).any(|last| {
             sum = sum.with_byte(ERASED);
             is_one_off(last + 1) && sum == own_sum
@@ -107,7 +108,7 @@ mod tests {
     use super::*;
 
     /// Reference for [`has_undetected_prefix`]: computes the checksum of each cut section anew.
-    fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
+    fn has_prefix_with_sum(bytes: &[u8]) -> bool {
         let sum = Checksum::of(bytes);
         (0..bytes.len()).any(|end| {
             let mut cut = bytes.to_vec();
@@ -117,7 +118,7 @@ mod tests {
     }
 
     /// Reference for [`has_undetected_length`], on the bytes that the flash would hold.
-    fn another_length_has_the_sum(section: &[u8]) -> bool {
+    fn has_other_length_with_sum(section: &[u8]) -> bool {
         let sum = Checksum::of(&section[CRC_COVERS_FROM..]);
         let mut flash = section.to_vec();
         flash.resize(SPACE.into(), ERASED);
@@ -128,10 +129,10 @@ mod tests {
     }
 
     /// Finds the two bytes that change one checksum into another.
-    fn pair(from: Checksum, to: Checksum) -> [u8; 2] {
+    fn bytes_between(from: Checksum, to: Checksum) -> [u8; 2] {
         let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
-        let mut right = pairs.filter(|[low, high]| from.with_byte(*low).with_byte(*high) == to);
-        right.next().expect("any two sums are two bytes apart")
+        let mut matching = pairs.filter(|[low, high]| from.with_byte(*low).with_byte(*high) == to);
+        matching.next().expect("any two sums are two bytes apart")
     }
 
     #[test]
@@ -145,38 +146,47 @@ mod tests {
 
     #[test]
     fn a_length_one_bit_off_that_has_the_sum_is_found() {
-        let mut found = [0, 0];
+        let mut counts = [0, 0];
         for length in [300usize, 425] {
             for bit in 0..8 {
-                let other = length ^ 1 << bit;
+                let other_length = length ^ 1 << bit;
                 let mut bytes: Vec<u8> = (0..length as u32 - 2)
                     .map(|n| ((n * n) >> 3) as u8)
                     .collect();
-                if other <= CRC_COVERS_FROM || (bytes.len() + 1..length).contains(&other) {
+                if other_length <= CRC_COVERS_FROM
+                    || (bytes.len() + 1..length).contains(&other_length)
+                {
                     continue;
                 }
                 // For a shorter length, the checksum at that length; for a longer one, a checksum that the erased
                 // bytes do not change.
-                let erased =
-                    |from| (length..other).fold(from, |sum: Checksum, _| sum.with_byte(ERASED));
-                let target = match other < length {
-                    true => Some(Checksum::of(&bytes[CRC_COVERS_FROM..other])),
+                let add_erased = |start| {
+                    (length..other_length).fold(start, |sum: Checksum, _| sum.with_byte(ERASED))
+                };
+                let target = match other_length < length {
+                    true => Some(Checksum::of(&bytes[CRC_COVERS_FROM..other_length])),
                     false => (0..=u16::MAX)
                         .map(Checksum)
-                        .find(|sum| erased(*sum) == *sum),
+                        .find(|sum| add_erased(*sum) == *sum),
                 };
                 let Some(target) = target else { continue };
-                bytes.extend(pair(Checksum::of(&bytes[CRC_COVERS_FROM..]), target));
-                assert!(another_length_has_the_sum(&bytes), "{length} and {other}");
-                let sums = sums(&bytes[CRC_COVERS_FROM..]);
+                bytes.extend(bytes_between(
+                    Checksum::of(&bytes[CRC_COVERS_FROM..]),
+                    target,
+                ));
+                assert!(
+                    has_other_length_with_sum(&bytes),
+                    "{length} and {other_length}"
+                );
+                let sums = sums_of_prefixes(&bytes[CRC_COVERS_FROM..]);
                 assert!(
                     has_undetected_length(length as u16, &sums),
-                    "{length} and {other}"
+                    "{length} and {other_length}"
                 );
-                found[usize::from(other > length)] += 1;
+                counts[usize::from(other_length > length)] += 1;
             }
         }
-        let [shorter, longer] = found;
+        let [shorter, longer] = counts;
         assert!(
             shorter >= 6 && longer >= 6,
             "{shorter} shorter, {longer} longer"
@@ -187,21 +197,21 @@ mod tests {
         #[test]
         fn a_beginning_that_has_the_sum_of_all_is_found(
             bytes in prop::collection::vec(any::<u8>(), 0..300),
-            erased in 0..4usize,
+            erased_count in 0..4usize,
             end in 0..300usize,
         ) {
             let mut bytes = bytes;
-            bytes.extend(std::vec![ERASED; erased]);
-            prop_assert_eq!(has_undetected_prefix(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
+            bytes.extend(std::vec![ERASED; erased_count]);
+            prop_assert_eq!(has_undetected_prefix(&bytes, &sums_of_prefixes(&bytes)), has_prefix_with_sum(&bytes));
             // Two more bytes can always be chosen so that this beginning has the checksum of all bytes.
             let end = end.min(bytes.len());
             let mut cut = bytes.clone();
             cut[end..].fill(ERASED);
             let target = Checksum::of(&cut).with_byte(ERASED).with_byte(ERASED);
-            bytes.extend(pair(Checksum::of(&bytes), target));
-            prop_assert_eq!(has_undetected_prefix(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
+            bytes.extend(bytes_between(Checksum::of(&bytes), target));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &sums_of_prefixes(&bytes)), has_prefix_with_sum(&bytes));
             let differs = cut[end..].iter().chain(&[ERASED; 2]).ne(&bytes[end..]);
-            prop_assert_eq!(has_undetected_prefix(&bytes, &sums(&bytes)), differs || a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &sums_of_prefixes(&bytes)), differs || has_prefix_with_sum(&bytes));
         }
 
         #[test]
@@ -209,13 +219,13 @@ mod tests {
             bytes in prop::collection::vec(any::<u8>(), CRC_COVERS_FROM..600),
         ) {
             let section = add_seal(bytes.clone());
-            let length = u16::from_le_bytes([section[LENGTH], section[LENGTH + 1]]);
-            let crc = u16::from_le_bytes([section[CRC], section[CRC + 1]]);
+            let length = u16::from_le_bytes([section[LENGTH_OFFSET], section[LENGTH_OFFSET + 1]]);
+            let crc = u16::from_le_bytes([section[CRC_OFFSET], section[CRC_OFFSET + 1]]);
             prop_assert_eq!(usize::from(length), section.len());
             prop_assert_eq!(crc, Checksum::of(&section[CRC_COVERS_FROM..]).0);
             prop_assert!(section.len() <= bytes.len() + 3);
-            prop_assert!(!a_beginning_has_the_sum(&section[CRC_COVERS_FROM..]));
-            prop_assert!(!another_length_has_the_sum(&section));
+            prop_assert!(!has_prefix_with_sum(&section[CRC_COVERS_FROM..]));
+            prop_assert!(!has_other_length_with_sum(&section));
             prop_assert_eq!(&section[CRC_COVERS_FROM..bytes.len()], &bytes[CRC_COVERS_FROM..]);
         }
     }

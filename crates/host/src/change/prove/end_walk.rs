@@ -35,7 +35,7 @@ impl<'a> EndComparison<'a> {
             End::Tail => &maps.tail,
         };
         Self {
-            fixed: guard.end(part(end)),
+            fixed: guard.end(core_end(end)),
             exact: robot.lizard().end(end),
             limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],
@@ -51,31 +51,33 @@ impl<'a> EndComparison<'a> {
     pub fn walk(
         &self,
         [left, right]: [&Positions; 2],
-        share: PairSample,
+        sample: PairSample,
         cut: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
         tally_rows(left, cut, progress, |row| {
             let mut tally = Tally::default();
-            let crank = splat(left.exact[row]);
-            for_each_eight(columns(share, row, right.fixed.len()), |eight, count| {
-                let other = lanes(&right.exact, eight);
-                let pose = self.exact.pose_unchecked(AssemblyMode::Ahead, crank, other);
+            let crank_left = splat(left.exact[row]);
+            for_each_eight(columns(sample, row, right.fixed.len()), |eight, count| {
+                let crank_right = lanes(&right.exact, eight);
+                let pose = self
+                    .exact
+                    .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
                 let are_closed = self.exact.closes(&pose);
                 let Lanes(type2) = pose.type2;
                 let Lanes(type1_left) = pose.type1_left();
                 let Lanes(type1_right) = pose.type1_right();
-                let Lanes(across) = pose.gap.x;
+                let Lanes(across_mm) = pose.gap.x;
                 for lane in 0..count {
                     let column = eight[lane];
                     let truth = EndTruth {
                         is_closed: are_closed[lane],
                         type2: type2[lane],
                         type1: [type1_left[lane], type1_right[lane]],
-                        crank_tip_distance: across[lane],
+                        crank_tip_distance: across_mm[lane],
                     };
                     let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
-                    let place = || {
+                    let describe_place = || {
                         format!(
                             "{} at {:.4} and {:.4} deg",
                             self.end.name(),
@@ -83,18 +85,18 @@ impl<'a> EndComparison<'a> {
                             right.degrees[column]
                         )
                     };
-                    self.compare(&mut tally, margins, &truth, place);
-                    let [sweep, other] = [left.sweep(row), right.sweep(column)];
+                    self.compare(&mut tally, margins, &truth, describe_place);
+                    let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
                     // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
-                    let is_held = match self.end {
-                        End::Head => self.cells.contains(sweep, other),
-                        End::Tail => self.cells.contains(other, sweep),
+                    let is_in_cell = match self.end {
+                        End::Head => self.cells.contains(left_sweep, right_sweep),
+                        End::Tail => self.cells.contains(right_sweep, left_sweep),
                     };
-                    if is_held {
+                    if is_in_cell {
                         let legs = [left.fixed[row], right.fixed[column]];
-                        let accepted = self.accepts(margins)
+                        let is_accepted = self.accepts(margins)
                             && legs.iter().all(|leg| leg.sin >= self.fixed_leg);
-                        tally.count_certified(accepted, place);
+                        tally.count_certified(is_accepted, describe_place);
                     }
                 }
             });
@@ -115,10 +117,10 @@ impl<'a> EndComparison<'a> {
         tally: &mut Tally,
         margins: EndMargins,
         truth: &EndTruth,
-        place: impl Fn() -> String,
+        describe_place: impl Fn() -> String,
     ) {
         tally.pairs += 1;
-        let fixed = self.accepts(margins);
+        let is_fixed_safe = self.accepts(margins);
         let EndMargins {
             type2,
             type1_left,
@@ -134,22 +136,23 @@ impl<'a> EndComparison<'a> {
                 Tally::raise(&mut tally.type1, (q15_to_sine(fixed.0) - exact).abs());
             }
         }
-        let (clear, crossed) = truth.distances_from_limits(self.limits);
-        let exact = clear >= 0.0 && crossed > 0.0;
-        if fixed != exact {
+        let (margin_distance, crossing_distance) = truth.distances_from_limits(self.limits);
+        let is_exact_safe = margin_distance >= 0.0 && crossing_distance > 0.0;
+        if is_fixed_safe != is_exact_safe {
             // The smaller distance from a limit, relative to its band, decides.
-            let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
-            let (excess, band) = if by_crossing {
-                (crossed.abs(), self.crossing_band)
+            let is_by_crossing =
+                crossing_distance / self.crossing_band < margin_distance / self.margin_band;
+            let (excess, band) = if is_by_crossing {
+                (crossing_distance.abs(), self.crossing_band)
             } else {
-                (clear.abs(), self.margin_band)
+                (margin_distance.abs(), self.margin_band)
             };
-            tally.record_difference(by_crossing, excess, band, || {
+            tally.record_difference(is_by_crossing, excess, band, || {
                 format!(
                     "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
-                    place(),
-                    if fixed { "safe" } else { "unsafe" },
-                    if exact { "safe" } else { "unsafe" },
+                    describe_place(),
+                    if is_fixed_safe { "safe" } else { "unsafe" },
+                    if is_exact_safe { "safe" } else { "unsafe" },
                     q15_to_sine(type2.0),
                     q15_to_sine(type1_left.0),
                     q15_to_sine(type1_right.0),
@@ -176,25 +179,25 @@ impl EndTruth {
     /// The distances from the limits: of the smallest margin, a sine; and of the crank tips from crossing, mm.
     /// Negative beyond the limit.
     #[inline(always)]
-    fn distances_from_limits(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
+    fn distances_from_limits(&self, [min_type2, min_type1]: [f64; 2]) -> (f64, f64) {
         if !self.is_closed {
-            return (-least2, self.crank_tip_distance);
+            return (-min_type2, self.crank_tip_distance);
         }
-        let type1 = self.type1[0].min(self.type1[1]) - least1;
-        ((self.type2 - least2).min(type1), self.crank_tip_distance)
+        let type1 = self.type1[0].min(self.type1[1]) - min_type1;
+        ((self.type2 - min_type2).min(type1), self.crank_tip_distance)
     }
 }
 
 /// The bands of an end in which decisions may differ: the distance from a margin's limit, a sine, and the distance
 /// from the crossing of the crank tips, mm.
 pub fn bands(robot: &Robot, end: End) -> [f64; 2] {
-    let step = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
-    let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step);
-    [band, STEPS_BAND * step]
+    let step_mm = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
+    let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step_mm);
+    [band, STEPS_BAND * step_mm]
 }
 
 /// Converts an end to the core's type.
-fn part(end: End) -> part::End {
+fn core_end(end: End) -> part::End {
     match end {
         End::Head => part::End::Head,
         End::Tail => part::End::Tail,

@@ -81,12 +81,12 @@ impl Proof {
     pub fn of(
         robot: &Robot,
         guard: &CoreRobot,
-        share: PairSample,
+        sample: PairSample,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
-        let walk = walk::Walk::new(robot, guard, share);
-        let piece = |index| walk.piece(index, progress);
-        Self::from_tallies(robot, guard, (0..walk::PIECES).map(piece).collect())
+        let walk = walk::Walk::new(robot, guard, sample);
+        let check_piece = |index| walk.piece(index, progress);
+        Self::from_tallies(robot, guard, (0..walk::PIECES).map(check_piece).collect())
     }
 
     /// Makes the proof from the tallies of all pieces.
@@ -128,7 +128,7 @@ impl Proof {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();
-    let share = PairSample {
+    let sample = PairSample {
         one_in: args.one_in,
         offset: args.offset,
     };
@@ -137,9 +137,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         rows as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
     );
-    let walk = walk::Walk::new(&robot, guard, share);
-    let piece = |index| walk.piece(index, &|rows| bar.inc(rows));
-    let pieces = args.spread.all_pieces(&args, walk::PIECES, piece)?;
+    let walk = walk::Walk::new(&robot, guard, sample);
+    let check_piece = |index| walk.piece(index, &|rows| bar.inc(rows));
+    let pieces = args.spread.all_pieces(&args, walk::PIECES, check_piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
@@ -150,7 +150,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if args.json {
         json::write_line(&mut out, &proof)?;
     } else {
-        print(&proof, share, &mut out)?;
+        print(&proof, sample, &mut out)?;
     }
     out.flush()?;
     match proof.wrong() {
@@ -161,7 +161,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-fn print(proof: &Proof, share: PairSample, out: &mut impl Write) -> io::Result<()> {
+fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "                                      largest error          decided otherwise within"
@@ -182,7 +182,7 @@ fn print(proof: &Proof, share: PairSample, out: &mut impl Write) -> io::Result<(
             wrong,
             ..
         } = finding.tally;
-        let cell = |value: Option<f64>, digits: usize| {
+        let cell_text = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
         };
         writeln!(
@@ -191,11 +191,11 @@ fn print(proof: &Proof, share: PairSample, out: &mut impl Write) -> io::Result<(
             finding.part,
             finding.servos.join(" "),
             grouped(pairs as f64, 0),
-            cell(type2.or(leg), 5),
-            cell(type1, 5),
-            cell(travel, 4),
-            cell(margin_band, 6),
-            cell(length_band, 4),
+            cell_text(type2.or(leg), 5),
+            cell_text(type1, 5),
+            cell_text(travel, 4),
+            cell_text(margin_band, 6),
+            cell_text(length_band, 4),
             wrong
         )?;
     }
@@ -204,14 +204,14 @@ fn print(proof: &Proof, share: PairSample, out: &mut impl Write) -> io::Result<(
             writeln!(out, "{}: {example}", finding.part)?;
         }
     }
-    let sample = if share.one_in == 1 {
+    let sample_text = if sample.one_in == 1 {
         "every pair of positions".to_string()
     } else {
-        format!("one pair of positions in {}", share.one_in)
+        format!("one pair of positions in {}", sample.one_in)
     };
     writeln!(
         out,
-        "\n{sample}, in steps of 0.0055 deg, of a robot with tables {:08x}",
+        "\n{sample_text}, in steps of 0.0055 deg, of a robot with tables {:08x}",
         proof.hash
     )?;
     if proof.wrong() == 0 {

@@ -32,23 +32,23 @@ impl PairSample {
 }
 
 /// The columns of a row that belong to a sample.
-pub fn columns(share: PairSample, row: usize, count: usize) -> impl Iterator<Item = usize> {
-    let first = (row + share.offset as usize) % share.one_in as usize;
-    (first..count).step_by(share.one_in as usize)
+pub fn columns(sample: PairSample, row: usize, count: usize) -> impl Iterator<Item = usize> {
+    let first = (row + sample.offset as usize) % sample.one_in as usize;
+    (first..count).step_by(sample.one_in as usize)
 }
 
 /// Computes the rows of a piece on all cores, and adds their tallies.
 pub fn tally_rows(
-    first: &Positions,
+    row_positions: &Positions,
     cut: usize,
     progress: &(dyn Fn(u64) + Sync),
-    row: impl Fn(usize) -> Tally + Sync,
+    tally_row: impl Fn(usize) -> Tally + Sync,
 ) -> Tally {
-    let rows = first.fixed.len();
+    let rows = row_positions.fixed.len();
     (rows * cut / CUTS..rows * (cut + 1) / CUTS)
         .into_par_iter()
         .map(|index| {
-            let tally = row(index);
+            let tally = tally_row(index);
             progress(1);
             tally
         })

@@ -41,20 +41,20 @@ impl<'a> SideComparison<'a> {
     pub fn walk(
         &self,
         [front, rear]: [&Positions; 2],
-        share: PairSample,
+        sample: PairSample,
         cut: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
-        let in_side_frame = |direction: Direction| match self.side {
+        let to_side_frame = |direction: Direction| match self.side {
             Side::Left => direction,
             Side::Right => direction.mirrored(),
         };
-        let band = STEPS_BAND / self.steps_per_mm;
+        let band_mm = STEPS_BAND / self.steps_per_mm;
         tally_rows(front, cut, progress, |row| {
             let mut tally = Tally::default();
-            let crank = in_side_frame(front.fixed[row]);
+            let crank = to_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
-            for_each_eight(columns(share, row, rear.fixed.len()), |eight, count| {
+            for_each_eight(columns(sample, row, rear.fixed.len()), |eight, count| {
                 // Positions are in the frame of their end, arms in the frame of the chassis.
                 let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
                 let pose = self.exact.shape(self.side.rear_arm(crank_rear), front_arm);
@@ -64,12 +64,12 @@ impl<'a> SideComparison<'a> {
                     tally.pairs += 1;
                     let length_sq = self
                         .fixed
-                        .length_sq(&crank, &in_side_frame(rear.fixed[column]));
+                        .length_sq(&crank, &to_side_frame(rear.fixed[column]));
                     let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
                     Tally::raise(&mut tally.travel, (length - d[lane]).abs());
-                    let fixed = self.fixed.allows(length_sq);
+                    let is_allowed = self.fixed.allows(length_sq);
                     if self.cells.contains(front.sweep(row), rear.sweep(column)) {
-                        tally.count_certified(fixed, || {
+                        tally.count_certified(is_allowed, || {
                             format!(
                                 "{} side at {:.4} and {:.4} deg",
                                 self.side, front.degrees[row], rear.degrees[column]
@@ -77,9 +77,9 @@ impl<'a> SideComparison<'a> {
                         });
                     }
                     let [min, max] = self.stroke;
-                    let clear = (s[lane] - min).min(max - s[lane]);
-                    if fixed != (clear >= 0.0) {
-                        tally.record_difference(true, clear.abs(), band, || {
+                    let clearance = (s[lane] - min).min(max - s[lane]);
+                    if is_allowed != (clearance >= 0.0) {
+                        tally.record_difference(true, clearance.abs(), band_mm, || {
                             format!(
                                 "at {:.4} and {:.4} deg the slider is {length:.5} mm long by the guard, {:.5} by floating point",
                                 front.degrees[row], rear.degrees[column], d[lane]
@@ -96,13 +96,13 @@ impl<'a> SideComparison<'a> {
 /// Compares the guard with geometry at all positions of one leg.
 pub fn compare_leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
-    let min = guard.limits().leg.0;
+    let min_margin = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
         tally.pairs += 1;
         Tally::raise(&mut tally.leg, (q15_to_sine(fixed.sin) - exact.y).abs());
-        let clear = exact.y - robot.limits().leg;
-        if (fixed.sin >= min) != (clear >= 0.0) {
-            tally.record_difference(false, clear.abs(), MARGIN_BAND, || {
+        let clearance = exact.y - robot.limits().leg;
+        if (fixed.sin >= min_margin) != (clearance >= 0.0) {
+            tally.record_difference(false, clearance.abs(), MARGIN_BAND, || {
                 format!("at {:.4} deg", positions.degrees[position])
             });
         }

@@ -16,10 +16,10 @@ pub const STEPS_BAND: f64 = 4.0;
 /// couplers. That angle is large if the couplers are nearly in line: it grows with the reciprocal of the sine between
 /// them, which is at least `type2`.
 pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
-    let (a, b) = (bars.coupler_left, bars.coupler_right);
-    let apart = (a + b).min(bars.base + bars.crank_left + bars.crank_right);
-    let per_mm = (apart / (a * b)).max(1.0 / a.min(b));
-    MARGIN_BAND.max(STEPS_BAND * step * per_mm / type2)
+    let (left, right) = (bars.coupler_left, bars.coupler_right);
+    let max_tip_distance = (left + right).min(bars.base + bars.crank_left + bars.crank_right);
+    let angle_per_mm = (max_tip_distance / (left * right)).max(1.0 / left.min(right));
+    MARGIN_BAND.max(STEPS_BAND * step * angle_per_mm / type2)
 }
 
 /// Errors and disagreements of one end, one side or one leg.
@@ -81,12 +81,13 @@ impl Tally {
 
     /// Counts a pair in a cell, as wrong if the guard refuses it.
     #[inline(always)]
-    pub fn count_certified(&mut self, is_accepted: bool, place: impl FnOnce() -> String) {
+    pub fn count_certified(&mut self, is_accepted: bool, describe_place: impl FnOnce() -> String) {
         self.certified += 1;
         if !is_accepted {
             self.wrong += 1;
-            self.example
-                .get_or_insert_with(|| format!("{}: in a cell, but the guard refuses it", place()));
+            self.example.get_or_insert_with(|| {
+                format!("{}: in a cell, but the guard refuses it", describe_place())
+            });
         }
     }
 

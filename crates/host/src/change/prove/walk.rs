@@ -43,13 +43,13 @@ impl<'a> Walk<'a> {
 
     /// Checks the pairs of one piece, by its index, below [`PIECES`].
     pub fn piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
-        let (part, cut) = (index / CUTS, index % CUTS);
+        let (part_index, cut) = (index / CUTS, index % CUTS);
         let positions_of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
-        if let Some(end) = End::ALL.get(part) {
+        if let Some(end) = End::ALL.get(part_index) {
             let walk = EndComparison::new(self.robot, self.guard, &self.maps, *end);
             walk.walk(positions_of(end.servos()), self.share, cut, progress)
         } else {
-            let side = Side::ALL[part - End::ALL.len()];
+            let side = Side::ALL[part_index - End::ALL.len()];
             let walk = SideComparison::new(self.robot, self.guard, &self.maps, side);
             walk.walk(positions_of(side.servos()), self.share, cut, progress)
         }
@@ -69,14 +69,14 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
     for end in End::ALL {
         findings.push(Finding {
             part: end.name().to_string(),
-            servos: names(end.servos()),
+            servos: servo_names(end.servos()),
             tally: next_part_tally(),
         });
     }
     for side in Side::ALL {
         findings.push(Finding {
             part: format!("{side} side"),
-            servos: names(side.servos()),
+            servos: servo_names(side.servos()),
             tally: next_part_tally(),
         });
     }
@@ -101,17 +101,17 @@ pub fn widest_band(robot: &Robot) -> f64 {
 
 /// The number of rows to check: one for each position of the first servo of each end and side.
 pub fn rows(guard: &CoreRobot) -> u64 {
-    let positions = |servo: usize| {
+    let count_positions = |servo: usize| {
         let calibration = guard.calibration()[servo];
         (i32::from(calibration.max.0) - i32::from(calibration.min.0) + 1) as u64
     };
-    let first = End::ALL
+    let first_servos = End::ALL
         .map(|end| end.servos()[0])
         .into_iter()
         .chain(Side::ALL.map(|side| side.servos()[0]));
-    first.map(positions).sum()
+    first_servos.map(count_positions).sum()
 }
 
-fn names(servos: [usize; 2]) -> Vec<&'static str> {
+fn servo_names(servos: [usize; 2]) -> Vec<&'static str> {
     servos.map(|servo| servo::NAMES[servo]).to_vec()
 }

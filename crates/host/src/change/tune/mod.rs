@@ -104,10 +104,10 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
         &args.name,
         args.seed,
     )
-    .map_err(|no| {
-        Failure::Input(match no {
-            TuningError::Goal(_) => no.to_string(),
-            TuningError::Rate { .. } => format!("--rate {no}"),
+    .map_err(|error| {
+        Failure::Input(match error {
+            TuningError::Goal(_) => error.to_string(),
+            TuningError::Rate { .. } => format!("--rate {error}"),
         })
     })?;
     let best = search_all(&tuning, args)?;
@@ -128,14 +128,16 @@ fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, 
 
 /// Refuses a name that robot.toml already has or that is invalid.
 fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
-    let refused = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
+    let refuse = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
     if robot.gait(name).is_some() {
-        return refused("robot.toml already has a gait of this name".to_owned());
+        return refuse("robot.toml already has a gait of this name".to_owned());
     }
     let gait = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
     match robot.with_gait(&gait) {
-        Err(error) => refused(error.problem),
-        Ok(read) if read.gait(name).is_none() => refused("it is not a valid name".to_owned()),
+        Err(error) => refuse(error.problem),
+        Ok(new_robot) if new_robot.gait(name).is_none() => {
+            refuse("it is not a valid name".to_owned())
+        }
         Ok(_) => Ok(()),
     }
 }
@@ -144,17 +146,20 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
 /// searched independently, so it can be a piece of its own; the trials of a round are distributed over all cores.
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
-    let kinds = args.spread.own(Kind::ALL.len());
-    let bar = progress_bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
+    let kind_count = args.spread.own(Kind::ALL.len());
+    let bar = progress_bar(
+        kind_count * trials(rounds),
+        "{bar:40} {pos}/{len} gaits, {eta}",
+    );
     let search_one = |index: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = Kind::ALL[index];
         let mut search = tuning.search(kind);
         for _ in 0..=rounds {
-            let judged = search.trials().par_iter().map(|parameters| {
+            let trial_scores = search.trials().par_iter().map(|parameters| {
                 bar.inc(1);
                 tuning.score(kind, parameters)
             });
-            let scores: Vec<_> = judged.collect();
+            let scores: Vec<_> = trial_scores.collect();
             search.score(scores);
         }
         search.found()
@@ -210,9 +215,9 @@ mod tests {
     #[test]
     fn a_short_search_surpasses_walk_at_the_same_rate_as_the_docs_say() {
         let report = run_tune("--rounds 1").expect("it finds one");
-        let (walk, found) = (&report.gait, &report.tuned);
-        assert!(found.rate <= walk.rate, "{found:?}");
-        assert!(found.speeds[0] > 1.15 * walk.speeds[0], "{report:?}");
+        let (walk, tuned) = (&report.gait, &report.tuned);
+        assert!(tuned.rate <= walk.rate, "{tuned:?}");
+        assert!(tuned.speeds[0] > 1.15 * walk.speeds[0], "{report:?}");
         assert!(report.faster >= 195, "{report:?}");
         // The printed text may be appended to a robot.toml, and its gait walks as predicted.
         let mut printed = Vec::new();
@@ -222,7 +227,7 @@ mod tests {
         let gait = robot.gait("tuned").expect("the gait");
         let forward = robot.predict(gait).forward.expect("decided");
         assert!(
-            (forward / gait.period() - found.predicted).abs() < 0.01,
+            (forward / gait.period() - tuned.predicted).abs() < 0.01,
             "{forward}"
         );
         assert!(
@@ -233,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_gait_that_cannot_be_tuned_is_refused_with_the_reason() {
-        for (words, reason) in [
+        for (arguments, reason) in [
             (
                 "--gait run",
                 "no gait `run` to surpass; --gait takes one of walk, trot, crawl",
@@ -258,8 +263,8 @@ mod tests {
             ("--rounds 0", "0 is not in 1..=10000"),
             ("--robots 3", "3 is not in 20..=100000"),
         ] {
-            let message = run_tune(words).expect_err(words);
-            assert!(message.contains(reason), "{words}: {message}");
+            let message = run_tune(arguments).expect_err(arguments);
+            assert!(message.contains(reason), "{arguments}: {message}");
         }
     }
 }

@@ -95,10 +95,10 @@ pub fn send_calibration<P: Read + Write>(
     link: &mut Link<P>,
 ) -> Result<(), SendError> {
     let calibration_before = calibration::ask(link).map_err(SendError::Refused)?;
-    let given = calibration::apply(calibration, link)
+    let result = calibration::apply(calibration, link)
         .and_then(|()| calibration::ask(link))
-        .map(|now| now.is_same(calibration));
-    let error = match given {
+        .map(|active| active.is_same(calibration));
+    let error = match result {
         Ok(true) => match link.command("save") {
             Ok(_) => return Ok(()),
             Err(error) => SendError::Refused(error),

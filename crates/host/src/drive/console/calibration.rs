@@ -50,13 +50,13 @@ mod tests {
     use super::*;
 
     /// The calibration that the simulated robot starts with.
-    fn factory() -> Calibration {
+    fn factory_settings() -> Calibration {
         ask(&mut connect_paper_robot()).expect("it answers")
     }
 
     #[test]
     fn the_settings_of_a_new_robot_are_those_of_robot_toml() {
-        let calibration = factory();
+        let calibration = factory_settings();
         assert_eq!(calibration.boot, "stand");
         assert_eq!(calibration.deadman, 0);
         for (servo, neutral) in calibration
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn settings_that_were_sent_are_read_back() {
         let mut link = connect_paper_robot();
-        let mut calibration = factory();
+        let mut calibration = factory_settings();
         calibration.servos[1].trim = -3.25;
         calibration.servos[2].dir = '-';
         calibration.servos[3].scale = 10.57;
@@ -83,17 +83,17 @@ mod tests {
         apply(&calibration, &mut link).expect("it takes them");
         let read_back = ask(&mut link).expect("it answers");
         assert!(calibration.is_same(&read_back), "{read_back:?}");
-        assert!(!calibration.is_same(&factory()));
+        assert!(!calibration.is_same(&factory_settings()));
     }
 
     #[test]
     fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
         // With a travel of 400 us to each side, a large trim and a large scale exclude each other.
-        let narrow = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
-        let narrow = narrow.replace("max_us = 2400.0", "max_us = 1900.0");
-        let mut link = connect_robot(&narrow);
-        let first = ask(&mut link).expect("it answers");
-        let [mut scaled, mut trimmed] = [first.clone(), first];
+        let narrow_robot = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
+        let narrow_robot = narrow_robot.replace("max_us = 2400.0", "max_us = 1900.0");
+        let mut link = connect_robot(&narrow_robot);
+        let initial = ask(&mut link).expect("it answers");
+        let [mut scaled, mut trimmed] = [initial.clone(), initial];
         scaled.servos[0].scale = 16.0;
         trimmed.servos[0].trim = 15.0;
         for calibration in [&trimmed, &scaled, &trimmed] {
@@ -106,13 +106,13 @@ mod tests {
     #[test]
     fn settings_that_do_not_suit_the_gaits_are_refused_with_the_robots_reason() {
         let mut link = connect_paper_robot();
-        let mut calibration = factory();
+        let mut calibration = factory_settings();
         calibration.servos[1].limit = [40.0, 43.0];
         let error = apply(&calibration, &mut link).expect_err("too narrow");
-        let words = error.to_string();
+        let message = error.to_string();
         assert!(
-            words.contains("`limit 2 40.00 43.00`: 3 A2 would"),
-            "{words}"
+            message.contains("`limit 2 40.00 43.00`: 3 A2 would"),
+            "{message}"
         );
     }
 }

@@ -54,7 +54,7 @@ impl Connect {
     pub fn finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
             let robot = RobotFile::from_path(self.robot);
-            return simulated(self.elf.as_deref(), &robot, command);
+            return simulate_board(self.elf.as_deref(), &robot, command);
         }
         Ok(BoardFinder {
             port: self.port,
@@ -66,7 +66,7 @@ impl Connect {
 }
 
 #[cfg(all(feature = "simulator", target_os = "linux"))]
-fn simulated(
+fn simulate_board(
     elf: Option<&std::path::Path>,
     file: &RobotFile,
     command: &'static str,
@@ -91,7 +91,7 @@ fn simulated(
 }
 
 #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-fn simulated(
+fn simulate_board(
     _: Option<&std::path::Path>,
     _: &RobotFile,
     _: &'static str,
@@ -137,10 +137,10 @@ impl BoardFinder {
     /// True if the board is simulated, so that it ends with this program.
     pub fn is_simulated(&self) -> bool {
         #[cfg(all(feature = "simulator", target_os = "linux"))]
-        let simulated = self.simulated.is_some();
+        let is_simulated = self.simulated.is_some();
         #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-        let simulated = false;
-        simulated
+        let is_simulated = false;
+        is_simulated
     }
 
     #[cfg(all(feature = "simulator", target_os = "linux"))]

@@ -53,7 +53,7 @@ impl ConsoleDouble {
 }
 
 impl Read for ConsoleDouble {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.out.is_empty() {
             self.running.frame();
             self.collect();
@@ -62,7 +62,7 @@ impl Read for ConsoleDouble {
             std::thread::sleep(Duration::from_micros(200));
             return Err(ErrorKind::TimedOut.into());
         }
-        self.out.read(into)
+        self.out.read(buffer)
     }
 }
 

@@ -49,13 +49,13 @@ pub fn usb_ports() -> Vec<UsbPort> {
     let mut ports: Vec<UsbPort> = serialport::available_ports()
         .unwrap_or_default()
         .into_iter()
-        .filter_map(usb)
+        .filter_map(usb_port_of)
         .collect();
     ports.sort_by(|a, b| a.name.cmp(&b.name));
     ports
 }
 
-fn usb(port: SerialPortInfo) -> Option<UsbPort> {
+fn usb_port_of(port: SerialPortInfo) -> Option<UsbPort> {
     let SerialPortType::UsbPort(usb) = port.port_type else {
         return None;
     };
@@ -83,13 +83,13 @@ impl UsbPort {
 /// # Errors
 /// Fails if there is no port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
-    let known = ports
+    let uno_ports = ports
         .iter()
         .filter(|port| UNO_VENDOR_IDS.contains(&port.vendor));
-    let known: Vec<&UsbPort> = known.collect();
-    match (known.as_slice(), ports) {
-        ([one], _) => Ok((*one).clone()),
-        ([], [one]) => Ok(one.clone()),
+    let uno_ports: Vec<&UsbPort> = uno_ports.collect();
+    match (uno_ports.as_slice(), ports) {
+        ([port], _) => Ok((*port).clone()),
+        ([], [port]) => Ok(port.clone()),
         ([], []) => Err(FindError::None { command }),
         ([], several) => Err(FindError::Several {
             command,
@@ -162,8 +162,10 @@ mod tests {
 
     #[test]
     fn none_and_several_are_reported_with_the_remedy() {
-        let none = choose_from(&[]).expect_err("there is none");
-        assert!(none.contains("carries data") && none.contains("lizard console /dev/ttyACM0"));
+        let message = choose_from(&[]).expect_err("there is none");
+        assert!(
+            message.contains("carries data") && message.contains("lizard console /dev/ttyACM0")
+        );
         assert_eq!(
             choose_from(&[
                 ("ttyACM0", 0x2341),

@@ -7,8 +7,10 @@ use crate::shared::files;
 /// The path `$XDG_STATE_HOME/lizard/history`, by default in ~/.local/state.
 fn path() -> Option<PathBuf> {
     let folder = std::env::var_os("XDG_STATE_HOME").map(PathBuf::from);
-    let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".local/state"));
-    let folder = folder.filter(|folder| folder.is_absolute()).or_else(home)?;
+    let default_folder = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".local/state"));
+    let folder = folder
+        .filter(|folder| folder.is_absolute())
+        .or_else(default_folder)?;
     Some(folder.join("lizard/history"))
 }
 

@@ -87,8 +87,8 @@ impl Robot {
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connect.finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;
-    let answer = Board::ask(board.name.clone(), banner.as_deref(), &mut board.link);
-    let answers = answer.map_err(|error| board.failure(&error))?;
+    let result = Board::ask(board.name.clone(), banner.as_deref(), &mut board.link);
+    let answers = result.map_err(|error| board.failure(&error))?;
     json::print_json_or(args.json, &answers, || answers.text())
 }
 
@@ -119,18 +119,18 @@ impl Board {
 
     fn text(&self) -> String {
         let mut text = String::new();
-        let mut row = |name: &str, words: String| {
-            _ = writeln!(text, "{name:<12}{words}");
+        let mut write_row = |name: &str, value: String| {
+            _ = writeln!(text, "{name:<12}{value}");
         };
-        row("port", self.port.clone());
-        row(
+        write_row("port", self.port.clone());
+        write_row(
             "firmware",
             match &self.firmware {
                 Some(version) => format!("lizard {version}"),
                 None => "not said: the board was not reset".to_owned(),
             },
         );
-        row(
+        write_row(
             "robot",
             match (&self.robot, &self.firmware) {
                 (Some(robot), _) => format!("{} {}", robot.name, robot.hash),
@@ -138,24 +138,24 @@ impl Board {
                 (None, None) => "not said: the board was not reset".to_owned(),
             },
         );
-        row("gait", self.gait.clone());
-        row(
+        write_row("gait", self.gait.clone());
+        write_row(
             "fault",
             self.fault.clone().unwrap_or_else(|| "none".to_owned()),
         );
         if let Some(volts) = self.vcc {
-            row("supply", format!("{volts:.2} V"));
+            write_row("supply", format!("{volts:.2} V"));
         }
         if let Some(volts) = self.rail {
-            row("servos", format!("{volts:.2} V"));
+            write_row("servos", format!("{volts:.2} V"));
         }
         if let Some(calibration) = &self.calibration {
-            row("boot", calibration.boot.clone());
-            row("deadman", format!("{} ms", calibration.deadman));
+            write_row("boot", calibration.boot.clone());
+            write_row("deadman", format!("{} ms", calibration.deadman));
             for (name, servo) in &calibration.servo {
                 let [from, to] = servo.limit;
                 let sign = servo.dir;
-                row(
+                write_row(
                     name,
                     format!(
                         "trim {:.2} deg, limits {from:.2} to {to:.2} deg, direction {sign}, \
@@ -173,16 +173,16 @@ impl Board {
 /// asked again, for a second.
 fn wait_for_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
-        let status = status(link)?;
+        let status = ask_status(link)?;
         if status.vcc.is_some() || status.pose.is_none() {
             return Ok(status);
         }
         link.pause(Duration::from_millis(100))?;
     }
-    status(link)
+    ask_status(link)
 }
 
-fn status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
+fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     let answer = link.command("status")?.answer;
     Status::parse(&answer).ok_or_else(|| LinkError::Unclear {
         line: "status".to_owned(),

@@ -54,10 +54,10 @@ pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
     }
-    dialogue(&args.connect.finder("console")?, args.record)
+    run_dialogue(&args.connect.finder("console")?, args.record)
 }
 
-fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {
+fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {
     let (board, banner) = finder.open_and_greet()?;
     let mut clock = Clock::start();
     let mut dialogue = Dialogue {
@@ -77,16 +77,16 @@ fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> 
         recorder.write(Instant::now(), event)?;
         dialogue.recorder = Some(recorder);
     }
-    let resets = banner.is_some();
-    let first = banner.unwrap_or_else(|| "(the board was not reset and continues)".to_owned());
+    let is_reset = banner.is_some();
+    let first_line = banner.unwrap_or_else(|| "(the board was not reset and continues)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        match dialogue.with_terminal(finder, board, &first) {
+        match dialogue.run_terminal(finder, board, &first_line) {
             // The user has closed the terminal.
             Err(Failure::Io(_)) if !terminal::is_open() => Ok(()),
-            ended => ended,
+            result => result,
         }
     } else {
-        dialogue.with_script(board, &first, resets)
+        dialogue.run_script(board, &first_line, is_reset)
     }
 }
 
@@ -122,11 +122,11 @@ impl Dialogue {
                 show(&line)?;
             }
         }
-        let overdue = self.session.end_overdue_question(self.clock.now());
+        let overdue_message = self.session.end_overdue_question(self.clock.now());
         for event in self.session.take_events() {
             self.record(event)?;
         }
-        if let Some(message) = overdue {
+        if let Some(message) = overdue_message {
             show(&message)?;
         }
         Ok(())
@@ -141,37 +141,37 @@ impl Dialogue {
 
     /// Sends the lines of standard input. A port whose opening does not reset the board may be a radio link: then
     /// `deadman` is set as for a person, and stays set while the robot walks.
-    fn with_script(
+    fn run_script(
         mut self,
         mut board: Connection,
-        first: &str,
-        opening_resets: bool,
+        first_line: &str,
+        is_reset_by_opening: bool,
     ) -> Result<(), Failure> {
         let mut out = io::stdout();
-        writeln!(out, "{first}")?;
-        if opening_resets {
+        writeln!(out, "{first_line}")?;
+        if is_reset_by_opening {
             // A script needs only the answers, unless it is recorded.
             let is_recorded = self.recorder.is_some();
             self.session = Session::new(self.clock.now(), is_recorded, is_recorded);
         }
         let lines = lines_of_stdin();
-        let mut ended = false;
-        let mut asks_last = !opening_resets;
-        while !(ended && self.session.is_idle()) || asks_last {
-            if ended && self.session.is_idle() {
-                asks_last = false;
+        let mut has_ended = false;
+        let mut is_last_question_due = !is_reset_by_opening;
+        while !(has_ended && self.session.is_idle()) || is_last_question_due {
+            if has_ended && self.session.is_idle() {
+                is_last_question_due = false;
                 self.session.request_status(self.clock.now());
             }
-            while !ended {
+            while !has_ended {
                 match lines.try_recv() {
                     Ok(line) if line.trim().is_empty() => {}
                     Ok(line) => self.session.queue(line.trim()),
                     Err(TryRecvError::Empty) => break,
-                    Err(TryRecvError::Disconnected) => ended = true,
+                    Err(TryRecvError::Disconnected) => has_ended = true,
                 }
             }
             let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
-            outcome.map_err(|error| failure(error, &board))?;
+            outcome.map_err(|error| failure_of(error, &board))?;
         }
         if self.session.is_driven() {
             writeln!(
@@ -185,35 +185,35 @@ impl Dialogue {
         self.session.check_all_accepted()
     }
 
-    fn with_terminal(
+    fn run_terminal(
         mut self,
         finder: &BoardFinder,
         board: Connection,
-        first: &str,
+        first_line: &str,
     ) -> Result<(), Failure> {
         let mut screen = Screen::new()?;
         let mut prompt = Prompt::new(history::load());
-        screen.print(first)?;
+        screen.print(first_line)?;
         screen.print("(help lists the commands; Ctrl-D leaves)")?;
         let mut board = Some(board);
-        let mut failed = None;
+        let mut fatal_failure = None;
         while !self.handle_keys(&mut screen, &mut prompt)? {
-            let Some(present) = &mut board else {
+            let Some(connection) = &mut board else {
                 screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
                 board = self.reopen(finder, &mut screen)?;
                 continue;
             };
-            match self.exchange_lines(present, |line| screen.print(line)) {
+            match self.exchange_lines(connection, |line| screen.print(line)) {
                 Ok(()) => {}
                 Err(DialogueError::Link(LinkError::Gone)) => {
-                    let words = format!("{}: {}", present.name, LinkError::Gone);
-                    screen.print(&words)?;
+                    let message = format!("{}: {}", connection.name, LinkError::Gone);
+                    screen.print(&message)?;
                     self.record(Event::Gone)?;
                     board = None;
                     continue;
                 }
                 Err(error) => {
-                    failed = Some(failure(error, present));
+                    fatal_failure = Some(failure_of(error, connection));
                     break;
                 }
             }
@@ -242,7 +242,7 @@ impl Dialogue {
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
         }
-        failed.map_or(Ok(()), Err)
+        fatal_failure.map_or(Ok(()), Err)
     }
 
     /// Handles the pressed keys; returns true if the user quits.
@@ -293,8 +293,8 @@ impl Dialogue {
             Ok(banner) => {
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is back: {banner}", board.name))?;
-                let watches = self.recorder.is_some();
-                self.session = Session::new(self.clock.now(), true, watches).with_person();
+                let is_recorded = self.recorder.is_some();
+                self.session = Session::new(self.clock.now(), true, is_recorded).with_person();
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),
@@ -304,7 +304,7 @@ impl Dialogue {
 }
 
 /// Converts an error of the dialogue into the message for the user.
-fn failure(error: DialogueError, board: &Connection) -> Failure {
+fn failure_of(error: DialogueError, board: &Connection) -> Failure {
     match error {
         DialogueError::Link(error) => board.failure(&error),
         DialogueError::Io(error) => error.into(),
@@ -314,16 +314,16 @@ fn failure(error: DialogueError, board: &Connection) -> Failure {
 
 /// Reads the lines of standard input as they arrive; the channel closes at the end of the input.
 fn lines_of_stdin() -> Receiver<String> {
-    let (send, receive) = mpsc::channel();
+    let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
         for line in io::stdin().lock().lines() {
             let Ok(line) = line else {
                 break;
             };
-            if send.send(line).is_err() {
+            if sender.send(line).is_err() {
                 break;
             }
         }
     });
-    receive
+    receiver
 }

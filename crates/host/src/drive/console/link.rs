@@ -124,25 +124,25 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if nothing answers, or something other than a lizard.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
-        let mut end = Deadline::after(self.timeouts.banner);
-        let mut first = None;
-        while let Some(line) = self.line_before(&mut end)? {
+        let mut deadline = Deadline::after(self.timeouts.banner);
+        let mut first_line = None;
+        while let Some(line) = self.line_before(&mut deadline)? {
             if line.starts_with(BANNER) {
                 return Ok(Some(line));
             }
-            first = first.or(Some(line));
+            first_line = first_line.or(Some(line));
         }
         for _ in 0..MAX_QUESTIONS {
-            let mut end = Deadline::after(self.timeouts.answer / 4);
+            let mut deadline = Deadline::after(self.timeouts.answer / 4);
             self.send("status")?;
-            while let Some(line) = self.line_before(&mut end)? {
+            while let Some(line) = self.line_before(&mut deadline)? {
                 if line.starts_with(STATUS) {
                     return Ok(None);
                 }
-                first = first.or(Some(line));
+                first_line = first_line.or(Some(line));
             }
         }
-        Err(first.map_or(LinkError::Mute, LinkError::Stranger))
+        Err(first_line.map_or(LinkError::Mute, LinkError::Stranger))
     }
 
     /// Sends a line without waiting for its answer.
@@ -163,9 +163,9 @@ impl<P: Read + Write> Link<P> {
     /// Fails if there is no answer, or the port is gone.
     pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
         self.send(line)?;
-        let mut end = Deadline::after(self.timeouts.answer);
+        let mut deadline = Deadline::after(self.timeouts.answer);
         let mut notes = Vec::new();
-        while let Some(answer) = self.line_before(&mut end)? {
+        while let Some(answer) = self.line_before(&mut deadline)? {
             if !answer.starts_with('#') {
                 return Ok(Reply { notes, answer });
             }
@@ -205,18 +205,18 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if the port is gone.
     pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
-        let mut end = Deadline::after(time);
-        while self.line_before(&mut end)?.is_some() {}
+        let mut deadline = Deadline::after(time);
+        while self.line_before(&mut deadline)?.is_some() {}
         Ok(())
     }
 
-    fn line_before(&mut self, end: &mut Deadline) -> Result<Option<String>, LinkError> {
+    fn line_before(&mut self, deadline: &mut Deadline) -> Result<Option<String>, LinkError> {
         loop {
             if let Some(line) = self.lines.pop_front() {
                 return Ok(Some(line));
             }
             self.receive()?;
-            if end.has_passed() && self.lines.is_empty() {
+            if deadline.has_passed() && self.lines.is_empty() {
                 return Ok(None);
             }
         }
@@ -254,8 +254,9 @@ impl<P: Read + Write> Link<P> {
         let text = &text[text.find(BANNER).unwrap_or(0)..];
         if !text.is_empty() {
             // A terminal executes control characters, so they are replaced: noise must not reach it.
-            let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-            self.lines.push_back(text.chars().map(clean).collect());
+            let replace_control = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+            self.lines
+                .push_back(text.chars().map(replace_control).collect());
         }
     }
 }
@@ -303,16 +304,16 @@ mod tests {
                 is_gone: false,
                 sent: String::new(),
             };
-            script.next();
-            let ms = Duration::from_millis(20);
+            script.release_piece();
+            let limit = Duration::from_millis(20);
             let timeouts = Timeouts {
-                banner: ms,
-                answer: ms,
+                banner: limit,
+                answer: limit,
             };
             Link::new(script, timeouts)
         }
 
-        fn next(&mut self) {
+        fn release_piece(&mut self) {
             match self.pieces.pop_front() {
                 Some(Some(piece)) => self.ready.extend(piece.bytes()),
                 Some(None) => self.is_gone = true,
@@ -322,7 +323,7 @@ mod tests {
     }
 
     impl Read for Script {
-        fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             if self.ready.is_empty() {
                 if self.is_gone {
                     return Err(io::Error::from_raw_os_error(5));
@@ -330,15 +331,15 @@ mod tests {
                 return Err(ErrorKind::TimedOut.into());
             }
             // Small pieces, as from a serial port.
-            let count = into.len().min(3);
-            self.ready.read(&mut into[..count])
+            let count = buffer.len().min(3);
+            self.ready.read(&mut buffer[..count])
         }
     }
 
     impl Write for Script {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             self.sent.push_str(&String::from_utf8_lossy(bytes));
-            self.next();
+            self.release_piece();
             Ok(bytes.len())
         }
 
@@ -382,16 +383,16 @@ mod tests {
 
     #[test]
     fn another_device_is_named_by_what_it_says_and_a_silent_one_is_called_silent() {
-        let words = |pieces: &[Option<&'static str>]| {
+        let message_of = |pieces: &[Option<&'static str>]| {
             let error = Script::link(pieces).greet().expect_err("no lizard");
             error.to_string()
         };
-        let words_of_printer = words(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        let printer_message = message_of(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
         assert!(
-            words_of_printer.starts_with("this is not a lizard: it says `start`"),
-            "{words_of_printer}"
+            printer_message.starts_with("this is not a lizard: it says `start`"),
+            "{printer_message}"
         );
-        assert!(words(&[]).starts_with("nothing answers"));
+        assert!(message_of(&[]).starts_with("nothing answers"));
     }
 
     #[test]

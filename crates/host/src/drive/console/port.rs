@@ -69,20 +69,20 @@ impl From<PortError> for crate::Failure {
 /// Fails if the port is missing, busy, forbidden or not a serial port.
 pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
-        return Err(missing_port(name));
+        return Err(missing_port_error(name));
     }
-    let busy = |holder: String| PortError::Busy {
+    let busy_error = |holder: String| PortError::Busy {
         name: name.to_owned(),
         who: holder,
     };
-    if let Some(holder) = lasting_holder(name) {
-        return Err(busy(holder));
+    if let Some(holder) = find_lasting_holder(name) {
+        return Err(busy_error(holder));
     }
-    let opened = serialport::new(name, BAUD).timeout(READ_TIMEOUT).open();
-    opened.map_err(|error| match error.kind() {
+    let result = serialport::new(name, BAUD).timeout(READ_TIMEOUT).open();
+    result.map_err(|error| match error.kind() {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
-        ErrorKind::Io(io::ErrorKind::NotFound) => missing_port(name),
-        ErrorKind::NoDevice => busy("another program".to_owned()),
+        ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
+        ErrorKind::NoDevice => busy_error("another program".to_owned()),
         _ if cfg!(unix) && is_no_terminal(name) => PortError::NoPort(name.to_owned()),
         _ => PortError::Other {
             name: name.to_owned(),
@@ -104,7 +104,7 @@ pub(in crate::drive) fn may_open(_: &str) -> bool {
     true
 }
 
-fn missing_port(name: &str) -> PortError {
+fn missing_port_error(name: &str) -> PortError {
     let ports = find::usb_ports();
     let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
     PortError::Missing {
@@ -119,7 +119,7 @@ fn missing_port(name: &str) -> PortError {
 
 /// The program that holds the port open. Waits up to [`CLOSING_TIME`] for a program that is about to close it, such
 /// as a console that is quitting or a simulated board that clears its line.
-fn lasting_holder(name: &str) -> Option<String> {
+fn find_lasting_holder(name: &str) -> Option<String> {
     let start = Instant::now();
     loop {
         let holder = holder(name)?;
@@ -142,7 +142,7 @@ pub(in crate::drive) fn holder(name: &str) -> Option<String> {
             return None;
         }
         let mut files = std::fs::read_dir(process.path().join("fd")).ok()?.flatten();
-        files.find(|file| std::fs::read_link(file.path()).is_ok_and(|open| open == port))?;
+        files.find(|file| std::fs::read_link(file.path()).is_ok_and(|target| target == port))?;
         let program = std::fs::read_to_string(process.path().join("comm")).ok()?;
         Some(format!("{} (process {id})", program.trim()))
     })
@@ -160,21 +160,21 @@ mod tests {
 
     use super::*;
 
-    fn refusal(name: &str) -> PortError {
+    fn refusal_of(name: &str) -> PortError {
         open(name).expect_err("it does not open")
     }
 
     #[test]
     fn a_missing_port_and_a_file_that_is_not_a_port_have_different_errors() {
-        let words = refusal("/dev/no-such-port").to_string();
-        assert!(words.starts_with("there is no /dev/no-such-port; USB serial ports"));
+        let message = refusal_of("/dev/no-such-port").to_string();
+        assert!(message.starts_with("there is no /dev/no-such-port; USB serial ports"));
         let file = tempfile::NamedTempFile::new().expect("a file");
         let name = file.path().display().to_string();
         assert_eq!(
-            refusal(&name).to_string(),
+            refusal_of(&name).to_string(),
             format!("{name} is not a serial port")
         );
-        assert_eq!(crate::Failure::from(refusal(&name)).exit_code(), 2);
+        assert_eq!(crate::Failure::from(refusal_of(&name)).exit_code(), 2);
     }
 
     #[cfg(target_os = "linux")]
@@ -182,14 +182,14 @@ mod tests {
     fn a_program_that_is_about_to_close_the_port_is_waited_for() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         let name = file.path().display().to_string();
-        let mut other = std::process::Command::new("sleep")
+        let mut process = std::process::Command::new("sleep")
             .arg("0.1")
             .stdin(file.reopen().expect("it opens"))
             .spawn()
             .expect("it starts");
-        let words = refusal(&name).to_string();
-        LIMIT.end_of(&mut other).expect("it ends");
-        assert_eq!(words, format!("{name} is not a serial port"));
+        let message = refusal_of(&name).to_string();
+        LIMIT.end_of(&mut process).expect("it ends");
+        assert_eq!(message, format!("{name} is not a serial port"));
     }
 
     #[cfg(target_os = "linux")]
@@ -197,17 +197,17 @@ mod tests {
     fn a_port_that_another_program_has_open_is_refused_with_its_name() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         let name = file.path().display().to_string();
-        let mut other = std::process::Command::new("sleep")
+        let mut process = std::process::Command::new("sleep")
             .arg("60")
             .stdin(file.reopen().expect("it opens"))
             .spawn()
             .expect("it starts");
-        let words = refusal(&name).to_string();
-        other.kill().expect("it ends");
-        LIMIT.end_of(&mut other).expect("it ends");
-        let id = other.id();
+        let message = refusal_of(&name).to_string();
+        process.kill().expect("it ends");
+        LIMIT.end_of(&mut process).expect("it ends");
+        let id = process.id();
         assert_eq!(
-            words,
+            message,
             format!("{name} is open in sleep (process {id}); close that program, then try again")
         );
     }

@@ -46,23 +46,25 @@ impl Prompt {
         if key.kind == KeyEventKind::Release {
             return PromptEvent::Edited;
         }
-        let control = key.modifiers.contains(KeyModifiers::CONTROL);
+        let is_control = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
-            KeyCode::Char('c') if control => return PromptEvent::Leave,
-            KeyCode::Char('d') if control => {
+            KeyCode::Char('c') if is_control => return PromptEvent::Leave,
+            KeyCode::Char('d') if is_control => {
                 if self.text().is_empty() {
                     return PromptEvent::Leave;
                 }
                 self.input.handle(tui_input::InputRequest::DeleteNextChar);
             }
-            KeyCode::Char('z') if control => return PromptEvent::Suspend,
+            KeyCode::Char('z') if is_control => return PromptEvent::Suspend,
             KeyCode::Up => self.go_to_entry(self.shown_index.saturating_sub(1)),
-            KeyCode::Char('p') if control => self.go_to_entry(self.shown_index.saturating_sub(1)),
+            KeyCode::Char('p') if is_control => {
+                self.go_to_entry(self.shown_index.saturating_sub(1))
+            }
             KeyCode::Down => self.go_to_entry(self.shown_index + 1),
-            KeyCode::Char('n') if control => self.go_to_entry(self.shown_index + 1),
+            KeyCode::Char('n') if is_control => self.go_to_entry(self.shown_index + 1),
             KeyCode::Esc => return PromptEvent::Line("stop".to_owned()),
             KeyCode::Enter => return self.enter(),
-            KeyCode::Char('j' | 'm') if control => return self.enter(),
+            KeyCode::Char('j' | 'm') if is_control => return self.enter(),
             _ => {
                 self.input.handle_event(&Event::Key(key));
             }
@@ -73,13 +75,14 @@ impl Prompt {
     /// Handles pasted text; each line end acts like Enter.
     pub fn paste(&mut self, text: &str) -> Vec<PromptEvent> {
         let mut outcomes = Vec::new();
-        for c in text.chars() {
-            match c {
+        for character in text.chars() {
+            match character {
                 '\r' => {}
                 '\n' => outcomes.push(self.enter()),
-                c if c.is_control() => {}
-                c => {
-                    self.input.handle(tui_input::InputRequest::InsertChar(c));
+                character if character.is_control() => {}
+                character => {
+                    self.input
+                        .handle(tui_input::InputRequest::InsertChar(character));
                 }
             }
         }
@@ -102,17 +105,17 @@ impl Prompt {
         }
     }
 
-    fn go_to_entry(&mut self, to: usize) {
+    fn go_to_entry(&mut self, index: usize) {
         let end = self.history.len();
-        let to = to.min(end);
-        if to == self.shown_index {
+        let index = index.min(end);
+        if index == self.shown_index {
             return;
         }
         if self.shown_index == end {
             self.draft = self.text().to_owned();
         }
-        self.shown_index = to;
-        let line = self.history.get(to).unwrap_or(&self.draft);
+        self.shown_index = index;
+        let line = self.history.get(index).unwrap_or(&self.draft);
         self.input = Input::new(line.clone());
     }
 
@@ -142,8 +145,11 @@ mod tests {
         prompt.press_key(KeyEvent::new(code, KeyModifiers::NONE))
     }
 
-    fn control(prompt: &mut Prompt, c: char) -> PromptEvent {
-        prompt.press_key(KeyEvent::new(KeyCode::Char(c), KeyModifiers::CONTROL))
+    fn press_control(prompt: &mut Prompt, character: char) -> PromptEvent {
+        prompt.press_key(KeyEvent::new(
+            KeyCode::Char(character),
+            KeyModifiers::CONTROL,
+        ))
     }
 
     fn type_text(prompt: &mut Prompt, text: &str) -> PromptEvent {
@@ -176,7 +182,7 @@ mod tests {
         type_text(&mut prompt, "walk");
         type_text(&mut prompt, "walk");
         press(&mut prompt, KeyCode::Char('s'));
-        let mut seen = Vec::new();
+        let mut shown_lines = Vec::new();
         for code in [
             KeyCode::Up,
             KeyCode::Up,
@@ -186,9 +192,9 @@ mod tests {
             KeyCode::Down,
         ] {
             press(&mut prompt, code);
-            seen.push(prompt.text().to_owned());
+            shown_lines.push(prompt.text().to_owned());
         }
-        assert_eq!(seen, ["walk", "stand", "stand", "walk", "s", "s"]);
+        assert_eq!(shown_lines, ["walk", "stand", "stand", "walk", "s", "s"]);
         assert_eq!(prompt.history(), ["stand", "walk"], "a repeated line once");
     }
 
@@ -196,20 +202,24 @@ mod tests {
     fn escape_stops_the_robot_and_leaves_what_is_typed() {
         let mut prompt = Prompt::default();
         prompt.paste("wal");
-        let stop = PromptEvent::Line("stop".to_owned());
-        assert_eq!(press(&mut prompt, KeyCode::Esc), stop);
+        let expected = PromptEvent::Line("stop".to_owned());
+        assert_eq!(press(&mut prompt, KeyCode::Esc), expected);
         assert_eq!(prompt.text(), "wal");
     }
 
     #[test]
     fn control_c_control_d_on_an_empty_line_and_quit_leave() {
         let mut prompt = Prompt::default();
-        assert_eq!(control(&mut prompt, 'c'), PromptEvent::Leave);
-        assert_eq!(control(&mut prompt, 'd'), PromptEvent::Leave);
+        assert_eq!(press_control(&mut prompt, 'c'), PromptEvent::Leave);
+        assert_eq!(press_control(&mut prompt, 'd'), PromptEvent::Leave);
         assert_eq!(type_text(&mut prompt, "quit"), PromptEvent::Leave);
         press(&mut prompt, KeyCode::Char('x'));
         press(&mut prompt, KeyCode::Home);
-        assert_eq!(control(&mut prompt, 'd'), PromptEvent::Edited, "it deletes");
+        assert_eq!(
+            press_control(&mut prompt, 'd'),
+            PromptEvent::Edited,
+            "it deletes"
+        );
         assert_eq!(prompt.text(), "");
         assert_eq!(press(&mut prompt, KeyCode::Enter), PromptEvent::Edited);
     }

@@ -120,7 +120,7 @@ impl<W: Write> Recorder<W> {
 impl Event {
     /// The event of a line that begins with `#`: a pose, or a note.
     pub fn from_note(line: &str) -> Self {
-        match pose(line) {
+        match parse_pose(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },
             None => Self::Note(line.to_owned()),
         }
@@ -150,7 +150,7 @@ impl Event {
 }
 
 /// Parses a line `# t=<frame> pose=<angles>`; `None` for any other line.
-fn pose(line: &str) -> Option<(u64, [f64; 4])> {
+fn parse_pose(line: &str) -> Option<(u64, [f64; 4])> {
     let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
     Some((frame.parse().ok()?, parse_angles(pose)?))
 }
@@ -192,7 +192,7 @@ mod tests {
              {\"ms\":60,\"note\":\"# fault: x\"}\n\
              {\"ms\":80,\"gone\":null}\n"
         );
-        let read: Vec<Event> = text
+        let read_events: Vec<Event> = text
             .lines()
             .map(|line| {
                 serde_json::from_str::<Entry>(line)
@@ -200,23 +200,23 @@ mod tests {
                     .event
             })
             .collect();
-        assert_eq!(read, events);
+        assert_eq!(read_events, events);
     }
 
     #[test]
     fn a_file_that_is_there_is_not_overwritten() {
         let file = tempfile::NamedTempFile::new().expect("a file");
-        let words = create(file.path()).expect_err("it is there").to_string();
-        assert!(words.ends_with("already exists; name a new file for the session"));
+        let message = create(file.path()).expect_err("it is there").to_string();
+        assert!(message.ends_with("already exists; name a new file for the session"));
     }
 
     #[test]
     fn a_full_disk_is_reported_with_the_name_of_the_file() {
-        let full: &mut [u8] = &mut [0; 10];
-        let mut recorder = Recorder::new("a.jsonl".to_owned(), full, Instant::now());
+        let small_buffer: &mut [u8] = &mut [0; 10];
+        let mut recorder = Recorder::new("a.jsonl".to_owned(), small_buffer, Instant::now());
         let event = Event::Sent("walk".to_owned());
-        let words = recorder.write(Instant::now(), event).expect_err("no room");
-        let words = words.to_string();
-        assert!(words.starts_with("cannot write a.jsonl: "), "{words}");
+        let message = recorder.write(Instant::now(), event).expect_err("no room");
+        let message = message.to_string();
+        assert!(message.starts_with("cannot write a.jsonl: "), "{message}");
     }
 }

@@ -76,12 +76,12 @@ impl Screen {
         let status: String = status.chars().take(room).collect();
         let sign = &PROMPT_SIGN[..PROMPT_SIGN.len().min(room)];
         let (text, cursor) = prompt.view(room - sign.len());
-        let next = (status, text, cursor, width);
-        if self.drawn.is_some() && self.last.as_ref() == Some(&next) {
+        let drawing = (status, text, cursor, width);
+        if self.drawn.is_some() && self.last.as_ref() == Some(&drawing) {
             return Ok(());
         }
         self.erase()?;
-        let (status, text, cursor, _) = &next;
+        let (status, text, cursor, _) = &drawing;
         queue!(
             self.out,
             SetAttribute(Attribute::Reverse),
@@ -93,7 +93,7 @@ impl Screen {
             cursor::MoveToColumn((sign.len() + cursor) as u16),
         )?;
         self.drawn = Some([room, sign.len() + cursor]);
-        self.last = Some(next);
+        self.last = Some(drawing);
         self.out.flush()
     }
 
@@ -101,8 +101,8 @@ impl Screen {
     fn erase(&mut self) -> io::Result<()> {
         if let Some(columns) = self.drawn.take() {
             let (width, _) = terminal::size()?;
-            let up = rows_above(columns, width.into());
-            queue!(self.out, cursor::MoveToPreviousLine(up as u16))?;
+            let row_count = rows_above(columns, width.into());
+            queue!(self.out, cursor::MoveToPreviousLine(row_count as u16))?;
         }
         queue!(
             self.out,

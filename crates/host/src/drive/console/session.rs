@@ -214,12 +214,12 @@ impl Session {
         } else if let Some((question, line)) = self.next_queued() {
             (question, line)
         } else if self.polls_status && now >= self.next_poll {
-            let lines = if self.is_driven() {
+            let interval = if self.is_driven() {
                 deadman::LINE_INTERVAL
             } else {
                 STATUS_INTERVAL
             };
-            self.next_poll = now + lines;
+            self.next_poll = now + interval;
             (Question::Status, "status".to_owned())
         } else {
             return None;
@@ -253,22 +253,22 @@ impl Session {
         for queued in std::mem::take(&mut self.queue) {
             if let Queued::Line(line) = queued {
                 self.sent += 1;
-                self.fail(line, "not sent");
+                self.record_failure(line, "not sent");
             }
         }
         if let Some(deadman) = &mut self.deadman {
             deadman.is_set = false;
         }
-        let words = "(not sent: the robot has not confirmed that it stops when it hears nothing)";
-        Some(words.to_owned())
+        let message = "(not sent: the robot has not confirmed that it stops when it hears nothing)";
+        Some(message.to_owned())
     }
 
     /// Restores the robot's own `deadman` once it does not walk and is not about to.
     fn end_drive(&mut self) {
-        let walks = self.status.as_ref().is_some_and(Status::is_moving);
+        let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
         if let Some(deadman) = &self.deadman
             && deadman.is_set
-            && !walks
+            && !is_walking
             && self.queue.is_empty()
         {
             self.queue
@@ -279,8 +279,8 @@ impl Session {
     /// Handles a line from the robot; returns the text to show to the user, if any.
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let visible = Some(line.to_owned());
-        let stands = self.unanswered_stop.is_some() && is_stop_refusal(line);
-        if (line == "ok stop" || stands) && !self.asks_to_stop() {
+        let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
+        if (line == "ok stop" || is_stop_refused) && !self.asks_to_stop() {
             return self.take_stop_answer(line).then_some(visible).flatten();
         }
         if let (Some((Question::Deadman(_), _)), Some(deadman)) =
@@ -318,10 +318,12 @@ impl Session {
                 return None;
             }
             Some((Question::Watch, _)) => return None,
-            Some((Question::Line(sent), _)) if line.starts_with("err ") => self.fail(sent, line),
-            Some((Question::Line(sent), _)) => {
+            Some((Question::Line(sent_line), _)) if line.starts_with("err ") => {
+                self.record_failure(sent_line, line)
+            }
+            Some((Question::Line(sent_line), _)) => {
                 if let Some(deadman) = &mut self.deadman {
-                    deadman.note_accepted_line(&sent);
+                    deadman.note_accepted_line(&sent_line);
                 }
             }
             _ => {}
@@ -344,8 +346,8 @@ impl Session {
             self.echoes_until = halt.since;
         }
         // Answers come in order, so the answer to the line before `stop` has been lost.
-        if let Some((Question::Line(sent), _)) = self.pending_question.take() {
-            self.fail(sent, "no answer");
+        if let Some((Question::Line(sent_line), _)) = self.pending_question.take() {
+            self.record_failure(sent_line, "no answer");
         }
         self.events.push(Event::Answer(line.to_owned()));
         true
@@ -353,21 +355,22 @@ impl Session {
 
     /// Ends an overdue question; returns the message to the user, if any.
     pub fn end_overdue_question(&mut self, now: Instant) -> Option<String> {
-        let since = |start: Instant| now.saturating_duration_since(start);
+        let elapsed_since = |start: Instant| now.saturating_duration_since(start);
         if let Some(halt) = &mut self.unanswered_stop
             && !halt.is_reported
-            && since(halt.since) >= SILENCE_TIMEOUT
+            && elapsed_since(halt.since) >= SILENCE_TIMEOUT
         {
             halt.is_reported = true;
             return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
         }
-        let is_late =
-            |(question, start): &mut (Question, Instant)| since(*start) >= question.timeout();
+        let is_late = |(question, start): &mut (Question, Instant)| {
+            elapsed_since(*start) >= question.timeout()
+        };
         let (question, _) = self.pending_question.take_if(is_late)?;
         Some(match question {
             Question::Line(line) => {
                 let message = format!("(no answer to `{line}`)");
-                self.fail(line, "no answer");
+                self.record_failure(line, "no answer");
                 message
             }
             Question::Deadman(_) => return self.drop_unconfirmed(),
@@ -379,7 +382,7 @@ impl Session {
         })
     }
 
-    fn fail(&mut self, line: String, reason: &str) {
+    fn record_failure(&mut self, line: String, reason: &str) {
         self.failed += 1;
         self.first_failed.get_or_insert((line, reason.to_owned()));
     }

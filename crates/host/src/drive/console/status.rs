@@ -33,33 +33,35 @@ impl Status {
     /// not know are skipped.
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
-        let value = |key: &str| {
+        let value_of = |key: &str| {
             let pairs = pairs.split(' ').filter_map(|pair| pair.split_once('='));
             pairs
                 .into_iter()
                 .find(|(name, _)| *name == key)
                 .map(|(_, value)| value)
         };
-        let volts = |key: &str| value(key)?.parse().ok();
-        let pose = value("pose").and_then(parse_angles);
-        let margin = volts("margin");
+        let number_of = |key: &str| value_of(key)?.parse().ok();
+        let pose = value_of("pose").and_then(parse_angles);
+        let margin = number_of("margin");
         let is_whole = pose.is_some() && margin.is_some();
-        if !is_whole && value("fault") != Some(NO_ROBOT) {
+        if !is_whole && value_of("fault") != Some(NO_ROBOT) {
             return None;
         }
         Some(Self {
-            gait: value("gait")?.to_owned(),
+            gait: value_of("gait")?.to_owned(),
             pose,
-            frames: value("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
+            frames: value_of("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
             margin,
-            is_held: value("guard") == Some("held"),
-            fault: value("fault")
+            is_held: value_of("guard") == Some("held"),
+            fault: value_of("fault")
                 .filter(|name| *name != "none")
                 .map(str::to_owned),
-            vcc: volts("vcc"),
-            rail: volts("rail"),
-            late: value("late").and_then(|n| n.parse().ok()).unwrap_or(0),
-            rx_lost: value("rx_lost").and_then(|n| n.parse().ok()).unwrap_or(0),
+            vcc: number_of("vcc"),
+            rail: number_of("rail"),
+            late: value_of("late").and_then(|n| n.parse().ok()).unwrap_or(0),
+            rx_lost: value_of("rx_lost")
+                .and_then(|n| n.parse().ok())
+                .unwrap_or(0),
         })
     }
 
@@ -88,9 +90,9 @@ impl Status {
             (None, true) => line += "  HELD by the guard",
             (None, false) => line += "  no fault",
         }
-        for (count, what) in [(self.late, "late"), (self.rx_lost, "bytes lost")] {
+        for (count, name) in [(self.late, "late"), (self.rx_lost, "bytes lost")] {
             if count > 0 {
-                line += &format!("  {count} {what}");
+                line += &format!("  {count} {name}");
             }
         }
         line
@@ -107,13 +109,13 @@ pub fn parse_angles(text: &str) -> Option<[f64; 4]> {
 mod tests {
     use super::*;
 
-    const WALKS: &str = "ok gait=arc-left phase=0.350 pose=138.59,41.41,318.60,221.40 \
+    const WALKING_STATUS: &str = "ok gait=arc-left phase=0.350 pose=138.59,41.41,318.60,221.40 \
         margin=0.812 speed=100 frames=1234 late=0 rx_lost=2 guard=clear fault=none \
         reset=external resets=3 vcc=5.02 rail=5.91";
 
     #[test]
     fn a_status_is_read_and_shortened() {
-        let status = Status::parse(WALKS).expect("it is a status");
+        let status = Status::parse(WALKING_STATUS).expect("it is a status");
         assert!(status.is_moving());
         assert_eq!(
             status.status_line(),
@@ -124,11 +126,15 @@ mod tests {
 
     #[test]
     fn a_fault_and_the_guard_stand_out() {
-        let fault = WALKS.replace("fault=none", "fault=supply");
-        let line = Status::parse(&fault).expect("it is a status").status_line();
+        let fault_status = WALKING_STATUS.replace("fault=none", "fault=supply");
+        let line = Status::parse(&fault_status)
+            .expect("it is a status")
+            .status_line();
         assert!(line.contains("FAULT supply"), "{line}");
-        let held = WALKS.replace("clear", "held");
-        let line = Status::parse(&held).expect("it is a status").status_line();
+        let held_status = WALKING_STATUS.replace("clear", "held");
+        let line = Status::parse(&held_status)
+            .expect("it is a status")
+            .status_line();
         assert!(line.contains("HELD by the guard"), "{line}");
     }
 

@@ -65,9 +65,9 @@ mod tests {
             assert!(start == code, "{}", path.display());
             assert!(gap.iter().all(|byte| *byte == BLANK));
             assert!(section == robot.section(), "{}", path.display());
-            let alone = robot_alone(&robot).expect("it fits");
-            assert!(alone.bytes() == section);
-            assert_eq!(alone.end(), image.end());
+            let alone_image = robot_alone(&robot).expect("it fits");
+            assert!(alone_image.bytes() == section);
+            assert_eq!(alone_image.end(), image.end());
             count += 1;
         }
         assert!(count >= 4, "{count} robots");
@@ -77,12 +77,12 @@ mod tests {
     fn the_error_names_a_file_that_is_not_an_image() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(file.path(), "[servo]\n").expect("it is written");
-        let words = read_hex_image(file.path())
+        let message = read_hex_image(file.path())
             .expect_err("it is not an image")
             .to_string();
         let name = file.path().display();
         assert_eq!(
-            words,
+            message,
             format!("{name}: line 1 is not Intel HEX: missing start code ':'")
         );
     }

@@ -92,7 +92,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
     let failure_of_port = |message: String| Failure::Impossible(format!("{name}: {message}"));
-    let (board, done) = write(board, &image, target, args.json)
+    let (board, counts) = write(board, &image, target, args.json)
         .map_err(|error| failure_of_port(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         failure_of_port(format!(
@@ -102,8 +102,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let (firmware, robot) = info::parse_banner(&banner);
     let flashed = Flashed {
         port,
-        bytes_written: done.written * PAGE_BYTES,
-        bytes_kept: done.kept * PAGE_BYTES,
+        bytes_written: counts.written * PAGE_BYTES,
+        bytes_kept: counts.kept * PAGE_BYTES,
         firmware,
         robot,
     };
@@ -137,10 +137,10 @@ fn write(
     board: SerialBoard,
     image: &Image,
     target: Target,
-    json: bool,
+    is_json: bool,
 ) -> Result<(SerialBoard, PageCounts), Failure> {
     // A closed standard output does not stop the upload.
-    let println = |line: &str| match json {
+    let print_line = |line: &str| match is_json {
         true => eprintln!("{line}"),
         false => _ = writeln!(io::stdout(), "{line}"),
     };
@@ -148,38 +148,38 @@ fn write(
     let mut loader = Loader::new(board, Timeouts::default());
     let start = Instant::now();
     let mut report = |event: Event<'_>| match event {
-        Event::Found(found) => bar.suspend(|| println(&found.to_string())),
+        Event::Found(found_board) => bar.suspend(|| print_line(&found_board.to_string())),
         Event::Retry {
             trouble,
             called,
             next,
         } => bar.suspend(|| match (called.baud(), next.baud()) {
-            (before, now) if before != now => {
-                eprintln!("lizard: no answer at {before} baud; calling again at {now} baud");
+            (old_baud, new_baud) if old_baud != new_baud => {
+                eprintln!("lizard: no answer at {old_baud} baud; calling again at {new_baud} baud");
             }
             _ => eprintln!("lizard: {trouble}; the board is reset for another attempt"),
         }),
-        Event::Progress(step, done, of) => {
+        Event::Progress(step, done_count, total) => {
             bar.set_message(match step {
                 Step::Reading => "reading  ",
                 Step::Writing => "writing  ",
                 Step::Verifying => "verifying",
             });
-            bar.set_length(of as u64);
-            bar.set_position(done as u64);
+            bar.set_length(total as u64);
+            bar.set_position(done_count as u64);
         }
     };
-    let done = block_on(upload(&mut loader, image, target, &mut report));
+    let counts = block_on(upload(&mut loader, image, target, &mut report));
     bar.finish_and_clear();
-    let done = done.map_err(failure)?;
-    println(&summary(done, start.elapsed()));
+    let counts = counts.map_err(failure_of)?;
+    print_line(&summary(counts, start.elapsed()));
     let mut board = loader.into_board();
     board.set_baud(BAUD)?;
-    Ok((board, done))
+    Ok((board, counts))
 }
 
 /// The failure of an upload, with the option that helps.
-fn failure(error: UploadError) -> Failure {
+fn failure_of(error: UploadError) -> Failure {
     let remedy = match &error {
         UploadError::NoLizard(_) | UploadError::Format { .. } => {
             ". Without --only-robot both are written"
@@ -193,8 +193,8 @@ fn failure(error: UploadError) -> Failure {
 }
 
 /// A message about a finished upload.
-fn summary(done: PageCounts, time: Duration) -> String {
-    let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE_BYTES);
+fn summary(counts: PageCounts, time: Duration) -> String {
+    let [written, kept] = [counts.written, counts.kept].map(|pages| pages * PAGE_BYTES);
     let seconds = time.as_secs_f64();
     match written {
         0 => format!("nothing to write: all {kept} bytes are right; {seconds:.1} s"),
@@ -217,16 +217,16 @@ mod tests {
 
     #[test]
     fn the_summary_counts_bytes() {
-        let words = |written, kept| {
+        let summary_of = |written, kept| {
             let time = Duration::from_millis(1240);
             summary(PageCounts { written, kept }, time)
         };
         assert_eq!(
-            words(2, 210),
+            summary_of(2, 210),
             "256 bytes written and verified, 26880 were right already; 1.2 s"
         );
         assert_eq!(
-            words(0, 212),
+            summary_of(0, 212),
             "nothing to write: all 27136 bytes are right; 1.2 s"
         );
     }
@@ -247,11 +247,11 @@ mod tests {
 
     #[test]
     fn no_board_or_several_are_refused_with_the_remedy() {
-        let words = |ports: &[UsbPort]| {
+        let message_of = |ports: &[UsbPort]| {
             let error = choose(ports).expect_err("there is not one");
             error.to_string()
         };
-        assert!(words(&[]).ends_with("lizard flash /dev/ttyACM0"));
+        assert!(message_of(&[]).ends_with("lizard flash /dev/ttyACM0"));
         let port = |name: &str| UsbPort {
             name: name.to_owned(),
             vendor: 0x2341,
@@ -259,7 +259,7 @@ mod tests {
             product: None,
         };
         assert_eq!(
-            words(&[port("COM3"), port("COM4")]),
+            message_of(&[port("COM3"), port("COM4")]),
             "several boards found: COM3, COM4. Say which one: lizard flash COM3"
         );
     }

@@ -64,23 +64,23 @@ impl SerialBoard {
     fn open_again(&mut self) -> io::Result<()> {
         self.port = None;
         sleep(RESET_TIME);
-        let opened = port::open(&self.name).map_err(|error| match error {
+        let result = port::open(&self.name).map_err(|error| match error {
             PortError::Missing { .. } => ErrorKind::NotFound.into(),
             error => io::Error::other(error.to_string()),
         });
-        self.port = Some(opened?);
+        self.port = Some(result?);
         Ok(())
     }
 }
 
 impl SerialBoard {
     fn reset_at(&mut self, baud: u32) -> io::Result<()> {
-        let fresh = std::mem::take(&mut self.is_fresh);
+        let was_fresh = std::mem::take(&mut self.is_fresh);
         match self.toggle_reset() {
             Ok(()) => {}
             // The pseudo terminal of a simulated board has no reset lines, but opening it resets that board. A port
             // that has vanished fails here as well, and again when the speed is set.
-            Err(_) if fresh => {}
+            Err(_) if was_fresh => {}
             Err(_) => self.open_again()?,
         }
         self.set_baud(baud)
@@ -93,7 +93,7 @@ impl SerialBoard {
             Ok(count) => Ok(count),
             Err(error) => match error.kind() {
                 ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(0),
-                _ => Err(board_error(error)),
+                _ => Err(to_board_error(error)),
             },
         }
     }
@@ -102,40 +102,40 @@ impl SerialBoard {
 /// Reads block, so that the futures are ready when they are first polled.
 impl Board for SerialBoard {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
-        self.reset_at(baud).map_err(board_error)
+        self.reset_at(baud).map_err(to_board_error)
     }
 
     async fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
-        self.write_all(bytes).map_err(board_error)
+        self.write_all(bytes).map_err(to_board_error)
     }
 
     async fn read(&mut self, bytes: &mut [u8], time: Duration) -> Result<usize, BoardError> {
-        let mut end = Deadline::after(time);
-        let mut filled = 0;
-        while filled < bytes.len() {
-            let count = self.read_available(&mut bytes[filled..])?;
-            filled += count;
+        let mut deadline = Deadline::after(time);
+        let mut filled_count = 0;
+        while filled_count < bytes.len() {
+            let count = self.read_available(&mut bytes[filled_count..])?;
+            filled_count += count;
             // Bytes that have arrived while this program was suspended are read.
-            if count == 0 && end.has_passed() {
+            if count == 0 && deadline.has_passed() {
                 break;
             }
         }
-        Ok(filled)
+        Ok(filled_count)
     }
 
     async fn discard(&mut self, time: Duration) -> Result<(), BoardError> {
-        let mut end = Deadline::after(time);
+        let mut deadline = Deadline::after(time);
         let mut bytes = [0; 256];
         loop {
             self.read_available(&mut bytes)?;
-            if end.has_passed() {
+            if deadline.has_passed() {
                 return Ok(());
             }
         }
     }
 }
 
-fn board_error(error: io::Error) -> BoardError {
+fn to_board_error(error: io::Error) -> BoardError {
     match error.kind() {
         ErrorKind::TimedOut => BoardError::Busy,
         _ if is_gone(&error) => BoardError::Gone,

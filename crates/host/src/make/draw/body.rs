@@ -9,45 +9,45 @@ use svg::node::element::{Circle, Group, Line};
 
 use crate::shared::ink::{DARK, SERVO, circle, edged, fixed, line, rectangle};
 
-const FRAME: &str = "#f4f1ea";
-const EDGE: &str = "#b8b0a0";
-const LEAF: &str = "#8a8a8a";
-const STRUT: &str = "#6b6b6b";
+const PLATE_COLOUR: &str = "#f4f1ea";
+const EDGE_COLOUR: &str = "#b8b0a0";
+const LEAF_COLOUR: &str = "#8a8a8a";
+const STRUT_COLOUR: &str = "#6b6b6b";
 /// Radius of a foot, mm.
-const FOOT: f64 = 6.5;
+const FOOT_RADIUS: f64 = 6.5;
 /// Width of the plate's edge, mm.
-const RIM: f64 = 0.6;
+const RIM_WIDTH: f64 = 0.6;
 
 /// A page onto which the robot is drawn.
-pub struct Sheet<At> {
+pub struct Sheet<Projection> {
     /// The projection from mm in the chassis frame to the page.
-    pub project: At,
+    pub project: Projection,
     /// The length of 1 mm on the page.
     pub scale: f64,
     /// The robot's turn on the page, deg counter-clockwise.
     pub turn: f64,
 }
 
-impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
-    /// A bar between two points, `mm` millimetres wide.
-    pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
+impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
+    /// A bar between two points.
+    pub fn bar(&self, from: Vector, to: Vector, colour: &str, width_mm: f64) -> Line {
         line(
             (self.project)(from),
             (self.project)(to),
             colour,
-            mm * self.scale,
+            width_mm * self.scale,
         )
     }
 
-    /// A joint: a white disc with a radius of `mm` millimetres.
-    pub fn joint(&self, point: Vector, mm: f64) -> Circle {
-        self.disc(point, mm, "white")
+    /// A joint: a white disc.
+    pub fn joint(&self, point: Vector, radius_mm: f64) -> Circle {
+        self.disc(point, radius_mm, "white")
     }
 
-    /// A disc with an edge and a radius of `mm` millimetres.
-    pub fn disc(&self, point: Vector, mm: f64, fill: &str) -> Circle {
+    /// A disc with an edge.
+    pub fn disc(&self, point: Vector, radius_mm: f64, fill: &str) -> Circle {
         edged(
-            circle((self.project)(point), mm * self.scale, fill),
+            circle((self.project)(point), radius_mm * self.scale, fill),
             DARK,
             0.6 * self.scale,
         )
@@ -56,9 +56,13 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     /// A rectangle that turns with the robot, given by its centre, half its size and the radius of its corners, mm.
     fn rectangle(&self, middle: Vector, half: Vector, corner: f64, fill: &str) -> Group {
         let (x, y) = (self.project)(middle);
-        let [wide, long] = [half.x, half.y].map(|half| half * self.scale);
-        let shape = rectangle((x - wide, y - long), (2.0 * wide, 2.0 * long), fill)
-            .set("rx", fixed(corner * self.scale));
+        let [half_width, half_height] = [half.x, half.y].map(|half| half * self.scale);
+        let shape = rectangle(
+            (x - half_width, y - half_height),
+            (2.0 * half_width, 2.0 * half_height),
+            fill,
+        )
+        .set("rx", fixed(corner * self.scale));
         let turn = fixed(-self.turn);
         match turn == 0.0 {
             true => Group::new().add(shape),
@@ -72,11 +76,11 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     /// Adds the parts of the legs beside and below the plate to `group`; `pads` are the colours of the feet.
     pub fn draw_feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
-            let [driven, idle] = leg.joints;
+            let [driven_joint, idle_joint] = leg.joints;
             group = group
-                .add(self.bar(idle, leg.foot, LEAF, 2.2))
-                .add(self.disc(leg.foot, FOOT, pads[i]))
-                .add(self.bar(driven, idle, SERVO[i], 4.2));
+                .add(self.bar(idle_joint, leg.foot, LEAF_COLOUR, 2.2))
+                .add(self.disc(leg.foot, FOOT_RADIUS, pads[i]))
+                .add(self.bar(driven_joint, idle_joint, SERVO[i], 4.2));
         }
         group
     }
@@ -84,12 +88,17 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     /// Adds the plate and the servos in it to `group`.
     pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
         let middle = Vector::default();
-        let grown = |margin: f64| plate.half + Vector::new(margin, margin);
-        for (margin, colour) in [(RIM, EDGE), (0.0, FRAME)] {
+        let half_size_with = |margin: f64| plate.half + Vector::new(margin, margin);
+        for (margin, colour) in [(RIM_WIDTH, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
             for [from, to] in plate.arms.as_flattened() {
                 group = group.add(self.bar(*from, *to, colour, 2.0 * (plate.arm + margin)));
             }
-            group = group.add(self.rectangle(middle, grown(margin), plate.corner + margin, colour));
+            group = group.add(self.rectangle(
+                middle,
+                half_size_with(margin),
+                plate.corner + margin,
+                colour,
+            ));
         }
         for (case, colour) in plate.cases.into_iter().zip(SERVO) {
             let case = self.rectangle(case, plate.case * 0.5, 1.3, colour);
@@ -115,7 +124,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
                     .add(self.joint(joint, 1.7));
             }
             group = group
-                .add(self.bar(link, crank, STRUT, 1.6))
+                .add(self.bar(link, crank, STRUT_COLOUR, 1.6))
                 .add(self.joint(crank, 1.2))
                 .add(self.bar(shafts[i], link, SERVO[i], 3.0));
         }

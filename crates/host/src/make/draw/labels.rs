@@ -10,7 +10,7 @@ use crate::shared::ink::{
 };
 
 /// Distance of the servos' names from the middle of the page, sideways and vertically, pixels.
-const NAMES_AT: f64 = 347.0;
+const NAME_DISTANCE: f64 = 347.0;
 
 impl View<'_> {
     /// Adds names, angles and dimensions.
@@ -18,15 +18,15 @@ impl View<'_> {
         let angles = self.angles();
         for servo in 0..4 {
             let shaft = self.shafts()[servo];
-            let left = matches!(servo, 0 | 3);
-            let side = if left { -1.0 } else { 1.0 };
+            let is_left = matches!(servo, 0 | 3);
+            let side = if is_left { -1.0 } else { 1.0 };
             let sign = shaft.y.signum();
-            let anchor = if left { Anchor::End } else { Anchor::Start };
+            let anchor = if is_left { Anchor::End } else { Anchor::Start };
             let (x, y) = (
-                SIZE.0 / 2.0 + side * NAMES_AT,
-                SIZE.1 / 2.0 - sign * NAMES_AT,
+                SIZE.0 / 2.0 + side * NAME_DISTANCE,
+                SIZE.1 / 2.0 - sign * NAME_DISTANCE,
             );
-            let toward = self.page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
+            let near_shaft = self.page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
             let name = format!(
                 "{} · {}",
                 NAMES[servo],
@@ -36,7 +36,7 @@ impl View<'_> {
             let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
             let start = (x + 6.0 * -side, y - 4.0);
             group = group
-                .add(line(start, toward, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
+                .add(line(start, near_shaft, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
                 .add(
                     text(&name, (x, y - 8.0), 20.0, SERVO[servo], anchor)
                         .set("font-weight", "bold"),
@@ -106,7 +106,7 @@ fn draw_compass(mut group: Group, scale: f64) -> Group {
             let (sin, cos) = sin_cos(degrees + turn);
             (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
         };
-        let at = if degrees == 0.0 {
+        let name_point = if degrees == 0.0 {
             (tip.0 + 10.0, tip.1 + 6.0)
         } else {
             (tip.0 - 10.0, tip.1 - 12.0)
@@ -115,12 +115,17 @@ fn draw_compass(mut group: Group, scale: f64) -> Group {
             .add(line(origin, tip, DARK, 2.0))
             .add(line(tip, barb(155.0), DARK, 2.0))
             .add(line(tip, barb(-155.0), DARK, 2.0))
-            .add(text_start(name, at, 16.0));
+            .add(text_start(name, name_point, 16.0));
     }
     let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
     let start = (end.0 - 50.0 * scale, end.1);
-    for at in [start, end] {
-        group = group.add(line((at.0, at.1 - 7.0), (at.0, at.1 + 7.0), DARK, 2.0));
+    for tick in [start, end] {
+        group = group.add(line(
+            (tick.0, tick.1 - 7.0),
+            (tick.0, tick.1 + 7.0),
+            DARK,
+            2.0,
+        ));
     }
     let middle = ((start.0 + end.0) / 2.0, end.1 - 12.0);
     group

@@ -19,7 +19,7 @@ pub(super) const NAME_BEYOND: f64 = 6.0;
 /// Half the length of the paper robot's plate, for which the skin's coordinates are given, mm.
 const SKIN_LENGTH: f64 = 80.4;
 
-const SKIN: &str = "#e3ecdc";
+const SKIN_COLOUR: &str = "#e3ecdc";
 const STEEL: &str = "#555555";
 
 /// A joint of the robot: mm, chassis frame.
@@ -66,8 +66,8 @@ impl<'a> View<'a> {
         let joints = legs.iter().flat_map(|leg| leg.joints);
         let max_x = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
         let ends = [solution.head_point(), solution.tail_point()];
-        let beyond = SKIN_REACH * view.size_ratio() + NAME_BEYOND;
-        let max_y = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
+        let label_reach = SKIN_REACH * view.size_ratio() + NAME_BEYOND;
+        let max_y = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + label_reach;
         let scales = [(SIZE.0, MARGIN.0, max_x), (SIZE.1, MARGIN.1, max_y)];
         let scales = scales.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
         Self {
@@ -97,12 +97,12 @@ impl<'a> View<'a> {
         }
     }
 
-    fn bar(&self, from: Joint, to: Joint, colour: &str, mm: f64) -> svg::node::element::Line {
-        self.sheet().bar(from, to, colour, mm)
+    fn bar(&self, from: Joint, to: Joint, colour: &str, width_mm: f64) -> svg::node::element::Line {
+        self.sheet().bar(from, to, colour, width_mm)
     }
 
-    fn pivot(&self, point: Joint, mm: f64) -> svg::node::element::Circle {
-        self.sheet().joint(point, mm)
+    fn pivot(&self, point: Joint, radius_mm: f64) -> svg::node::element::Circle {
+        self.sheet().joint(point, radius_mm)
     }
 
     pub(super) fn angles(&self) -> [f64; 4] {
@@ -120,85 +120,84 @@ impl<'a> View<'a> {
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
-        // The skin's coordinates, mm, are those for the paper's robot; they grow with the robot. Head and tail follow
-        // their points, and the flanks (`at`) are fixed to the chassis.
-        let grown = self.size_ratio();
-        let around = |point: Joint, x: f64, y: f64| {
-            let (x, y) = self.page_point(point + Vector::new(x, y) * grown);
+        // The skin's coordinates are those for the paper's robot, in mm; they grow with the robot. The head and the
+        // tail follow their points (`text_near`), and the flanks are fixed to the chassis (`text_on_chassis`).
+        let size_ratio = self.size_ratio();
+        let text_near = |point: Joint, x: f64, y: f64| {
+            let (x, y) = self.page_point(point + Vector::new(x, y) * size_ratio);
             format!("{x:.1} {y:.1}")
         };
-        let at = |x: f64, y: f64| around(Vector::default(), x, y);
+        let text_on_chassis = |x: f64, y: f64| text_near(Vector::default(), x, y);
         let head = self.solution.head_point();
         let tail = self.solution.tail_point();
-        let d = [
-            format!("M {}", around(head, 0.0, 30.0)),
+        let commands = [
+            format!("M {}", text_near(head, 0.0, 30.0)),
             format!(
                 "C {} {} {}",
-                around(head, 18.0, 30.0),
-                around(head, 27.0, 2.0),
-                at(27.0, 84.0)
+                text_near(head, 18.0, 30.0),
+                text_near(head, 27.0, 2.0),
+                text_on_chassis(27.0, 84.0)
             ),
             format!(
                 "C {} {} {}",
-                at(44.0, 50.0),
-                at(44.0, -50.0),
-                at(27.0, -84.0)
+                text_on_chassis(44.0, 50.0),
+                text_on_chassis(44.0, -50.0),
+                text_on_chassis(27.0, -84.0)
             ),
             format!(
                 "C {} {} {}",
-                around(tail, 22.0, 0.0),
-                around(tail, 6.0, -6.0),
-                around(tail, 3.0, -26.0)
+                text_near(tail, 22.0, 0.0),
+                text_near(tail, 6.0, -6.0),
+                text_near(tail, 3.0, -26.0)
             ),
-            format!("L {}", around(tail, -3.0, -26.0)),
+            format!("L {}", text_near(tail, -3.0, -26.0)),
             format!(
                 "C {} {} {}",
-                around(tail, -6.0, -6.0),
-                around(tail, -22.0, 0.0),
-                at(-27.0, -84.0)
+                text_near(tail, -6.0, -6.0),
+                text_near(tail, -22.0, 0.0),
+                text_on_chassis(-27.0, -84.0)
             ),
             format!(
                 "C {} {} {}",
-                at(-44.0, -50.0),
-                at(-44.0, 50.0),
-                at(-27.0, 84.0)
+                text_on_chassis(-44.0, -50.0),
+                text_on_chassis(-44.0, 50.0),
+                text_on_chassis(-27.0, 84.0)
             ),
             format!(
                 "C {} {} {} Z",
-                around(head, -27.0, 2.0),
-                around(head, -18.0, 30.0),
-                around(head, 0.0, 30.0)
+                text_near(head, -27.0, 2.0),
+                text_near(head, -18.0, 30.0),
+                text_near(head, 0.0, 30.0)
             ),
         ];
-        let outline = Path::new().set("d", d.join(" ")).set("fill", SKIN);
-        let eye = |x: f64| {
+        let outline = Path::new()
+            .set("d", commands.join(" "))
+            .set("fill", SKIN_COLOUR);
+        let draw_eye = |x: f64| {
             circle(
-                self.page_point(head + Vector::new(x, 12.0) * grown),
+                self.page_point(head + Vector::new(x, 12.0) * size_ratio),
                 6.5,
                 DARK,
             )
         };
-        group.add(outline).add(eye(-9.0)).add(eye(9.0))
+        group.add(outline).add(draw_eye(-9.0)).add(draw_eye(9.0))
     }
 
     /// Draws the prismatic joint between the arms of a front and a rear servo.
     fn draw_slider(&self, mut group: Group, side: Side) -> Group {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
-        let (low, high) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
+        let (rear_tip, front_tip) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
         let links = self.robot.lizard().links;
-        let tube = match side {
+        let tube_length = match side {
             Side::Left => links.l12,
             Side::Right => links.l17,
         };
-        let along = (high - low) * (1.0 / slider.d);
-        group = group.add(self.bar(low, high, STEEL, 1.8)).add(self.bar(
-            low,
-            low + along * tube,
-            "#9a9a9a",
-            5.0,
-        ));
-        for (servo, tip) in [(front, high), (rear, low)] {
+        let direction = (front_tip - rear_tip) * (1.0 / slider.d);
+        group = group
+            .add(self.bar(rear_tip, front_tip, STEEL, 1.8))
+            .add(self.bar(rear_tip, rear_tip + direction * tube_length, "#9a9a9a", 5.0));
+        for (servo, tip) in [(front, front_tip), (rear, rear_tip)] {
             group = group
                 .add(
                     self.bar(self.shafts()[servo], tip, SERVO[servo], 3.0)
@@ -247,12 +246,12 @@ mod tests {
     use crate::shared::robot_file::named;
     use lizard_kinematics::{Pose, wrap};
 
-    /// Passes the paper's robot at this pose to `verdict`; `None` is the neutral pose.
-    fn check(pose: Option<Pose>, verdict: impl Fn(&View)) {
+    /// Passes the paper's robot at this pose to `check_view`; `None` is the neutral pose.
+    fn with_view(pose: Option<Pose>, check_view: impl Fn(&View)) {
         let robot = named("paper");
         let pose = pose.unwrap_or_else(|| robot.neutral());
         let solution = robot.lizard().solve(&pose).expect("the pose closes");
-        verdict(&View::new(&robot, &solution));
+        check_view(&View::new(&robot, &solution));
     }
 
     /// A pose without symmetry.
@@ -261,7 +260,7 @@ mod tests {
     #[test]
     fn every_drawn_link_has_its_length() {
         for pose in [None, Some(ASKEW.into())] {
-            check(pose, |view| {
+            with_view(pose, |view| {
                 for servo in 0..4 {
                     let tip = view.crank_tip(servo);
                     let crank = tip - view.shafts()[servo];
@@ -280,7 +279,7 @@ mod tests {
 
     #[test]
     fn at_neutral_each_foot_is_straight_beside_its_hip() {
-        check(None, |view| {
+        with_view(None, |view| {
             let feet: Vec<(f64, f64)> = (0..4)
                 .map(|servo| view.foot(servo))
                 .map(|foot| (foot.x.round(), foot.y.round()))
@@ -295,13 +294,13 @@ mod tests {
     #[test]
     fn a_foot_moves_forward_when_its_gait_does() {
         use lizard_robot::servo::FORWARD;
-        check(None, |view| {
+        with_view(None, |view| {
             for servo in 0..4 {
                 let mut angles: [f64; 4] = view.angles();
                 angles[servo] += 10.0 * FORWARD[servo];
-                let before = view.foot(servo);
-                check(Some(angles.into()), |swept| {
-                    assert!(swept.foot(servo).y > before.y + 7.0);
+                let foot_before = view.foot(servo);
+                with_view(Some(angles.into()), |moved_view| {
+                    assert!(moved_view.foot(servo).y > foot_before.y + 7.0);
                 });
             }
         });
@@ -327,7 +326,7 @@ mod tests {
 
     #[test]
     fn names_can_be_left_out() {
-        check(None, |view| {
+        with_view(None, |view| {
             assert!(top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
             assert!(!top_view(view.robot, view.solution, false).contains("<text"));
         });

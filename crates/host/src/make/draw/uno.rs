@@ -47,11 +47,11 @@ impl Uno {
 
     /// Position of a pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
     pub fn pin(&self, number: u8) -> (f64, f64) {
-        let n = f64::from(number);
+        let pin_number = f64::from(number);
         match number {
-            0..=7 => self.page_point(D7 + 7.0 - n, UPPER_ROW),
-            8..=13 => self.page_point(D13 + 13.0 - n, UPPER_ROW),
-            _ => self.page_point(A0 + n - 14.0, LOWER_ROW),
+            0..=7 => self.page_point(D7 + 7.0 - pin_number, UPPER_ROW),
+            8..=13 => self.page_point(D13 + 13.0 - pin_number, UPPER_ROW),
+            _ => self.page_point(A0 + pin_number - 14.0, LOWER_ROW),
         }
     }
 
@@ -65,8 +65,8 @@ impl Uno {
         self.page_point(POWER.0 + 3.0, LOWER_ROW)
     }
 
-    /// Draws the board, with the pins of `used` emphasised.
-    pub fn draw(&self, used: &[u8]) -> Group {
+    /// Draws the board, with the pins of `used_pins` emphasised.
+    pub fn draw(&self, used_pins: &[u8]) -> Group {
         let size = (BOARD.0 * PITCH, BOARD.1 * PITCH);
         let mut group = Group::new().add(edged(
             rectangle(self.corner, size, "#dfeaec").set("rx", 8),
@@ -76,8 +76,8 @@ impl Uno {
         group = self.draw_sockets(group);
         for number in 0..=19 {
             let name = pin_name(number);
-            let is_used = used.contains(&number);
-            let hole = hole(self.pin(number), is_used).set("id", format!("pin-{name}"));
+            let is_used = used_pins.contains(&number);
+            let hole = draw_hole(self.pin(number), is_used).set("id", format!("pin-{name}"));
             group = group
                 .add(hole)
                 .add(self.label(self.pin(number), &name, is_used));
@@ -85,7 +85,7 @@ impl Uno {
         for (index, name) in REFERENCES.1.iter().enumerate() {
             let point = self.page_point(REFERENCES.0 + index as f64, UPPER_ROW);
             let is_used = point == self.ground();
-            let mut hole = hole(point, is_used);
+            let mut hole = draw_hole(point, is_used);
             if is_used {
                 hole = hole.set("id", "pin-GND");
             }
@@ -94,16 +94,16 @@ impl Uno {
         for (index, name) in POWER.1.iter().enumerate() {
             let point = self.page_point(POWER.0 + index as f64, LOWER_ROW);
             group = group
-                .add(hole(point, false))
+                .add(draw_hole(point, false))
                 .add(self.label(point, name, false));
         }
-        let name = self.page_point(9.0, 11.2);
-        group.add(text_start("Arduino UNO", name, 18.0))
+        let name_point = self.page_point(9.0, 11.2);
+        group.add(text_start("Arduino UNO", name_point, 18.0))
     }
 
     /// Sockets, chip and LED.
     fn draw_sockets(&self, group: Group) -> Group {
-        let block = |x: f64, top: f64, size: (f64, f64), fill| {
+        let draw_block = |x: f64, top: f64, size: (f64, f64), fill| {
             edged(
                 rectangle(
                     self.page_point(x, top),
@@ -116,19 +116,19 @@ impl Uno {
         };
         let led = self.page_point(9.4, 13.6);
         group
-            .add(block(-2.5, 17.5, (6.4, 4.7), "#c9c9c9"))
+            .add(draw_block(-2.5, 17.5, (6.4, 4.7), "#c9c9c9"))
             .add(text_middle("USB", self.page_point(0.7, 14.8), 14.0))
-            .add(block(-0.8, 4.8, (5.4, 3.6), "#bdbdbd"))
+            .add(draw_block(-0.8, 4.8, (5.4, 3.6), "#bdbdbd"))
             .add(text_middle("7-12 V", self.page_point(1.9, 2.6), 13.0))
-            .add(block(11.5, 9.2, (13.0, 3.0), "#8f8f8f"))
+            .add(draw_block(11.5, 9.2, (13.0, 3.0), "#8f8f8f"))
             .add(circle(led, 4.5, "#f0e442").set("stroke", DARK))
             .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
     }
 
     /// The name printed beside a pin, rotated to read upwards.
     fn label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
-        let upper = pin.1 < self.corner.1 + BOARD.1 * PITCH / 2.0;
-        let (y, anchor) = if upper {
+        let is_upper = pin.1 < self.corner.1 + BOARD.1 * PITCH / 2.0;
+        let (y, anchor) = if is_upper {
             (pin.1 + 9.0, Anchor::End)
         } else {
             (pin.1 - 9.0, Anchor::Start)
@@ -156,7 +156,7 @@ impl Uno {
 }
 
 /// A hole of a header.
-fn hole(at: (f64, f64), is_used: bool) -> svg::node::element::Circle {
+fn draw_hole(middle: (f64, f64), is_used: bool) -> svg::node::element::Circle {
     let fill = if is_used { DARK } else { PANEL };
-    edged(circle(at, 4.0, fill), DARK, 1.2)
+    edged(circle(middle, 4.0, fill), DARK, 1.2)
 }

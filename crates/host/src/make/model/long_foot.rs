@@ -34,8 +34,8 @@ impl FromStr for LongFoot {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let (leg, mm) = text.split_once('=').ok_or(LongFootError::Form)?;
-        let known = LEGS.iter().position(|name| name.eq_ignore_ascii_case(leg));
-        let leg = known.ok_or_else(|| LongFootError::Leg(leg.to_owned()))?;
+        let index = LEGS.iter().position(|name| name.eq_ignore_ascii_case(leg));
+        let leg = index.ok_or_else(|| LongFootError::Leg(leg.to_owned()))?;
         let number = mm.parse().ok().filter(|mm: &f64| mm.is_finite());
         let mm = number.ok_or_else(|| LongFootError::Number(mm.to_owned()))?;
         match mm.abs() <= MAX_FOOT_ERROR_MM {
@@ -49,15 +49,15 @@ impl FromStr for LongFoot {
 ///
 /// # Errors
 /// Fails if a foot is given twice.
-pub(super) fn length_errors(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
-    let mut long = [None; 4];
-    for LongFoot { leg, mm } in given {
-        if long[*leg].replace(*mm).is_some() {
+pub(super) fn length_errors(long_feet: &[LongFoot]) -> Result<[f64; 4], Failure> {
+    let mut errors = [None; 4];
+    for LongFoot { leg, mm } in long_feet {
+        if errors[*leg].replace(*mm).is_some() {
             let leg = LEGS[*leg];
             return Err(Failure::Input(format!("--long-foot {leg} is given twice")));
         }
     }
-    Ok(long.map(Option::unwrap_or_default))
+    Ok(errors.map(Option::unwrap_or_default))
 }
 
 #[cfg(test)]
@@ -66,36 +66,36 @@ mod tests {
 
     #[test]
     fn a_long_foot_is_a_leg_and_its_mm() {
-        let read = |text: &str| text.parse::<LongFoot>().expect(text);
-        assert_eq!(read("LF=0.6"), LongFoot { leg: 0, mm: 0.6 });
-        assert_eq!(read("rh=-5"), LongFoot { leg: 2, mm: -5.0 });
+        let parse = |text: &str| text.parse::<LongFoot>().expect(text);
+        assert_eq!(parse("LF=0.6"), LongFoot { leg: 0, mm: 0.6 });
+        assert_eq!(parse("rh=-5"), LongFoot { leg: 2, mm: -5.0 });
     }
 
     #[test]
     fn an_invalid_long_foot_is_refused_with_a_message() {
-        let refused = |text: &str| text.parse::<LongFoot>().expect_err(text).to_string();
+        let refusal_of = |text: &str| text.parse::<LongFoot>().expect_err(text).to_string();
         assert_eq!(
-            refused("0.6"),
+            refusal_of("0.6"),
             "write the leg and by how many mm its foot is too long, such as LF=0.6"
         );
         assert_eq!(
-            refused("FL=1"),
+            refusal_of("FL=1"),
             "there is no leg `FL`; the legs are LF, RF, RH and LH"
         );
-        assert_eq!(refused("LF="), "`` is not a number of mm");
-        assert_eq!(refused("LF=nan"), "`nan` is not a number of mm");
+        assert_eq!(refusal_of("LF="), "`` is not a number of mm");
+        assert_eq!(refusal_of("LF=nan"), "`nan` is not a number of mm");
         assert_eq!(
-            refused("LF=6"),
+            refusal_of("LF=6"),
             "a foot may be off by at most 5 mm either way, and 6 mm is more"
         );
     }
 
     #[test]
     fn a_foot_has_one_length() {
-        let foot = |leg, mm| LongFoot { leg, mm };
-        let all = length_errors(&[foot(3, 0.5), foot(1, -1.0)]).expect("two feet");
-        assert_eq!(all, [0.0, -1.0, 0.0, 0.5]);
-        let twice = length_errors(&[foot(0, 0.0), foot(0, 1.0)]).expect_err("one foot");
-        assert_eq!(twice.to_string(), "--long-foot LF is given twice");
+        let long_foot = |leg, mm| LongFoot { leg, mm };
+        let errors = length_errors(&[long_foot(3, 0.5), long_foot(1, -1.0)]).expect("two feet");
+        assert_eq!(errors, [0.0, -1.0, 0.0, 0.5]);
+        let refusal = length_errors(&[long_foot(0, 0.0), long_foot(0, 1.0)]).expect_err("one foot");
+        assert_eq!(refusal.to_string(), "--long-foot LF is given twice");
     }
 }

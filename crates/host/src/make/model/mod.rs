@@ -70,12 +70,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     assembly.check_measures()?;
     let neutral = robot.lizard().solve(&robot.neutral())?;
     let mut scene = Scene::of(&assembly);
-    for (long, more) in scene
+    for (excess, error) in scene
         .excess_lengths
         .iter_mut()
         .zip(long_foot::length_errors(&args.long_foot)?)
     {
-        *long += more;
+        *excess += error;
     }
     scene.course = course(&args, &robot)?;
     let pieces = Pieces::of(&assembly, &scene)?;
@@ -116,7 +116,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Refuses options that the format cannot use.
 fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
-    let wrong = match (format, &args.drive, &args.mesh_address) {
+    let message = match (format, &args.drive, &args.mesh_address) {
         (Format::Mjcf, _, Some(_)) => {
             "--mesh-address is for .urdf and .sdf; MuJoCo's file has the meshes in it"
         }
@@ -125,7 +125,7 @@ fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
         }
         _ => return Ok(()),
     };
-    Err(Failure::Input(wrong.to_owned()))
+    Err(Failure::Input(message.to_owned()))
 }
 
 /// The servo angles for `--drive`; `None` without this option.

@@ -73,20 +73,20 @@ struct Report<'a> {
 }
 
 impl<'a> From<&'a NearestPair> for Pair<'a> {
-    fn from(near: &'a NearestPair) -> Self {
+    fn from(pair: &'a NearestPair) -> Self {
         Self {
-            first: &near.first,
-            second: &near.second,
-            proved: near.proved,
-            seen: near.seen.as_ref().map(|seen| seen.mm),
-            pose: near.seen.as_ref().map(|seen| seen.pose),
-            doubt: near.doubt,
+            first: &pair.first,
+            second: &pair.second,
+            proved: pair.proved,
+            seen: pair.seen.as_ref().map(|seen| seen.mm),
+            pose: pair.seen.as_ref().map(|seen| seen.pose),
+            doubt: pair.doubt,
         }
     }
 }
 
 /// Template of the progress bar, which counts pairs of mounts.
-const PAIRS: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
+const PAIRS_BAR: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
 
 /// Proves how close the parts come to each other, with a progress bar.
 pub(super) fn proof(assembly: &Assembly) -> Proof {
@@ -95,9 +95,11 @@ pub(super) fn proof(assembly: &Assembly) -> Proof {
 
 /// Makes the proof from the given answers, and computes those that are missing.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
-    let bar = progress_bar(questions.count(), PAIRS);
-    let answers = |index: usize| answers.as_ref()?.get(index).cloned();
-    let proof = questions.answer(answers, |done, _| bar.set_position(done as u64));
+    let bar = progress_bar(questions.count(), PAIRS_BAR);
+    let known_answer = |index: usize| answers.as_ref()?.get(index).cloned();
+    let proof = questions.answer(known_answer, |done_count, _| {
+        bar.set_position(done_count as u64)
+    });
     bar.finish_and_clear();
     proof
 }
@@ -113,7 +115,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let questions = Questions::new(&assembly, |_, _| true);
     let count = questions.count();
     if let Some(part) = args.spread.part() {
-        let bar = progress_bar(part.count(count), PAIRS);
+        let bar = progress_bar(part.count(count), PAIRS_BAR);
         let answer_one = |index| {
             bar.inc(1);
             questions.answer_one(index)
@@ -123,12 +125,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(());
     }
     let proof = complete_proof(&questions, args.spread.read(count)?);
-    let judged = proof.judge();
+    let verdict = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {
         let report = Report {
-            fits: judged.is_ok(),
-            reason: judged.as_ref().err().map(ToString::to_string),
+            fits: verdict.is_ok(),
+            reason: verdict.as_ref().err().map(ToString::to_string),
             apart: proof.separate_pairs.iter().map(Pair::from).collect(),
             meeting: proof.touching_pairs.iter().map(Pair::from).collect(),
             ranges: proof.ranges,
@@ -141,7 +143,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         print(&proof, args.all, &mut out)?;
     }
     out.flush()?;
-    judged.map_err(|clash| BuildProblem::from(clash).into())
+    verdict.map_err(|clash| BuildProblem::from(clash).into())
 }
 
 fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
@@ -152,27 +154,27 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
         "proved   seen   parts                                          at A1 A2 A3 A4, deg"
     )?;
     writeln!(out, "    mm     mm")?;
-    let list = |near: &[NearestPair], out: &mut dyn Write| -> io::Result<()> {
-        let near: Vec<_> = near
+    let print_list = |pairs: &[NearestPair], out: &mut dyn Write| -> io::Result<()> {
+        let close_pairs: Vec<_> = pairs
             .iter()
-            .filter(|near| near.proved < FAR_MM * 0.9)
+            .filter(|pair| pair.proved < FAR_MM * 0.9)
             .collect();
-        let pairs = if shows_all {
-            near.len()
+        let row_count = if shows_all {
+            close_pairs.len()
         } else {
-            SHOWN_ROWS.min(near.len())
+            SHOWN_ROWS.min(close_pairs.len())
         };
-        for near in &near[..pairs] {
-            print_row(near, out)?;
+        for pair in &close_pairs[..row_count] {
+            print_row(pair, out)?;
         }
-        match near.len() - pairs {
+        match close_pairs.len() - row_count {
             0 => Ok(()),
-            more => writeln!(out, "... and {more} more (--all)"),
+            hidden_count => writeln!(out, "... and {hidden_count} more (--all)"),
         }
     };
-    list(&proof.separate_pairs, out)?;
+    print_list(&proof.separate_pairs, out)?;
     writeln!(out, "\nmade to meet: air between them")?;
-    list(&proof.touching_pairs, out)?;
+    print_list(&proof.touching_pairs, out)?;
     writeln!(out, "\nthe guard lets the servos turn at most")?;
     for (name, [from, to]) in NAMES.iter().zip(proof.ranges) {
         writeln!(out, "  {name} {from:7.2} to {to:7.2} deg")?;
@@ -182,26 +184,26 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
         "{} pairs of shapes, {} regions of poses",
         proof.pairs, proof.regions
     )?;
-    if let (Ok(()), Some(min)) = (proof.judge(), proof.nearest()) {
+    if let (Ok(()), Some(nearest)) = (proof.judge(), proof.nearest()) {
         writeln!(
             out,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
-            min.proved
+            nearest.proved
         )?;
     }
     Ok(())
 }
 
-fn print_row(near: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
-    let seen = near.seen.as_ref();
-    let parts = format!("{}, {}", near.first, near.second);
+fn print_row(pair: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
+    let seen = pair.seen.as_ref();
+    let parts = format!("{}, {}", pair.first, pair.second);
     write!(
         out,
         "{:6.2} {:>6}   {parts:<44}",
-        near.proved,
+        pair.proved,
         seen.map_or("-".to_owned(), |seen| format!("{:.2}", seen.mm))
     )?;
-    if let Some(pose) = seen.map(|seen| seen.pose).or(near.doubt) {
+    if let Some(pose) = seen.map(|seen| seen.pose).or(pair.doubt) {
         for angle in pose {
             write!(out, " {angle:6.1}")?;
         }

@@ -62,8 +62,8 @@ struct PartEntry {
 }
 
 impl From<BuildProblem> for Failure {
-    fn from(unfit: BuildProblem) -> Self {
-        Self::Impossible(unfit.to_string())
+    fn from(problem: BuildProblem) -> Self {
+        Self::Impossible(problem.to_string())
     }
 }
 
@@ -91,11 +91,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let bar = progress_bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
     let mut files = Vec::new();
-    let mut list = Vec::new();
+    let mut entries = Vec::new();
     for part in &parts {
         bar.set_message(part.name.clone());
         let new_files = part_files(part, kerf)?;
-        list.push(PartEntry {
+        entries.push(PartEntry {
             part: part.name.clone(),
             count: part.count(),
             instead_of: part.instead_of.clone(),
@@ -107,32 +107,32 @@ pub fn run(args: Args) -> Result<(), Failure> {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let mut weight = None;
+    let mut weight_text = None;
     if is_whole_robot {
         let pose = robot.lizard().solve(&robot.neutral())?;
         let bill = Bill::of(&assembly, &assembly.parts(), &pose);
         files.extend(papers(&assembly, &bill, &pose)?);
-        weight = bill
+        weight_text = bill
             .differs(&robot.ground().body)
             .then(|| weight_note(&bill, &robot));
     }
-    write(&args.folder, &files)?;
+    write_files(&args.folder, &files)?;
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &list)?;
+        serde_json::to_writer_pretty(&mut out, &entries)?;
         writeln!(out)?;
     } else {
-        let needed = list.iter().filter(|part| part.instead_of.is_none());
-        let pieces: usize = needed.map(|part| part.count).sum();
+        let needed_entries = entries.iter().filter(|part| part.instead_of.is_none());
+        let pieces: usize = needed_entries.map(|part| part.count).sum();
         writeln!(
             out,
             "{} parts, {pieces} pieces, {} files in {}",
-            list.len(),
+            entries.len(),
             files.len(),
             args.folder.display()
         )?;
-        if let Some(weight) = weight {
-            write!(out, "\n{weight}")?;
+        if let Some(weight_text) = weight_text {
+            write!(out, "\n{weight_text}")?;
         }
     }
     Ok(out.flush()?)
@@ -151,7 +151,7 @@ fn weight_note(bill: &Bill, robot: &Robot) -> String {
 }
 
 /// Writes all files below `folder`.
-fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
+fn write_files(folder: &Path, files: &[File]) -> Result<(), Failure> {
     for file in files {
         let path = folder.join(&file.path);
         files::write(&path, &file.bytes)?;

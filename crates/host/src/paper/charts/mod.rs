@@ -64,7 +64,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
-    let drawn: Vec<ChartFiles> = pictures
+    let chart_files: Vec<ChartFiles> = pictures
         .iter()
         .map(|(name, svg)| {
             let path = args.folder.join(format!("{name}.svg"));
@@ -74,9 +74,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         })
         .collect::<Result<_, Failure>>()?;
     if args.json {
-        json::write_line(&mut io::stdout().lock(), &drawn)?;
+        json::write_line(&mut io::stdout().lock(), &chart_files)?;
     } else {
-        for file in drawn.iter().flat_map(|drawn| &drawn.files) {
+        for file in chart_files.iter().flat_map(|chart| &chart.files) {
             println!("{}", file.display());
         }
     }

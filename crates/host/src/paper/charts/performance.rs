@@ -9,12 +9,15 @@ use crate::shared::ink::{circle, edged, line, page, text_start, title};
 use crate::shared::plot::{Axis, Plot, Scale, VIRIDIS};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
-const PANEL: f64 = 340.0;
+const PANEL_SIZE: f64 = 340.0;
 
 /// Workspace area, inscribed circle and mean conditioning index over r1 and r2.
 pub fn performance(points: &[Point], step: f64) -> String {
-    let key = |p: &Proportions| ((p.r1 / step).round() as i64, (p.r2 / step).round() as i64);
-    let cells: HashMap<_, _> = points.iter().map(|p| (key(&p.proportions), p)).collect();
+    let cell_of = |p: &Proportions| ((p.r1 / step).round() as i64, (p.r2 / step).round() as i64);
+    let cells: HashMap<_, _> = points
+        .iter()
+        .map(|p| (cell_of(&p.proportions), p))
+        .collect();
     let look_up = |x: f64, y: f64| {
         cells
             .get(&((x / step).round() as i64, (y / step).round() as i64))
@@ -45,7 +48,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
     for (i, (name, value, max, digits)) in panels.into_iter().enumerate() {
         let plot = Plot {
             corner: (90.0 + 480.0 * i as f64, 150.0),
-            size: (PANEL, PANEL),
+            size: (PANEL_SIZE, PANEL_SIZE),
             x: (0.0, SUM),
             y: (0.0, SUM),
         };
@@ -56,9 +59,12 @@ pub fn performance(points: &[Point], step: f64) -> String {
         };
         let count = (SUM / step).round() as usize;
         // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
-        let wide = Plot {
+        let map_plot = Plot {
             corner: plot.page_point(-step / 2.0, SUM + step / 2.0),
-            size: (PANEL * (SUM + step) / SUM, PANEL * (SUM + step) / SUM),
+            size: (
+                PANEL_SIZE * (SUM + step) / SUM,
+                PANEL_SIZE * (SUM + step) / SUM,
+            ),
             x: (-step / 2.0, SUM + step / 2.0),
             y: (-step / 2.0, SUM + step / 2.0),
         };
@@ -67,7 +73,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
             Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" }),
         );
         group = plot.draw_grid(group, &axes.0, &axes.1);
-        group = wide.draw_map(group, (count + 1, count + 1), |x, y| {
+        group = map_plot.draw_map(group, (count + 1, count + 1), |x, y| {
             look_up(x, y)
                 .and_then(value)
                 .map(|value| scale.colour(value))
@@ -87,8 +93,8 @@ pub fn performance(points: &[Point], step: f64) -> String {
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
         group = scale.draw_key(
             group,
-            (plot.corner.0 + PANEL + 20.0, 150.0),
-            PANEL,
+            (plot.corner.0 + PANEL_SIZE + 20.0, 150.0),
+            PANEL_SIZE,
             "",
             digits,
         );

@@ -19,26 +19,26 @@ const AXES: [Axis<'static>; 2] = [
     Axis::new(40.0, "y, mm ahead of it"),
 ];
 /// Half the width of the drawn square, mm.
-const REACH: f64 = 160.0;
+const HALF_WIDTH: f64 = 160.0;
 /// Width of a cell of the drawn square, mm.
-const CELL: f64 = 2.0;
+const CELL_WIDTH: f64 = 2.0;
 /// Range of the servo angles that are tried to either side of neutral, deg.
-const RANGE: i32 = 80;
+const MAX_TURN_DEG: i32 = 80;
 /// Colours of the tail's areas: the one that the linkage allows, and the one that the guard accepts.
-const TAIL: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
+const TAIL_COLOURS: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
 /// Colours of the sliders' areas: the one that the linkage allows, and the one that the guard accepts.
-const SLIDERS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
+const SLIDER_COLOURS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
 /// Colour of the arcs of the feet that the guard accepts.
-const LEGS: &str = "#117733";
+const LEG_COLOUR: &str = "#117733";
 
 /// Indices of cells of the drawn square.
 type Cells = HashSet<(i32, i32)>;
 
 /// The cell that contains a point.
-fn cell(point: Vector) -> (i32, i32) {
+fn cell_of(point: Vector) -> (i32, i32) {
     (
-        (point.x / CELL).floor() as i32,
-        (point.y / CELL).floor() as i32,
+        (point.x / CELL_WIDTH).floor() as i32,
+        (point.y / CELL_WIDTH).floor() as i32,
     )
 }
 
@@ -47,22 +47,22 @@ pub fn reach(robot: &Robot) -> String {
     let plot = Plot {
         corner: (90.0, 90.0),
         size: (720.0, 720.0),
-        x: (-REACH, REACH),
-        y: (-REACH, REACH),
+        x: (-HALF_WIDTH, HALF_WIDTH),
+        y: (-HALF_WIDTH, HALF_WIDTH),
     };
-    let tail = accepted_tail(robot);
-    let linkage = linkage_sliders(robot);
-    let sliders = accepted_sliders(robot);
-    let cells = (2.0 * REACH / CELL) as usize;
+    let tail_cells = accepted_tail(robot);
+    let linkage_cells = linkage_sliders(robot);
+    let slider_cells = accepted_sliders(robot);
+    let cell_count = (2.0 * HALF_WIDTH / CELL_WIDTH) as usize;
     let mut group = plot.draw_grid(Group::new(), &AXES[0], &AXES[1]);
-    group = plot.draw_map(group, (cells, cells), |x, y| {
+    group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
         let point = Vector::new(x, y);
-        let key = cell(point);
+        let cell = cell_of(point);
         let colours = [
-            (sliders.contains(&key), SLIDERS[1]),
-            (tail.contains(&key), TAIL[1]),
-            (linkage.contains(&key), SLIDERS[0]),
-            (is_in_tail(robot, point), TAIL[0]),
+            (slider_cells.contains(&cell), SLIDER_COLOURS[1]),
+            (tail_cells.contains(&cell), TAIL_COLOURS[1]),
+            (linkage_cells.contains(&cell), SLIDER_COLOURS[0]),
+            (is_in_tail(robot, point), TAIL_COLOURS[0]),
         ];
         colours
             .into_iter()
@@ -70,14 +70,19 @@ pub fn reach(robot: &Robot) -> String {
             .map(|(_, colour)| colour)
     });
     for servo in 0..4 {
-        let full_circle = foot_places(robot, servo, (-180..=180).map(f64::from), false);
-        let guarded_arc = foot_places(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
+        let full_circle = foot_positions(robot, servo, (-180..=180).map(f64::from), false);
+        let guarded_arc = foot_positions(
+            robot,
+            servo,
+            (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from),
+            true,
+        );
         group = group
             .add(
                 plot.curve(&full_circle, GREY, 1.2)
                     .set("stroke-dasharray", "5 4"),
             )
-            .add(plot.curve(&guarded_arc, LEGS, 4.0))
+            .add(plot.curve(&guarded_arc, LEG_COLOUR, 4.0))
             .add(
                 plot.curve(&foot_path(robot, servo), DARK, 8.0)
                     .set("stroke-opacity", 0.55),
@@ -101,29 +106,49 @@ pub fn reach(robot: &Robot) -> String {
 }
 
 fn draw_legend(mut group: Group) -> Group {
-    let left = 840.0;
+    let legend_x = 840.0;
     let patches = [
-        (TAIL, "tail's point"),
-        (SLIDERS, "middle of a slider (the body)"),
+        (TAIL_COLOURS, "tail's point"),
+        (SLIDER_COLOURS, "middle of a slider (the body)"),
     ];
-    for ([light, dark], words) in patches {
-        let y = if words.starts_with('t') { 110.0 } else { 142.0 };
+    for ([light_colour, dark_colour], label) in patches {
+        let y = if label.starts_with('t') { 110.0 } else { 142.0 };
         group = group
-            .add(rectangle((left, y), (17.0, 17.0), light))
-            .add(rectangle((left + 17.0, y), (17.0, 17.0), dark))
-            .add(text_start(words, (left + 44.0, y + 14.0), 15.0));
+            .add(rectangle((legend_x, y), (17.0, 17.0), light_colour))
+            .add(rectangle((legend_x + 17.0, y), (17.0, 17.0), dark_colour))
+            .add(text_start(label, (legend_x + 44.0, y + 14.0), 15.0));
     }
-    group = draw_entry(group, (left, 190.0), GREY, "5 4", "circle of a foot");
-    group = draw_entry(group, (left, 218.0), LEGS, "", "what the guard accepts,");
+    group = draw_entry(group, (legend_x, 190.0), GREY, "5 4", "circle of a foot");
+    group = draw_entry(
+        group,
+        (legend_x, 218.0),
+        LEG_COLOUR,
+        "",
+        "what the guard accepts,",
+    );
     group = group.add(text_start(
         "the other servos at neutral",
-        (left + 44.0, 242.0),
+        (legend_x + 44.0, 242.0),
         15.0,
     ));
-    group = draw_entry(group, (left, 268.0), DARK, "", "where walk has the foot");
+    group = draw_entry(
+        group,
+        (legend_x, 268.0),
+        DARK,
+        "",
+        "where walk has the foot",
+    );
     group
-        .add(edged(circle((left + 17.0, 300.0), 6.0, "white"), DARK, 2.0))
-        .add(text_start("shaft of a servo", (left + 44.0, 305.0), 15.0))
+        .add(edged(
+            circle((legend_x + 17.0, 300.0), 6.0, "white"),
+            DARK,
+            2.0,
+        ))
+        .add(text_start(
+            "shaft of a servo",
+            (legend_x + 44.0, 305.0),
+            15.0,
+        ))
 }
 
 /// The neutral servo angles plus these turns, deg.
@@ -134,8 +159,8 @@ fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
 
 /// The solutions accepted by the guard for all pairs of turns in steps of a degree.
 fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
-    let range = || (-RANGE..=RANGE).map(f64::from);
-    let pairs = range().flat_map(|a| range().map(move |b| (a, b)));
+    let turn_range = || (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from);
+    let pairs = turn_range().flat_map(|a| turn_range().map(move |b| (a, b)));
     pairs
         .filter_map(|(a, b)| robot.accepted(turned_angles(robot, turns(a, b))))
         .collect()
@@ -144,7 +169,10 @@ fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Ve
 /// The cells that the tail's point reaches in poses that the guard accepts.
 fn accepted_tail(robot: &Robot) -> Cells {
     let poses = accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
-    poses.iter().map(|pose| cell(pose.tail_point())).collect()
+    poses
+        .iter()
+        .map(|pose| cell_of(pose.tail_point()))
+        .collect()
 }
 
 /// The cells that the middles of both sliders reach in mirror-symmetric poses. The guard accepts the widest range of
@@ -157,14 +185,14 @@ fn accepted_sliders(robot: &Robot) -> Cells {
                 Side::Left => &pose.left,
                 Side::Right => &pose.right,
             };
-            middle(robot, side, slider.rear_tip, slider.front_tip)
+            slider_middle(robot, side, slider.rear_tip, slider.front_tip)
         })
     });
-    points.map(cell).collect()
+    points.map(cell_of).collect()
 }
 
 /// The middle of a slider, from the tips of its arms relative to its rear shaft.
-fn middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
+fn slider_middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
     robot.lizard().shafts()[side.servos()[1]] + (rear + front) * 0.5
 }
 
@@ -175,12 +203,14 @@ fn linkage_sliders(robot: &Robot) -> Cells {
     for side in Side::ALL {
         let slider = robot.lizard().side(side);
         let shaft = Vector::new(slider.offset, slider.base);
-        let range = || (0..180).map(|step| Vector::direction(2.0 * f64::from(step)));
-        for (front, rear) in range().flat_map(|front| range().map(move |rear| (front, rear))) {
+        let directions = || (0..180).map(|step| Vector::direction(2.0 * f64::from(step)));
+        for (front, rear) in
+            directions().flat_map(|front| directions().map(move |rear| (front, rear)))
+        {
             let (rear, front) = (rear * slider.rear, shaft + front * slider.front);
             let travel = (front - rear).length() - slider.nominal;
             if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
-                cells.insert(cell(middle(robot, side, rear, front)));
+                cells.insert(cell_of(slider_middle(robot, side, rear, front)));
             }
         }
     }
@@ -191,31 +221,31 @@ fn linkage_sliders(robot: &Robot) -> Cells {
 fn is_in_tail(robot: &Robot, point: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
-    let from = point - (shafts[left] + shafts[right]) * 0.5;
-    let local = Vector::new(from.x, -from.y);
-    local.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local)
+    let offset = point - (shafts[left] + shafts[right]) * 0.5;
+    let local_point = Vector::new(offset.x, -offset.y);
+    local_point.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local_point)
 }
 
 /// The positions of a foot while only its servo turns from neutral. With `is_guarded`, leaves out positions that the
 /// guard refuses.
-fn foot_places(
+fn foot_positions(
     robot: &Robot,
     servo: usize,
     turns: impl Iterator<Item = f64>,
     is_guarded: bool,
 ) -> Vec<(f64, f64)> {
-    let place = |turn: f64| {
+    let accepted_position = |turn: f64| {
         let mut turns = [0.0; 4];
         turns[servo] = turn;
         let angles = turned_angles(robot, turns);
-        let is_in = !is_guarded || robot.accepted(angles).is_some();
-        is_in.then(|| foot_place(robot, servo, angles[servo]))
+        let is_accepted = !is_guarded || robot.accepted(angles).is_some();
+        is_accepted.then(|| foot_position(robot, servo, angles[servo]))
     };
-    turns.filter_map(place).collect()
+    turns.filter_map(accepted_position).collect()
 }
 
 /// The position of a foot with its servo at `angle`, without lag.
-fn foot_place(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
+fn foot_position(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
     let foot = robot.legs()[servo].at(angle, angle).foot;
     (foot.x, foot.y)
 }
@@ -223,10 +253,10 @@ fn foot_place(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
 /// The path of a foot in the gait `walk`; empty if the robot does not have that gait.
 fn foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
     let gait = robot.gait("walk").into_iter();
-    let phases = gait.flat_map(|gait| (0..=100).map(move |i| gait.pose(f64::from(i) / 100.0)));
-    let angle = |pose: Pose| <[f64; 4]>::from(pose)[servo];
-    phases
-        .map(|pose| foot_place(robot, servo, angle(pose)))
+    let poses = gait.flat_map(|gait| (0..=100).map(move |i| gait.pose(f64::from(i) / 100.0)));
+    let angle_of = |pose: Pose| <[f64; 4]>::from(pose)[servo];
+    poses
+        .map(|pose| foot_position(robot, servo, angle_of(pose)))
         .collect()
 }
 
@@ -235,42 +265,46 @@ mod tests {
     use super::*;
     use crate::shared::robot_file::named;
 
-    fn paper() -> Robot {
+    fn paper_robot() -> Robot {
         named("paper")
     }
 
     #[test]
     fn poses_accepted_by_the_guard_lie_within_those_of_the_links() {
-        let robot = paper();
+        let robot = paper_robot();
         let poses = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(poses.len() > 300, "{}", poses.len());
         for pose in poses {
             assert!(is_in_tail(&robot, pose.tail_point()), "{pose:?}");
         }
-        let (sliders, free) = (accepted_sliders(&robot), linkage_sliders(&robot));
-        let outside = sliders.difference(&free).count();
+        let (accepted_cells, linkage_cells) = (accepted_sliders(&robot), linkage_sliders(&robot));
+        let outside_count = accepted_cells.difference(&linkage_cells).count();
         assert!(
-            sliders.len() > 100 && outside * 20 < sliders.len(),
-            "{outside}"
+            accepted_cells.len() > 100 && outside_count * 20 < accepted_cells.len(),
+            "{outside_count}"
         );
     }
 
     #[test]
     fn areas_are_those_of_geometry() {
-        let robot = paper();
+        let robot = paper_robot();
         // The half behind the tail's base has the same area as the head's upper half in `lizard design`.
-        let step = |i: i32| f64::from(i) - 160.5;
-        let all = (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(step(i), step(j))));
-        let area = all.filter(|at| is_in_tail(&robot, *at)).count() as f64;
+        let coordinate = |i: i32| f64::from(i) - 160.5;
+        let points =
+            (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(coordinate(i), coordinate(j))));
+        let area = points.filter(|point| is_in_tail(&robot, *point)).count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
         // The middle of a slider is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
         for (x, y) in linkage_sliders(&robot) {
-            let (x, y) = (CELL * (f64::from(x) + 0.5), CELL * (f64::from(y) + 0.5));
+            let (x, y) = (
+                CELL_WIDTH * (f64::from(x) + 0.5),
+                CELL_WIDTH * (f64::from(y) + 0.5),
+            );
             let distance = (x.abs() - 10.0).hypot(y);
-            assert!(distance < 30.0 + 2.0 * CELL, "{x} {y}");
+            assert!(distance < 30.0 + 2.0 * CELL_WIDTH, "{x} {y}");
         }
         // A foot keeps its distance of 45 mm from its hip, 35 mm to the side and 55 mm ahead.
-        for (x, y) in foot_places(&robot, 0, (-180..=180).map(f64::from), false) {
+        for (x, y) in foot_positions(&robot, 0, (-180..=180).map(f64::from), false) {
             let distance = (x + 35.0).hypot(y - 55.0);
             assert!((distance - 45.0).abs() < 0.01, "{x} {y} {distance}");
         }

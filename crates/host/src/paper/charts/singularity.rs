@@ -10,7 +10,7 @@ use crate::shared::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 /// Range of the angles in the left panel, deg.
-const WHOLE: (f64, f64) = (0.0, 180.0);
+const ANGLE_RANGE: (f64, f64) = (0.0, 180.0);
 /// Colours and dashes of the paths: Okabe and Ito's colours and more dark ones.
 /// Dashes distinguish paths whose colours look alike.
 const STYLES: [(&str, &str); 10] = [
@@ -26,9 +26,9 @@ const STYLES: [(&str, &str); 10] = [
     ("#332288", "7 5"),
 ];
 /// Colour of the singular curves of A1's arm.
-const A1: &str = "#882255";
+const A1_COLOUR: &str = "#882255";
 /// Colour of the singular curves of A2's arm.
-const A2: &str = "#b58900";
+const A2_COLOUR: &str = "#b58900";
 
 /// Draws the head's least margin over theta1 and theta4, with the paths of the gaits.
 pub fn singularity(robot: &Robot) -> String {
@@ -37,45 +37,49 @@ pub fn singularity(robot: &Robot) -> String {
         most: 1.0,
         colours: BLUES,
     };
-    let axes = |step| {
+    let axes_with_step = |step| {
         (
             Axis::new(step, "theta1 (A1), deg"),
             Axis::new(step, "theta4 (A2), deg"),
         )
     };
-    let left = Plot {
+    let left_plot = Plot {
         corner: (90.0, 110.0),
         size: (600.0, 600.0),
-        x: WHOLE,
-        y: WHOLE,
+        x: ANGLE_RANGE,
+        y: ANGLE_RANGE,
     };
-    let paths = paths(robot);
-    let near = surroundings(&paths);
-    let right = Plot {
+    let paths = gait_paths(robot);
+    let path_square = square_around(&paths);
+    let right_plot = Plot {
         corner: (800.0, 110.0),
         size: (400.0, 400.0),
-        ..near
+        ..path_square
     };
     let mut group = Group::new();
-    for (plot, cells) in [(&left, 360), (&right, 200)] {
+    for (plot, cells) in [(&left_plot, 360), (&right_plot, 200)] {
         group = plot.draw_map(group, (cells, cells), |x, y| {
-            Some(least(robot, x, y).map_or(IMPOSSIBLE, |least| scale.colour(least)))
+            Some(least_margin(robot, x, y).map_or(IMPOSSIBLE, |margin| scale.colour(margin)))
         });
     }
-    group = draw_curves(group, &left, robot);
+    group = draw_curves(group, &left_plot, robot);
     // The outline of the right panel in the left one.
-    let corner = left.page_point(near.x.0, near.y.1);
-    let end = left.page_point(near.x.1, near.y.0);
+    let corner = left_plot.page_point(path_square.x.0, path_square.y.1);
+    let opposite_corner = left_plot.page_point(path_square.x.1, path_square.y.0);
     group = group.add(edged(
-        rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none"),
+        rectangle(
+            corner,
+            (opposite_corner.0 - corner.0, opposite_corner.1 - corner.1),
+            "none",
+        ),
         DARK,
         2.0,
     ));
     for (i, (_, path)) in paths.iter().enumerate() {
         let (colour, dashes) = STYLES[i % STYLES.len()];
         if path.len() > 1 {
-            group = group.add(right.curve(path, "white", 4.5)).add(
-                right
+            group = group.add(right_plot.curve(path, "white", 4.5)).add(
+                right_plot
                     .curve(path, colour, 2.2)
                     .set("stroke-dasharray", dashes),
             );
@@ -83,14 +87,14 @@ pub fn singularity(robot: &Robot) -> String {
     }
     for (i, (_, path)) in paths.iter().enumerate() {
         if let [(x, y)] = path[..] {
-            let dot = circle(right.page_point(x, y), 6.0, STYLES[i % STYLES.len()].0);
+            let dot = circle(right_plot.page_point(x, y), 6.0, STYLES[i % STYLES.len()].0);
             group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
         }
     }
-    let (x, y) = axes(20.0);
-    group = left.draw_axes(group, &x, &y);
-    let (x, y) = axes(10.0);
-    group = right.draw_axes(group, &x, &y);
+    let (x, y) = axes_with_step(20.0);
+    group = left_plot.draw_axes(group, &x, &y);
+    let (x, y) = axes_with_step(10.0);
+    group = right_plot.draw_axes(group, &x, &y);
     for (i, (names, path)) in paths.iter().enumerate() {
         let (colour, dashes) = STYLES[i % STYLES.len()];
         let point = (1226.0, 124.0 + 27.0 * i as f64);
@@ -104,17 +108,17 @@ pub fn singularity(robot: &Robot) -> String {
         }
     }
     group = scale.draw_key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);
-    let keys = [
-        (A1, "", "arm of A1 straight or folded (type 1)"),
-        (A2, "", "arm of A2 straight or folded (type 1)"),
+    let entries = [
+        (A1_COLOUR, "", "arm of A1 straight or folded (type 1)"),
+        (A2_COLOUR, "", "arm of A2 straight or folded (type 1)"),
     ];
-    for (i, (colour, dashes, words)) in keys.into_iter().enumerate() {
+    for (i, (colour, dashes, label)) in entries.into_iter().enumerate() {
         group = draw_entry(
             group,
             (930.0, 640.0 + 28.0 * i as f64),
             colour,
             dashes,
-            words,
+            label,
         );
     }
     group = group
@@ -146,29 +150,37 @@ pub fn singularity(robot: &Robot) -> String {
 
 /// The least of the head's margins, with the tail at neutral; `None` if the pose is
 /// impossible or breaks a limit other than those of the sliders.
-fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
+fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
         theta4,
         ..robot.neutral()
     };
-    let s = robot.lizard().solve(&pose).ok()?;
-    let broken = robot
+    let solution = robot.lizard().solve(&pose).ok()?;
+    let is_broken = robot
         .limits()
-        .violations(&s)
-        .any(|v| !matches!(v.check, Check::StrokeLeft | Check::StrokeRight));
-    let m = &s.margins;
-    let margins = [m.type2[0], m.type1[0], m.type1[1], m.leg[0], m.leg[1]];
-    (!broken).then(|| margins.into_iter().fold(1.0, f64::min))
+        .violations(&solution)
+        .any(|violation| !matches!(violation.check, Check::StrokeLeft | Check::StrokeRight));
+    let all_margins = &solution.margins;
+    let margins = [
+        all_margins.type2[0],
+        all_margins.type1[0],
+        all_margins.type1[1],
+        all_margins.leg[0],
+        all_margins.leg[1],
+    ];
+    (!is_broken).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
 /// The paths of all gaits in the plane of theta1 and theta4, each with the names of the gaits that take it. A gait
 /// and its reverse take the same path.
-fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
+fn gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
-        let path = path(gait);
-        let close_path = paths.iter_mut().find(|(_, other)| are_close(other, &path));
+        let path = gait_path(gait);
+        let close_path = paths
+            .iter_mut()
+            .find(|(_, other_path)| are_close(other_path, &path));
         match close_path {
             Some((names, _)) => {
                 names.push_str(", ");
@@ -181,14 +193,15 @@ fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
 }
 
 /// The path of a gait in the plane of theta1 and theta4; a single point if the gait moves neither.
-fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
+fn gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     let angles_at = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
         (theta1, theta4)
     };
     let start = angles_at(0);
-    let moves = (1..500).any(|i| (angles_at(i).0 - start.0).hypot(angles_at(i).1 - start.1) > 1e-6);
-    if moves {
+    let is_moving =
+        (1..500).any(|i| (angles_at(i).0 - start.0).hypot(angles_at(i).1 - start.1) > 1e-6);
+    if is_moving {
         (0..=500).map(angles_at).collect()
     } else {
         vec![start]
@@ -197,28 +210,31 @@ fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
 
 /// True if every point of each path is within 0.5 deg of a point of the other.
 fn are_close(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
-    let near = |point: &(f64, f64), path: &[(f64, f64)]| {
+    let is_near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()
             .any(|other| (point.0 - other.0).hypot(point.1 - other.1) < 0.5)
     };
-    first.iter().all(|point| near(point, second)) && second.iter().all(|point| near(point, first))
+    first.iter().all(|point| is_near(point, second))
+        && second.iter().all(|point| is_near(point, first))
 }
 
 /// A square plot that contains all paths.
-fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
-    let all = || paths.iter().flat_map(|(_, path)| path);
-    let range_of = |pick: fn(&(f64, f64)) -> f64| {
-        let smallest = all().map(pick).fold(f64::INFINITY, f64::min);
-        let largest = all().map(pick).fold(f64::NEG_INFINITY, f64::max);
-        ((smallest + largest) / 2.0, (largest - smallest) / 2.0)
+fn square_around(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
+    let all_points = || paths.iter().flat_map(|(_, path)| path);
+    let range_of = |coordinate: fn(&(f64, f64)) -> f64| {
+        let min_value = all_points().map(coordinate).fold(f64::INFINITY, f64::min);
+        let max_value = all_points()
+            .map(coordinate)
+            .fold(f64::NEG_INFINITY, f64::max);
+        ((min_value + max_value) / 2.0, (max_value - min_value) / 2.0)
     };
-    let ((x, wide), (y, high)) = (range_of(|p| p.0), range_of(|p| p.1));
-    let half = (wide.max(high) + 5.0).ceil();
+    let ((x, half_width), (y, half_height)) = (range_of(|p| p.0), range_of(|p| p.1));
+    let half_size = (half_width.max(half_height) + 5.0).ceil();
     Plot {
         corner: (0.0, 0.0),
         size: (1.0, 1.0),
-        x: (x.round() - half, x.round() + half),
-        y: (y.round() - half, y.round() + half),
+        x: (x.round() - half_size, x.round() + half_size),
+        y: (y.round() - half_size, y.round() + half_size),
     }
 }
 
@@ -228,7 +244,7 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     group = draw_sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
     // Curves that are steep over theta1 also need a sweep over theta4. It uses the mirrored
     // five-bar, in which left and right change places.
-    let mirrored = FiveBar {
+    let mirrored_bars = FiveBar {
         base: bars.base,
         crank_left: bars.crank_right,
         coupler_left: bars.coupler_right,
@@ -245,7 +261,7 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
             theta_left: wrap(180.0 - pose.theta_right),
             theta_right: theta4,
         };
-        mirrored
+        mirrored_bars
             .singular_with(180.0 - theta4)
             .map(unmirror)
             .collect()
@@ -263,30 +279,32 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
 /// close.
 fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
     const STEP: f64 = 0.5;
-    let inside = |pose: &&SingularPose| {
+    let is_inside = |pose: &&SingularPose| {
         [pose.theta_left, pose.theta_right]
             .iter()
             .all(|theta| (0.0..=180.0).contains(theta))
     };
-    let apart = |a: &SingularPose, b: &SingularPose| {
+    let distance_between = |a: &SingularPose, b: &SingularPose| {
         (a.theta_left - b.theta_left).hypot(a.theta_right - b.theta_right)
     };
     let mut poses_before: Vec<SingularPose> = Vec::new();
     for i in 0..=360 {
         let poses = poses_at(f64::from(i) * STEP);
-        for pose in poses.iter().filter(inside) {
+        for pose in poses.iter().filter(is_inside) {
             let nearest = poses_before
                 .iter()
-                .filter(inside)
-                .filter(|other| other.kind == pose.kind && apart(other, pose) < 4.0 * STEP)
-                .min_by(|a, b| apart(a, pose).total_cmp(&apart(b, pose)));
-            if let Some(from) = nearest {
+                .filter(is_inside)
+                .filter(|other| {
+                    other.kind == pose.kind && distance_between(other, pose) < 4.0 * STEP
+                })
+                .min_by(|a, b| distance_between(a, pose).total_cmp(&distance_between(b, pose)));
+            if let Some(previous) = nearest {
                 let colour = match pose.kind {
-                    Singularity::LeftArm => A1,
-                    Singularity::RightArm => A2,
+                    Singularity::LeftArm => A1_COLOUR,
+                    Singularity::RightArm => A2_COLOUR,
                     Singularity::Couplers => DARK,
                 };
-                let start = plot.page_point(from.theta_left, from.theta_right);
+                let start = plot.page_point(previous.theta_left, previous.theta_right);
                 let end = plot.page_point(pose.theta_left, pose.theta_right);
                 group = group.add(line(start, end, colour, 2.5));
             }

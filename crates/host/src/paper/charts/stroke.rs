@@ -8,17 +8,17 @@ use crate::shared::number::round_decimals;
 use crate::shared::plot::{Axis, IMPOSSIBLE, Plot, draw_entry};
 
 const COLUMNS: usize = 4;
-const PANEL: (f64, f64) = (255.0, 150.0);
-const PITCH: (f64, f64) = (330.0, 240.0);
-const LEFT: &str = "#0072b2";
-const RIGHT: &str = "#d55e00";
+const PANEL_SIZE: (f64, f64) = (255.0, 150.0);
+const PANEL_PITCH: (f64, f64) = (330.0, 240.0);
+const LEFT_COLOUR: &str = "#0072b2";
+const RIGHT_COLOUR: &str = "#d55e00";
 
 /// Travel of both sliders over a cycle of every gait, and the limits.
 pub fn stroke(robot: &Robot) -> String {
     let rows = robot.gaits().len().div_ceil(COLUMNS);
     let size = (
-        90.0 + PITCH.0 * COLUMNS as f64,
-        130.0 + PITCH.1 * rows as f64,
+        90.0 + PANEL_PITCH.0 * COLUMNS as f64,
+        130.0 + PANEL_PITCH.1 * rows as f64,
     );
     let limits = robot.limits();
     let range = (limits.stroke_min - 5.0, limits.stroke_max + 5.0);
@@ -31,24 +31,24 @@ pub fn stroke(robot: &Robot) -> String {
     group = draw_entry(
         group,
         (size.0 - 300.0, 36.0),
-        LEFT,
+        LEFT_COLOUR,
         "",
         "left slider (A1, A4)",
     );
     group = draw_entry(
         group,
         (size.0 - 300.0, 62.0),
-        RIGHT,
+        RIGHT_COLOUR,
         "7 4",
         "right slider (A2, A3)",
     );
     for (i, gait) in robot.gaits().iter().enumerate() {
         let plot = Plot {
             corner: (
-                80.0 + PITCH.0 * (i % COLUMNS) as f64,
-                120.0 + PITCH.1 * (i / COLUMNS) as f64,
+                80.0 + PANEL_PITCH.0 * (i % COLUMNS) as f64,
+                120.0 + PANEL_PITCH.1 * (i / COLUMNS) as f64,
             ),
-            size: PANEL,
+            size: PANEL_SIZE,
             x: (0.0, 1.0),
             y: range,
         };
@@ -60,7 +60,14 @@ pub fn stroke(robot: &Robot) -> String {
 fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
     let axes = (
         Axis::new(0.25, "phase"),
-        Axis::new(15.0, if plot.corner.0 < PITCH.0 { "s, mm" } else { "" }),
+        Axis::new(
+            15.0,
+            if plot.corner.0 < PANEL_PITCH.0 {
+                "s, mm"
+            } else {
+                ""
+            },
+        ),
     );
     group = plot.draw_grid(group, &axes.0, &axes.1);
     for (from, to) in [
@@ -70,40 +77,43 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         let (top, bottom) = (plot.page_point(0.0, to), plot.page_point(0.0, from));
         group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), IMPOSSIBLE));
     }
-    let travel: Vec<(f64, f64, f64)> = (0..=400)
+    let samples: Vec<(f64, f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0)
         .filter_map(|phase| {
-            let s = robot.lizard().solve(&gait.pose(phase)).ok()?;
-            Some((phase, s.left.s, s.right.s))
+            let solution = robot.lizard().solve(&gait.pose(phase)).ok()?;
+            Some((phase, solution.left.s, solution.right.s))
         })
         .collect();
-    let curve_of = |pick: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
-        travel
+    let curve_of = |travel_of: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
+        samples
             .iter()
-            .map(|sample| (sample.0, pick(sample)))
+            .map(|sample| (sample.0, travel_of(sample)))
             .collect()
     };
     group = group
-        .add(plot.curve(&curve_of(|sample| sample.1), LEFT, 2.5))
+        .add(plot.curve(&curve_of(|sample| sample.1), LEFT_COLOUR, 2.5))
         .add(
-            plot.curve(&curve_of(|sample| sample.2), RIGHT, 2.5)
+            plot.curve(&curve_of(|sample| sample.2), RIGHT_COLOUR, 2.5)
                 .set("stroke-dasharray", "7 4"),
         );
     group = plot.draw_axes(group, &axes.0, &axes.1);
-    let values = || travel.iter().flat_map(|sample| [sample.1, sample.2]);
-    let smallest = values().fold(f64::INFINITY, f64::min);
-    let largest = values().fold(f64::NEG_INFINITY, f64::max);
-    let head = (plot.corner.0, plot.corner.1 - 10.0);
-    let range = format!(
+    let values = || samples.iter().flat_map(|sample| [sample.1, sample.2]);
+    let min_travel = values().fold(f64::INFINITY, f64::min);
+    let max_travel = values().fold(f64::NEG_INFINITY, f64::max);
+    let title_point = (plot.corner.0, plot.corner.1 - 10.0);
+    let range_text = format!(
         "{:+.1} to {:+.1} mm",
-        round_decimals(smallest, 1),
-        round_decimals(largest, 1)
+        round_decimals(min_travel, 1),
+        round_decimals(max_travel, 1)
     );
     group
-        .add(text_start(&gait.name().replace('-', " "), head, 17.0).set("font-weight", "bold"))
+        .add(
+            text_start(&gait.name().replace('-', " "), title_point, 17.0)
+                .set("font-weight", "bold"),
+        )
         .add(text(
-            &range,
-            (plot.corner.0 + plot.size.0, head.1),
+            &range_text,
+            (plot.corner.0 + plot.size.0, title_point.1),
             14.0,
             GREY,
             Anchor::End,

@@ -44,7 +44,7 @@ pub const COARSE_RINGS: usize = 32;
 )]
 pub struct Args {
     /// Distance between the two servo shafts, mm [default: 20]
-    #[arg(long, value_name = "MM", value_parser = base)]
+    #[arg(long, value_name = "MM", value_parser = parse_base)]
     l0: Option<f64>,
     /// Crank; give two or three of r1, r2, r3 [default: 0.3]
     #[arg(long, value_parser = Quantity::SHARE.parser())]
@@ -91,20 +91,20 @@ impl Spreads for Args {
 
 /// A parser of numbers in a range.
 fn range_parser(
-    least: f64,
-    most: f64,
+    min: f64,
+    max: f64,
     range: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| match text.parse::<f64>() {
-        Ok(value) if (least..=most).contains(&value) => Ok(value),
+        Ok(value) if (min..=max).contains(&value) => Ok(value),
         _ => Err(format!("it must be {range}")),
     }
 }
 
-fn base(text: &str) -> Result<f64, String> {
+fn parse_base(text: &str) -> Result<f64, String> {
     match Quantity::LENGTH.parser()(text) {
         Ok(l0) if l0 < 0.001 => Err("it must be at least 0.001 mm".to_string()),
-        other => other,
+        result => result,
     }
 }
 
@@ -181,8 +181,8 @@ impl Report {
 
     fn text(&self, robot: &Robot) -> String {
         let Proportions { r1, r2, r3 } = self.proportions;
-        let p = &self.performance;
-        let mut page = format!(
+        let performance = &self.performance;
+        let mut text = format!(
             "design space   r1 {r1:.4}   r2 {r2:.4}   r3 {r3:.4}   sum {:.4}   0 < r1, r2 < 0.9 and 0 < r3 < 0.45: yes
 scale          D = R3 / r3 = {:.3} / {r3:.4} = {:.3} mm
 workspace      {:.1} mm^2, upper half {:.1} mm^2; rings of {:.2} to {:.2} mm about each shaft
@@ -190,34 +190,34 @@ workspace      {:.1} mm^2, upper half {:.1} mm^2; rings of {:.2} to {:.2} mm abo
             r1 + r2 + r3,
             self.l0 / 2.0,
             self.d,
-            p.area,
-            p.area / 2.0,
+            performance.area,
+            performance.area / 2.0,
             (self.l1 - self.l2).abs(),
             self.l1 + self.l2,
         );
-        match &p.lci {
+        match &performance.lci {
             None => {
-                page +=
+                text +=
                     "MIC            none: half the base is longer than crank and coupler together\n"
             }
             Some(lci) => {
-                page += &format!(
+                text += &format!(
                     "MIC            radius {:.3} mm ({:.3} D), centre (0, {:.3}) mm
 LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of the area
 ",
-                    p.r_mic,
-                    p.r_mic / self.d,
-                    p.y_mic,
+                    performance.r_mic,
+                    performance.r_mic / self.d,
+                    performance.y_mic,
                     lci.mean,
                     lci.least,
                     lci.most,
                     100.0 * lci.share_above,
                 );
-                page += &verdict(lci, p.r_mic);
+                text += &verdict(lci, performance.r_mic);
             }
         }
-        let l = robot.lizard().links;
-        page += &format!(
+        let links = robot.lizard().links;
+        text += &format!(
             "
 link                          mm   from
 l0, l5                  {:8.2}   the servos' size
@@ -233,21 +233,21 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
             self.l1,
             self.l2,
             self.l1,
-            l.l12,
-            l.l10,
+            links.l12,
+            links.l10,
             robot.lizard().leg.ground,
             robot.lizard().leg.crank,
         );
-        page
+        text
     }
 }
 
 /// A line on where the paper's claim "LCI > 0.7" holds.
 fn verdict(lci: &Conditioning, r_mic: f64) -> String {
-    let mean = if lci.mean > CLAIM { "holds" } else { "fails" };
-    let bound = if lci.least > CLAIM { "holds" } else { "fails" };
+    let mean_verdict = if lci.mean > CLAIM { "holds" } else { "fails" };
+    let bound_verdict = if lci.least > CLAIM { "holds" } else { "fails" };
     format!(
-        "\"LCI > {CLAIM}\"    {mean} as a mean, {bound} as a bound; as a bound it holds within {:.2} mm of the centre ({:.0} % of the radius)\n",
+        "\"LCI > {CLAIM}\"    {mean_verdict} as a mean, {bound_verdict} as a bound; as a bound it holds within {:.2} mm of the centre ({:.0} % of the radius)\n",
         lci.radius_above,
         100.0 * lci.radius_above / r_mic,
     )
@@ -265,16 +265,21 @@ fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
         "r1,r2,r3,area,r_mic,y_mic,lci_mean,lci_least,lci_most,share_above_0.7,radius_above_0.7"
     )?;
     for Point {
-        proportions: at,
-        performance: p,
+        proportions,
+        performance,
     } in points
     {
         write!(
             out,
             "{:.4},{:.4},{:.4},{:.6},{:.6},{:.6}",
-            at.r1, at.r2, at.r3, p.area, p.r_mic, p.y_mic
+            proportions.r1,
+            proportions.r2,
+            proportions.r3,
+            performance.area,
+            performance.r_mic,
+            performance.y_mic
         )?;
-        match p.lci {
+        match performance.lci {
             Some(lci) => writeln!(
                 out,
                 ",{:.6},{:.6},{:.6},{:.6},{:.6}",
@@ -290,19 +295,19 @@ fn print_ranking(
     args: &Args,
     robot: &Robot,
     l0: f64,
-    given: Proportions,
+    given_proportions: Proportions,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
-    let travel = robot.servos().iter().map(|servo| {
-        let (smallest, largest) = servo.travel();
-        largest.min(-smallest)
+    let travels = robot.servos().iter().map(|servo| {
+        let (min_angle, max_angle) = servo.travel();
+        max_angle.min(-min_angle)
     });
     let demands = Demands {
         base: l0,
         chassis: robot.lizard().links.l10,
         leg: robot.lizard().leg.crank,
         limits: *robot.limits(),
-        travel: travel.fold(f64::INFINITY, f64::min),
+        travel: travels.fold(f64::INFINITY, f64::min),
         shortest: args.shortest,
         sweep: args.sweep,
     };
@@ -320,7 +325,7 @@ fn print_ranking(
     };
     let designs = merge_ranked(pieces);
     let top_designs = &designs[..designs.len().min(args.top)];
-    let reference = design(given, &demands);
+    let reference = design(given_proportions, &demands);
     if args.json {
         return Ok(json::write_line(out, &top_designs)?);
     }
@@ -339,44 +344,54 @@ fn print_ranking(
         out,
         "rank     r1     r2     r3   crank  coupler mm   theta1  sweep deg   LCI  margin  stride mm  score"
     )?;
-    let line = |out: &mut dyn Write, rank: &str, d: &Design| {
-        let Proportions { r1, r2, r3 } = d.proportions;
+    let write_line = |out: &mut dyn Write, rank: &str, design: &Design| {
+        let Proportions { r1, r2, r3 } = design.proportions;
         writeln!(
             out,
             "{rank:>4} {r1:6.3} {r2:6.3} {r3:6.3} {:7.1} {:11.1} {:8.0} {:10.1} {:5.3} {:7.3} {:10.1} {:6.3}{}",
-            r1 * d.d,
-            r2 * d.d,
-            d.neutral,
-            d.sweep,
-            d.lci,
-            d.margin,
-            d.stride,
-            d.score,
-            if d.pareto { " *" } else { "" }
+            r1 * design.d,
+            r2 * design.d,
+            design.neutral,
+            design.sweep,
+            design.lci,
+            design.margin,
+            design.stride,
+            design.score,
+            if design.pareto { " *" } else { "" }
         )
     };
     for (i, design) in top_designs.iter().enumerate() {
-        line(out, &(i + 1).to_string(), design)?;
+        write_line(out, &(i + 1).to_string(), design)?;
     }
     match reference {
         None => writeln!(
             out,
             "\nThe given design (r1 {}, r2 {}, r3 {}) does not.",
-            given.r1, given.r2, given.r3
+            given_proportions.r1, given_proportions.r2, given_proportions.r3
         )?,
-        Some(mut ours) => {
+        Some(mut given_design) => {
             // Scores are relative to the best value of each criterion, which may be that of the given design.
-            let best =
-                |value: fn(&Design) -> f64| designs.iter().map(value).fold(value(&ours), f64::max);
-            let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
-            ours.score =
-                ((ours.lci / lci) * (ours.margin / margin) * (ours.stride / stride)).cbrt();
+            let best_of = |value: fn(&Design) -> f64| {
+                designs
+                    .iter()
+                    .map(value)
+                    .fold(value(&given_design), f64::max)
+            };
+            let (lci, margin, stride) = (
+                best_of(|d| d.lci),
+                best_of(|d| d.margin),
+                best_of(|d| d.stride),
+            );
+            given_design.score = ((given_design.lci / lci)
+                * (given_design.margin / margin)
+                * (given_design.stride / stride))
+                .cbrt();
             let rank = 1 + designs
                 .iter()
-                .filter(|d| d.score > ours.score + 1e-9)
+                .filter(|d| d.score > given_design.score + 1e-9)
                 .count();
             writeln!(out, "\nthe given design:")?;
-            line(out, &rank.to_string(), &ours)?;
+            write_line(out, &rank.to_string(), &given_design)?;
         }
     }
     Ok(())

@@ -61,8 +61,8 @@ impl Conditioning {
     fn sample(bars: &FiveBar, circle: Circle, rings: usize) -> Self {
         let spokes = 4 * rings;
         let mut sum = 0.0;
-        let mut above = 0;
-        let (mut min, mut best) = (f64::INFINITY, (0.0_f64, circle.centre));
+        let mut count_above = 0;
+        let (mut min_index, mut best_sample) = (f64::INFINITY, (0.0_f64, circle.centre));
         for spoke in 0..spokes {
             let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spokes as f64);
             for ring in 0..rings {
@@ -70,31 +70,31 @@ impl Conditioning {
                 let point = circle.centre + direction * radius;
                 let value = lci(bars, point);
                 sum += value;
-                above += usize::from(value > CLAIM);
-                min = min.min(value);
-                if value > best.0 {
-                    best = (value, point);
+                count_above += usize::from(value > CLAIM);
+                min_index = min_index.min(value);
+                if value > best_sample.0 {
+                    best_sample = (value, point);
                 }
             }
         }
         // The rim itself, with the four points where it touches the edge of the workspace.
         for spoke in 0..spokes {
             let direction = Vector::direction(spoke as f64 * 360.0 / spokes as f64);
-            min = min.min(lci(bars, circle.centre + direction * circle.radius));
+            min_index = min_index.min(lci(bars, circle.centre + direction * circle.radius));
         }
         for shaft in [bars.left_shaft(), bars.right_shaft()] {
-            let outward = circle.centre - shaft;
-            for side in [circle.radius, -circle.radius] {
-                let touch = circle.centre + outward * (side / outward.length());
-                min = min.min(lci(bars, touch));
+            let from_shaft = circle.centre - shaft;
+            for distance in [circle.radius, -circle.radius] {
+                let touch_point = circle.centre + from_shaft * (distance / from_shaft.length());
+                min_index = min_index.min(lci(bars, touch_point));
             }
         }
         let count = (rings * spokes) as f64;
         Self {
             mean: sum / count,
-            least: min,
-            most: climb(bars, circle, best, circle.radius / rings as f64),
-            share_above: above as f64 / count,
+            least: min_index,
+            most: climb(bars, circle, best_sample, circle.radius / rings as f64),
+            share_above: count_above as f64 / count,
             radius_above: Self::radius_above(bars, circle, rings),
         }
     }
@@ -105,43 +105,49 @@ impl Conditioning {
         (0..4 * rings)
             .map(|spoke| {
                 let direction = Vector::direction(spoke as f64 * 90.0 / rings as f64);
-                let holds = |radius: f64| lci(bars, circle.centre + direction * radius) >= CLAIM;
-                let Some(first) = (0..=2 * rings).find(|&i| !holds(i as f64 * step)) else {
+                let is_above_claim =
+                    |radius: f64| lci(bars, circle.centre + direction * radius) >= CLAIM;
+                let Some(first_outside) =
+                    (0..=2 * rings).find(|&i| !is_above_claim(i as f64 * step))
+                else {
                     return circle.radius;
                 };
-                let (mut inside, mut outside) = ((first as f64 - 1.0) * step, first as f64 * step);
-                if first == 0 {
+                let (mut inner_radius, mut outer_radius) = (
+                    (first_outside as f64 - 1.0) * step,
+                    first_outside as f64 * step,
+                );
+                if first_outside == 0 {
                     return 0.0;
                 }
                 for _ in 0..30 {
-                    let middle = (inside + outside) / 2.0;
-                    if holds(middle) {
-                        inside = middle;
+                    let middle = (inner_radius + outer_radius) / 2.0;
+                    if is_above_claim(middle) {
+                        inner_radius = middle;
                     } else {
-                        outside = middle;
+                        outer_radius = middle;
                     }
                 }
-                inside
+                inner_radius
             })
             .fold(circle.radius, f64::min)
     }
 }
 
 /// The largest index near a sample in the circle, by hill climbing with steps that halve.
-fn climb(bars: &FiveBar, circle: Circle, from: (f64, Vector), step: f64) -> f64 {
-    let (mut value, mut point) = from;
-    let mut size = step;
-    while size > 1e-5 * step {
+fn climb(bars: &FiveBar, circle: Circle, start_sample: (f64, Vector), step: f64) -> f64 {
+    let (mut value, mut point) = start_sample;
+    let mut step_size = step;
+    while step_size > 1e-5 * step {
         let directions = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
-        let next = directions
-            .map(|(x, y)| point + Vector::new(x, y) * size)
+        let best_neighbour = directions
+            .map(|(x, y)| point + Vector::new(x, y) * step_size)
             .into_iter()
             .filter(|p| (*p - circle.centre).length() <= circle.radius)
             .map(|p| (lci(bars, p), p))
             .max_by(|a, b| a.0.total_cmp(&b.0));
-        match next {
-            Some(next) if next.0 > value => (value, point) = next,
-            _ => size /= 2.0,
+        match best_neighbour {
+            Some(best_neighbour) if best_neighbour.0 > value => (value, point) = best_neighbour,
+            _ => step_size /= 2.0,
         }
     }
     value

@@ -49,12 +49,12 @@ impl Proportions {
         }
         let sum = r1 + r2 + r3;
         if (sum - SUM).abs() > 1e-9 {
-            let k = SUM / sum;
+            let factor = SUM / sum;
             return Err(format!(
                 "r1 + r2 + r3 is {sum:.6}, it must be {SUM}; the same shape is r1 {:.6}, r2 {:.6}, r3 {:.6}",
-                r1 * k,
-                r2 * k,
-                r3 * k
+                r1 * factor,
+                r2 * factor,
+                r3 * factor
             ));
         }
         Ok(Self { r1, r2, r3 })

@@ -66,13 +66,13 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Prepares the search of all points of the triangle. `own` returns how many of all pieces are computed here,
+    /// Prepares the search of all points of the triangle. `count_own` returns how many of all pieces are computed here,
     /// which sets the length of the progress bar.
     pub fn new(
         step: f64,
         demands: Demands,
         progress: &'a ProgressBar,
-        own: impl Fn(usize) -> usize,
+        count_own: impl Fn(usize) -> usize,
     ) -> Self {
         let points = triangle(step);
         let search = Self {
@@ -80,8 +80,8 @@ impl<'a> Search<'a> {
             demands,
             progress,
         };
-        let points = PIECE_SIZE * own(search.piece_count());
-        progress.set_length(points.min(search.points.len()) as u64);
+        let point_count = PIECE_SIZE * count_own(search.piece_count());
+        progress.set_length(point_count.min(search.points.len()) as u64);
         search
     }
 
@@ -129,7 +129,7 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     if sweep < demands.sweep {
         return None;
     }
-    let (margin, lci) = quality(&bars, neutral, demands.sweep);
+    let (margin, lci) = margin_and_lci(&bars, neutral, demands.sweep);
     Some(Design {
         proportions,
         d,
@@ -145,19 +145,19 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
 
 /// The largest sweep about a neutral angle within all limits, degrees.
 fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
-    let (mut safe, mut unsafe_from) = (0.0, demands.travel.min(89.9));
-    if !meets_demands(bars, neutral, safe, demands) {
+    let (mut safe_deg, mut unsafe_deg) = (0.0, demands.travel.min(89.9));
+    if !meets_demands(bars, neutral, safe_deg, demands) {
         return 0.0;
     }
     for _ in 0..9 {
-        let middle = (safe + unsafe_from) / 2.0;
+        let middle = (safe_deg + unsafe_deg) / 2.0;
         if meets_demands(bars, neutral, middle, demands) {
-            safe = middle;
+            safe_deg = middle;
         } else {
-            unsafe_from = middle;
+            unsafe_deg = middle;
         }
     }
-    safe
+    safe_deg
 }
 
 /// Sample positions across the sweep, from -1 to 1.
@@ -166,19 +166,19 @@ const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75,
 /// True if the five-bar and the sliders keep the limits at all sampled angles of the sweep.
 fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
-    let slider = slider(bars, demands);
+    let slider = slider_of_side(bars, demands);
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
-    let span = |front: f64, rear: f64| {
+    let span_of = |front: f64, rear: f64| {
         slider
             .forward(-rear - 90.0, front + 90.0)
             .map_or(f64::NAN, |pose| pose.d)
     };
-    let nominal = span(neutral, neutral);
+    let nominal = span_of(neutral, neutral);
     SWEEP_SAMPLES.iter().all(|&i| {
         let left = neutral + i * sweep;
         SWEEP_SAMPLES.iter().all(|&j| {
             let right = 180.0 - neutral + j * sweep;
-            let travel = span(left, neutral + j * sweep) - nominal;
+            let travel = span_of(left, neutral + j * sweep) - nominal;
             limits.violation_of(Check::StrokeLeft, travel).is_none()
                 && bars
                     .forward(left, right)
@@ -188,7 +188,7 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
 }
 
 /// The slider of a side, with arms as long as the cranks, as in the paper.
-fn slider(bars: &FiveBar, demands: &Demands) -> Slider {
+fn slider_of_side(bars: &FiveBar, demands: &Demands) -> Slider {
     Slider {
         offset: 0.0,
         base: demands.chassis,
@@ -199,36 +199,40 @@ fn slider(bars: &FiveBar, demands: &Demands) -> Slider {
 }
 
 /// Least margin and mean conditioning index within a sweep.
-fn quality(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
-    let mut smallest = f64::INFINITY;
-    let mut sum = 0.0;
+fn margin_and_lci(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
+    let mut least_margin = f64::INFINITY;
+    let mut lci_sum = 0.0;
     for i in SWEEP_SAMPLES {
         let left = neutral + i * sweep;
-        smallest = smallest.min(left.to_radians().sin());
+        least_margin = least_margin.min(left.to_radians().sin());
         for j in SWEEP_SAMPLES {
             if let Ok(pose) = bars.forward(left, 180.0 - neutral + j * sweep) {
-                smallest = smallest.min(pose.margin());
-                sum += pose.lci();
+                least_margin = least_margin.min(pose.margin());
+                lci_sum += pose.lci();
             }
         }
     }
     (
-        smallest,
-        sum / (SWEEP_SAMPLES.len() * SWEEP_SAMPLES.len()) as f64,
+        least_margin,
+        lci_sum / (SWEEP_SAMPLES.len() * SWEEP_SAMPLES.len()) as f64,
     )
 }
 
 /// Scores the designs and sorts them, best first.
 fn rank(designs: &mut [Design]) {
-    let best =
+    let best_of =
         |value: fn(&Design) -> f64| designs.iter().map(value).fold(f64::MIN_POSITIVE, f64::max);
-    let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
-    let all = designs.to_vec();
+    let (lci, margin, stride) = (
+        best_of(|d| d.lci),
+        best_of(|d| d.margin),
+        best_of(|d| d.stride),
+    );
+    let all_designs = designs.to_vec();
     for design in designs.iter_mut() {
         let product =
             (design.lci / lci) * (design.margin.max(0.0) / margin) * (design.stride / stride);
         design.score = product.cbrt();
-        design.pareto = !all.iter().any(|other| {
+        design.pareto = !all_designs.iter().any(|other| {
             other.lci > design.lci && other.margin > design.margin && other.stride > design.stride
         });
     }

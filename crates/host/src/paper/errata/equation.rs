@@ -78,16 +78,16 @@ impl Misses {
     /// Evaluates a form at all samples.
     pub fn of(miss: ErrorFn, samples: &[Sample]) -> Self {
         let mut worst = 0.0_f64;
-        let mut unreal = 0usize;
+        let mut unreal_count = 0usize;
         for sample in samples {
             match miss(sample) {
                 Some(value) if value.is_finite() => worst = worst.max(value),
-                _ => unreal += 1,
+                _ => unreal_count += 1,
             }
         }
         Self {
             worst,
-            unreal: unreal as f64 / samples.len().max(1) as f64,
+            unreal: unreal_count as f64 / samples.len().max(1) as f64,
         }
     }
 

@@ -13,16 +13,16 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 head loop",
         "l1 cos θ1 + l2 cos θ2 - l3 cos θ3 - l4 cos θ4 - l0 = 0 (and sin)",
         "mm",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
             Some(loop_gap(
                 [(l.l1, t[1]), (l.l2, t[2]), (l.l3, t[3]), (l.l4, t[4])],
                 l.l0,
             ))
         },
     )
-    .clockwise(|s| {
-        let (l, t) = (&s.lizard.links, s.angles().t);
+    .clockwise(|sample| {
+        let (l, t) = (&sample.lizard.links, sample.angles().t);
         Some(loop_gap(
             [
                 (l.l1, t[1]),
@@ -37,73 +37,86 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 head, θ3",
         "θ3 = 2 atan((-B - sqrt(B² - 4AC))/2A)",
         "deg",
-        |s| {
-            let (a, b, c) = abc(s, s.angles().t[4]);
+        |sample| {
+            let (a, b, c) = abc_coefficients(sample, sample.angles().t[4]);
             Some(angle_error(
-                2.0 * root(a, b, c, -1.0)?.atan(),
-                s.angles().t[3],
+                2.0 * half_angle_tangent(a, b, c, -1.0)?.atan(),
+                sample.angles().t[3],
             ))
         },
     )
     .corrected(
         "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
-        |s| {
-            let Some(zero) = vanishing_a(s) else {
+        |sample| {
+            let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
                 return Some(0.0);
             };
-            let theta1 = s.s.pose.theta1;
-            let Ok(there) = s.lizard.end(End::Head).forward(theta1, zero * 180.0 / PI) else {
+            let theta1 = sample.s.pose.theta1;
+            let Ok(pose) = sample
+                .lizard
+                .end(End::Head)
+                .forward(theta1, vanishing_theta4 * 180.0 / PI)
+            else {
                 return Some(0.0);
             };
-            let (l, t) = (&s.lizard.links, PI / 180.0);
-            let (theta2, theta3) = (there.theta_left_coupler(), there.theta_right_coupler());
+            let (l, rad_per_deg) = (&sample.lizard.links, PI / 180.0);
+            let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             Some(loop_gap(
                 [
-                    (l.l1, theta1 * t),
-                    (l.l2, theta2 * t),
-                    (l.l3, theta3 * t),
-                    (l.l4, zero),
+                    (l.l1, theta1 * rad_per_deg),
+                    (l.l2, theta2 * rad_per_deg),
+                    (l.l3, theta3 * rad_per_deg),
+                    (l.l4, vanishing_theta4),
                 ],
                 l.l0,
             ))
         },
     )
-    .with_special_place("θ4 within 1e-9° of A = 0", near_vanishing_a),
+    .with_special_place("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
     Equation::new(
         "4.2 head, θ2",
         "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
         "deg",
-        |s| {
-            let (d, e, f) = def_coefficients(s, 1.0);
-            let under = e * e + 4.0 * d * f;
-            let real = (under >= 0.0).then(|| (-e + under.sqrt()) / (2.0 * d))?;
-            Some(angle_error(2.0 * real.atan(), s.angles().t[2]))
+        |sample| {
+            let (d, e, f) = def_coefficients(sample, 1.0);
+            let radicand = e * e + 4.0 * d * f;
+            let tangent = (radicand >= 0.0).then(|| (-e + radicand.sqrt()) / (2.0 * d))?;
+            Some(angle_error(2.0 * tangent.atan(), sample.angles().t[2]))
         },
     )
     .corrected(
         "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
-        |s| {
-            let (d, e, f) = def_coefficients(s, -1.0);
-            let under = e * e - 4.0 * d * f;
-            let real = (under >= 0.0).then(|| (e - under.sqrt()) / (2.0 * d))?;
-            Some(angle_error(2.0 * real.atan(), s.angles().t[2]))
+        |sample| {
+            let (d, e, f) = def_coefficients(sample, -1.0);
+            let radicand = e * e - 4.0 * d * f;
+            let tangent = (radicand >= 0.0).then(|| (e - radicand.sqrt()) / (2.0 * d))?;
+            Some(angle_error(2.0 * tangent.atan(), sample.angles().t[2]))
         },
     ),
-    Equation::new("4.2 tail loop", "R6 + R7 - R8 - R9 - R5 = 0", "mm", |s| {
-        let (l, t) = (&s.lizard.links, s.angles().t);
-        Some(loop_gap(
-            [(l.l6, t[5]), (l.l7, t[6]), (l.l8, t[7]), (l.l9, t[8])],
-            l.l5,
-        ))
-    }),
+    Equation::new(
+        "4.2 tail loop",
+        "R6 + R7 - R8 - R9 - R5 = 0",
+        "mm",
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            Some(loop_gap(
+                [(l.l6, t[5]), (l.l7, t[6]), (l.l8, t[7]), (l.l9, t[8])],
+                l.l5,
+            ))
+        },
+    ),
     Equation::new(
         "4.2 left loop, its slider drawn out by s",
         "R11 + R12 - R13 - R14 - R10 = 0",
         "mm",
-        |s| {
-            let (l, t, half) = (&s.lizard.links, s.angles().t, s.s.left.s / 2.0);
-            let sum = cis(l.l11, t[9]) + cis(l.l12 + half, t[10])
-                - cis(l.l13 + half, t[11])
+        |sample| {
+            let (l, t, half_travel) = (
+                &sample.lizard.links,
+                sample.angles().t,
+                sample.s.left.s / 2.0,
+            );
+            let sum = cis(l.l11, t[9]) + cis(l.l12 + half_travel, t[10])
+                - cis(l.l13 + half_travel, t[11])
                 - cis(l.l14, t[12])
                 - cis(l.l10, FRAC_PI_2);
             Some(sum.length())
@@ -113,58 +126,112 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 right loop, its slider drawn out by s",
         "R16 + R17 - R18 - R19 - R15 = 0",
         "mm",
-        |s| {
-            let (l, t, half) = (&s.lizard.links, s.angles().t, s.s.right.s / 2.0);
-            let sum = cis(l.l16, t[13]) + cis(l.l17 + half, t[14])
-                - cis(l.l18 + half, t[15])
+        |sample| {
+            let (l, t, half_travel) = (
+                &sample.lizard.links,
+                sample.angles().t,
+                sample.s.right.s / 2.0,
+            );
+            let sum = cis(l.l16, t[13]) + cis(l.l17 + half_travel, t[14])
+                - cis(l.l18 + half_travel, t[15])
                 - cis(l.l19, t[16])
                 - cis(l.l15, FRAC_PI_2);
             Some(sum.length())
         },
     ),
-    Equation::new("4.2 left slider halves", "θ10 + θ11 = 0", "deg", |s| {
-        Some(angle_error(s.angles().t[10] + s.angles().t[11], 0.0))
-    })
-    .clockwise(|s| Some(angle_error(s.angles().t[10] + (PI - s.angles().t[11]), 0.0)))
-    .corrected("θ11 = θ10 + 180°", |s| {
-        Some(angle_error(s.angles().t[11], s.angles().t[10] + PI))
-    }),
-    Equation::new("4.2 right slider halves", "θ14 + θ15 = 0", "deg", |s| {
-        Some(angle_error(s.angles().t[14] + s.angles().t[15], 0.0))
-    })
-    .clockwise(|s| Some(angle_error(s.angles().t[14] + (PI - s.angles().t[15]), 0.0)))
-    .corrected("θ15 = θ14 + 180°", |s| {
-        Some(angle_error(s.angles().t[15], s.angles().t[14] + PI))
-    }),
-    Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |s| {
-        Some(angle_error(s.angles().t[1] + FRAC_PI_2, s.angles().t[12]))
-    }),
-    Equation::new("4.2 arm on A2", "θ4 - θ16 + C2 = 0", "deg", |s| {
-        Some(angle_error(s.angles().t[4] + FRAC_PI_2, s.angles().t[16]))
-    })
-    .clockwise(|s| {
+    Equation::new(
+        "4.2 left slider halves",
+        "θ10 + θ11 = 0",
+        "deg",
+        |sample| {
+            Some(angle_error(
+                sample.angles().t[10] + sample.angles().t[11],
+                0.0,
+            ))
+        },
+    )
+    .clockwise(|sample| {
         Some(angle_error(
-            PI - s.angles().t[4] + FRAC_PI_2,
-            PI - s.angles().t[16],
+            sample.angles().t[10] + (PI - sample.angles().t[11]),
+            0.0,
         ))
     })
-    .corrected("θ16 = θ4 - C2", |s| {
-        Some(angle_error(s.angles().t[4] - FRAC_PI_2, s.angles().t[16]))
-    }),
-    Equation::new("4.2 arm on A4", "θ9 - θ5 + C3 = 0", "deg", |s| {
-        Some(angle_error(s.angles().t[9] + FRAC_PI_2, s.angles().t[5]))
-    }),
-    Equation::new("4.2 arm on A3", "θ13 - θ8 + C4 = 0", "deg", |s| {
-        Some(angle_error(s.angles().t[13] + FRAC_PI_2, s.angles().t[8]))
-    })
-    .clockwise(|s| {
+    .corrected("θ11 = θ10 + 180°", |sample| {
         Some(angle_error(
-            PI - s.angles().t[13] + FRAC_PI_2,
-            PI - s.angles().t[8],
+            sample.angles().t[11],
+            sample.angles().t[10] + PI,
+        ))
+    }),
+    Equation::new(
+        "4.2 right slider halves",
+        "θ14 + θ15 = 0",
+        "deg",
+        |sample| {
+            Some(angle_error(
+                sample.angles().t[14] + sample.angles().t[15],
+                0.0,
+            ))
+        },
+    )
+    .clockwise(|sample| {
+        Some(angle_error(
+            sample.angles().t[14] + (PI - sample.angles().t[15]),
+            0.0,
         ))
     })
-    .corrected("θ13 = θ8 + C4", |s| {
-        Some(angle_error(s.angles().t[13] - FRAC_PI_2, s.angles().t[8]))
+    .corrected("θ15 = θ14 + 180°", |sample| {
+        Some(angle_error(
+            sample.angles().t[15],
+            sample.angles().t[14] + PI,
+        ))
+    }),
+    Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |sample| {
+        Some(angle_error(
+            sample.angles().t[1] + FRAC_PI_2,
+            sample.angles().t[12],
+        ))
+    }),
+    Equation::new("4.2 arm on A2", "θ4 - θ16 + C2 = 0", "deg", |sample| {
+        Some(angle_error(
+            sample.angles().t[4] + FRAC_PI_2,
+            sample.angles().t[16],
+        ))
+    })
+    .clockwise(|sample| {
+        Some(angle_error(
+            PI - sample.angles().t[4] + FRAC_PI_2,
+            PI - sample.angles().t[16],
+        ))
+    })
+    .corrected("θ16 = θ4 - C2", |sample| {
+        Some(angle_error(
+            sample.angles().t[4] - FRAC_PI_2,
+            sample.angles().t[16],
+        ))
+    }),
+    Equation::new("4.2 arm on A4", "θ9 - θ5 + C3 = 0", "deg", |sample| {
+        Some(angle_error(
+            sample.angles().t[9] + FRAC_PI_2,
+            sample.angles().t[5],
+        ))
+    }),
+    Equation::new("4.2 arm on A3", "θ13 - θ8 + C4 = 0", "deg", |sample| {
+        Some(angle_error(
+            sample.angles().t[13] + FRAC_PI_2,
+            sample.angles().t[8],
+        ))
+    })
+    .clockwise(|sample| {
+        Some(angle_error(
+            PI - sample.angles().t[13] + FRAC_PI_2,
+            PI - sample.angles().t[8],
+        ))
+    })
+    .corrected("θ13 = θ8 + C4", |sample| {
+        Some(angle_error(
+            sample.angles().t[13] - FRAC_PI_2,
+            sample.angles().t[8],
+        ))
     }),
 ];
 
@@ -175,18 +242,18 @@ fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
 }
 
 /// Tangent of half an angle by the quadratic formula; `sign` selects the root. `None` if the roots are not real.
-fn root(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
-    let under = b * b - 4.0 * a * c;
-    (under >= 0.0).then(|| (-b + sign * under.sqrt()) / (2.0 * a))
+fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
+    let radicand = b * b - 4.0 * a * c;
+    (radicand >= 0.0).then(|| (-b + sign * radicand.sqrt()) / (2.0 * a))
 }
 
 /// The coefficients A, B, C as printed, at this theta4 (rad) and the sample's theta1.
-fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
+fn abc_coefficients(sample: &Sample, theta4: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
-    } = s.lizard.links;
+    } = sample.lizard.links;
     // Not through `angles`, which takes arc tangents that are not needed here.
-    let theta1 = s.s.pose.theta1 * PI / 180.0;
+    let theta1 = sample.s.pose.theta1 * PI / 180.0;
     let k1 = l4 * theta4.sin() - l1 * theta1.sin();
     let k2 = l4 * theta4.cos() - l1 * theta1.cos() + l0;
     let common = l3 * l3 - l2 * l2 + k2 * k2 + k1 * k1;
@@ -198,11 +265,11 @@ fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
 }
 
 /// The coefficients D, E, F; `base_sign` is the sign of l0 in K4: 1 as printed, -1 as corrected.
-fn def_coefficients(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
+fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
-    } = s.lizard.links;
-    let t = s.angles().t;
+    } = sample.lizard.links;
+    let t = sample.angles().t;
     let k3 = -l4 * t[4].sin() + l1 * t[1].sin();
     let k4 = -l4 * t[4].cos() + l1 * t[1].cos() + base_sign * l0;
     let common = l3 * l3 - l2 * l2 - k4 * k4 - k3 * k3;
@@ -215,14 +282,14 @@ fn def_coefficients(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
 
 /// The theta4 at which A vanishes for the sample's theta1, radians; `None` if there is none in
 /// [-90, 90] degrees.
-fn vanishing_a(s: &Sample) -> Option<f64> {
-    let a = |theta4: f64| abc(s, theta4).0;
+fn theta4_of_vanishing_a(sample: &Sample) -> Option<f64> {
+    let a_of = |theta4: f64| abc_coefficients(sample, theta4).0;
     let angle_at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
-    let start = (-90..90).find(|&i| a(angle_at(i)) * a(angle_at(i + 1)) < 0.0)?;
+    let start = (-90..90).find(|&i| a_of(angle_at(i)) * a_of(angle_at(i + 1)) < 0.0)?;
     let (mut low, mut high) = (angle_at(start), angle_at(start + 1));
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        if a(low) * a(middle) <= 0.0 {
+        if a_of(low) * a_of(middle) <= 0.0 {
             high = middle;
         } else {
             low = middle;
@@ -232,22 +299,22 @@ fn vanishing_a(s: &Sample) -> Option<f64> {
 }
 
 /// The error of the printed theta3 close to the theta4 where A vanishes; 0 for a sample without such a theta4.
-fn near_vanishing_a(s: &Sample) -> Option<f64> {
-    let Some(zero) = vanishing_a(s) else {
+fn error_near_vanishing_a(sample: &Sample) -> Option<f64> {
+    let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
         return Some(0.0);
     };
-    let theta4 = zero + (s.random[0] - 0.5) * 2e-9 * PI / 180.0;
-    let Ok(truth) = s
+    let theta4 = vanishing_theta4 + (sample.random[0] - 0.5) * 2e-9 * PI / 180.0;
+    let Ok(exact_pose) = sample
         .lizard
         .end(End::Head)
-        .forward(s.s.pose.theta1, theta4 * 180.0 / PI)
+        .forward(sample.s.pose.theta1, theta4 * 180.0 / PI)
     else {
         return Some(0.0);
     };
-    let (a, b, c) = abc(s, theta4);
-    let printed = 2.0 * root(a, b, c, -1.0)?.atan();
+    let (a, b, c) = abc_coefficients(sample, theta4);
+    let printed_theta3 = 2.0 * half_angle_tangent(a, b, c, -1.0)?.atan();
     Some(angle_error(
-        printed,
-        truth.theta_right_coupler() * PI / 180.0,
+        printed_theta3,
+        exact_pose.theta_right_coupler() * PI / 180.0,
     ))
 }

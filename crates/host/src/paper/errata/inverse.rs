@@ -13,106 +13,154 @@ pub const EQUATIONS: &[Equation] = &[
         "4.1 head, left arm",
         "(x11 - l1 cos θ1 + l0/2)² + (y11 - l1 sin θ1)² = l2²",
         "mm in length",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(s.s.head.end_point, -l.l0 / 2.0, l.l1, s.angles().t[1], l.l2)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                sample.s.head.end_point,
+                -l.l0 / 2.0,
+                l.l1,
+                sample.angles().t[1],
+                l.l2,
+            )
         },
     ),
     Equation::new(
         "4.1 head, right arm",
         "(x11 - l1 cos θ2 - l0/2)² + (y11 - l1 sin θ2)² = l2²",
         "mm in length",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(s.s.head.end_point, l.l0 / 2.0, l.l1, s.angles().t[2], l.l2)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                sample.s.head.end_point,
+                l.l0 / 2.0,
+                l.l1,
+                sample.angles().t[2],
+                l.l2,
+            )
         },
     )
     .corrected(
         "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(s.s.head.end_point, l.l0 / 2.0, l.l4, s.angles().t[4], l.l3)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                sample.s.head.end_point,
+                l.l0 / 2.0,
+                l.l4,
+                sample.angles().t[4],
+                l.l3,
+            )
         },
     ),
     Equation::new(
         "4.1 tail, arm of A3",
         "(x21 - l9 cos θ8 + l5/2)² + (y21 - l9 sin θ8)² = l8²",
         "mm in length",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8], l.l8)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                tail_point(sample),
+                -l.l5 / 2.0,
+                l.l9,
+                sample.angles().t[8],
+                l.l8,
+            )
         },
     )
     .corrected(
         "the same in a frame turned by 180°: x21, y21 negated, θ8 - 180°",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(-tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8] - PI, l.l8)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                -tail_point(sample),
+                -l.l5 / 2.0,
+                l.l9,
+                sample.angles().t[8] - PI,
+                l.l8,
+            )
         },
     ),
     Equation::new(
         "4.1 tail, arm of A4",
         "(x21 - l9 cos θ7 - l5/2)² + (y21 - l9 sin θ7)² = l8²",
         "mm in length",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(tail(s), l.l5 / 2.0, l.l9, s.angles().t[7], l.l8)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                tail_point(sample),
+                l.l5 / 2.0,
+                l.l9,
+                sample.angles().t[7],
+                l.l8,
+            )
         },
     )
     .corrected(
         "in the turned frame (x21 - l6 cos θ5 - l5/2)² + (y21 - l6 sin θ5)² = l7²",
-        |s| {
-            let l = &s.lizard.links;
-            arm_error(-tail(s), l.l5 / 2.0, l.l6, s.angles().t[5] - PI, l.l7)
+        |sample| {
+            let l = &sample.lizard.links;
+            arm_error(
+                -tail_point(sample),
+                l.l5 / 2.0,
+                l.l6,
+                sample.angles().t[5] - PI,
+                l.l7,
+            )
         },
     ),
     Equation::new(
         "4.1 left body, x31 and y31",
         "2 x31 = l13 cos θ11 + l14 cos θ12 (y31: sin)",
         "mm",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            Some((middle(s, 0) - (cis(l.l13, t[11]) + cis(l.l14, t[12])) * 0.5).length())
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            Some(
+                (slider_middle(sample, 0) - (cis(l.l13, t[11]) + cis(l.l14, t[12])) * 0.5).length(),
+            )
         },
     )
     .corrected(
         "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            Some((middle(s, 0) - (cis(l.l11, t[9]) + cis(l.l14, t[12])) * 0.5).length())
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            Some((slider_middle(sample, 0) - (cis(l.l11, t[9]) + cis(l.l14, t[12])) * 0.5).length())
         },
     ),
     Equation::new(
         "4.1 right body, x41 and y41",
         "2 x41 = l19 cos θ16 + l18 cos θ15 (y41: sin)",
         "mm",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            Some((middle(s, 1) - (cis(l.l19, t[16]) + cis(l.l18, t[15])) * 0.5).length())
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            Some(
+                (slider_middle(sample, 1) - (cis(l.l19, t[16]) + cis(l.l18, t[15])) * 0.5).length(),
+            )
         },
     )
     .corrected(
         "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            Some((middle(s, 1) - (cis(l.l16, t[13]) + cis(l.l19, t[16])) * 0.5).length())
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            Some(
+                (slider_middle(sample, 1) - (cis(l.l16, t[13]) + cis(l.l19, t[16])) * 0.5).length(),
+            )
         },
     ),
 ];
 
 /// The difference between a coupler's length and the distance from its crank's tip to a point.
-fn arm_error(point: Vector, shaft: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
-    let tip = Vector::new(shaft, 0.0) + cis(crank, angle);
+fn arm_error(point: Vector, shaft_x: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
+    let tip = Vector::new(shaft_x, 0.0) + cis(crank, angle);
     Some(((point - tip).length() - coupler).abs())
 }
 
 /// The tail point relative to the middle of l5, in chassis axes.
-fn tail(s: &Sample) -> Vector {
-    End::Tail.mirror(s.s.tail.end_point)
+fn tail_point(sample: &Sample) -> Vector {
+    End::Tail.mirror(sample.s.tail.end_point)
 }
 
 /// The middle of a slider relative to the middle between its shafts: 0 left, 1 right.
-fn middle(s: &Sample, side: usize) -> Vector {
-    let slider = [&s.s.left, &s.s.right][side];
+fn slider_middle(sample: &Sample, side: usize) -> Vector {
+    let slider = [&sample.s.left, &sample.s.right][side];
     (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5
 }

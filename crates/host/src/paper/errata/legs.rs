@@ -11,9 +11,9 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 leg loops",
         "LG1 + LG12 - LG13 - LG10 = 0, and with LG10 for legs 2 to 4",
         "mm; LG20, LG30, LG40 are meant",
-        |s| {
-            let leg = &s.lizard.leg;
-            worst_of(s, ALL, |theta| {
+        |sample| {
+            let leg = &sample.lizard.leg;
+            worst_of(sample, ALL_LEGS, |theta| {
                 let sum = cis(leg.crank, theta) + Vector::new(leg.coupler - leg.ground, 0.0)
                     - cis(leg.follower, theta);
                 Some(sum.length())
@@ -24,79 +24,84 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 θ_lg13, front legs",
         "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
         "deg",
-        |s| follower_error(s, FRONT, 1.0, None),
+        |sample| follower_error(sample, FRONT_LEGS, 1.0, None),
     )
-    .corrected("the root with - for 0 < θ_lg < 180°", |s| {
-        follower_error(s, FRONT, -1.0, None)
+    .corrected("the root with - for 0 < θ_lg < 180°", |sample| {
+        follower_error(sample, FRONT_LEGS, -1.0, None)
     }),
     Equation::new(
         "4.2 θ_lg13, back legs",
         "the same, with the + root",
         "deg",
-        |s| follower_error(s, BACK, 1.0, None),
+        |sample| follower_error(sample, BACK_LEGS, 1.0, None),
     ),
     Equation::new(
         "4.2 H, legs 2 to 4",
         "H = -2 sin θ1",
         "deg in θ_lg13, root already corrected",
-        |s| {
-            let h = Some(-2.0 * s.angles().t[1].sin());
-            let front = follower_error(s, &[4], -1.0, h);
-            let back = follower_error(s, BACK, 1.0, h);
+        |sample| {
+            let h = Some(-2.0 * sample.angles().t[1].sin());
+            let front = follower_error(sample, &[4], -1.0, h);
+            let back = follower_error(sample, BACK_LEGS, 1.0, h);
             Some(front?.max(back?))
         },
     )
-    .corrected("H = -2 sin θ_lgi", |s| {
-        Some(follower_error(s, &[4], -1.0, None)?.max(follower_error(s, BACK, 1.0, None)?))
+    .corrected("H = -2 sin θ_lgi", |sample| {
+        Some(
+            follower_error(sample, &[4], -1.0, None)?
+                .max(follower_error(sample, BACK_LEGS, 1.0, None)?),
+        )
     }),
     Equation::new(
         "4.2 θ_lg12, front legs",
         "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
         "deg",
-        |s| coupler_error(s, FRONT, -1.0, -1.0),
+        |sample| coupler_error(sample, FRONT_LEGS, -1.0, -1.0),
     )
-    .corrected("J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ", |s| {
-        coupler_error(s, FRONT, 1.0, -1.0)
-    }),
-    Equation::new("4.2 θ_lg12, back legs", "the same", "deg", |s| {
-        coupler_error(s, BACK, -1.0, -1.0)
+    .corrected(
+        "J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ",
+        |sample| coupler_error(sample, FRONT_LEGS, 1.0, -1.0),
+    ),
+    Equation::new("4.2 θ_lg12, back legs", "the same", "deg", |sample| {
+        coupler_error(sample, BACK_LEGS, -1.0, -1.0)
     })
     .corrected(
         "J and L as above, and the + root for 180° < θ_lg < 360°",
-        |s| coupler_error(s, BACK, 1.0, 1.0),
+        |sample| coupler_error(sample, BACK_LEGS, 1.0, 1.0),
     ),
 ];
 
 /// The paper's numbers of the angles that drive the front legs.
-const FRONT: &[usize] = &[1, 4];
+const FRONT_LEGS: &[usize] = &[1, 4];
 /// The paper's numbers of the angles that drive the back legs.
-const BACK: &[usize] = &[8, 5];
+const BACK_LEGS: &[usize] = &[8, 5];
 /// The paper's numbers of the angles that drive all legs.
-const ALL: &[usize] = &[1, 4, 8, 5];
+const ALL_LEGS: &[usize] = &[1, 4, 8, 5];
 
 /// The largest error over these legs; `None` if there is no real value for one of them.
-fn worst_of(s: &Sample, legs: &[usize], miss: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+fn worst_of(sample: &Sample, legs: &[usize], error_of: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     legs.iter()
-        .map(|&leg| miss(s.angles().t[leg]))
+        .map(|&leg| error_of(sample.angles().t[leg]))
         .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
 }
 
 /// The error of the follower's angle by G, H, I as printed, or with another H; `sign` selects the root. In a
 /// parallelogram the follower has the angle of the crank.
-fn follower_error(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
+fn follower_error(sample: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
     let Leg {
         ground,
         crank,
         coupler,
         follower,
-    } = s.lizard.leg;
-    worst_of(s, legs, |theta| {
-        let c = theta.cos();
-        let last = (crank * crank + follower * follower + ground * ground - coupler * coupler)
+    } = sample.lizard.leg;
+    worst_of(sample, legs, |theta| {
+        let cos_theta = theta.cos();
+        let constant_term = (crank * crank + follower * follower + ground * ground
+            - coupler * coupler)
             / (2.0 * crank * follower);
-        let g = c - ground / crank - ground * c / follower + last;
+        let g = cos_theta - ground / crank - ground * cos_theta / follower + constant_term;
         let h = h.unwrap_or(-2.0 * theta.sin());
-        let i = ground / crank - (ground / follower + 1.0) * c + last;
+        let i = ground / crank - (ground / follower + 1.0) * cos_theta + constant_term;
         Some(angle_error(
             2.0 * half_angle_tangent(g, h, i, sign)?.atan(),
             theta,
@@ -106,20 +111,22 @@ fn follower_error(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Opti
 
 /// The error of the coupler's angle by J, K, L; in a parallelogram this angle is 0. `term_sign` is the sign of the
 /// terms in lg12, -1 as printed and +1 as corrected; `sign` selects the root.
-fn coupler_error(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
+fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
     let Leg {
         ground,
         crank,
         coupler,
         follower,
-    } = s.lizard.leg;
-    worst_of(s, legs, |theta| {
-        let c = theta.cos();
-        let last = (follower * follower - ground * ground - crank * crank - coupler * coupler)
-            / (2.0 * crank * coupler);
-        let j = c - ground / crank + term_sign * ground * c / coupler + last;
+    } = sample.lizard.leg;
+    worst_of(sample, legs, |theta| {
+        let cos_theta = theta.cos();
+        let constant_term =
+            (follower * follower - ground * ground - crank * crank - coupler * coupler)
+                / (2.0 * crank * coupler);
+        let j =
+            cos_theta - ground / crank + term_sign * ground * cos_theta / coupler + constant_term;
         let k = -2.0 * theta.sin();
-        let l = ground / crank + (term_sign * ground / coupler - 1.0) * c + last;
+        let l = ground / crank + (term_sign * ground / coupler - 1.0) * cos_theta + constant_term;
         Some(angle_error(
             2.0 * half_angle_tangent(j, k, l, sign)?.atan(),
             0.0,
@@ -130,6 +137,6 @@ fn coupler_error(s: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Optio
 /// Tangent of half an angle by the quadratic formula; `sign` selects the root. `None` if the roots are not real.
 /// Rounding may make a radicand of zero slightly negative.
 fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
-    let under = b * b - 4.0 * a * c;
-    (under > -1e-12).then(|| (-b + sign * under.max(0.0).sqrt()) / (2.0 * a))
+    let radicand = b * b - 4.0 * a * c;
+    (radicand > -1e-12).then(|| (-b + sign * radicand.max(0.0).sqrt()) / (2.0 * a))
 }

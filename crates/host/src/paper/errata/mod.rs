@@ -88,7 +88,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// Measures every equation, in the paper's order, at `samples` random poses.
 pub fn measure(samples: u32) -> Vec<Entry> {
     let samples: Vec<Sample> = Sample::many(samples as usize).collect();
-    let all: Vec<&Equation> = [
+    let equations: Vec<&Equation> = [
         synthesis::EQUATIONS,
         inverse::EQUATIONS,
         forward::EQUATIONS,
@@ -98,8 +98,8 @@ pub fn measure(samples: u32) -> Vec<Entry> {
     .into_iter()
     .flatten()
     .collect();
-    let progress = progress_bar(all.len(), "equations {bar:40} {pos}/{len}");
-    let entries = all
+    let progress = progress_bar(equations.len(), "equations {bar:40} {pos}/{len}");
+    let entries = equations
         .into_par_iter()
         .progress_with(progress.clone())
         .map(|equation| {
@@ -143,12 +143,16 @@ impl Entry {
 
     /// The largest error in words, or `rounding` if the equation holds, followed by the error of the special case.
     fn format_error(&self) -> String {
-        let mut words = self.plain_miss();
-        if let Some((worst, place)) = self.aside {
+        let mut text = self.plain_miss();
+        if let Some((worst_error, place)) = self.aside {
             let unit = self.unit;
-            let _ = write!(words, "; {} {unit} at {place}", format_three_digits(worst));
+            let _ = write!(
+                text,
+                "; {} {unit} at {place}",
+                format_three_digits(worst_error)
+            );
         }
-        words
+        text
     }
 
     /// The largest error in words, or `rounding` if the equation holds, without the special case.
@@ -156,17 +160,17 @@ impl Entry {
         if self.holds {
             return "rounding".to_string();
         }
-        let mut words = format!("{} {}", format_three_digits(self.worst), self.unit);
+        let mut text = format!("{} {}", format_three_digits(self.worst), self.unit);
         if self.unreal >= 0.999_95 {
-            words = "no real value".to_string();
+            text = "no real value".to_string();
         } else if self.unreal > 0.0 {
             let _ = write!(
-                words,
+                text,
                 ", no real value at {:.0} % of poses",
                 100.0 * self.unreal
             );
         }
-        words
+        text
     }
 
     /// True if the printed or the corrected form holds.
@@ -182,11 +186,11 @@ fn format_three_digits(value: f64) -> String {
 }
 
 fn text(entries: &[Entry], samples: u32) -> String {
-    let holding = entries.iter().filter(|entry| entry.holds).count();
+    let holding_count = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(
-        "{} printed equations at {samples} random poses: {holding} hold, {} do not.\n",
+        "{} printed equations at {samples} random poses: {holding_count} hold, {} do not.\n",
         entries.len(),
-        entries.len() - holding
+        entries.len() - holding_count
     );
     for entry in entries {
         let mark = if entry.holds { "holds" } else { "FAILS" };
@@ -203,9 +207,9 @@ fn text(entries: &[Entry], samples: u32) -> String {
             Some(false) => page += "       clockwise  fails\n",
             None => {}
         }
-        if let (Some(form), Some(holds)) = (entry.corrected, entry.corrected_holds) {
-            let note = if holds { "holds" } else { "fails" };
-            let _ = writeln!(page, "       corrected  {form}: {note}");
+        if let (Some(form), Some(is_correct)) = (entry.corrected, entry.corrected_holds) {
+            let verdict = if is_correct { "holds" } else { "fails" };
+            let _ = writeln!(page, "       corrected  {form}: {verdict}");
         }
     }
     page
@@ -213,7 +217,7 @@ fn text(entries: &[Entry], samples: u32) -> String {
 
 /// The text of docs/errata.md.
 pub fn markdown(entries: &[Entry], samples: u32) -> String {
-    let holding = entries.iter().filter(|entry| entry.holds).count();
+    let holding_count = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(
         "# Errata of the paper, measured
 
@@ -230,7 +234,7 @@ from -x, as the drawings suggest: then several signs come out right, but the loo
 equations and the theta3 formula, which the paper uses with them, do not. A miss below 1e-6 in
 its unit counts as rounding.
 
-**{holding} of {} hold as printed.** Every corrected form below was measured at the same
+**{holding_count} of {} hold as printed.** Every corrected form below was measured at the same
 poses and holds.
 
 | where | printed | verdict | worst miss | corrected |
@@ -238,20 +242,20 @@ poses and holds.
 ",
         entries.len()
     );
-    let cell = |text: &str| text.replace('|', "\\|");
+    let escape_cell = |text: &str| text.replace('|', "\\|");
     for entry in entries {
         let corrected = match (entry.corrected, entry.corrected_holds) {
-            (Some(form), Some(true)) => cell(form),
-            (Some(form), _) => format!("{} (fails too)", cell(form)),
+            (Some(form), Some(true)) => escape_cell(form),
+            (Some(form), _) => format!("{} (fails too)", escape_cell(form)),
             _ => "-".to_string(),
         };
         let _ = writeln!(
             page,
             "| {} | {} | {} | {} | {corrected} |",
-            cell(entry.place),
-            cell(entry.printed),
+            escape_cell(entry.place),
+            escape_cell(entry.printed),
             entry.verdict(),
-            cell(&entry.format_error())
+            escape_cell(&entry.format_error())
         );
     }
     page

@@ -15,14 +15,14 @@ pub const TABLE: [(&[usize], f64); 5] = [
 
 /// The paper's robot, with the second l16 of its table taken as l17.
 pub fn paper_lizard() -> Lizard {
-    let mut l = [0.0; 20];
+    let mut lengths = [0.0; 20];
     for (links, length) in TABLE {
         for &i in links {
-            l[if i == 16 && length == 45.0 { 17 } else { i }] = length;
+            lengths[if i == 16 && length == 45.0 { 17 } else { i }] = length;
         }
     }
     Lizard {
-        links: Links::from(l),
+        links: Links::from(lengths),
         leg: Leg {
             ground: 50.0,
             crank: 45.0,
@@ -63,8 +63,12 @@ impl Sample {
                 theta5: 360.0 - angle_from(90.0),
             };
             let random = [random.next(), random.next()];
-            let s = lizard.solve(&pose).ok()?;
-            Some(Self { lizard, s, random })
+            let solution = lizard.solve(&pose).ok()?;
+            Some(Self {
+                lizard,
+                s: solution,
+                random,
+            })
         })
         .flatten()
         .take(count)
@@ -72,24 +76,24 @@ impl Sample {
 
     /// Computes the paper's angles theta1 to theta16.
     pub fn angles(&self) -> Angles {
-        let p = &self.s.pose;
+        let pose = &self.s.pose;
         let mut t = [0.0; 17];
-        t[1] = p.theta1;
+        t[1] = pose.theta1;
         t[2] = self.s.theta2();
         t[3] = self.s.theta3();
-        t[4] = p.theta4;
-        t[5] = p.theta5;
+        t[4] = pose.theta4;
+        t[5] = pose.theta5;
         t[6] = self.s.theta6();
         t[7] = self.s.theta7();
-        t[8] = p.theta8;
-        t[9] = p.theta5 - 90.0;
+        t[8] = pose.theta8;
+        t[9] = pose.theta5 - 90.0;
         t[10] = self.s.left.phi();
         t[11] = t[10] + 180.0;
-        t[12] = p.theta1 + 90.0;
-        t[13] = p.theta8 + 90.0;
+        t[12] = pose.theta1 + 90.0;
+        t[13] = pose.theta8 + 90.0;
         t[14] = self.s.right.phi();
         t[15] = t[14] + 180.0;
-        t[16] = p.theta4 - 90.0;
+        t[16] = pose.theta4 - 90.0;
         Angles {
             t: t.map(|degrees| degrees * PI / 180.0),
         }

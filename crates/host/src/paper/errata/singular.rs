@@ -13,49 +13,49 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 shape of K",
         "K is 8x8, its determinant must not vanish",
         "columns more than servos",
-        |s| Some(8.0 - s.s.active_matrix()[0].len() as f64),
+        |sample| Some(8.0 - sample.s.active_matrix()[0].len() as f64),
     )
-    .corrected("K is 8x4: four active rates, no determinant", |s| {
-        Some(4.0 - s.s.active_matrix()[0].len() as f64)
+    .corrected("K is 8x4: four active rates, no determinant", |sample| {
+        Some(4.0 - sample.s.active_matrix()[0].len() as f64)
     }),
     Equation::new(
         "5.1 K, head",
         "[-l1 sin θ1, -l4 sin θ4; l1 cos θ1, -l4 cos θ4]",
         "mm/rad",
-        |s| K_HEAD.printed_error(s),
+        |sample| K_HEAD.printed_error(sample),
     )
-    .clockwise(|s| K_HEAD.clockwise_error(s))
-    .corrected("second column +l4 sin θ4, -l4 cos θ4", |s| {
-        K_HEAD.corrected_error(s)
+    .clockwise(|sample| K_HEAD.clockwise_error(sample))
+    .corrected("second column +l4 sin θ4, -l4 cos θ4", |sample| {
+        K_HEAD.corrected_error(sample)
     }),
     Equation::new(
         "5.1 K, tail",
         "[-l6 sin θ5, -l9 sin θ8; l6 cos θ5, -l9 cos θ8]",
         "mm/rad",
-        |s| K_TAIL.printed_error(s),
+        |sample| K_TAIL.printed_error(sample),
     )
-    .clockwise(|s| K_TAIL.clockwise_error(s))
-    .corrected("second column +l9 sin θ8, -l9 cos θ8", |s| {
-        K_TAIL.corrected_error(s)
+    .clockwise(|sample| K_TAIL.clockwise_error(sample))
+    .corrected("second column +l9 sin θ8, -l9 cos θ8", |sample| {
+        K_TAIL.corrected_error(sample)
     }),
     Equation::new(
         "5.1 K, left",
         "[l11 sin(C3 - θ5), -l14 sin(C1 + θ1); l11 cos(C3 - θ5), -l14 cos(C1 + θ1)]",
         "mm/rad",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
             let block = side_block([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], -1.0);
             Some(largest_difference(
-                &active_block(s, 4, 3, 0).map(|v| -v),
+                &active_block(sample, 4, 3, 0).map(|v| -v),
                 &block,
             ))
         },
     )
-    .corrected("+l14 sin(C1 + θ1)", |s| {
-        let (l, t) = (&s.lizard.links, s.angles().t);
+    .corrected("+l14 sin(C1 + θ1)", |sample| {
+        let (l, t) = (&sample.lizard.links, sample.angles().t);
         let block = side_block([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], 1.0);
         Some(largest_difference(
-            &active_block(s, 4, 3, 0).map(|v| -v),
+            &active_block(sample, 4, 3, 0).map(|v| -v),
             &block,
         ))
     }),
@@ -63,20 +63,20 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 K, right",
         "[l16 sin(C4 - θ8), -l19 sin(C2 + θ4); l16 cos(C4 - θ8), -l19 cos(C2 + θ4)]",
         "mm/rad",
-        |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
+        |sample| {
+            let (l, t) = (&sample.lizard.links, sample.angles().t);
             let block = side_block([l.l16, l.l19], FRAC_PI_2 - t[8], FRAC_PI_2 + t[4], -1.0);
             Some(largest_difference(
-                &active_block(s, 6, 2, 1).map(|v| -v),
+                &active_block(sample, 6, 2, 1).map(|v| -v),
                 &block,
             ))
         },
     )
-    .corrected("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |s| {
-        let (l, t) = (&s.lizard.links, s.angles().t);
+    .corrected("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |sample| {
+        let (l, t) = (&sample.lizard.links, sample.angles().t);
         let block = side_block([l.l16, l.l19], -FRAC_PI_2 - t[8], -FRAC_PI_2 + t[4], 1.0);
         Some(largest_difference(
-            &active_block(s, 6, 2, 1).map(|v| -v),
+            &active_block(sample, 6, 2, 1).map(|v| -v),
             &block,
         ))
     }),
@@ -84,28 +84,28 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 K*, head",
         "[-l2 sin θ2, -l3 sin θ3; l2 cos θ2, -l3 cos θ3]",
         "mm/rad",
-        |s| PASSIVE_HEAD.printed_error(s),
+        |sample| PASSIVE_HEAD.printed_error(sample),
     )
-    .clockwise(|s| PASSIVE_HEAD.clockwise_error(s))
-    .corrected("second column +l3 sin θ3, -l3 cos θ3", |s| {
-        PASSIVE_HEAD.corrected_error(s)
+    .clockwise(|sample| PASSIVE_HEAD.clockwise_error(sample))
+    .corrected("second column +l3 sin θ3, -l3 cos θ3", |sample| {
+        PASSIVE_HEAD.corrected_error(sample)
     }),
     Equation::new(
         "5.1 K*, tail",
         "[-l7 sin θ6, -l8 sin θ7; l7 cos θ6, -l8 cos θ7]",
         "mm/rad",
-        |s| PASSIVE_TAIL.printed_error(s),
+        |sample| PASSIVE_TAIL.printed_error(sample),
     )
-    .clockwise(|s| PASSIVE_TAIL.clockwise_error(s))
-    .corrected("second column +l8 sin θ7, -l8 cos θ7", |s| {
-        PASSIVE_TAIL.corrected_error(s)
+    .clockwise(|sample| PASSIVE_TAIL.clockwise_error(sample))
+    .corrected("second column +l8 sin θ7, -l8 cos θ7", |sample| {
+        PASSIVE_TAIL.corrected_error(sample)
     }),
     Equation::new(
         "5.1 determinant of the printed K*",
         "l2 l3 l7 l8 l12 l13 l17 l18 sin 2θ11 sin 2θ14 (cos(θ2+θ3-θ6-θ7) - cos(θ2+θ3+θ6+θ7))/2",
         "per product of lengths; it follows from the printed matrix",
-        |s| {
-            let t = s.angles().t;
+        |sample| {
+            let t = sample.angles().t;
             let product = (t[2] + t[3]).sin() * (t[6] + t[7]).sin();
             let printed =
                 ((t[2] + t[3] - t[6] - t[7]).cos() - (t[2] + t[3] + t[6] + t[7]).cos()) / 2.0;
@@ -116,84 +116,84 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 singular head",
         "sin(θ2 + θ3) = 0",
         "in the sine",
-        |s| {
-            let t = s.angles().t;
-            Some(((t[2] + t[3]).sin().abs() - s.s.margins.type2[0]).abs())
+        |sample| {
+            let t = sample.angles().t;
+            Some(((t[2] + t[3]).sin().abs() - sample.s.margins.type2[0]).abs())
         },
     )
-    .clockwise(|s| {
-        let t = s.angles().t;
-        Some(((t[2] + PI - t[3]).sin().abs() - s.s.margins.type2[0]).abs())
+    .clockwise(|sample| {
+        let t = sample.angles().t;
+        Some(((t[2] + PI - t[3]).sin().abs() - sample.s.margins.type2[0]).abs())
     })
-    .corrected("sin(θ3 - θ2) = 0", |s| {
-        let t = s.angles().t;
+    .corrected("sin(θ3 - θ2) = 0", |sample| {
+        let t = sample.angles().t;
         // l2 l3 = 2500 mm^2.
-        Some(((t[3] - t[2]).sin() - determinant_sine(&passive_block(s, 0), 2500.0)).abs())
+        Some(((t[3] - t[2]).sin() - determinant_sine(&passive_block(sample, 0), 2500.0)).abs())
     })
-    .with_special_place("the neutral pose, which it flags", |s| {
-        let (home, sum) = neutral(s)?;
-        Some((sum.sin().abs() - home).abs())
+    .with_special_place("the neutral pose, which it flags", |sample| {
+        let (neutral_margin, sum) = neutral_margin_and_sum(sample)?;
+        Some((sum.sin().abs() - neutral_margin).abs())
     }),
     Equation::new(
         "5.1 singular tail",
         "sin(θ6 + θ7) = 0",
         "in the sine",
-        |s| {
-            let t = s.angles().t;
-            Some(((t[6] + t[7]).sin().abs() - s.s.margins.type2[1]).abs())
+        |sample| {
+            let t = sample.angles().t;
+            Some(((t[6] + t[7]).sin().abs() - sample.s.margins.type2[1]).abs())
         },
     )
-    .clockwise(|s| {
-        let t = s.angles().t;
-        Some(((t[6] + PI - t[7]).sin().abs() - s.s.margins.type2[1]).abs())
+    .clockwise(|sample| {
+        let t = sample.angles().t;
+        Some(((t[6] + PI - t[7]).sin().abs() - sample.s.margins.type2[1]).abs())
     })
-    .corrected("sin(θ7 - θ6) = 0", |s| {
-        let t = s.angles().t;
+    .corrected("sin(θ7 - θ6) = 0", |sample| {
+        let t = sample.angles().t;
         // l7 l8 = 2500 mm^2.
-        Some(((t[7] - t[6]).sin() - determinant_sine(&passive_block(s, 2), 2500.0)).abs())
+        Some(((t[7] - t[6]).sin() - determinant_sine(&passive_block(sample, 2), 2500.0)).abs())
     }),
     Equation::new(
         "5.1 singular left side",
         "sin 2θ11 = 0",
         "in the sine, of a block that is never singular",
-        |s| Some(1.0 - (2.0 * s.angles().t[11]).sin().abs()),
+        |sample| Some(1.0 - (2.0 * sample.angles().t[11]).sin().abs()),
     )
-    .corrected("never: the block's determinant is -d", |s| {
-        let [a, b, c, d] = passive_block(s, 4);
-        Some((a * d - b * c + s.s.left.d).abs())
+    .corrected("never: the block's determinant is -d", |sample| {
+        let [a, b, c, d] = passive_block(sample, 4);
+        Some((a * d - b * c + sample.s.left.d).abs())
     }),
     Equation::new(
         "5.1 singular right side",
         "sin 2θ14 = 0",
         "in the sine, of a block that is never singular",
-        |s| Some(1.0 - (2.0 * s.angles().t[14]).sin().abs()),
+        |sample| Some(1.0 - (2.0 * sample.angles().t[14]).sin().abs()),
     )
-    .corrected("never: the block's determinant is -d", |s| {
-        let [a, b, c, d] = passive_block(s, 6);
-        Some((a * d - b * c + s.s.right.d).abs())
+    .corrected("never: the block's determinant is -d", |sample| {
+        let [a, b, c, d] = passive_block(sample, 6);
+        Some((a * d - b * c + sample.s.right.d).abs())
     }),
     Equation::new(
         "5.2 shape of the leg's K",
         "K is 2x2 and holds θ_lg12, which is passive",
         "columns more than drives",
-        |s| Some(2.0 - mobility_of_leg(s)),
+        |sample| Some(2.0 - mobility_of_leg(sample)),
     )
-    .corrected("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |s| {
-        Some(1.0 - mobility_of_leg(s))
+    .corrected("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |sample| {
+        Some(1.0 - mobility_of_leg(sample))
     }),
     Equation::new(
         "5.2 singular leg",
         "-lg12 lg13 sin(θ_lg1 + θ_lg12 - θ_lg13) = 0",
         "in the sine",
-        |s| {
-            let theta = s.angles().t[1];
+        |sample| {
+            let theta = sample.angles().t[1];
             Some(((theta + 0.0 - theta).sin().abs() - theta.sin().abs()).abs())
         },
     )
     .corrected(
         "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",
-        |s| {
-            let (leg, theta) = (&s.lizard.leg, s.angles().t[1]);
+        |sample| {
+            let (leg, theta) = (&sample.lizard.leg, sample.angles().t[1]);
             // The columns for θ_lg12 = 0 and θ_lg13 = θ_lg1.
             let columns = [
                 0.0,
@@ -208,17 +208,17 @@ pub const EQUATIONS: &[Equation] = &[
 ];
 
 /// theta1 in the neutral pose, where every slider has its nominal length, degrees.
-fn home_angle(s: &Sample) -> f64 {
-    let l = &s.lizard.links;
+fn neutral_theta1(sample: &Sample) -> f64 {
+    let l = &sample.lizard.links;
     ((l.l12 + l.l13 - l.l10) / (l.l11 + l.l14))
         .acos()
         .to_degrees()
 }
 
 /// The head's type-2 margin and theta2 + theta3 (radians), both in the neutral pose.
-fn neutral(s: &Sample) -> Option<(f64, f64)> {
-    let theta1 = home_angle(s);
-    let pose = s
+fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
+    let theta1 = neutral_theta1(sample);
+    let pose = sample
         .lizard
         .end(End::Head)
         .forward(theta1, 180.0 - theta1)
@@ -238,65 +238,65 @@ struct Block {
 }
 
 const K_HEAD: Block = Block {
-    truth: |s| active_block(s, 0, 0, 1),
+    truth: |sample| active_block(sample, 0, 0, 1),
     angles: [1, 4],
     bars: [1, 4],
 };
 const K_TAIL: Block = Block {
-    truth: |s| active_block(s, 2, 3, 2),
+    truth: |sample| active_block(sample, 2, 3, 2),
     angles: [5, 8],
     bars: [6, 9],
 };
 const PASSIVE_HEAD: Block = Block {
-    truth: |s| passive_block(s, 0),
+    truth: |sample| passive_block(sample, 0),
     angles: [2, 3],
     bars: [2, 3],
 };
 const PASSIVE_TAIL: Block = Block {
-    truth: |s| passive_block(s, 2),
+    truth: |sample| passive_block(sample, 2),
     angles: [6, 7],
     bars: [7, 8],
 };
 
 impl Block {
     /// The largest error of the printed block.
-    fn printed_error(&self, s: &Sample) -> Option<f64> {
-        let right = s.angles().t[self.angles[1]];
+    fn printed_error(&self, sample: &Sample) -> Option<f64> {
+        let right_theta = sample.angles().t[self.angles[1]];
         Some(largest_difference(
-            &(self.truth)(s),
-            &self.block_with(s, right, -1.0),
+            &(self.truth)(sample),
+            &self.block_with(sample, right_theta, -1.0),
         ))
     }
 
     /// The largest error of the printed block if the right bar's angle is measured clockwise from
     /// -x. That reverses the sign of the derivative by this angle.
-    fn clockwise_error(&self, s: &Sample) -> Option<f64> {
-        let [a, b, c, d] = (self.truth)(s);
-        let right = PI - s.angles().t[self.angles[1]];
+    fn clockwise_error(&self, sample: &Sample) -> Option<f64> {
+        let [a, b, c, d] = (self.truth)(sample);
+        let right_theta = PI - sample.angles().t[self.angles[1]];
         Some(largest_difference(
             &[a, -b, c, -d],
-            &self.block_with(s, right, -1.0),
+            &self.block_with(sample, right_theta, -1.0),
         ))
     }
 
     /// The largest error of the corrected block.
-    fn corrected_error(&self, s: &Sample) -> Option<f64> {
-        let right = s.angles().t[self.angles[1]];
+    fn corrected_error(&self, sample: &Sample) -> Option<f64> {
+        let right_theta = sample.angles().t[self.angles[1]];
         Some(largest_difference(
-            &(self.truth)(s),
-            &self.block_with(s, right, 1.0),
+            &(self.truth)(sample),
+            &self.block_with(sample, right_theta, 1.0),
         ))
     }
 
     /// The block in the paper's form, with the right bar's angle (rad) and the sign of its sine.
-    fn block_with(&self, s: &Sample, right: f64, sign: f64) -> [f64; 4] {
-        let l = s.lizard.links.to_array();
-        let ([a, b], left) = (self.bars, s.angles().t[self.angles[0]]);
+    fn block_with(&self, sample: &Sample, right_theta: f64, sign: f64) -> [f64; 4] {
+        let l = sample.lizard.links.to_array();
+        let ([left_bar, right_bar], left_theta) = (self.bars, sample.angles().t[self.angles[0]]);
         [
-            -l[a] * left.sin(),
-            sign * l[b] * right.sin(),
-            l[a] * left.cos(),
-            -l[b] * right.cos(),
+            -l[left_bar] * left_theta.sin(),
+            sign * l[right_bar] * right_theta.sin(),
+            l[left_bar] * left_theta.cos(),
+            -l[right_bar] * right_theta.cos(),
         ]
     }
 }
@@ -306,23 +306,28 @@ fn largest_difference(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
     truth
         .iter()
         .zip(block)
-        .fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
+        .fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
 }
 
 /// A block of the true K: rows `row` and `row + 1`, and the columns of two servos.
-fn active_block(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4] {
-    let k = s.s.active_matrix();
+fn active_block(
+    sample: &Sample,
+    row: usize,
+    first_column: usize,
+    second_column: usize,
+) -> [f64; 4] {
+    let k = sample.s.active_matrix();
     [
-        k[row][first],
-        k[row][second],
-        k[row + 1][first],
-        k[row + 1][second],
+        k[row][first_column],
+        k[row][second_column],
+        k[row + 1][first_column],
+        k[row + 1][second_column],
     ]
 }
 
 /// The 2x2 block on the diagonal of the true K* that starts at `column`.
-fn passive_block(s: &Sample, column: usize) -> [f64; 4] {
-    let k = s.s.passive_matrix();
+fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
+    let k = sample.s.passive_matrix();
     [
         k[column][column],
         k[column][column + 1],
@@ -349,6 +354,6 @@ fn determinant_sine([a, b, c, d]: &[f64; 4], lengths: f64) -> f64 {
 }
 
 /// The degrees of freedom of a leg, which equal the number of its drives.
-fn mobility_of_leg(s: &Sample) -> f64 {
-    crate::paper::mobility::leg_freedoms(&s.lizard, &s.s) as f64
+fn mobility_of_leg(sample: &Sample) -> f64 {
+    crate::paper::mobility::leg_freedoms(&sample.lizard, &sample.s) as f64
 }

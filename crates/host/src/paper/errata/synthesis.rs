@@ -15,26 +15,26 @@ pub const EQUATIONS: &[Equation] = &[
         "2.1 mobility of the body",
         "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
         "freedoms against the rank of the constraints",
-        |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs()),
+        |sample| Some((mobility::body_freedoms(&sample.lizard, &sample.s) as f64 - 4.0).abs()),
     ),
     Equation::new(
         "2.2 mobility of a leg",
         "M = 1",
         "freedoms against the rank of the constraints",
-        |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs()),
+        |sample| Some((mobility::leg_freedoms(&sample.lizard, &sample.s) as f64 - 1.0).abs()),
     ),
     Equation::new(
         "3.1 dimensional factor",
         "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9",
         "mm",
-        |s| {
-            let (d, p) = (10.0 + 100.0 * s.random[0], Proportions::PAPER);
-            let bars = p.at_scale(d);
+        |sample| {
+            let (d, proportions) = (10.0 + 100.0 * sample.random[0], Proportions::PAPER);
+            let bars = proportions.at_scale(d);
             let sum = bars.crank_left + bars.coupler_left + bars.base / 2.0;
             Some(
                 (sum / SUM - d)
                     .abs()
-                    .max((p.scale_for_base(bars.base) - d).abs()),
+                    .max((proportions.scale_for_base(bars.base) - d).abs()),
             )
         },
     ),
@@ -42,8 +42,8 @@ pub const EQUATIONS: &[Equation] = &[
         "3.1 design space",
         "r3 < 0.45 assures r1 + r2 > r3",
         "D",
-        |s| {
-            let r3 = 0.45 * s.random[0];
+        |sample| {
+            let r3 = 0.45 * sample.random[0];
             Some((r3 - (SUM - r3)).max(0.0))
         },
     ),
@@ -51,46 +51,47 @@ pub const EQUATIONS: &[Equation] = &[
         "3.1.2 workspace circles (all four)",
         "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
         "mm in radius",
-        |s| circle_error(s, |y| y),
+        |sample| circle_error(sample, |y| y),
     )
-    .corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
-        circle_error(s, |y| y * y)
+    .corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |sample| {
+        circle_error(sample, |y| y * y)
     }),
     Equation::new(
         "3.1.3 maximal inscribed circle",
         "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
         "mm",
-        |s| {
-            let bars = s.lizard.end(End::Head);
+        |sample| {
+            let bars = sample.lizard.end(End::Head);
             let (sum, difference) = (
                 bars.crank_left + bars.coupler_left,
                 (bars.crank_left - bars.coupler_left).abs(),
             );
             let r = (sum - difference) / 2.0;
             let y = ((sum + difference).powi(2) / 4.0 - (bars.base / 2.0).powi(2)).sqrt();
-            let clearance = |x: f64, y: f64| {
-                let to_left = (x + bars.base / 2.0).hypot(y);
-                let to_right = (x - bars.base / 2.0).hypot(y);
-                [to_left, to_right]
+            let clearance_at = |x: f64, y: f64| {
+                let left_distance = (x + bars.base / 2.0).hypot(y);
+                let right_distance = (x - bars.base / 2.0).hypot(y);
+                [left_distance, right_distance]
                     .iter()
-                    .map(|d| (d - difference).min(sum - d))
+                    .map(|distance| (distance - difference).min(sum - distance))
                     .fold(f64::INFINITY, f64::min)
             };
             // The circle is inscribed, and no other centre allows a larger one.
-            let other = clearance(sum * (2.0 * s.random[0] - 1.0), sum * s.random[1]);
-            Some((clearance(0.0, y) - r).abs().max(other - r))
+            let other_radius =
+                clearance_at(sum * (2.0 * sample.random[0] - 1.0), sum * sample.random[1]);
+            Some((clearance_at(0.0, y) - r).abs().max(other_radius - r))
         },
     ),
     Equation::new(
         "3.1.4 conditioning",
         "LCI > 0.7 inside the inscribed circle",
         "of LCI short",
-        |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0)),
+        |sample| Some((CLAIM - lci_at(sample, 1.0)).max(0.0)),
     )
     .corrected(
         "LCI > 0.7 inside the concentric circle of half the radius; \
          over the whole circle as a mean only",
-        |s| Some((CLAIM - lci_at(s, 0.5)).max(0.0)),
+        |sample| Some((CLAIM - lci_at(sample, 0.5)).max(0.0)),
     ),
     Equation::new(
         "3.2 table of links",
@@ -107,16 +108,16 @@ pub const EQUATIONS: &[Equation] = &[
         "3.2 legs",
         "the parallelogram does not operate in the singularity zone",
         "of the margin 0.3 short",
-        |s| {
-            let (smallest, flat) = (0.3, 360.0 * s.random[0]);
-            Some((smallest - flat.to_radians().sin().abs()).max(0.0))
+        |sample| {
+            let (min_margin, angle_deg) = (0.3, 360.0 * sample.random[0]);
+            Some((min_margin - angle_deg.to_radians().sin().abs()).max(0.0))
         },
     )
     .corrected(
         "change points at theta_lg = 0 and 180; \
          the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
-        |s| {
-            let theta: f64 = 90.0 + 72.5 * (2.0 * s.random[0] - 1.0);
+        |sample| {
+            let theta: f64 = 90.0 + 72.5 * (2.0 * sample.random[0] - 1.0);
             Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
         },
     ),
@@ -124,34 +125,34 @@ pub const EQUATIONS: &[Equation] = &[
 
 /// The error, in radius, of the circle equation at random points on the limits of the arms' reach. `term` returns the
 /// equation's term in y.
-fn circle_error(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
-    let bars = s.lizard.end(End::Head);
-    let mut worst = 0.0_f64;
+fn circle_error(sample: &Sample, term: fn(f64) -> f64) -> Option<f64> {
+    let bars = sample.lizard.end(End::Head);
+    let mut largest_error = 0.0_f64;
     for shaft in [-bars.base / 2.0, bars.base / 2.0] {
         for radius in [
             bars.crank_left + bars.coupler_left,
             (bars.crank_left - bars.coupler_left).abs(),
         ] {
-            let rim = cis(radius, PI * s.random[0]);
+            let rim_point = cis(radius, PI * sample.random[0]);
             // x11 is measured from the middle of the base, the rim from the shaft.
-            let (x11, y11) = (rim.x + shaft, rim.y);
+            let (x11, y11) = (rim_point.x + shaft, rim_point.y);
             let square = (x11 - shaft).powi(2) + term(y11);
-            worst = worst.max((square.sqrt() - radius).abs());
+            largest_error = largest_error.max((square.sqrt() - radius).abs());
         }
     }
-    Some(worst)
+    Some(largest_error)
 }
 
 /// The LCI at a random point of the inscribed circle, shrunk by a factor.
-fn lci_at(s: &Sample, shrink: f64) -> f64 {
-    let bars = s.lizard.end(End::Head);
+fn lci_at(sample: &Sample, factor: f64) -> f64 {
+    let bars = sample.lizard.end(End::Head);
     Workspace::of(&bars)
         .inscribed_circle()
         .map_or(0.0, |circle| {
-            let radius = circle.radius * shrink * s.random[0].sqrt();
+            let radius = circle.radius * factor * sample.random[0].sqrt();
             lci(
                 &bars,
-                circle.centre + Vector::direction(360.0 * s.random[1]) * radius,
+                circle.centre + Vector::direction(360.0 * sample.random[1]) * radius,
             )
         })
 }
@@ -159,10 +160,10 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
 /// Number of the links l0 to l19 that the table does not list. `read_length` returns the link number of an entry, as
 /// printed or corrected, from its printed number and its length.
 fn count_unlisted_links(read_length: fn(usize, f64) -> usize) -> f64 {
-    let named = |link: usize| {
+    let is_listed = |link: usize| {
         TABLE
             .iter()
             .any(|(links, length)| links.iter().any(|&i| read_length(i, *length) == link))
     };
-    (0..20).filter(|&link| !named(link)).count() as f64
+    (0..20).filter(|&link| !is_listed(link)).count() as f64
 }

@@ -70,7 +70,7 @@ impl From<FirmwareError> for Failure {
 }
 
 /// The firmware to run for a robot: the given file, which must contain this robot, or the code inside this program
-/// followed by this robot. `file` is the robot's source.
+/// followed by this robot. `robot_file` is the robot's source.
 ///
 /// An image without a robot's section is another program and is accepted: running it shows what it does.
 ///
@@ -78,7 +78,7 @@ impl From<FirmwareError> for Failure {
 /// Fails if the file is missing, is not a program of an AVR, or has another robot in it.
 pub(crate) fn select_firmware(
     elf: Option<&Path>,
-    file: &RobotFile,
+    robot_file: &RobotFile,
     robot: &Robot,
 ) -> Result<Firmware, Failure> {
     let Some(elf) = elf else {
@@ -94,7 +94,7 @@ pub(crate) fn select_firmware(
         && robot_in_image.hash() != robot.firmware().hash()
     {
         return Err(FirmwareError::OtherRobot {
-            robot: file.name()?,
+            robot: robot_file.name()?,
             its: label(&robot_in_image),
             wanted: label(robot.firmware()),
             elf: elf.to_owned(),
@@ -107,9 +107,11 @@ pub(crate) fn select_firmware(
 
 /// Size of the code in an image with this robot, bytes, without the erased flash up to the section.
 pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
-    let end = image.symbol("__code_end").map(|end| end.address as u32);
+    let code_end = image
+        .symbol("__code_end")
+        .map(|code_end| code_end.address as u32);
     // A HEX file has no symbols. If it leaves out the erased flash, all bytes before the section are code.
-    end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
+    code_end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
 }
 
 /// The code inside this program followed by this robot.

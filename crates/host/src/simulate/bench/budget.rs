@@ -54,10 +54,10 @@ const TICK_DEADLINE: f64 = 63_000.0;
 /// The share of all cycles that interrupts leave to main while the line is saturated in both directions.
 const MAIN_SHARE: f64 = 0.87;
 /// Budgets of the control tick, mean and worst, cycles.
-const TICK: [f64; 2] = [5_000.0, 10_000.0];
+const TICK_BUDGET: [f64; 2] = [5_000.0, 10_000.0];
 /// Budgets of the control tick, mean and worst, cycles, for a robot whose gaits leave no room for the maps of
 /// certified cells, so that the guard measures every pose.
-const TICK_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
+const TICK_BUDGET_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
 /// Longest time that another interrupt may take without delaying a servo's edge, cycles: the servo interrupts start
 /// 220 cycles early and need 60 of them before they read the timer.
 const MAX_OTHER_INTERRUPT: f64 = 160.0;
@@ -77,42 +77,45 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         servo_library,
         wall_clock: false,
     };
-    let wall = |what, unit, measured, budget| Row {
+    let wall_row = |what, unit, measured, budget| Row {
         wall_clock: true,
         ..row(what, unit, Some(measured), budget, None)
     };
     let to_f64 = |figure: Option<u64>| figure.map(|figure| figure as f64);
     let count = |figure: u64| Some(figure as f64);
-    let f = figures;
-    let [tick_mean, tick_worst] = if f.has_maps { TICK } else { TICK_WITHOUT_MAPS };
+    let [tick_mean, tick_worst] = if figures.has_maps {
+        TICK_BUDGET
+    } else {
+        TICK_BUDGET_WITHOUT_MAPS
+    };
     #[rustfmt::skip]
     let table = vec![
-        row("pulse jitter, idle line", "cycles", to_f64(f.jitter_idle), AtMost(0.0), Some("77-113")),
-        row("pulse jitter, line saturated", "cycles", to_f64(f.jitter_flooded), AtMost(0.0), Some("121-135")),
-        row("width less command, worst", "cycles", to_f64(f.width_error), AtMost(0.0), None),
-        row("width resolution", "cycles", to_f64(f.resolution), AtMost(1.0), Some("16")),
-        row("period less 20 ms, worst", "cycles", count(f.period_error), AtMost(0.0), None),
-        row("servo pins high at once", "", count(f.pins_high.into()), AtMost(1.0), None),
-        row("late edges counted", "", count(f.late), AtMost(0.0), None),
-        row("bytes lost, sender waits", "bytes", count(f.lost), AtMost(0.0), None),
-        row("control tick, mean in any gait", "cycles", f.tick_mean, AtMost(tick_mean), None),
-        row("  of which the guard", "cycles", f.guard, Bound::None, Some("35 400, float solve")),
-        row("control tick, worst", "cycles", count(f.tick_worst), AtMost(tick_worst), None),
-        row("  in a routine, mean", "cycles", f.routine_mean, AtMost(tick_mean), None),
-        row("  in a routine, worst", "cycles", to_f64(f.routine_worst), AtMost(tick_worst), None),
-        row("tick to frame, line saturated", "cycles", count(f.tick_latency), AtMost(TICK_DEADLINE), None),
-        row("any other step, worst", "cycles", count(f.step), AtMost(MAIN_SHARE * TICK_DEADLINE - tick_worst), None),
-        row("main, mean per frame of a gait", "cycles", f.main, Bound::None, None),
-        row("servo interrupts per frame", "cycles", Some(f.servo_interrupts), Bound::None, Some("1 513")),
-        row("longest serial interrupt", "cycles", count(f.serial_interrupt), AtMost(MAX_OTHER_INTERRUPT), None),
-        row("CPU asleep in a gait", "%", f.asleep, AtLeast(90.0), Some("0")),
-        row("flash, code", "bytes", count(f.code.into()), AtMost(START.into()), Some("5 994")),
-        row("flash, the robot's section", "bytes", count(f.section.into()), AtMost(SPACE.into()), None),
-        row("static RAM", "bytes", count(f.static_ram.into()), AtMost(900.0), Some("365")),
-        row("between stack and static RAM", "bytes", count(f.stack_spare.into()), AtLeast(400.0), None),
-        row("  with the deepest stack", "bytes", Some(f.stack_margin.into()), AtLeast(400.0), None),
-        wall("ten simulated minutes", "s", f.wall, AtMost(MAX_RUN_S)),
-        wall("  times faster than a board", "", LONG_RUN_S / f.wall, Bound::None),
+        row("pulse jitter, idle line", "cycles", to_f64(figures.jitter_idle), AtMost(0.0), Some("77-113")),
+        row("pulse jitter, line saturated", "cycles", to_f64(figures.jitter_flooded), AtMost(0.0), Some("121-135")),
+        row("width less command, worst", "cycles", to_f64(figures.width_error), AtMost(0.0), None),
+        row("width resolution", "cycles", to_f64(figures.resolution), AtMost(1.0), Some("16")),
+        row("period less 20 ms, worst", "cycles", count(figures.period_error), AtMost(0.0), None),
+        row("servo pins high at once", "", count(figures.pins_high.into()), AtMost(1.0), None),
+        row("late edges counted", "", count(figures.late), AtMost(0.0), None),
+        row("bytes lost, sender waits", "bytes", count(figures.lost), AtMost(0.0), None),
+        row("control tick, mean in any gait", "cycles", figures.tick_mean, AtMost(tick_mean), None),
+        row("  of which the guard", "cycles", figures.guard, Bound::None, Some("35 400, float solve")),
+        row("control tick, worst", "cycles", count(figures.tick_worst), AtMost(tick_worst), None),
+        row("  in a routine, mean", "cycles", figures.routine_mean, AtMost(tick_mean), None),
+        row("  in a routine, worst", "cycles", to_f64(figures.routine_worst), AtMost(tick_worst), None),
+        row("tick to frame, line saturated", "cycles", count(figures.tick_latency), AtMost(TICK_DEADLINE), None),
+        row("any other step, worst", "cycles", count(figures.step), AtMost(MAIN_SHARE * TICK_DEADLINE - tick_worst), None),
+        row("main, mean per frame of a gait", "cycles", figures.main, Bound::None, None),
+        row("servo interrupts per frame", "cycles", Some(figures.servo_interrupts), Bound::None, Some("1 513")),
+        row("longest serial interrupt", "cycles", count(figures.serial_interrupt), AtMost(MAX_OTHER_INTERRUPT), None),
+        row("CPU asleep in a gait", "%", figures.asleep, AtLeast(90.0), Some("0")),
+        row("flash, code", "bytes", count(figures.code.into()), AtMost(START.into()), Some("5 994")),
+        row("flash, the robot's section", "bytes", count(figures.section.into()), AtMost(SPACE.into()), None),
+        row("static RAM", "bytes", count(figures.static_ram.into()), AtMost(900.0), Some("365")),
+        row("between stack and static RAM", "bytes", count(figures.stack_spare.into()), AtLeast(400.0), None),
+        row("  with the deepest stack", "bytes", Some(figures.stack_margin.into()), AtLeast(400.0), None),
+        wall_row("ten simulated minutes", "s", figures.wall, AtMost(MAX_RUN_S)),
+        wall_row("  times faster than a board", "", LONG_RUN_S / figures.wall, Bound::None),
     ];
     table
 }
@@ -131,7 +134,7 @@ mod tests {
             servo_library: None,
             wall_clock: false,
         };
-        for (measured, budget, met) in [
+        for (measured, budget, is_met) in [
             (Some(3.0), Bound::AtMost(3.0), true),
             (Some(3.1), Bound::AtMost(3.0), false),
             (Some(3.0), Bound::AtLeast(3.0), true),
@@ -140,7 +143,7 @@ mod tests {
             (None, Bound::AtLeast(3.0), true),
         ] {
             let row = row(measured, budget);
-            assert_eq!(row.is_met(), met, "{measured:?} {budget:?}");
+            assert_eq!(row.is_met(), is_met, "{measured:?} {budget:?}");
         }
     }
 }

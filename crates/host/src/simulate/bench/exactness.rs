@@ -24,64 +24,67 @@ pub struct Exactness {
 
 impl Exactness {
     /// Measures all pulses that the firmware of `robot` has sent so far. The commands that set them must be within
-    /// the first `commands` bytes that the board received.
+    /// the first `command_bytes` bytes that the board received.
     ///
     /// # Errors
     /// Fails if the board has sent no pulse.
     pub fn measure(
         board: &mut SimulatedBoard,
         robot: &CoreRobot,
-        commands: usize,
+        command_bytes: usize,
     ) -> Result<Self, BoardError> {
         let banner = board.lines().first().map(|line| line.text.clone());
-        let first = board.first_pulse()?;
+        let first_pulse = board.first_pulse()?;
         let pins = board.pins();
         let mut edges = board.uno.edges();
-        let count = (board.uno.cycle() - first_cycle(first)) / FRAME;
-        let frames_sent = group_frames(&edges, pins, first, count);
-        let received = &board.uno.received_by_uno()[..commands];
-        let commanded = core_run::play(*robot, received, first, frames_sent.len());
-        let is_known = banner.as_deref() == commanded.written.lines().next();
+        let frame_count = (board.uno.cycle() - first_cycle(first_pulse)) / FRAME;
+        let frames_sent = group_frames(&edges, pins, first_pulse, frame_count);
+        let received = &board.uno.received_by_uno()[..command_bytes];
+        let expected_run = core_run::play(*robot, received, first_pulse, frames_sent.len());
+        let is_known = banner.as_deref() == expected_run.written.lines().next();
 
-        let mut error = [i64::MAX, i64::MIN];
-        let (mut period, mut step) = (0, 0);
-        for (frame, commanded) in frames_sent.iter().zip(&commanded.widths) {
-            for (width, commanded) in frame.widths.iter().zip(commanded) {
-                let difference = width.unwrap_or(0) as i64 - i64::from(*commanded);
-                error = [error[0].min(difference), error[1].max(difference)];
+        let mut error_range = [i64::MAX, i64::MIN];
+        let (mut period_error, mut width_step) = (0, 0);
+        for (frame, commanded_widths) in frames_sent.iter().zip(&expected_run.widths) {
+            for (width, commanded_width) in frame.widths.iter().zip(commanded_widths) {
+                let difference = width.unwrap_or(0) as i64 - i64::from(*commanded_width);
+                error_range = [
+                    error_range[0].min(difference),
+                    error_range[1].max(difference),
+                ];
             }
         }
         for pair in frames_sent.windows(2) {
             for servo in 0..4 {
                 if let (Some(current), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo])
                 {
-                    period = (next - current).abs_diff(FRAME).max(period);
+                    period_error = (next - current).abs_diff(FRAME).max(period_error);
                 }
                 if let (Some(current), Some(next)) = (pair[0].widths[servo], pair[1].widths[servo])
                 {
-                    step = gcd(step, current.abs_diff(next));
+                    width_step = gcd(width_step, current.abs_diff(next));
                 }
             }
         }
         edges.retain(|edge| pins.contains(&edge.pin));
         Ok(Self {
-            error: is_known.then_some(error),
-            period_error: period,
+            error: is_known.then_some(error_range),
+            period_error,
             pins_high: most_pins_high(&edges),
-            step: (step > 0).then_some(step),
+            step: (width_step > 0).then_some(width_step),
         })
     }
 
     /// Peak-to-peak error of the widths, cycles.
     pub fn jitter(&self) -> Option<u64> {
         self.error
-            .map(|[smallest, largest]| largest.abs_diff(smallest))
+            .map(|[min_error, max_error]| max_error.abs_diff(min_error))
     }
 
     /// Worst deviation of a width from its command, cycles.
     pub fn max_width_error(&self) -> Option<u64> {
         self.error
-            .map(|[smallest, largest]| smallest.unsigned_abs().max(largest.unsigned_abs()))
+            .map(|[min_error, max_error]| min_error.unsigned_abs().max(max_error.unsigned_abs()))
     }
 }
 

@@ -81,11 +81,11 @@ pub struct Figures {
 }
 
 /// The function of the firmware that computes a frame: the control tick.
-const TICK: &str = "Control::frame";
+const TICK_FUNCTION: &str = "Control::frame";
 /// The guard's function in the ELF.
-const GUARD: &str = "clearance::find_hazard";
+const GUARD_FUNCTION: &str = "clearance::find_hazard";
 /// The functions of the steps of main other than the control tick.
-const STEPS: [&str; 3] = [
+const STEP_FUNCTIONS: [&str; 3] = [
     "Console::write_line",
     "Console::receive",
     "Control::write_memory",
@@ -120,98 +120,111 @@ const SERVO_VECTORS: [u8; 2] = [11, 12];
 const SERIAL_VECTORS: [u8; 2] = [18, 19];
 /// Cycles from the end of the interrupted instruction to the first instruction of the handler: 4 for the interrupt
 /// response and 3 for the jump in the vector table.
-const ENTRY: u64 = 7;
+const ENTRY_CYCLES: u64 = 7;
 /// Ten minutes, ms.
 const LONG_RUN_MS: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF with a robot. `patrolling` is the same robot with the routine [`PATROL`], if that is to be
-    /// measured, too. `progress` receives the name of each measurement.
+    /// Measures an ELF with a robot. `patrol_robot` is the same robot with the routine [`PATROL`], if that is to be
+    /// measured, too. `report_progress` receives the name of each measurement.
     ///
     /// # Errors
     /// Fails for a firmware that cannot be loaded, stops, or does not answer.
     pub fn measure(
         elf: &Path,
         robot: &Robot,
-        patrolling: Option<&Robot>,
-        progress: impl Fn(&'static str),
+        patrol_robot: Option<&Robot>,
+        report_progress: impl Fn(&'static str),
     ) -> Result<Self, Failure> {
         let gaits: Vec<String> = tour::demonstration_gaits(robot)
             .into_iter()
-            .map(command)
+            .map(command_of)
             .collect();
         // A robot that only stands is measured while it stands.
         let gait = gaits.first().map_or("stand", String::as_str);
-        let turn = gaits.last().map_or("stand", String::as_str);
-        let moves = !gaits.is_empty();
+        let turn_gait = gaits.last().map_or("stand", String::as_str);
+        let is_moving = !gaits.is_empty();
         let boot_board = || -> Result<SimulatedBoard, BoardError> {
             let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
             board.run_ms(1000)?;
             Ok(board)
         };
-        progress("the stack's depth");
+        report_progress("the stack's depth");
         let image = firmware::read(elf)?;
         let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
-        progress("pulses on an idle line");
-        let mut idle = GaitRun::of(boot_board()?, gait, 20_000)?;
-        let bytes_sent = idle.board.uno.received_by_uno().len();
-        let idle_exact = Exactness::measure(&mut idle.board, robot.firmware(), bytes_sent)?;
-        progress("pulses on a saturated line");
-        let (mut flooded, bytes_sent) = flood(boot_board()?, turn)?;
-        let flooded_exact = Exactness::measure(&mut flooded, robot.firmware(), bytes_sent)?;
-        progress("every command");
-        let mut session = run_all_commands(boot_board()?, robot)?;
-        progress("the control tick in every motion");
-        let ticks = time_calls_under(boot_board()?, TICK, &motions(robot))?;
-        let in_gaits = ticks.iter().take(robot.gaits().len());
-        progress("the control tick in a routine");
-        let in_routine = patrolling.map(|robot| patrol(elf, robot)).transpose()?;
-        progress("the guard");
-        let guard = mean(&time_calls_under(boot_board()?, GUARD, &[gait])?.concat());
-        progress("the control tick on a saturated line");
-        let tick_latency = latency(boot_board()?, turn)?;
-        progress("every other step");
+        report_progress("pulses on an idle line");
+        let mut idle_run = GaitRun::of(boot_board()?, gait, 20_000)?;
+        let bytes_sent = idle_run.board.uno.received_by_uno().len();
+        let idle_exactness = Exactness::measure(&mut idle_run.board, robot.firmware(), bytes_sent)?;
+        report_progress("pulses on a saturated line");
+        let (mut flooded_board, bytes_sent) = flood(boot_board()?, turn_gait)?;
+        let flooded_exactness =
+            Exactness::measure(&mut flooded_board, robot.firmware(), bytes_sent)?;
+        report_progress("every command");
+        let mut session_board = run_all_commands(boot_board()?, robot)?;
+        report_progress("the control tick in every motion");
+        let tick_calls = time_calls_under(boot_board()?, TICK_FUNCTION, &motion_commands(robot))?;
+        let gait_calls = tick_calls.iter().take(robot.gaits().len());
+        report_progress("the control tick in a routine");
+        let routine_calls = patrol_robot
+            .map(|robot| time_patrol(elf, robot))
+            .transpose()?;
+        report_progress("the guard");
+        let guard =
+            mean_cycles(&time_calls_under(boot_board()?, GUARD_FUNCTION, &[gait])?.concat());
+        report_progress("the control tick on a saturated line");
+        let tick_latency = longest_latency(boot_board()?, turn_gait)?;
+        report_progress("every other step");
         let step = longest_step(elf, robot)?;
-        progress("serial interrupts");
-        let serial_interrupt = longest_serial(boot_board, turn)?;
-        progress("ten minutes of a gait");
+        report_progress("serial interrupts");
+        let serial_interrupt = longest_serial(boot_board, turn_gait)?;
+        report_progress("ten minutes of a gait");
         let start = Instant::now();
-        let long = GaitRun::of(boot_board()?, gait, LONG_RUN_MS)?;
-        let wall = start.elapsed().as_secs_f64();
+        let long_run = GaitRun::of(boot_board()?, gait, LONG_RUN_MS)?;
+        let wall_s = start.elapsed().as_secs_f64();
 
-        let frames = idle.cycles as f64 / FRAME as f64;
-        let of_gait = |figure: f64| moves.then_some(figure);
+        let frames = idle_run.cycles as f64 / FRAME as f64;
+        let figure_of_gait = |figure: f64| is_moving.then_some(figure);
         let section = robot.section().len() as u32;
-        let width_error = idle_exact
+        let width_error = idle_exactness
             .max_width_error()
-            .zip(flooded_exact.max_width_error());
+            .zip(flooded_exactness.max_width_error());
         Ok(Self {
-            code: firmware::code_bytes(long.board.uno.image(), robot),
+            code: firmware::code_bytes(long_run.board.uno.image(), robot),
             section,
             has_maps: robot.has_room_for_maps(),
-            static_ram: long.board.uno.image().static_ram(),
-            stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
+            static_ram: long_run.board.uno.image().static_ram(),
+            stack_spare: session_board
+                .uno
+                .stack_spare()
+                .min(flooded_board.uno.stack_spare()),
             stack_margin: stack.margin(),
-            tick_mean: of_gait(in_gaits.map(|calls| mean(calls)).fold(0.0, f64::max)),
-            tick_worst: worst(&ticks.concat()),
-            routine_mean: in_routine.as_deref().map(mean),
-            routine_worst: in_routine.as_deref().map(worst),
+            tick_mean: figure_of_gait(
+                gait_calls
+                    .map(|calls| mean_cycles(calls))
+                    .fold(0.0, f64::max),
+            ),
+            tick_worst: most_cycles(&tick_calls.concat()),
+            routine_mean: routine_calls.as_deref().map(mean_cycles),
+            routine_worst: routine_calls.as_deref().map(most_cycles),
             tick_latency,
             step,
-            guard: of_gait(guard),
-            main: of_gait((idle.awake - idle.in_handlers) as f64 / frames),
-            servo_interrupts: idle.in_servos as f64 / frames,
+            guard: figure_of_gait(guard),
+            main: figure_of_gait((idle_run.awake - idle_run.in_handlers) as f64 / frames),
+            servo_interrupts: idle_run.in_servos as f64 / frames,
             serial_interrupt,
-            asleep: of_gait(100.0 - 100.0 * idle.awake as f64 / idle.cycles as f64),
-            jitter_idle: idle_exact.jitter(),
-            jitter_flooded: flooded_exact.jitter(),
+            asleep: figure_of_gait(100.0 - 100.0 * idle_run.awake as f64 / idle_run.cycles as f64),
+            jitter_idle: idle_exactness.jitter(),
+            jitter_flooded: flooded_exactness.jitter(),
             width_error: width_error.map(|(idle, flooded)| idle.max(flooded)),
-            period_error: idle_exact.period_error.max(flooded_exact.period_error),
-            pins_high: idle_exact.pins_high.max(flooded_exact.pins_high),
-            resolution: idle_exact.step,
-            late: session.read_counter("late")? + flooded.read_counter("late")?,
-            lost: session.read_counter("rx_lost")?,
-            wall,
+            period_error: idle_exactness
+                .period_error
+                .max(flooded_exactness.period_error),
+            pins_high: idle_exactness.pins_high.max(flooded_exactness.pins_high),
+            resolution: idle_exactness.step,
+            late: session_board.read_counter("late")? + flooded_board.read_counter("late")?,
+            lost: session_board.read_counter("rx_lost")?,
+            wall: wall_s,
             gait: gaits.first().cloned(),
         })
     }
@@ -224,18 +237,19 @@ impl Figures {
 pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
     let gait = tour::demonstration_gaits(robot)
         .first()
-        .map_or("stand".into(), |gait| command(gait));
-    let mut largest = 0;
-    for function in STEPS {
+        .map_or("stand".into(), |gait| command_of(gait));
+    let mut largest_cycles = 0;
+    for function in STEP_FUNCTIONS {
         let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
         board.run_ms(1000)?;
-        largest = longest_call(board, function, &gait, &long_lines(robot))?.max(largest);
+        largest_cycles =
+            longest_call(board, function, &gait, &long_lines(robot))?.max(largest_cycles);
     }
-    Ok(largest)
+    Ok(largest_cycles)
 }
 
 /// The console command of a gait.
-fn command(gait: &str) -> String {
+fn command_of(gait: &str) -> String {
     gait.replace('-', " ")
 }
 
@@ -252,7 +266,7 @@ impl GaitRun {
     fn of(mut board: SimulatedBoard, line: &str, ms: u64) -> Result<Self, BoardError> {
         board.say(line)?;
         board.run_ms(1000)?;
-        let counts = |board: &SimulatedBoard| {
+        let count_cycles = |board: &SimulatedBoard| {
             [
                 board.uno.cycle(),
                 board.uno.awake_cycles(),
@@ -260,9 +274,9 @@ impl GaitRun {
                 board.handler_cycles(|vector| SERVO_VECTORS.contains(&vector)),
             ]
         };
-        let counts_before = counts(&board);
+        let counts_before = count_cycles(&board);
         board.run_ms(ms)?;
-        let counts_after = counts(&board);
+        let counts_after = count_cycles(&board);
         let [cycles, awake, in_handlers, in_servos] =
             std::array::from_fn(|i| counts_after[i] - counts_before[i]);
         Ok(Self {
@@ -299,17 +313,17 @@ fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError>
 }
 
 /// Commands for every kind of motion: each gait after the previous one, a far pose, neutral, a stop.
-fn motions(robot: &Robot) -> Vec<String> {
-    let names = robot.gaits().iter().map(|gait| command(gait.name()));
+fn motion_commands(robot: &Robot) -> Vec<String> {
+    let names = robot.gaits().iter().map(|gait| command_of(gait.name()));
     let mut lines: Vec<String> = names.collect();
-    lines.push(pose(robot, [-35.0, 0.0, -35.0, 0.0]));
-    lines.push(pose(robot, [0.0; 4]));
+    lines.push(pose_command(robot, [-35.0, 0.0, -35.0, 0.0]));
+    lines.push(pose_command(robot, [0.0; 4]));
     lines.push("stop".into());
     lines
 }
 
 /// The command for a pose this many degrees from neutral.
-fn pose(robot: &Robot, turns: [f64; 4]) -> String {
+fn pose_command(robot: &Robot, turns: [f64; 4]) -> String {
     let neutral = <[f64; 4]>::from(robot.neutral());
     let [a1, a2, a3, a4]: [f64; 4] = std::array::from_fn(|i| neutral[i] + turns[i]);
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
@@ -321,18 +335,18 @@ fn run_all_commands(
     robot: &Robot,
 ) -> Result<SimulatedBoard, BoardError> {
     board.say("watch 1")?;
-    let mut lines = motions(robot);
+    let mut lines = motion_commands(robot);
     lines.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
     let gait = tour::demonstration_gaits(robot)
         .first()
         .copied()
-        .map(command);
+        .map(command_of);
     lines.extend(gait.clone());
     lines.push("rest".into());
     lines.extend(gait);
     lines.extend(["stand", "watch 0", "what", "speed", "speed 5"].map(str::to_owned));
-    lines.push(pose(robot, [-48.59, 48.59, 0.0, 0.0]));
-    lines.push(pose(robot, [11.41, 0.0, 0.0, -21.41]));
+    lines.push(pose_command(robot, [-48.59, 48.59, 0.0, 0.0]));
+    lines.push(pose_command(robot, [11.41, 0.0, 0.0, -21.41]));
     lines.push("a line that is longer than the sixty-three characters it may have".into());
     for line in &lines {
         board.say(line)?;
@@ -358,21 +372,21 @@ fn time_calls_under(
 /// Lines that take long to execute. Among them is an unknown name that has the most leading characters in common
 /// with the names of the gaits.
 fn long_lines(robot: &Robot) -> Vec<String> {
-    let names = || robot.gaits().iter().map(|gait| command(gait.name()));
-    let alike = |line: &String| -> usize {
-        let is_same_name = |name: String| {
+    let gait_names = || robot.gaits().iter().map(|gait| command_of(gait.name()));
+    let shared_count = |line: &String| -> usize {
+        let shared_length = |name: String| {
             zip(name.bytes(), line.bytes())
                 .take_while(|(a, b)| a == b)
                 .count()
         };
-        names().map(is_same_name).sum()
+        gait_names().map(shared_length).sum()
     };
-    let nearly = names().max_by_key(alike).unwrap_or_default();
+    let nearest_name = gait_names().max_by_key(shared_count).unwrap_or_default();
     let mut lines = LONG_LINES.map(str::to_owned).to_vec();
-    lines.push(format!("boot {nearly}"));
+    lines.push(format!("boot {nearest_name}"));
     lines.push("cal".into());
-    lines.push(format!("{nearly}x"));
-    lines.push(format!("boot {nearly}x"));
+    lines.push(format!("{nearest_name}x"));
+    lines.push(format!("boot {nearest_name}x"));
     lines
 }
 
@@ -385,18 +399,18 @@ fn longest_call(
     lines: &[String],
 ) -> Result<u64, BoardError> {
     board.say(gait)?;
-    let mut largest = 0;
+    let mut largest_cycles = 0;
     for line in lines {
         board.uno.send(line.as_bytes());
         board.uno.send(b"\n");
         let calls = board.time_calls(function, 400)?;
-        largest = largest.max(worst(&calls));
+        largest_cycles = largest_cycles.max(most_cycles(&calls));
     }
-    Ok(largest)
+    Ok(largest_cycles)
 }
 
 /// The control ticks of a patrol in which each input is closed and opened five times.
-fn patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
+fn time_patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
     let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
     board.run_ms(1000)?;
     board.say(PATROL)?;
@@ -405,43 +419,46 @@ fn patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
         for (_, pin) in robot.inputs().each() {
             for is_closed in [true, false] {
                 board.uno.set_contact(Pin::arduino(pin), is_closed);
-                calls.extend(board.time_calls(TICK, 1500)?);
+                calls.extend(board.time_calls(TICK_FUNCTION, 1500)?);
             }
         }
     }
     Ok(calls)
 }
 
-fn worst(calls: &[Call]) -> u64 {
+fn most_cycles(calls: &[Call]) -> u64 {
     calls.iter().map(Call::own_cycles).max().unwrap_or(0)
 }
 
-fn mean(calls: &[Call]) -> f64 {
-    let all: u64 = calls.iter().map(Call::own_cycles).sum();
-    all as f64 / calls.len().max(1) as f64
+fn mean_cycles(calls: &[Call]) -> f64 {
+    let total: u64 = calls.iter().map(Call::own_cycles).sum();
+    total as f64 / calls.len().max(1) as f64
 }
 
 /// The longest time from a tick to the return of the function that computes its frame, on a saturated line, cycles.
-fn latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
+fn longest_latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
     saturate(&mut board, gait)?;
-    let calls = board.time_calls(TICK, 5000)?;
+    let calls = board.time_calls(TICK_FUNCTION, 5000)?;
     // The tick is one slot before A1's pulse.
-    let tick = board.first_pulse()? - FRAME / 5;
-    let late = calls.iter().map(|call| (call.leave - tick) % FRAME);
-    Ok(late.max().unwrap_or(0))
+    let tick_cycle = board.first_pulse()? - FRAME / 5;
+    let latencies = calls.iter().map(|call| (call.leave - tick_cycle) % FRAME);
+    Ok(latencies.max().unwrap_or(0))
 }
 
 /// The longest serial interrupt on a saturated line, including the entry into its handler, cycles.
 fn longest_serial(
-    awake: impl Fn() -> Result<SimulatedBoard, BoardError>,
+    boot_board: impl Fn() -> Result<SimulatedBoard, BoardError>,
     gait: &str,
 ) -> Result<u64, BoardError> {
-    let mut longest = 0;
+    let mut longest_cycles = 0;
     for vector in SERIAL_VECTORS {
-        let mut board = awake()?;
+        let mut board = boot_board()?;
         saturate(&mut board, gait)?;
         let calls = board.time_calls(&format!("__vector_{vector}"), 2000)?;
-        longest = calls.iter().map(Call::cycles).fold(longest, u64::max);
+        longest_cycles = calls
+            .iter()
+            .map(Call::cycles)
+            .fold(longest_cycles, u64::max);
     }
-    Ok(longest + ENTRY)
+    Ok(longest_cycles + ENTRY_CYCLES)
 }

@@ -69,10 +69,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let robot = args.robot.load()?;
     firmware::select_firmware(Some(&elf), &args.robot, &robot)?;
-    let patrolling = with_patrol(&args.robot.text()?, &[]).ok();
+    let patrol_robot = with_patrol(&args.robot.text()?, &[]).ok();
     let progress = progress_bar(0, "{spinner} {msg}, {elapsed}");
     progress.enable_steady_tick(std::time::Duration::from_millis(100));
-    let figures = Figures::measure(&elf, &robot, patrolling.as_ref(), |step| {
+    let figures = Figures::measure(&elf, &robot, patrol_robot.as_ref(), |step| {
         progress.set_message(step);
     })?;
     progress.finish_and_clear();
@@ -86,15 +86,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         table::print(&rows, figures.gait.as_deref(), &mut out)?;
     }
-    let broken: Vec<&str> = rows
+    let broken_budgets: Vec<&str> = rows
         .iter()
         .filter(|row| !row.is_met())
         .map(|row| row.what)
         .collect();
-    if broken.is_empty() {
+    if broken_budgets.is_empty() {
         Ok(())
     } else {
-        let names = broken.join(", ");
+        let names = broken_budgets.join(", ");
         Err(Failure::Impossible(format!("over budget: {names}")))
     }
 }

@@ -92,9 +92,9 @@ pub struct CommandPath {
 impl ServoFrame {
     /// A frame that starts at a time (s) with these pulses (cycles).
     fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
-        let us = |width: u64| width as f64 / CYCLES_PER_US as f64;
+        let to_us = |width: u64| width as f64 / CYCLES_PER_US as f64;
         let turns = widths.map(|widths| -> [f64; 4] {
-            std::array::from_fn(|i| robot.servos()[i].sweep(us(widths[i])))
+            std::array::from_fn(|i| robot.servos()[i].sweep(to_us(widths[i])))
         });
         Self {
             seconds,
@@ -107,10 +107,10 @@ impl ServoFrame {
 
 /// The servo angles of frames, from the widths of their pulses.
 pub fn servo_frames_of(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
-    let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
+    let seconds_of = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
         .iter()
-        .map(|frame| ServoFrame::of(robot, seconds(frame), frame.all_widths()))
+        .map(|frame| ServoFrame::of(robot, seconds_of(frame), frame.all_widths()))
         .collect()
 }
 
@@ -129,11 +129,11 @@ impl<'a> Run<'a> {
         self,
         range: std::ops::Range<usize>,
     ) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
-        range.map(move |n| {
-            let widths = self.log.widths[n];
-            let all = widths.iter().all(|width| *width > 0);
-            let widths = all.then_some(widths.map(u64::from));
-            ServoFrame::of(self.robot, self.log.seconds(n), widths)
+        range.map(move |index| {
+            let widths = self.log.widths[index];
+            let has_all_widths = widths.iter().all(|width| *width > 0);
+            let widths = has_all_widths.then_some(widths.map(u64::from));
+            ServoFrame::of(self.robot, self.log.seconds(index), widths)
         })
     }
 
@@ -155,16 +155,16 @@ pub fn servo_reports(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoRe
     let frames = &run.log.widths;
     let mut slew = [0.0f64; 4];
     let mut angles_before = None;
-    for angles in run.servo_frames().map(|instant| instant.angles) {
+    for angles in run.servo_frames().map(|servo_frame| servo_frame.angles) {
         if let (Some(angles_before), Some(angles)) = (angles_before, angles) {
             let angles_before: [f64; 4] = angles_before;
             slew = std::array::from_fn(|i| slew[i].max((angles[i] - angles_before[i]).abs()));
         }
         angles_before = angles;
     }
-    let row = |i: usize| {
+    let report_of = |i: usize| {
         let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
-        let us = |width: Option<u16>| f64::from(width.unwrap_or(0)) / CYCLES_PER_US as f64;
+        let to_us = |width: Option<u16>| f64::from(width.unwrap_or(0)) / CYCLES_PER_US as f64;
         let width_error = commands.map(|commands| {
             let pairs = frames.iter().zip(commands);
             let errors = pairs.map(|(frame, command)| frame[i].abs_diff(command[i]));
@@ -175,14 +175,14 @@ pub fn servo_reports(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoRe
             leg: LEGS[i],
             pin: pin_name(run.robot.servos()[i].pin),
             pulses: widths().count(),
-            min_us: us(widths().min()),
-            max_us: us(widths().max()),
+            min_us: to_us(widths().min()),
+            max_us: to_us(widths().max()),
             width_error,
             period_error: run.log.period_error[i],
             slew: slew[i] * FREQUENCY as f64 / FRAME as f64,
         }
     };
-    (0..4).map(row).collect()
+    (0..4).map(report_of).collect()
 }
 
 /// Solves every pose of the run, and collects margins, strokes and violations.
@@ -194,27 +194,27 @@ pub fn check_safety(run: Run<'_>) -> Safety {
         first_violation: None,
     };
     // A standing robot repeats its pose, which is solved only once.
-    let mut latest: Option<([f64; 4], Option<String>)> = None;
-    for instant in run.servo_frames() {
-        let Some(angles) = instant.angles else {
+    let mut latest_pose: Option<([f64; 4], Option<String>)> = None;
+    for servo_frame in run.servo_frames() {
+        let Some(angles) = servo_frame.angles else {
             continue;
         };
-        let broken = match latest.take() {
-            Some((before, broken)) if before == angles => broken,
-            _ => safety.add(run.robot, angles, instant.seconds),
+        let violation = match latest_pose.take() {
+            Some((angles_before, violation)) if angles_before == angles => violation,
+            _ => safety.add_pose(run.robot, angles, servo_frame.seconds),
         };
-        if let Some(reason) = &broken {
+        if let Some(reason) = &violation {
             safety.violations += 1;
             safety.first_violation.get_or_insert_with(|| reason.clone());
         }
-        latest = Some((angles, broken));
+        latest_pose = Some((angles, violation));
     }
     safety
 }
 
 impl Safety {
     /// Adds a pose; returns the reason if it is infeasible or breaks a limit.
-    fn add(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
+    fn add_pose(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
         let solution = match robot.lizard().solve(&angles.into()) {
             Err(infeasible) => return Some(infeasible.to_string()),
             Ok(solution) => solution,
@@ -227,8 +227,8 @@ impl Safety {
                 seconds,
             });
         }
-        for s in [solution.left.s, solution.right.s] {
-            self.stroke = [self.stroke[0].min(s), self.stroke[1].max(s)];
+        for travel in [solution.left.s, solution.right.s] {
+            self.stroke = [self.stroke[0].min(travel), self.stroke[1].max(travel)];
         }
         let violation = robot.limits().violations(&solution).next();
         violation.map(|violation| violation.to_string())
@@ -243,30 +243,30 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
         run,
         travels: HashMap::new(),
     };
-    let mut sum = NO_TRAVEL;
-    let mut all_known = [true; 3];
+    let mut total = NO_TRAVEL;
+    let mut are_all_decided = [true; 3];
     let mut predictions = HashMap::new();
     let mut paths = Vec::with_capacity(spans.len() + 1);
     for span in spans {
         let mut travel = NO_TRAVEL;
-        for n in run.log.index(span.from)..run.log.index(span.to) {
-            let step = steps.travel_from(n);
-            travel = compose_travel(travel, step);
-            sum = compose_travel(sum, step);
+        for index in run.log.index(span.from)..run.log.index(span.to) {
+            let step_travel = steps.travel_from(index);
+            travel = compose_travel(travel, step_travel);
+            total = compose_travel(total, step_travel);
         }
-        let predicted = *predictions
+        let are_decided = *predictions
             .entry(span.command.as_str())
             .or_insert_with(|| decided_parts(run.robot, &span.command));
-        all_known = std::array::from_fn(|part| all_known[part] && predicted[part]);
+        are_all_decided = std::array::from_fn(|part| are_all_decided[part] && are_decided[part]);
         paths.push(CommandPath::new(
             &span.command,
             [span.from, span.to],
             travel,
-            predicted,
+            are_decided,
         ));
     }
     let end = spans.last().map_or(0.0, |span| span.to);
-    paths.push(CommandPath::new("all", [0.0, end], sum, all_known));
+    paths.push(CommandPath::new("all", [0.0, end], total, are_all_decided));
     paths
 }
 
@@ -280,8 +280,8 @@ fn decided_parts(robot: &Robot, command: &str) -> [bool; 3] {
 }
 
 impl CommandPath {
-    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, known: [bool; 3]) -> Self {
-        let [forward, left, turn] = known;
+    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, are_decided: [bool; 3]) -> Self {
+        let [forward, left, turn] = are_decided;
         Self {
             command: command.to_owned(),
             from,
@@ -311,22 +311,22 @@ struct TravelCache<'a> {
 }
 
 impl TravelCache<'_> {
-    /// The movement from frame number `n` to the next; zero while the robot rests, and for the last frame.
-    fn travel_from(&mut self, n: usize) -> Travel {
+    /// The movement from frame number `index` to the next; zero while the robot rests, and for the last frame.
+    fn travel_from(&mut self, index: usize) -> Travel {
         /// Largest number of pairs that are kept: a few megabytes.
         const MAX_CACHED_PAIRS: usize = 100_000;
         let frames = &self.run.log.widths;
-        let Some(next) = frames.get(n + 1) else {
+        let Some(next) = frames.get(index + 1) else {
             return NO_TRAVEL;
         };
-        let pair = [frames[n], *next];
+        let pair = [frames[index], *next];
         if let Some(travel) = self.travels.get(&pair) {
             return *travel;
         }
         let sweeps = self
             .run
-            .servo_frames_in(n..n + 2)
-            .filter_map(|instant| instant.sweeps);
+            .servo_frames_in(index..index + 2)
+            .filter_map(|servo_frame| servo_frame.sweeps);
         let travel = self.run.robot.ground().rigid().travel(sweeps);
         if self.travels.len() < MAX_CACHED_PAIRS {
             self.travels.insert(pair, travel);

@@ -89,11 +89,16 @@ pub struct Commands {
     pub written: String,
 }
 
-/// Runs the core of a robot on a recording: `received` are the bytes that reached the UNO, `first` is the cycle of
-/// A1's first pulse, `count` the number of frames from that pulse on. The result is exact except for the lines of
-/// [`undecided_lines`].
-pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
-    play_with_contacts(robot, received, &[], first, count)
+/// Runs the core of a robot on a recording: `received` are the bytes that reached the UNO, `first_pulse` is the cycle
+/// of A1's first pulse, `frame_count` the number of frames from that pulse on. The result is exact except for the lines
+/// of [`undecided_lines`].
+pub fn play(
+    robot: Robot<'static>,
+    received: &[SerialByte],
+    first_pulse: u64,
+    frame_count: usize,
+) -> Commands {
+    play_with_contacts(robot, received, &[], first_pulse, frame_count)
 }
 
 /// Runs the core of a robot like [`play`], but with contacts that close and open.
@@ -101,44 +106,44 @@ pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],
     contacts: &[ContactChange],
-    first: u64,
-    count: usize,
+    first_pulse: u64,
+    frame_count: usize,
 ) -> Commands {
     let mut contacts = contacts.iter().peekable();
-    let silent = frames_before_waking(robot);
+    let silent_frames = frames_before_waking(robot);
     let mut run = CoreRun::new(robot);
     let mut received = received.iter().peekable();
-    let mut widths = Vec::with_capacity(count);
-    for frame in 0..silent + count {
-        let start = first + frame as u64 * FRAME;
+    let mut widths = Vec::with_capacity(frame_count);
+    for frame_index in 0..silent_frames + frame_count {
+        let start = first_pulse + frame_index as u64 * FRAME;
         // A tick is one slot before the first pulse of the frame that it begins.
-        let tick = start.saturating_sub(silent as u64 * FRAME + SLOT);
+        let tick_cycle = start.saturating_sub(silent_frames as u64 * FRAME + SLOT);
         loop {
-            let retry = run.next_wake().filter(|retry| *retry < tick);
-            let due = |byte: &&SerialByte| {
-                byte.cycle < tick && retry.is_none_or(|retry| byte.cycle < retry)
+            let next_wake = run.next_wake().filter(|next_wake| *next_wake < tick_cycle);
+            let is_due = |byte: &&SerialByte| {
+                byte.cycle < tick_cycle && next_wake.is_none_or(|next_wake| byte.cycle < next_wake)
             };
-            if let Some(byte) = received.next_if(due) {
+            if let Some(byte) = received.next_if(is_due) {
                 run.running.board.send(&[byte.byte]);
                 run.wake(byte.cycle);
-            } else if let Some(retry) = retry {
-                run.wake(retry);
+            } else if let Some(next_wake) = next_wake {
+                run.wake(next_wake);
             } else {
                 break;
             }
         }
-        while let Some(change) = contacts.next_if(|change| change.ms * CYCLES_PER_MS < tick) {
+        while let Some(change) = contacts.next_if(|change| change.ms * CYCLES_PER_MS < tick_cycle) {
             let bit = 1 << change.pin;
-            let closed = &mut run.running.board.closed;
-            *closed = if change.is_closed {
-                *closed | bit
+            let closed_pins = &mut run.running.board.closed;
+            *closed_pins = if change.is_closed {
+                *closed_pins | bit
             } else {
-                *closed & !bit
+                *closed_pins & !bit
             };
         }
-        let pulses = run.tick(tick);
-        if frame >= silent {
-            widths.push(pulses);
+        let pulse_widths = run.tick(tick_cycle);
+        if frame_index >= silent_frames {
+            widths.push(pulse_widths);
         }
     }
     Commands {
@@ -148,12 +153,13 @@ pub fn play_with_contacts(
 }
 
 /// Indices of the lines that end so shortly before a tick that a few cycles decide if main has read them in time.
-pub fn undecided_lines(received: &[SerialByte], first: u64) -> impl Iterator<Item = usize> {
-    let tick = first.saturating_sub(SLOT) % FRAME;
-    let ends = received.iter().filter(|byte| byte.byte == b'\n');
-    let left = ends.map(move |end| (tick + FRAME - end.cycle % FRAME) % FRAME);
-    left.enumerate()
-        .filter_map(|(line, left)| (left < MAX_READING_CYCLES).then_some(line))
+pub fn undecided_lines(received: &[SerialByte], first_pulse: u64) -> impl Iterator<Item = usize> {
+    let tick_cycle = first_pulse.saturating_sub(SLOT) % FRAME;
+    let line_ends = received.iter().filter(|byte| byte.byte == b'\n');
+    let cycles_left = line_ends.map(move |end| (tick_cycle + FRAME - end.cycle % FRAME) % FRAME);
+    cycles_left
+        .enumerate()
+        .filter_map(|(line, cycles_left)| (cycles_left < MAX_READING_CYCLES).then_some(line))
 }
 
 /// Number of frames before A1's first pulse, if no command comes.

@@ -55,11 +55,11 @@ impl Printer {
     /// # Errors
     /// Fails if writing fails.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
-        let left_out = std::mem::take(&mut self.run).saturating_sub(MAX_SHOWN_LINES);
-        if left_out > 0 {
+        let hidden_count = std::mem::take(&mut self.run).saturating_sub(MAX_SHOWN_LINES);
+        if hidden_count > 0 {
             writeln!(
                 out,
-                "               ({left_out} more lines `# t=`; --all prints them)"
+                "               ({hidden_count} more lines `# t=`; --all prints them)"
             )?;
         }
         Ok(())
@@ -84,20 +84,22 @@ mod tests {
 
     #[test]
     fn a_run_of_watch_lines_is_counted_and_every_other_line_is_printed() {
-        let watch = [(Sender::Robot, "# t=1 pose=1,2,3,4"); 5];
+        let watch_lines = [(Sender::Robot, "# t=1 pose=1,2,3,4"); 5];
         let mut lines = vec![(Sender::User, "watch 1"), (Sender::Robot, "ok watch 1")];
-        lines.extend(watch);
+        lines.extend(watch_lines);
         lines.push((Sender::Robot, "# hold"));
-        lines.extend(&watch[..3]);
+        lines.extend(&watch_lines[..3]);
         lines.push((Sender::User, "# t=0"));
-        lines.extend(&watch[..4]);
-        let short = print_lines(false, &lines);
-        assert_eq!(short.matches("# t=1").count(), 9, "{short}");
-        assert!(short.contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold"));
-        assert!(short.ends_with("(1 more lines `# t=`; --all prints them)\n"));
-        assert_eq!(short.matches("more lines").count(), 2);
-        let all = print_lines(true, &lines);
-        assert_eq!(all.lines().count(), lines.len());
-        assert!(all.starts_with("    1.500 s  > watch 1\n    1.500 s    ok watch 1\n"));
+        lines.extend(&watch_lines[..4]);
+        let short_text = print_lines(false, &lines);
+        assert_eq!(short_text.matches("# t=1").count(), 9, "{short_text}");
+        assert!(
+            short_text.contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold")
+        );
+        assert!(short_text.ends_with("(1 more lines `# t=`; --all prints them)\n"));
+        assert_eq!(short_text.matches("more lines").count(), 2);
+        let full_text = print_lines(true, &lines);
+        assert_eq!(full_text.lines().count(), lines.len());
+        assert!(full_text.starts_with("    1.500 s  > watch 1\n    1.500 s    ok watch 1\n"));
     }
 }

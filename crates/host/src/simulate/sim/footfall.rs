@@ -33,16 +33,16 @@ pub struct FootSpan {
 
 /// The movements of a servo's foot, in order of time; no span while the servo rests.
 pub fn foot_spans(
-    instants: impl Iterator<Item = ServoFrame> + Clone,
+    servo_frames: impl Iterator<Item = ServoFrame> + Clone,
     servo: usize,
 ) -> Vec<FootSpan> {
-    let frame = FRAME as f64 / FREQUENCY as f64;
+    let frame_s = FRAME as f64 / FREQUENCY as f64;
     let mut spans: Vec<FootSpan> = Vec::new();
-    for (current, next) in instants.clone().zip(instants.skip(1)) {
+    for (current, next) in servo_frames.clone().zip(servo_frames.skip(1)) {
         let (Some(before), Some(after)) = (current.sweeps, next.sweeps) else {
             continue;
         };
-        let rate = (after[servo] - before[servo]) / frame;
+        let rate = (after[servo] - before[servo]) / frame_s;
         let phase = if rate.abs() < MAX_STILL_RATE {
             Phase::Still
         } else if rate > 0.0 {
@@ -52,7 +52,9 @@ pub fn foot_spans(
         };
         let (from, to) = (current.seconds, next.seconds);
         match spans.last_mut() {
-            Some(last) if last.phase == phase && from - last.to < frame / 2.0 => last.to = to,
+            Some(last_span) if last_span.phase == phase && from - last_span.to < frame_s / 2.0 => {
+                last_span.to = to
+            }
             _ => spans.push(FootSpan { phase, from, to }),
         }
     }
@@ -65,7 +67,7 @@ mod tests {
     use lizard_robot::servo::FORWARD;
 
     /// Five seconds of a gait, then a second of rest.
-    fn instants(gait: &str) -> Vec<ServoFrame> {
+    fn gait_frames(gait: &str) -> Vec<ServoFrame> {
         let robot = crate::shared::robot_file::named("paper");
         let gait = robot.gait(gait).expect("it is in robot.toml");
         let neutral: [f64; 4] = robot.neutral().into();
@@ -73,45 +75,46 @@ mod tests {
             .map(|n| f64::from(n) / 50.0)
             .map(|seconds| {
                 let angles = (seconds < 5.0).then(|| gait.angles(gait.phase(seconds)));
-                let sweep = |angles: [f64; 4], i: usize| (angles[i] - neutral[i]) * FORWARD[i];
+                let sweep_of = |angles: [f64; 4], i: usize| (angles[i] - neutral[i]) * FORWARD[i];
                 ServoFrame {
                     seconds,
                     angles,
-                    sweeps: angles.map(|angles| std::array::from_fn(|i| sweep(angles, i))),
+                    sweeps: angles.map(|angles| std::array::from_fn(|i| sweep_of(angles, i))),
                 }
             })
             .collect()
     }
 
-    /// The movement of a servo's foot at a time of [`instants`]; `None` while the robot rests.
+    /// The movement of a servo's foot at a time of [`gait_frames`]; `None` while the robot rests.
     fn phase_at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
-        let spans = foot_spans(instants(gait).into_iter(), servo);
-        let here = spans
+        let spans = foot_spans(gait_frames(gait).into_iter(), servo);
+        let span = spans
             .iter()
-            .find(|stretch| (stretch.from..stretch.to).contains(&seconds));
-        here.map(|stretch| stretch.phase)
+            .find(|span| (span.from..span.to).contains(&seconds));
+        span.map(|span| span.phase)
     }
 
     #[test]
     fn walk_is_three_quarters_stance_and_every_foot_returns_once_a_second() {
         for servo in 0..4 {
-            let spans = foot_spans(instants("walk").into_iter(), servo);
-            let within = |phase| {
-                let ours = spans.iter().filter(move |stretch| stretch.phase == phase);
-                ours.map(|stretch| stretch.to.min(4.0) - stretch.from.max(1.0))
+            let spans = foot_spans(gait_frames("walk").into_iter(), servo);
+            let seconds_in = |phase| {
+                let phase_spans = spans.iter().filter(move |span| span.phase == phase);
+                phase_spans
+                    .map(|span| span.to.min(4.0) - span.from.max(1.0))
                     .filter(|seconds| *seconds > 0.0)
                     .sum::<f64>()
             };
             // A foot is still only where it reverses.
             assert!(
-                (within(Phase::Stance) - 2.25).abs() < 0.13,
+                (seconds_in(Phase::Stance) - 2.25).abs() < 0.13,
                 "{}",
-                within(Phase::Stance)
+                seconds_in(Phase::Stance)
             );
             assert!(
-                (within(Phase::Swing) - 0.75).abs() < 0.13,
+                (seconds_in(Phase::Swing) - 0.75).abs() < 0.13,
                 "{}",
-                within(Phase::Swing)
+                seconds_in(Phase::Swing)
             );
         }
     }

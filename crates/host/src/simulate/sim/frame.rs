@@ -54,10 +54,14 @@ pub fn first_cycle(start: u64) -> u64 {
     start.saturating_sub(SLOT / 2)
 }
 
-/// Start of the first frame that opens, half a slot before its start, at cycle `now` or
+/// Start of the first frame that opens, half a slot before its start, at cycle `current_cycle` or
 /// later. Frames start at cycle `anchor` and every 20 ms after it.
-pub fn next_start(anchor: u64, now: u64) -> u64 {
-    anchor + (now + SLOT / 2).saturating_sub(anchor).div_ceil(FRAME) * FRAME
+pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
+    anchor
+        + (current_cycle + SLOT / 2)
+            .saturating_sub(anchor)
+            .div_ceil(FRAME)
+            * FRAME
 }
 
 /// Cycle of the last rising edge of A1; `None` without one.
@@ -71,19 +75,19 @@ pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
 
 /// Groups the pulses of these edges into the `count` frames from cycle `start` on.
 pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
-    let empty = |n| Frame {
+    let empty_frame = |n| Frame {
         start: start + n * FRAME,
         starts: [None; 4],
         widths: [None; 4],
     };
-    let mut frames: Vec<Frame> = (0..count).map(empty).collect();
-    let first = first_cycle(start);
+    let mut frames: Vec<Frame> = (0..count).map(empty_frame).collect();
+    let group_start = first_cycle(start);
     for (servo, pin) in pins.into_iter().enumerate() {
         for pulse in pulses(edges, pin) {
-            let Some(since) = pulse.start.checked_sub(first) else {
+            let Some(offset) = pulse.start.checked_sub(group_start) else {
                 continue;
             };
-            if let Some(frame) = frames.get_mut((since / FRAME) as usize) {
+            if let Some(frame) = frames.get_mut((offset / FRAME) as usize) {
                 frame.starts[servo] = Some(pulse.start);
                 frame.widths[servo] = Some(pulse.width);
             }
@@ -98,7 +102,7 @@ mod tests {
 
     const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::d(11), Pin::d(3)];
 
-    fn pulse(start: u64, width: u64, pin: Pin) -> [Edge; 2] {
+    fn pulse_edges(start: u64, width: u64, pin: Pin) -> [Edge; 2] {
         [
             Edge {
                 cycle: start,
@@ -117,9 +121,9 @@ mod tests {
     fn a_pulse_that_starts_a_little_early_belongs_to_the_next_frame() {
         let start = 1_000_000;
         let mut edges = Vec::new();
-        edges.extend(pulse(start, 24_000, PINS[0]));
-        edges.extend(pulse(start + 3 * SLOT, 25_000, PINS[3]));
-        edges.extend(pulse(start + FRAME - 1, 26_000, PINS[0]));
+        edges.extend(pulse_edges(start, 24_000, PINS[0]));
+        edges.extend(pulse_edges(start + 3 * SLOT, 25_000, PINS[3]));
+        edges.extend(pulse_edges(start + FRAME - 1, 26_000, PINS[0]));
         let frames = group_frames(&edges, PINS, start, 3);
         assert_eq!(frames[0].widths, [Some(24_000), None, None, Some(25_000)]);
         assert_eq!(frames[1].widths, [Some(26_000), None, None, None]);

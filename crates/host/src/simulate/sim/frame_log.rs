@@ -19,16 +19,16 @@ pub struct FrameLog {
 }
 
 impl FrameLog {
-    /// Seconds from power-on to the start of frame number `n`.
-    pub fn seconds(&self, n: usize) -> f64 {
-        (self.first + n as u64 * FRAME) as f64 / FREQUENCY as f64
+    /// Seconds from power-on to the start of frame number `index`.
+    pub fn seconds(&self, index: usize) -> f64 {
+        (self.first + index as u64 * FRAME) as f64 / FREQUENCY as f64
     }
 
     /// Number of the first frame that starts at a time or later; the number of all frames if none does.
     pub fn index(&self, seconds: f64) -> usize {
-        let since = seconds * FREQUENCY as f64 - self.first as f64;
-        let n = (since / FRAME as f64).ceil().max(0.0) as usize;
-        n.min(self.widths.len())
+        let offset_cycles = seconds * FREQUENCY as f64 - self.first as f64;
+        let index = (offset_cycles / FRAME as f64).ceil().max(0.0) as usize;
+        index.min(self.widths.len())
     }
 }
 
@@ -74,8 +74,8 @@ impl FrameReader {
                     self.has_started = true;
                 }
                 self.rise[servo] = Some(edge.cycle);
-                let high = self.rise.iter().flatten().count() as u32;
-                self.log.most_pins_high = self.log.most_pins_high.max(high);
+                let high_count = self.rise.iter().flatten().count() as u32;
+                self.log.most_pins_high = self.log.most_pins_high.max(high_count);
             } else if let Some(start) = self.rise[servo].take() {
                 self.record_pulse(servo, start, edge.cycle - start);
             }
@@ -84,22 +84,22 @@ impl FrameReader {
 
     /// Adds a pulse to the log. Ignores a pulse before A1's first one.
     fn record_pulse(&mut self, servo: usize, start: u64, width: u64) {
-        let Some(since) = start.checked_sub(first_cycle(self.log.first)) else {
+        let Some(offset_cycles) = start.checked_sub(first_cycle(self.log.first)) else {
             return;
         };
         if !self.has_started {
             return;
         }
-        let n = (since / FRAME) as usize;
-        if self.log.widths.len() <= n {
-            self.log.widths.resize(n + 1, [0; 4]);
+        let index = (offset_cycles / FRAME) as usize;
+        if self.log.widths.len() <= index {
+            self.log.widths.resize(index + 1, [0; 4]);
         }
-        self.log.widths[n][servo] = u16::try_from(width).unwrap_or(u16::MAX);
-        if let Some((before, at)) = self.latest[servo].replace((n, start))
-            && before + 1 == n
+        self.log.widths[index][servo] = u16::try_from(width).unwrap_or(u16::MAX);
+        if let Some((previous_index, previous_start)) = self.latest[servo].replace((index, start))
+            && previous_index + 1 == index
         {
             let error = &mut self.log.period_error[servo];
-            *error = (*error).max((start - at).abs_diff(FRAME));
+            *error = (*error).max((start - previous_start).abs_diff(FRAME));
         }
     }
 
@@ -122,12 +122,12 @@ mod tests {
 
     const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::a(0), Pin::d(3)];
 
-    fn pulse(pin: Pin, start: u64, width: u64) -> [Edge; 2] {
+    fn pulse_edges(pin: Pin, start: u64, width: u64) -> [Edge; 2] {
         [(start, true), (start + width, false)].map(|(cycle, high)| Edge { cycle, pin, high })
     }
 
     /// Reads the edges in two parts, split at index `cut`.
-    fn read(edges: &[Edge], cut: usize, cycle: u64) -> FrameLog {
+    fn read_in_two(edges: &[Edge], cut: usize, cycle: u64) -> FrameLog {
         let mut reader = FrameReader::new(PINS, 0);
         reader.read(edges[..cut].to_vec());
         reader.read(edges[cut..].to_vec());
@@ -138,16 +138,16 @@ mod tests {
     fn wherever_the_edges_are_cut_the_log_is_the_same() {
         let start = 1_000_000;
         let mut edges = Vec::new();
-        edges.extend(pulse(PINS[3], 500_000, 20_000)); // before A1's first
-        edges.extend(pulse(PINS[0], start, 24_000));
-        edges.extend(pulse(Pin::d(13), start + 10, 5)); // no servo
-        edges.extend(pulse(PINS[2], start + SLOT, 25_000));
-        edges.extend(pulse(PINS[0], start + FRAME + 7, 26_000));
-        edges.extend(pulse(PINS[0], start + 3 * FRAME - 1, 27_000));
+        edges.extend(pulse_edges(PINS[3], 500_000, 20_000)); // before A1's first
+        edges.extend(pulse_edges(PINS[0], start, 24_000));
+        edges.extend(pulse_edges(Pin::d(13), start + 10, 5)); // no servo
+        edges.extend(pulse_edges(PINS[2], start + SLOT, 25_000));
+        edges.extend(pulse_edges(PINS[0], start + FRAME + 7, 26_000));
+        edges.extend(pulse_edges(PINS[0], start + 3 * FRAME - 1, 27_000));
         edges.sort_by_key(|edge| edge.cycle);
         let end = start + 4 * FRAME;
         for cut in 0..edges.len() {
-            let log = read(&edges, cut, end);
+            let log = read_in_two(&edges, cut, end);
             let [a, b, c] = [24_000, 26_000, 27_000];
             let widths = [[a, 0, 25_000, 0], [b, 0, 0, 0], [0; 4], [c, 0, 0, 0]];
             assert_eq!((log.first, &log.widths[..]), (start, &widths[..]), "{cut}");
@@ -158,12 +158,15 @@ mod tests {
 
     #[test]
     fn pulses_that_overlap_are_counted_and_those_that_touch_are_not() {
-        let two = |second: u64| {
-            let mut edges = Vec::from(pulse(PINS[0], 1_000_000, 100));
-            edges.extend(pulse(PINS[1], second, 100));
-            read(&edges, 0, 3_000_000).most_pins_high
+        let most_pins_high = |second_start: u64| {
+            let mut edges = Vec::from(pulse_edges(PINS[0], 1_000_000, 100));
+            edges.extend(pulse_edges(PINS[1], second_start, 100));
+            read_in_two(&edges, 0, 3_000_000).most_pins_high
         };
-        assert_eq!((two(1_000_099), two(1_000_100)), (2, 1));
+        assert_eq!(
+            (most_pins_high(1_000_099), most_pins_high(1_000_100)),
+            (2, 1)
+        );
     }
 
     #[test]

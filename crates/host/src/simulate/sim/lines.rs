@@ -33,8 +33,8 @@ impl LineReader {
                 text: std::mem::take(&mut self.partial),
             }),
             b'\r' => None,
-            other => {
-                self.partial.push(char::from(other));
+            character => {
+                self.partial.push(char::from(character));
                 None
             }
         })

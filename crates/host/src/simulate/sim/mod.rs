@@ -137,7 +137,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
-            Some(loader) => served::new_board(loader, fidelity)?,
+            Some(boot_loader) => served::new_board(boot_loader, fidelity)?,
             None => {
                 let image =
                     firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?.image;
@@ -162,8 +162,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
-    let mut printed = Vec::new();
-    let recording = record(&mut uno, &robot, &script, &args, &mut printed)?;
+    let mut dialogue_lines = Vec::new();
+    let recording = record(&mut uno, &robot, &script, &args, &mut dialogue_lines)?;
 
     let spinner = Spinner::new("looking at every frame");
     let spans = spans::command_spans(&script, &recording.answers);
@@ -191,7 +191,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         resets: uno.watchdog_resets(),
         ended: end_message(&recording.state),
         svg: Some(args.svg.display().to_string()),
-        dialogue: printed,
+        dialogue: dialogue_lines,
         frames,
     };
     drop(spinner);
@@ -213,7 +213,7 @@ fn record(
     robot: &Robot,
     script: &Script,
     args: &Args,
-    printed: &mut Vec<DialogueLine>,
+    dialogue_lines: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
     let bar = time_progress_bar(script.end_ms);
     let mut printer = Printer::new(args.all);
@@ -222,7 +222,7 @@ fn record(
     let recording = session::play(uno, pins, script, |event| {
         match event {
             Event::Time(ms) => bar.set_position(ms),
-            Event::Line(line) if args.json => printed.push(line.clone()),
+            Event::Line(line) if args.json => dialogue_lines.push(line.clone()),
             Event::Line(line) => return bar.suspend(|| printer.print(line, &mut out)),
         }
         Ok(())
@@ -250,8 +250,8 @@ fn core_widths(
         log.first,
         log.widths.len(),
     );
-    let is_same = recording.banner.as_deref()? == commands.written.lines().next()?;
-    is_same.then_some(commands.widths)
+    let is_same_source = recording.banner.as_deref()? == commands.written.lines().next()?;
+    is_same_source.then_some(commands.widths)
 }
 
 fn end_message(state: &State) -> String {
@@ -262,7 +262,7 @@ fn end_message(state: &State) -> String {
             // The message of simavr if it knows no reason.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
-                words => words,
+                known_reason => known_reason,
             };
             format!("the firmware crashed at {pc:#06x}: {reason}")
         }
@@ -272,11 +272,11 @@ fn end_message(state: &State) -> String {
 
 /// The script that the options ask for.
 fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
-    let given_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
+    let duration_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
         let script = read_script(path)?;
         return Ok(Script {
-            end_ms: given_ms.unwrap_or(script.end_ms),
+            end_ms: duration_ms.unwrap_or(script.end_ms),
             ..script
         });
     }
@@ -290,11 +290,11 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
             did_you_mean(gait, names)
         )));
     }
-    let ms = given_ms.unwrap_or(12_000);
+    let ms = duration_ms.unwrap_or(12_000);
     if ms < Script::SHORTEST_MS {
-        let min = Script::SHORTEST_MS / 1000;
+        let min_s = Script::SHORTEST_MS / 1000;
         return Err(Failure::Input(format!(
-            "--duration must be at least {min} s without --script"
+            "--duration must be at least {min_s} s without --script"
         )));
     }
     Ok(args.gait.as_deref().map_or_else(

@@ -42,12 +42,12 @@ impl FromStr for Press {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let form = || "it is not NAME@SECONDS or NAME@FROM-TO".to_owned();
-        let (input, times) = text.split_once('@').ok_or_else(form)?;
-        let ms = |text| super::seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
+        let form_error = || "it is not NAME@SECONDS or NAME@FROM-TO".to_owned();
+        let (input, times) = text.split_once('@').ok_or_else(form_error)?;
+        let parse_ms = |text| super::seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
         let (from, to) = match times.split_once('-') {
-            Some((from, to)) => (ms(from)?, ms(to)?),
-            None => (ms(times)?, ms(times)? + DEFAULT_PRESS_MS),
+            Some((from, to)) => (parse_ms(from)?, parse_ms(to)?),
+            None => (parse_ms(times)?, parse_ms(times)? + DEFAULT_PRESS_MS),
         };
         if to <= from {
             return Err("it ends before it begins".to_owned());
@@ -66,7 +66,7 @@ impl FromStr for Press {
 /// # Errors
 /// Fails if the robot does not have the input of a press.
 pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactChange>, Failure> {
-    let mut all = Vec::new();
+    let mut changes = Vec::new();
     for press in presses {
         let mut inputs = robot.inputs().each();
         let Some((_, pin)) = inputs.find(|(name, _)| *name == press.input) else {
@@ -74,11 +74,14 @@ pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactCh
             let message = format!("robot.toml has no [input.{name}] for --press");
             return Err(Failure::Input(message));
         };
-        let change = |ms, is_closed| ContactChange { ms, pin, is_closed };
-        all.extend([change(press.from_ms, true), change(press.to_ms, false)]);
+        let change_at = |ms, is_closed| ContactChange { ms, pin, is_closed };
+        changes.extend([
+            change_at(press.from_ms, true),
+            change_at(press.to_ms, false),
+        ]);
     }
-    all.sort_by_key(|change| (change.ms, change.is_closed));
-    Ok(all)
+    changes.sort_by_key(|change| (change.ms, change.is_closed));
+    Ok(changes)
 }
 
 #[cfg(test)]
@@ -98,13 +101,17 @@ mod tests {
     fn a_press_is_a_name_and_a_time_or_a_span() {
         assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
         assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
-        for (wrong, reason) in [
+        for (invalid_text, reason) in [
             ("button", "it is not NAME@SECONDS or NAME@FROM-TO"),
             ("button@soon", "it is not a number"),
             ("button@3-2", "it ends before it begins"),
             ("button@-1-2", "it is not a number"),
         ] {
-            assert_eq!(wrong.parse::<Press>(), Err(reason.to_owned()), "{wrong}");
+            assert_eq!(
+                invalid_text.parse::<Press>(),
+                Err(reason.to_owned()),
+                "{invalid_text}"
+            );
         }
     }
 }

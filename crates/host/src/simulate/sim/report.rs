@@ -103,9 +103,10 @@ impl Report<'_> {
             "predicted path       from      to   forward      left      turn"
         )?;
         for path in &self.way {
-            let cell = |part: Option<f64>, digits: usize| {
-                let tidy = |part| format!("{:.digits$}", round_decimals(part, digits as i32));
-                part.map_or("-".to_owned(), tidy)
+            let format_cell = |value: Option<f64>, digits: usize| {
+                let format_value =
+                    |value| format!("{:.digits$}", round_decimals(value, digits as i32));
+                value.map_or("-".to_owned(), format_value)
             };
             writeln!(
                 out,
@@ -113,9 +114,9 @@ impl Report<'_> {
                 path.command,
                 path.from,
                 path.to,
-                cell(path.forward, 1),
-                cell(path.left, 1),
-                cell(path.turn, 2)
+                format_cell(path.forward, 1),
+                format_cell(path.left, 1),
+                format_cell(path.turn, 2)
             )?;
         }
         if self.frames.robot.drive().can_lag() {
@@ -124,30 +125,30 @@ impl Report<'_> {
                 "Legs are where their servos are here; `lizard twin` lets them lag."
             )?;
         }
-        let parts = |path: &CommandPath| [path.forward, path.left, path.turn];
-        if self.way.iter().any(|path| parts(path).contains(&None)) {
+        let parts_of = |path: &CommandPath| [path.forward, path.left, path.turn];
+        if self.way.iter().any(|path| parts_of(path).contains(&None)) {
             write!(out, "{UNDECIDED}")?;
         }
         writeln!(out)
     }
 
     fn print_rest(&self, out: &mut impl Write) -> io::Result<()> {
-        if let Some(min) = &self.safety.least {
+        if let Some(least_margin) = &self.safety.least {
             writeln!(
                 out,
                 "smallest margin {:.3} ({}) at {:.2} s; slider travel {:+.1} to {:+.1} mm",
-                min.value,
-                min.margin,
-                min.seconds,
+                least_margin.value,
+                least_margin.margin,
+                least_margin.seconds,
                 round_decimals(self.safety.stroke[0], 1),
                 round_decimals(self.safety.stroke[1], 1)
             )?;
         }
         if let Some(reason) = &self.safety.first_violation {
-            let frames = self.safety.violations;
+            let frame_count = self.safety.violations;
             writeln!(
                 out,
-                "{frames} frames break a limit of robot.toml, the first: {reason}"
+                "{frame_count} frames break a limit of robot.toml, the first: {reason}"
             )?;
         }
         let ram = self.ram.as_ref().map_or_else(String::new, |ram| {

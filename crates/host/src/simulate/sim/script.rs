@@ -55,14 +55,16 @@ impl Script {
     /// A script of `ms` milliseconds, which must be at least [`Self::SHORTEST_MS`]: a second of standing, then the
     /// gaits one after the other, `stop`, `status` and `rest`.
     pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
-        let time = ms - STAND_MS - CLOSE_MS;
+        let gaits_ms = ms - STAND_MS - CLOSE_MS;
         // The last gait gets four parts of the time, each earlier gait five.
-        let start = |n: usize| STAND_MS + time * 5 * n as u64 / (4 + 5 * (gaits.len() as u64 - 1));
-        let command = |gait: &str| gait.replace('-', " ");
+        let start_of = |index: usize| {
+            STAND_MS + gaits_ms * 5 * index as u64 / (4 + 5 * (gaits.len() as u64 - 1))
+        };
+        let command_of = |gait: &str| gait.replace('-', " ");
         let mut steps: Vec<Step> = gaits
             .iter()
             .enumerate()
-            .map(|(n, gait)| step(start(n), &command(gait)))
+            .map(|(index, gait)| step(start_of(index), &command_of(gait)))
             .collect();
         steps.push(step(ms - CLOSE_MS, "stop"));
         steps.push(step(ms - CLOSE_MS / 2 - 200, "status"));
@@ -87,25 +89,25 @@ impl Script {
             if line.is_empty() || line.starts_with('#') {
                 continue;
             }
-            let number = index + 1;
-            let (time, command) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-            let ms = time
+            let line_number = index + 1;
+            let (time_text, command) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+            let ms = time_text
                 .parse()
-                .map_err(|_| ScriptError::Time(number, time.to_owned()))?;
+                .map_err(|_| ScriptError::Time(line_number, time_text.to_owned()))?;
             let command = command.trim();
             if command.is_empty() {
-                return Err(ScriptError::Silent(number));
+                return Err(ScriptError::Silent(line_number));
             }
-            if let Some(last) = steps.last().filter(|last| last.ms > ms) {
+            if let Some(previous) = steps.last().filter(|previous| previous.ms > ms) {
                 return Err(ScriptError::Backwards {
-                    line: number,
+                    line: line_number,
                     now: ms,
-                    before: last.ms,
+                    before: previous.ms,
                 });
             }
             steps.push(step(ms, command));
         }
-        let end_ms = steps.last().map_or(0, |last| last.ms) + 1000;
+        let end_ms = steps.last().map_or(0, |previous| previous.ms) + 1000;
         Ok(Self {
             steps,
             end_ms,
@@ -146,14 +148,14 @@ mod tests {
 
     #[test]
     fn a_fault_names_its_line() {
-        let message = |text| Script::parse(text).expect_err("it is wrong").to_string();
+        let message_of = |text| Script::parse(text).expect_err("it is wrong").to_string();
         assert_eq!(
-            message("100 walk\nsoon stop"),
+            message_of("100 walk\nsoon stop"),
             "line 2: it begins with `soon`, not with a time in whole milliseconds"
         );
-        assert_eq!(message("100"), "line 1: no command follows the time");
+        assert_eq!(message_of("100"), "line 1: no command follows the time");
         assert_eq!(
-            message("100 walk\n\n90 stop"),
+            message_of("100 walk\n\n90 stop"),
             "line 3: 90 ms comes before the 100 ms of the command above"
         );
     }

@@ -39,7 +39,7 @@ pub(super) fn serve_until_interrupted(
     let mut port = Port::new().map_err(|error| {
         Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
     })?;
-    let opening = match radio {
+    let reset_note = match radio {
         Some(radio) => {
             port = port.by_radio(radio);
             "opening the port resets nothing"
@@ -57,26 +57,26 @@ pub(super) fn serve_until_interrupted(
     };
     let mut out = io::stdout();
     writeln!(out, "the simulated UNO is at {}", name.display())?;
-    writeln!(out, "{opening}; Ctrl-C ends it")?;
-    let mut printed = State::Alive;
+    writeln!(out, "{reset_note}; Ctrl-C ends it")?;
+    let mut printed_state = State::Alive;
     let mut contacts = contacts.iter().peekable();
     loop {
         while let Some(change) = contacts.next_if(|change| change.ms as f64 <= uno.ms()) {
             change.apply(&mut uno);
         }
-        let left = contacts
+        let wait_ms = contacts
             .peek()
             .map_or(f64::MAX, |change| change.ms as f64 - uno.ms());
         port.serve(
             &mut uno,
-            Duration::from_secs_f64(left.clamp(1.0, 1_000.0) / 1_000.0),
+            Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0),
         )
         .map_err(|error| Failure::Impossible(format!("the pseudo terminal: {error}")))?;
         uno.take_edges();
         uno.take_marks();
-        if *uno.state() != printed {
-            printed = uno.state().clone();
-            writeln!(out, "{}", end_message(&printed, uno.flash(), &name))?;
+        if *uno.state() != printed_state {
+            printed_state = uno.state().clone();
+            writeln!(out, "{}", end_message(&printed_state, uno.flash(), &name))?;
         }
     }
 }
@@ -100,7 +100,7 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
         .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
     thread::spawn(move || {
         for signal in &mut signals {
-            if fs::read_link(&link).is_ok_and(|end| end == port) {
+            if fs::read_link(&link).is_ok_and(|target| target == port) {
                 // If this fails, a dead link to a pseudo terminal remains, and the next run replaces it.
                 let _ = fs::remove_file(&link);
             }
@@ -112,22 +112,22 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
 
 /// Makes `link` point at `port`. Replaces a link to another pseudo terminal, which a killed run has left.
 fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
-    let cannot = |error: io::Error| files::write_failure(link, &error);
-    let foreign = || {
+    let failure_of = |error: io::Error| files::write_failure(link, &error);
+    let foreign_failure = || {
         let name = link.display();
         Failure::Input(format!(
             "{name} already exists and is not a link to a pseudo terminal"
         ))
     };
-    if fs::read_link(link).is_ok_and(|end| end.starts_with("/dev/pts")) {
-        fs::remove_file(link).map_err(cannot)?;
+    if fs::read_link(link).is_ok_and(|target| target.starts_with("/dev/pts")) {
+        fs::remove_file(link).map_err(failure_of)?;
     }
     if let Some(folder) = link.parent() {
-        fs::create_dir_all(folder).map_err(cannot)?;
+        fs::create_dir_all(folder).map_err(failure_of)?;
     }
     symlink(port, link).map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => foreign(),
-        _ => cannot(error),
+        io::ErrorKind::AlreadyExists => foreign_failure(),
+        _ => failure_of(error),
     })
 }
 
@@ -137,17 +137,17 @@ mod tests {
 
     #[test]
     fn an_empty_board_is_no_crash_and_a_crash_does_not_name_the_simulator() {
-        let crashed = State::Crashed {
+        let crashed_state = State::Crashed {
             pc: 0x7fe4,
             message: "avr_sadly_crashed".to_owned(),
         };
         let port = Path::new("out/uno");
         assert_eq!(
-            end_message(&crashed, &[0xff; 8], port),
+            end_message(&crashed_state, &[0xff; 8], port),
             "there is no firmware in this board yet; `lizard flash out/uno` writes it"
         );
         assert_eq!(
-            end_message(&crashed, &[0x0c, 0x94, 0xff], port),
+            end_message(&crashed_state, &[0x0c, 0x94, 0xff], port),
             "the firmware crashed at 0x7fe4: no such instruction or address"
         );
     }

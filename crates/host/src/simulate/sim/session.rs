@@ -71,14 +71,14 @@ pub fn play(
     on_event: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> io::Result<Recording> {
     let start = Instant::now();
-    let frames = script.end_ms as usize / 20 + 1;
+    let frame_count = script.end_ms as usize / 20 + 1;
     let mut dialogue = Dialogue {
         reader: LineReader::default(),
         banner: None,
         answers: Vec::with_capacity(script.steps.len()),
         on_event,
     };
-    let mut pulses = FrameReader::new(pins, frames);
+    let mut frame_reader = FrameReader::new(pins, frame_count);
     let mut steps = script.steps.iter().peekable();
     let mut contacts = script.contacts.iter().peekable();
     let mut ms = 0;
@@ -101,7 +101,7 @@ pub fn play(
         }
         uno.run_until_cycle(slice_end_ms * CYCLES_PER_MS);
         dialogue.receive(uno)?;
-        pulses.read(uno.take_edges());
+        frame_reader.read(uno.take_edges());
         ms = slice_end_ms;
         (dialogue.on_event)(Event::Time(ms))?;
     }
@@ -109,7 +109,7 @@ pub fn play(
     Ok(Recording {
         banner: dialogue.banner,
         answers: dialogue.answers,
-        frames: pulses.finish(uno.cycle()),
+        frames: frame_reader.finish(uno.cycle()),
         received_by_uno: uno.received_by_uno(),
         cycles: uno.cycle(),
         state: uno.state().clone(),

@@ -58,12 +58,12 @@ mod tests {
             .expect("it is well formed");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];
         let spans = command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
-        let found: Vec<(&str, f64, f64)> = spans
+        let spans_found: Vec<(&str, f64, f64)> = spans
             .iter()
             .map(|span| (span.command.as_str(), span.from, span.to))
             .collect();
         assert_eq!(
-            found,
+            spans_found,
             [("stand", 0.0, 1.0), ("walk", 1.0, 4.0), ("rest", 4.0, 5.0)]
         );
     }

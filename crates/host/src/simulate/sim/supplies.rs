@@ -34,9 +34,9 @@ pub fn connect(uno: &mut Uno, robot: &Robot) {
 
 /// The analogue-to-digital converter's readings of healthy supplies.
 pub(super) fn reading(supplies: &Supplies) -> Reading {
-    let counts = |mv: f64| (FULL_SCALE * mv / BOARD_MV) as u16;
+    let counts_of = |mv: f64| (FULL_SCALE * mv / BOARD_MV) as u16;
     Reading {
-        reference: counts(f64::from(supplies.reference)),
-        rail: healthy_rail_mv(supplies).map_or(0, counts),
+        reference: counts_of(f64::from(supplies.reference)),
+        rail: healthy_rail_mv(supplies).map_or(0, counts_of),
     }
 }

@@ -15,27 +15,27 @@ use crate::shared::ink::{
 /// Width of the picture, px.
 const WIDTH: f64 = 1280.0;
 /// Width of the left margin, px.
-const LEFT: f64 = 200.0;
+const LEFT_MARGIN: f64 = 200.0;
 /// Width of the right margin, px.
-const RIGHT: f64 = 36.0;
+const RIGHT_MARGIN: f64 = 36.0;
 /// Upper edge of the band with the commands, px.
 const COMMANDS_Y: f64 = 88.0;
 /// Upper edge of the first servo's strip, px.
 const STRIPS_Y: f64 = 132.0;
 /// Height of a servo's strip, px.
-const STRIP: f64 = 104.0;
+const STRIP_HEIGHT: f64 = 104.0;
 /// Distance between two strips, px.
 const STRIP_GAP: f64 = 14.0;
 /// Upper edge of the first row of footfalls, px.
-const FEET_Y: f64 = STRIPS_Y + 4.0 * (STRIP + STRIP_GAP) + 34.0;
+const FEET_Y: f64 = STRIPS_Y + 4.0 * (STRIP_HEIGHT + STRIP_GAP) + 34.0;
 /// Height of a row of footfalls, px.
 const FOOT_HEIGHT: f64 = 28.0;
 /// Distance between two rows of footfalls, px.
 const FOOT_GAP: f64 = 8.0;
 /// Vertical position of the time axis, px.
-const AXIS: f64 = FEET_Y + 4.0 * (FOOT_HEIGHT + FOOT_GAP) + 4.0;
+const AXIS_Y: f64 = FEET_Y + 4.0 * (FOOT_HEIGHT + FOOT_GAP) + 4.0;
 /// Height of the picture, px.
-const HEIGHT: f64 = AXIS + 96.0;
+const HEIGHT: f64 = AXIS_Y + 96.0;
 
 /// The title and description of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -57,18 +57,18 @@ pub const SIMULATED: Caption = Caption {
 
 /// Draws the picture as SVG text. `spans` are the commands that were in effect.
 pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
-    let end = spans.last().map_or(0.0, |span| span.to);
+    let end_s = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {
         run,
         spans,
         caption,
-        seconds: end.max(0.1),
+        seconds: end_s.max(0.1),
     };
-    let reach = chart.reach();
-    let mut group = title(Group::new(), LEFT, caption.title, caption.note);
+    let reach_deg = chart.reach();
+    let mut group = title(Group::new(), LEFT_MARGIN, caption.title, caption.note);
     group = chart.draw_commands(group);
     for servo in 0..4 {
-        group = chart.draw_strip(group, servo, reach);
+        group = chart.draw_strip(group, servo, reach_deg);
         group = chart.draw_feet(group, servo);
     }
     group = chart.draw_marks(group);
@@ -88,24 +88,24 @@ struct Chart<'a> {
 impl Chart<'_> {
     /// Horizontal position of a time, px.
     fn x(&self, seconds: f64) -> f64 {
-        LEFT + (WIDTH - LEFT - RIGHT) * seconds / self.seconds
+        LEFT_MARGIN + (WIDTH - LEFT_MARGIN - RIGHT_MARGIN) * seconds / self.seconds
     }
 
     /// Adds the band with the commands in effect.
     fn draw_commands(&self, mut group: Group) -> Group {
-        for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
-            let (x, end) = (self.x(*from), self.x(*to));
-            let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
-            group = group.add(rectangle((x, COMMANDS_Y), (end - x, 26.0), fill));
+        for (index, Span { from, to, command }) in self.spans.iter().enumerate() {
+            let (x, end_x) = (self.x(*from), self.x(*to));
+            let fill = if index % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
+            group = group.add(rectangle((x, COMMANDS_Y), (end_x - x, 26.0), fill));
             // A letter takes about 7.5 px. A command that would not fit is left out.
-            if command.len() as f64 * 7.5 < end - x {
-                let position = ((x + end) / 2.0, COMMANDS_Y + 18.0);
+            if command.len() as f64 * 7.5 < end_x - x {
+                let position = ((x + end_x) / 2.0, COMMANDS_Y + 18.0);
                 group = group.add(text_middle(command, position, 15.0));
             }
         }
         group.add(text(
             "command",
-            (LEFT - 12.0, COMMANDS_Y + 18.0),
+            (LEFT_MARGIN - 12.0, COMMANDS_Y + 18.0),
             15.0,
             GREY,
             Anchor::End,
@@ -116,7 +116,7 @@ impl Chart<'_> {
     fn draw_marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);
-            let mark = line((x, COMMANDS_Y), (x, AXIS), GREY, 1.0);
+            let mark = line((x, COMMANDS_Y), (x, AXIS_Y), GREY, 1.0);
             group = group.add(mark.set("stroke-dasharray", "2 4"));
         }
         group
@@ -128,26 +128,30 @@ impl Chart<'_> {
         let sweeps = self
             .run
             .servo_frames()
-            .filter_map(|instant| instant.sweeps)
+            .filter_map(|servo_frame| servo_frame.sweeps)
             .flatten();
         (sweeps.fold(20.0, |largest: f64, sweep| largest.max(sweep.abs())) / 10.0).ceil() * 10.0
             + 5.0
     }
 
     /// Adds the strip with a servo's angle over time.
-    fn draw_strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
-        let top = STRIPS_Y + servo as f64 * (STRIP + STRIP_GAP);
+    fn draw_strip(&self, mut group: Group, servo: usize, reach_deg: f64) -> Group {
+        let top = STRIPS_Y + servo as f64 * (STRIP_HEIGHT + STRIP_GAP);
         let neutral = self.run.robot.servos()[servo].neutral;
-        let y = |angle: f64| top + STRIP / 2.0 * (1.0 - (angle - neutral) / reach);
-        let (start, end) = (self.x(0.0), self.x(self.seconds));
+        let y_of = |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / reach_deg);
+        let (start_x, end_x) = (self.x(0.0), self.x(self.seconds));
         let name = format!("{} {}", NAMES[servo], PLACES[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
-            .add(rectangle((start, top), (end - start, STRIP), PANEL))
+            .add(rectangle(
+                (start_x, top),
+                (end_x - start_x, STRIP_HEIGHT),
+                PANEL,
+            ))
             .add(
                 text(
                     &name,
-                    (14.0, top + STRIP / 2.0 - 2.0),
+                    (14.0, top + STRIP_HEIGHT / 2.0 - 2.0),
                     17.0,
                     SERVO[servo],
                     Anchor::Start,
@@ -156,29 +160,31 @@ impl Chart<'_> {
             )
             .add(text(
                 &pin,
-                (14.0, top + STRIP / 2.0 + 18.0),
+                (14.0, top + STRIP_HEIGHT / 2.0 + 18.0),
                 14.0,
                 GREY,
                 Anchor::Start,
             ));
-        let step = if reach > 50.0 { 40.0 } else { 20.0 };
-        let first = -(reach / step).floor() as i32;
-        for n in first..=-first {
-            let angle = neutral + f64::from(n) * step;
-            let rule = line((start, y(angle)), (end, y(angle)), GRID, 1.0);
-            group = group.add(if n == 0 {
-                rule.set("stroke", "#999999").set("stroke-dasharray", "6 4")
+        let step_deg = if reach_deg > 50.0 { 40.0 } else { 20.0 };
+        let first_tick = -(reach_deg / step_deg).floor() as i32;
+        for tick in first_tick..=-first_tick {
+            let angle = neutral + f64::from(tick) * step_deg;
+            let grid_line = line((start_x, y_of(angle)), (end_x, y_of(angle)), GRID, 1.0);
+            group = group.add(if tick == 0 {
+                grid_line
+                    .set("stroke", "#999999")
+                    .set("stroke-dasharray", "6 4")
             } else {
-                rule
+                grid_line
             });
             let label = format!("{angle:.0}°");
-            let position = (LEFT - 8.0, y(angle) + 4.5);
+            let position = (LEFT_MARGIN - 8.0, y_of(angle) + 4.5);
             group = group.add(text(&label, position, 13.0, GREY, Anchor::End));
         }
-        for run in self.angle_curves(servo) {
-            let points: Vec<(f64, f64)> = run
+        for angle_curve in self.angle_curves(servo) {
+            let points: Vec<(f64, f64)> = angle_curve
                 .iter()
-                .map(|(seconds, angle)| (self.x(*seconds), y(*angle)))
+                .map(|(seconds, angle)| (self.x(*seconds), y_of(*angle)))
                 .collect();
             group = group.add(curve(&points, SERVO[servo], 2.2));
         }
@@ -189,20 +195,22 @@ impl Chart<'_> {
     /// pulses. If the pixel columns have many frames each, only the lowest and the highest
     /// angle of a column are kept.
     fn angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
-        let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
-        let mut runs = vec![Curve::default()];
-        for instant in self.run.servo_frames() {
-            match (instant.angles, runs.last_mut()) {
-                (Some(angles), Some(run)) => {
-                    let column = dense.then(|| self.x(instant.seconds) as i64);
-                    run.add(column, (instant.seconds, angles[servo]));
+        let is_dense =
+            self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT_MARGIN - RIGHT_MARGIN);
+        let mut curves = vec![Curve::default()];
+        for servo_frame in self.run.servo_frames() {
+            match (servo_frame.angles, curves.last_mut()) {
+                (Some(angles), Some(last_curve)) => {
+                    let column = is_dense.then(|| self.x(servo_frame.seconds) as i64);
+                    last_curve.add_point(column, (servo_frame.seconds, angles[servo]));
                 }
-                (None, Some(run)) if run.points.is_empty() => {}
-                _ => runs.push(Curve::default()),
+                (None, Some(last_curve)) if last_curve.points.is_empty() => {}
+                _ => curves.push(Curve::default()),
             }
         }
-        runs.into_iter()
-            .map(|run| run.points)
+        curves
+            .into_iter()
+            .map(|curve| curve.points)
             .filter(|points| !points.is_empty())
             .collect()
     }
@@ -210,28 +218,32 @@ impl Chart<'_> {
     /// Adds the row with the footfalls of a servo's foot.
     fn draw_feet(&self, mut group: Group, servo: usize) -> Group {
         let top = FEET_Y + servo as f64 * (FOOT_HEIGHT + FOOT_GAP);
-        let (start, end) = (self.x(0.0), self.x(self.seconds));
+        let (start_x, end_x) = (self.x(0.0), self.x(self.seconds));
         if servo == 0 {
             let position = (14.0, FEET_Y - 12.0);
             group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
             group = self.draw_legend(group);
         }
         group = group
-            .add(rectangle((start, top), (end - start, FOOT_HEIGHT), PANEL))
+            .add(rectangle(
+                (start_x, top),
+                (end_x - start_x, FOOT_HEIGHT),
+                PANEL,
+            ))
             .add(text(
                 PLACES[servo],
-                (LEFT - 12.0, top + FOOT_HEIGHT / 2.0 + 5.0),
+                (LEFT_MARGIN - 12.0, top + FOOT_HEIGHT / 2.0 + 5.0),
                 15.0,
                 SERVO[servo],
                 Anchor::End,
             ));
-        let stretches = foot_spans(self.run.servo_frames(), servo);
-        if stretches.len() as f64 > (end - start) / 2.0 {
-            let position = ((start + end) / 2.0, top + FOOT_HEIGHT / 2.0 + 5.0);
-            let words = "steps shorter than a pixel: simulate less to see them";
-            return group.add(text(words, position, 13.0, GREY, Anchor::Middle));
+        let spans_of_foot = foot_spans(self.run.servo_frames(), servo);
+        if spans_of_foot.len() as f64 > (end_x - start_x) / 2.0 {
+            let position = ((start_x + end_x) / 2.0, top + FOOT_HEIGHT / 2.0 + 5.0);
+            let note = "steps shorter than a pixel: simulate less to see them";
+            return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
-        for FootSpan { phase, from, to } in stretches {
+        for FootSpan { phase, from, to } in spans_of_foot {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
             group = group.add(draw_foot_span(
                 phase,
@@ -249,8 +261,8 @@ impl Chart<'_> {
             (Phase::Still, "stands still"),
             (Phase::Swing, "moves forward: return"),
         ];
-        let mut x = LEFT;
-        for (phase, words) in entries {
+        let mut x = LEFT_MARGIN;
+        for (phase, label) in entries {
             group = group
                 .add(draw_foot_span(
                     phase,
@@ -259,13 +271,13 @@ impl Chart<'_> {
                     (30.0, 15.0),
                 ))
                 .add(text(
-                    words,
+                    label,
                     (x + 38.0, FEET_Y - 12.5),
                     14.0,
                     GREY,
                     Anchor::Start,
                 ));
-            x += 60.0 + 7.2 * words.len() as f64;
+            x += 60.0 + 7.2 * label.len() as f64;
         }
         group
     }
@@ -274,30 +286,34 @@ impl Chart<'_> {
         let steps = [
             0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0,
         ];
-        let step = steps
+        let step_s = steps
             .into_iter()
-            .find(|step| self.seconds / step <= 15.0)
+            .find(|step_s| self.seconds / step_s <= 15.0)
             .unwrap_or(7200.0);
         group = group.add(line(
-            (self.x(0.0), AXIS),
-            (self.x(self.seconds), AXIS),
+            (self.x(0.0), AXIS_Y),
+            (self.x(self.seconds), AXIS_Y),
             DARK,
             1.2,
         ));
-        for n in 0..=(self.seconds / step + 1e-9) as u32 {
-            let seconds = f64::from(n) * step;
+        for tick in 0..=(self.seconds / step_s + 1e-9) as u32 {
+            let seconds = f64::from(tick) * step_s;
             let x = self.x(seconds);
-            let label = if step < 1.0 {
+            let label = if step_s < 1.0 {
                 format!("{seconds:.1}")
             } else {
                 format!("{seconds:.0}")
             };
             group = group
-                .add(line((x, AXIS), (x, AXIS + 7.0), DARK, 1.2))
-                .add(text_middle(&label, (x, AXIS + 25.0), 14.0));
+                .add(line((x, AXIS_Y), (x, AXIS_Y + 7.0), DARK, 1.2))
+                .add(text_middle(&label, (x, AXIS_Y + 25.0), 14.0));
         }
         let middle = (self.x(0.0) + self.x(self.seconds)) / 2.0;
-        group.add(text_middle(self.caption.axis, (middle, AXIS + 50.0), 15.0))
+        group.add(text_middle(
+            self.caption.axis,
+            (middle, AXIS_Y + 50.0),
+            15.0,
+        ))
     }
 }
 
@@ -306,19 +322,19 @@ impl Chart<'_> {
 fn draw_foot_span(
     phase: Phase,
     colour: &str,
-    at: (f64, f64),
+    corner: (f64, f64),
     size: (f64, f64),
 ) -> svg::node::element::Rectangle {
     match phase {
-        Phase::Stance => rectangle(at, size, colour),
-        Phase::Still => rectangle(at, size, colour).set("fill-opacity", 0.22),
+        Phase::Stance => rectangle(corner, size, colour),
+        Phase::Still => rectangle(corner, size, colour).set("fill-opacity", 0.22),
         Phase::Swing => {
             // The stroke stays inside the area of the time span.
-            let inner = (
-                (at.0 + 0.7, at.1 + 0.7),
+            let inner_area = (
+                (corner.0 + 0.7, corner.1 + 0.7),
                 ((size.0 - 1.4).max(0.2), size.1 - 1.4),
             );
-            rectangle(inner.0, inner.1, "white")
+            rectangle(inner_area.0, inner_area.1, "white")
                 .set("stroke", colour.to_owned())
                 .set("stroke-width", 1.4)
         }
@@ -336,7 +352,7 @@ struct Curve {
 impl Curve {
     /// Adds a point. Of the points in the same column of pixels, only the lowest and
     /// the highest are kept. If `column` is `None`, all points are kept.
-    fn add(&mut self, column: Option<i64>, point: (f64, f64)) {
+    fn add_point(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);
             return;
@@ -366,10 +382,10 @@ mod tests {
     use super::*;
     use crate::simulate::sim::frame_log::FrameLog;
 
-    fn picture(frames: usize, width: impl Fn(usize) -> u16, spans: &[Span]) -> String {
+    fn draw_picture(frame_count: usize, width_at: impl Fn(usize) -> u16, spans: &[Span]) -> String {
         let robot = crate::shared::robot_file::named("paper");
         let log = FrameLog {
-            widths: (0..frames).map(|n| [width(n); 4]).collect(),
+            widths: (0..frame_count).map(|index| [width_at(index); 4]).collect(),
             ..FrameLog::default()
         };
         let (robot, log) = (&robot, &log);
@@ -383,10 +399,10 @@ mod tests {
 
     #[test]
     fn each_unbroken_stretch_of_each_servo_is_one_curve() {
-        let rests = |n| n == 100 || n >= 350;
-        let picture = picture(
+        let is_resting = |n| n == 100 || n >= 350;
+        let picture = draw_picture(
             400,
-            |n| if rests(n) { 0 } else { 24_000 },
+            |n| if is_resting(n) { 0 } else { 24_000 },
             &[span("stand", 0.0, 1.0), span("walk", 1.0, 8.0)],
         );
         assert_eq!(picture.matches("<polyline").count(), 8);
@@ -396,15 +412,15 @@ mod tests {
     #[test]
     fn a_long_run_is_drawn_with_as_many_points_as_pixels_and_keeps_its_extremes() {
         // One frame of 10 000 stands out.
-        let width = |n| match n {
+        let width_at = |n| match n {
             5000 => 24_800,
             _ => 24_000 + 10 * (n as u16 % 3),
         };
-        let picture = picture(10_000, width, &[span("stand", 0.0, 200.0)]);
+        let picture = draw_picture(10_000, width_at, &[span("stand", 0.0, 200.0)]);
         assert!(picture.len() < 300_000, "{} bytes", picture.len());
         // 50 us are 5 degrees, so 10.4 pixels: half a strip has 52 pixels for 25 degrees.
-        let first = picture.split("points=\"").nth(1).expect("a curve");
-        let ys = first
+        let first_curve = picture.split("points=\"").nth(1).expect("a curve");
+        let ys = first_curve
             .split('"')
             .next()
             .expect("its points")

@@ -4,25 +4,30 @@ use lizard_robot::Robot;
 
 /// Names of the gaits that move a servo, in the order of robot.toml.
 pub fn moving_gaits(robot: &Robot) -> Vec<&str> {
-    let moving = robot.gaits().iter().filter(|gait| gait.moves());
-    moving.map(|gait| gait.name()).collect()
+    let gaits = robot.gaits().iter().filter(|gait| gait.moves());
+    gaits.map(|gait| gait.name()).collect()
 }
 
 /// The gaits of a demonstration: the first moving gait, then the other one that is predicted to turn the robot
 /// most in a cycle. Fewer if the robot has fewer moving gaits.
 pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
-    let moving = moving_gaits(robot);
-    let turn = |name: &str| {
-        let found = robot.gait(name);
-        found.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
+    let gaits = moving_gaits(robot);
+    let turn_of = |name: &str| {
+        let gait = robot.gait(name);
+        gait.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
     };
-    let others = moving.iter().copied().skip(1);
+    let other_gaits = gaits.iter().copied().skip(1);
     // Mirrored gaits turn equally far; the tolerance keeps the first of them.
-    let max = others.fold(None, |best: Option<&str>, name| match best {
-        Some(best) if turn(name) <= turn(best) + 1e-6 => Some(best),
+    let turning_gait = other_gaits.fold(None, |best: Option<&str>, name| match best {
+        Some(best) if turn_of(name) <= turn_of(best) + 1e-6 => Some(best),
         _ => Some(name),
     });
-    moving.first().copied().into_iter().chain(max).collect()
+    gaits
+        .first()
+        .copied()
+        .into_iter()
+        .chain(turning_gait)
+        .collect()
 }
 
 #[cfg(test)]

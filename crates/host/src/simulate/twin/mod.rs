@@ -76,7 +76,7 @@ enum ServoArg {
 /// Fails without a firmware, for a wrong script, a firmware that crashes, or an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let script = script(&args, &robot)?;
+    let script = choose_script(&args, &robot)?;
     let mut image = firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?.image;
     let routine = args.gait.as_deref().and_then(|name| robot.routine(name));
     let has_inputs = routine.is_some_and(Routine::has_inputs);
@@ -137,7 +137,7 @@ pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Re
     }
 }
 
-fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
+fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(path) = &args.script {
         return read_script(path);
     }
@@ -155,17 +155,17 @@ fn round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
     let round = Round::of(robot, routine);
     let name = routine.name().replace('-', " ");
-    let ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
-    let step = |ms, command: &str| Step {
+    let round_end_ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
+    let step_at = |ms, command: &str| Step {
         ms,
         command: command.to_owned(),
     };
     Script {
         steps: vec![
-            step(STAND_MS, &format!("{name} 1")),
-            step(ms + STAND_MS, "stop"),
+            step_at(STAND_MS, &format!("{name} 1")),
+            step_at(round_end_ms + STAND_MS, "stop"),
         ],
-        end_ms: ms + 2 * STAND_MS,
+        end_ms: round_end_ms + 2 * STAND_MS,
         ..Script::default()
     }
 }

@@ -32,10 +32,10 @@ pub struct Stage {
 impl Replay {
     /// Runs the simulated robot through the frames of a run.
     pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
-        let us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
+        let to_us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
-        let states = log.widths.iter().map(|widths| twin.push(widths.map(us)));
-        let stage = |span: Span| Stage {
+        let states = log.widths.iter().map(|widths| twin.push(widths.map(to_us)));
+        let stage_of = |span: Span| Stage {
             frames: log.index(span.from)..log.index(span.to),
             command: span.command,
         };
@@ -43,17 +43,17 @@ impl Replay {
             robot: robot.clone(),
             start_s: log.seconds(0),
             states: states.collect(),
-            stages: spans.into_iter().map(stage).collect(),
+            stages: spans.into_iter().map(stage_of).collect(),
         }
     }
 
     /// Summarises a range of frames.
     pub fn tally(&self, frames: Range<usize>) -> Tally {
-        let start = match frames.start {
+        let start_place = match frames.start {
             0 => Place::START,
-            first => self.states[first - 1].place,
+            first_frame => self.states[first_frame - 1].place,
         };
-        let mut tally = Tally::new(start);
+        let mut tally = Tally::new(start_place);
         for state in &self.states[frames] {
             tally.add(state);
         }
@@ -67,8 +67,9 @@ impl Replay {
             .robot
             .gait(&stage.command)
             .filter(|gait| gait.moves())?;
-        let cycle = (gait.period() / FRAME).round() as usize;
-        let start = stage.frames.end.checked_sub(cycle)?;
-        (start >= stage.frames.start + cycle).then_some((gait, start..stage.frames.end))
+        let frame_count = (gait.period() / FRAME).round() as usize;
+        let start_frame = stage.frames.end.checked_sub(frame_count)?;
+        (start_frame >= stage.frames.start + frame_count)
+            .then_some((gait, start_frame..stage.frames.end))
     }
 }

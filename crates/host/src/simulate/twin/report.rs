@@ -73,11 +73,11 @@ pub struct Cycle {
 }
 
 impl From<Prediction> for PathParts {
-    fn from(way: Prediction) -> Self {
+    fn from(prediction: Prediction) -> Self {
         Self {
-            forward: way.forward,
-            left: way.left,
-            turn: way.turn,
+            forward: prediction.forward,
+            left: prediction.left,
+            turn: prediction.turn,
         }
     }
 }
@@ -87,23 +87,24 @@ impl From<Prediction> for PathParts {
 fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
     let round = Round::of(robot, routine);
-    let way = match model {
+    let prediction = match model {
         ServoModel::Motors(_) => round.driven,
         ServoModel::Ideal | ServoModel::Unloaded(_) => round.movement,
     };
-    Some((round, way))
+    Some((round, prediction))
 }
 
 impl PathParts {
-    fn of(travel: Travel, known: Option<&Prediction>) -> Self {
-        let keep = |part: fn(&Prediction) -> Option<f64>, value: f64| match known {
-            Some(known) => part(known).map(|_| value),
-            None => Some(value),
-        };
+    fn of(travel: Travel, prediction: Option<&Prediction>) -> Self {
+        let keep_determined =
+            |component: fn(&Prediction) -> Option<f64>, value: f64| match prediction {
+                Some(prediction) => component(prediction).map(|_| value),
+                None => Some(value),
+            };
         Self {
-            forward: keep(|way| way.forward, travel.forward),
-            left: keep(|way| way.left, travel.left),
-            turn: keep(|way| way.turn, travel.turn),
+            forward: keep_determined(|prediction| prediction.forward, travel.forward),
+            left: keep_determined(|prediction| prediction.left, travel.left),
+            turn: keep_determined(|prediction| prediction.turn, travel.turn),
         }
     }
 }
@@ -116,36 +117,40 @@ impl Report {
             .stages
             .iter()
             .filter(|stage| !stage.frames.is_empty());
-        let row = |stage: &super::replay::Stage| {
+        let row_of = |stage: &super::replay::Stage| {
             let tally_of_stage = replay.tally(stage.frames.clone());
             let gait = robot.gait_of_line(&stage.command);
             let prediction = gait.map(|gait| robot.predict(gait));
             let cycle = replay.last_cycle(stage).filter(|_| !is_paced);
-            let last = cycle
+            let last_tally = cycle
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
             let round = predict_round(robot, &stage.command, model).filter(|_| !is_paced);
-            let known = prediction.as_ref().or(round.as_ref().map(|(_, way)| way));
-            let seconds = |n: usize| replay.start_s + n as f64 * lizard_twin::FRAME;
-            let cycle_or_stage: &Tally = last.as_ref().unwrap_or(&tally_of_stage);
+            let expected = prediction
+                .as_ref()
+                .or(round.as_ref().map(|(_, prediction)| prediction));
+            let seconds_at = |frame: usize| replay.start_s + frame as f64 * lizard_twin::FRAME;
+            let cycle_or_stage: &Tally = last_tally.as_ref().unwrap_or(&tally_of_stage);
             Row {
                 command: stage.command.clone(),
-                seconds: [seconds(stage.frames.start), seconds(stage.frames.end)],
-                way: PathParts::of(tally_of_stage.travel(), known),
-                cycle: last.zip(cycle).map(|(tally, (gait, _))| Cycle {
-                    way: PathParts::of(tally.travel(), known),
-                    predicted: known
-                        .map_or(PathParts::of(tally.travel(), None), |way| (*way).into()),
-                    speed: known.and_then(|way| way.forward).map(|_| {
+                seconds: [seconds_at(stage.frames.start), seconds_at(stage.frames.end)],
+                way: PathParts::of(tally_of_stage.travel(), expected),
+                cycle: last_tally.zip(cycle).map(|(tally, (gait, _))| Cycle {
+                    way: PathParts::of(tally.travel(), expected),
+                    predicted: expected.map_or(PathParts::of(tally.travel(), None), |prediction| {
+                        (*prediction).into()
+                    }),
+                    speed: expected.and_then(|prediction| prediction.forward).map(|_| {
                         let travel = tally.travel();
                         travel.forward.hypot(travel.left) / tally.seconds()
                     }),
-                    share_of_rigid: SpringCost::of(gait, robot.ground()).and_then(|on| on.share),
+                    share_of_rigid: SpringCost::of(gait, robot.ground())
+                        .and_then(|cost| cost.share),
                 }),
                 // An input's contact may end a step earlier or later than the prediction assumes.
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
-                    .map(|(_, way)| way.into()),
+                    .map(|(_, prediction)| prediction.into()),
                 foot_slip: cycle_or_stage.slip,
                 lag: cycle_or_stage.lag,
                 margin: cycle_or_stage
@@ -157,7 +162,7 @@ impl Report {
             }
         };
         Self {
-            rows: rows.map(row).collect(),
+            rows: rows.map(row_of).collect(),
         }
     }
 
@@ -178,29 +183,37 @@ impl Report {
     /// # Errors
     /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
-        let springs = self.rows.iter().any(|row| row.lag > 0.0);
-        let width = self
+        let has_springs = self.rows.iter().any(|row| row.lag > 0.0);
+        let name_width = self
             .rows
             .iter()
             .map(|row| row.command.len())
             .fold(10, usize::max);
         writeln!(
             out,
-            "{:width$}   one cycle, mm and deg        by ideal servos            speed  feet slid  least margin       slider, mm   servos{}",
+            "{:name_width$}   one cycle, mm and deg        by ideal servos            speed  feet slid  least margin       slider, mm   servos{}",
             "",
-            if springs { "    springs" } else { "" }
+            if has_springs { "    springs" } else { "" }
         )?;
         writeln!(
             out,
-            "{:width$}     ahead    left    turn    ahead    left    turn     mm/s  mm a foot                     least  most   deg/s{}",
+            "{:name_width$}     ahead    left    turn    ahead    left    turn     mm/s  mm a foot                     least  most   deg/s{}",
             "gait",
-            if springs { "  lag deg  % of rigid" } else { "" }
+            if has_springs {
+                "  lag deg  % of rigid"
+            } else {
+                ""
+            }
         )?;
         for row in &self.rows {
             let Some(cycle) = &row.cycle else { continue };
-            write!(out, "{:width$}  ", row.command)?;
-            for way in [&cycle.way, &cycle.predicted] {
-                for (part, decimals) in [(way.forward, 1), (way.left, 1), (way.turn, 1)] {
+            write!(out, "{:name_width$}  ", row.command)?;
+            for displacement in [&cycle.way, &cycle.predicted] {
+                for (part, decimals) in [
+                    (displacement.forward, 1),
+                    (displacement.left, 1),
+                    (displacement.turn, 1),
+                ] {
                     write!(out, "{:>8}", format_part(part, decimals))?;
                 }
             }
@@ -215,13 +228,13 @@ impl Report {
                     .map_or("-".to_owned(), |(_, value)| format!("{value:.3}")),
                 row.margin.map_or("", |(name, _)| name),
             )?;
-            let [smallest, largest] = row.stroke.unwrap_or_default();
+            let [min_travel, max_travel] = row.stroke.unwrap_or_default();
             write!(
                 out,
-                " {smallest:>+6.1} {largest:>+5.1} {:>7.0}",
+                " {min_travel:>+6.1} {max_travel:>+5.1} {:>7.0}",
                 row.servo_rate
             )?;
-            if springs {
+            if has_springs {
                 let share = cycle.share_of_rigid.map(|share| 100.0 * share);
                 let share = share.map_or("-".to_owned(), |share| format!("{share:.0}"));
                 write!(out, " {:>8.1} {share:>11}", row.lag)?;
@@ -230,8 +243,8 @@ impl Report {
         }
         for row in self.rows.iter().filter(|row| row.cycle.is_none()) {
             let [from, to] = row.seconds;
-            let way = &row.way;
-            if [way.forward, way.left, way.turn]
+            let displacement = &row.way;
+            if [displacement.forward, displacement.left, displacement.turn]
                 .map(|part| part.is_some_and(|part| part.abs() > 0.05))
                 == [false; 3]
             {
@@ -241,15 +254,18 @@ impl Report {
                 out,
                 "\n{} from {from:.2} to {to:.2} s: {}",
                 row.command,
-                describe_displacement(way)
+                describe_displacement(displacement)
             )?;
             if let Some(round) = &row.round {
                 writeln!(out, "predicted: {}", describe_displacement(round))?;
             }
         }
-        let undecided =
-            |way: &PathParts| way.forward.is_none() || way.left.is_none() || way.turn.is_none();
-        if self.rows.iter().any(|row| undecided(&row.way)) {
+        let is_undecided = |displacement: &PathParts| {
+            displacement.forward.is_none()
+                || displacement.left.is_none()
+                || displacement.turn.is_none()
+        };
+        if self.rows.iter().any(|row| is_undecided(&row.way)) {
             write!(out, "\n{UNDECIDED}")?;
         }
         Ok(())
@@ -257,8 +273,9 @@ impl Report {
 }
 
 /// Describes a displacement as text for the user.
-fn describe_displacement(way: &PathParts) -> String {
-    let [forward, left, turn] = [way.forward, way.left, way.turn].map(|part| format_part(part, 1));
+fn describe_displacement(displacement: &PathParts) -> String {
+    let [forward, left, turn] = [displacement.forward, displacement.left, displacement.turn]
+        .map(|part| format_part(part, 1));
     format!("ahead {forward} mm, left {left} mm, turn {turn} deg")
 }
 

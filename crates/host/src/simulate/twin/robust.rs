@@ -41,23 +41,23 @@ struct EffortShare {
 
 impl EffortShare {
     /// The shares of a gait on every supply, at each of the paces `PACES`.
-    fn all(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
-        let efforts = [1.0, FRICTION.1].map(|more| {
+    fn of_gait(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
+        let efforts = [1.0, FRICTION.1].map(|factor| {
             let ground = Ground {
-                friction: robot.ground().friction * more,
+                friction: robot.ground().friction * factor,
                 ..*robot.ground()
             };
             Effort::of(gait, &ground, &robot.motors())
         });
-        let line = |pace: f64, volts: f64| Self {
+        let share_at = |pace: f64, volts: f64| Self {
             pace,
             volts,
             share: efforts
                 .each_ref()
                 .map(|effort| effort.line_share(pace / 100.0, volts / robot.servo_type().volts)),
         };
-        let at = |pace| robot.reported_volts().map(|volts| line(pace, volts));
-        PACES.into_iter().flat_map(at).collect()
+        let shares_at_pace = |pace| robot.reported_volts().map(|volts| share_at(pace, volts));
+        PACES.into_iter().flat_map(shares_at_pace).collect()
     }
 }
 
@@ -70,7 +70,7 @@ pub fn run(
     replay: &Replay,
     model: ServoModel,
     times: u32,
-    json: bool,
+    is_json: bool,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
     let gaits: Vec<&CheckedGait> = replay
@@ -87,21 +87,21 @@ pub fn run(
         if spreads.iter().any(|spread| spread.gait == gait.name()) {
             continue;
         }
-        let path = |seed: u64| {
+        let walk_once = |seed: u64| {
             bar.inc(1);
             Variation::of(robot.ground(), seed)
                 .with_play(seed)
                 .walked(robot, gait, model)
         };
-        let paths: Vec<Travel> = (0..u64::from(times)).map(path).collect();
+        let paths: Vec<Travel> = (0..u64::from(times)).map(walk_once).collect();
         spreads.push(Spread::of(
             gait.name(),
             &paths,
-            EffortShare::all(robot, gait),
+            EffortShare::of_gait(robot, gait),
         ));
     }
     bar.finish_and_clear();
-    if json {
+    if is_json {
         for spread in &spreads {
             json::write_line(out, spread)?;
         }
@@ -113,15 +113,15 @@ pub fn run(
 
 impl Spread {
     fn of(gait: &str, paths: &[Travel], lines: Vec<EffortShare>) -> Self {
-        let part = |quantity: fn(&Travel) -> f64| {
+        let quantiles_of = |quantity: fn(&Travel) -> f64| {
             quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
         };
         Self {
             gait: gait.to_owned(),
             times: paths.len(),
-            forward: part(|path| path.forward),
-            left: part(|path| path.left),
-            turn: part(|path| path.turn),
+            forward: quantiles_of(|path| path.forward),
+            left: quantiles_of(|path| path.left),
+            turn: quantiles_of(|path| path.turn),
             lines,
         }
     }
@@ -161,19 +161,19 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
         "\nThe largest share of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
          Above {HIGH_LINE_SHARE}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
     )?;
-    let Some(first) = spreads.first() else {
+    let Some(first_spread) = spreads.first() else {
         return Ok(());
     };
     write!(out, "{:<12}", "gait")?;
-    for EffortShare { pace, volts, .. } in &first.lines {
+    for EffortShare { pace, volts, .. } in &first_spread.lines {
         write!(out, "{:>18}", format!("{pace:.0} %, {volts:.2} V"))?;
     }
     writeln!(out)?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
         for line in &spread.lines {
-            let [own, largest] = line.share.map(mark);
-            write!(out, "{:>18}", format!("{own} {largest}"))?;
+            let [own_share, largest_share] = line.share.map(format_share);
+            write!(out, "{:>18}", format!("{own_share} {largest_share}"))?;
         }
         writeln!(out)?;
     }
@@ -181,7 +181,7 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
 }
 
 /// Formats a share of the torque-speed line, with a mark if little torque is left.
-fn mark(share: f64) -> String {
+fn format_share(share: f64) -> String {
     let mark = if share >= HIGH_LINE_SHARE { '!' } else { ' ' };
     format!("{share:.2}{mark}")
 }

@@ -11,7 +11,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     for (name, text) in files() {
         let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
         // All four cranks have the same scale.
-        let link = |key: &str| -> f64 {
+        let link_length = |key: &str| -> f64 {
             let line = text
                 .lines()
                 .find(|line| line.starts_with(&format!("{key} ")));
@@ -25,7 +25,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
             .zip(["l1", "l4", "l9", "l6"])
             .map(|(servo, key)| {
                 let crank = drawing.path(&format!("crank-{servo}"));
-                (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / link(key)
+                (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / link_length(key)
             });
         let scales: Vec<f64> = scales.collect();
         assert!(
@@ -65,18 +65,18 @@ fn turn_between(from: f64, to: f64) -> f64 {
 fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
     for (name, text) in files() {
         let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
-        let (sits, should) = (drawing.path("sits"), drawing.path("should"));
+        let (placed_crank, exact_crank) = (drawing.path("sits"), drawing.path("should"));
         let neutral: f64 = value_of(&text, "A1", "neutral").parse().expect("degrees");
         assert!(
-            turn_between(neutral, direction(&should)).abs() < 0.02,
+            turn_between(neutral, direction(&exact_crank)).abs() < 0.02,
             "{name}"
         );
-        let words = drawing.0.iter().map(|element| element.content.as_str());
-        let trims: Vec<&str> = words
-            .filter_map(|words| words.strip_prefix("trim 1 "))
+        let texts = drawing.0.iter().map(|element| element.content.as_str());
+        let trims: Vec<&str> = texts
+            .filter_map(|content| content.strip_prefix("trim 1 "))
             .collect();
         let trim: f64 = trims[0].parse().expect("degrees");
-        let error = turn_between(direction(&sits), direction(&should)) - trim;
+        let error = turn_between(direction(&placed_crank), direction(&exact_crank)) - trim;
         assert!(error.abs() < 0.02, "{name} {error}");
         assert!(trim.abs() <= 7.2, "more than the teeth leave");
     }
@@ -89,22 +89,22 @@ fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
     let count = corners.len() as f64;
     let sum = corners
         .iter()
-        .fold((0.0, 0.0), |sum, at| (sum.0 + at.0, sum.1 + at.1));
+        .fold((0.0, 0.0), |sum, point| (sum.0 + point.0, sum.1 + point.1));
     let middle = (sum.0 / count, sum.1 / count);
-    let radius = |at: &Point| (at.0 - middle.0).hypot(at.1 - middle.1);
-    let mean = corners.iter().map(radius).sum::<f64>() / count;
-    let rises = (0..corners.len()).filter(|place| {
-        let before = &corners[(place + corners.len() - 1) % corners.len()];
-        radius(before) < mean && radius(&corners[*place]) > mean
+    let radius_of = |point: &Point| (point.0 - middle.0).hypot(point.1 - middle.1);
+    let mean = corners.iter().map(radius_of).sum::<f64>() / count;
+    let teeth = (0..corners.len()).filter(|index| {
+        let previous = &corners[(index + corners.len() - 1) % corners.len()];
+        radius_of(previous) < mean && radius_of(&corners[*index]) > mean
     });
-    assert_eq!(rises.count(), 25);
-    let words: String = drawing
+    assert_eq!(teeth.count(), 25);
+    let text: String = drawing
         .0
         .iter()
         .map(|element| element.content.as_str())
         .collect();
     assert!(
-        words.contains("14.4° apart") && words.contains("7.2° at most"),
-        "{words}"
+        text.contains("14.4° apart") && text.contains("7.2° at most"),
+        "{text}"
     );
 }

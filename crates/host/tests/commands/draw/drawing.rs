@@ -30,14 +30,14 @@ impl Element {
 
     /// The points through which the element is drawn.
     pub fn points(&self) -> Vec<Point> {
-        let at = |x, y| (self.number(x), self.number(y));
+        let point_of = |x, y| (self.number(x), self.number(y));
         match self.tag.as_str() {
-            "line" => vec![at("x1", "y1"), at("x2", "y2")],
-            "circle" => vec![at("cx", "cy")],
-            "text" => vec![at("x", "y")],
+            "line" => vec![point_of("x1", "y1"), point_of("x2", "y2")],
+            "circle" => vec![point_of("cx", "cy")],
+            "text" => vec![point_of("x", "y")],
             "rect" => {
-                let (x, y) = at("x", "y");
-                let (width, height) = at("width", "height");
+                let (x, y) = point_of("x", "y");
+                let (width, height) = point_of("width", "height");
                 vec![(x, y), (x + width, y + height)]
             }
             "polyline" | "polygon" => self
@@ -71,7 +71,7 @@ impl Drawing {
                         content: String::new(),
                     });
                 }
-                Event::Text(words) => elements.last_mut().expect("a tag").content += words,
+                Event::Text(text) => elements.last_mut().expect("a tag").content += text,
                 Event::Error(error) => panic!("{error}"),
                 _ => {}
             }
@@ -80,12 +80,12 @@ impl Drawing {
     }
 
     pub fn element_by_id(&self, id: &str) -> &Element {
-        let mut found = self
+        let mut matches = self
             .0
             .iter()
             .filter(|element| element.attribute("id") == id);
-        let element = found.next().unwrap_or_else(|| panic!("no {id}"));
-        assert!(found.next().is_none(), "{id} twice");
+        let element = matches.next().unwrap_or_else(|| panic!("no {id}"));
+        assert!(matches.next().is_none(), "{id} twice");
         element
     }
 

@@ -29,20 +29,20 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
                     let size = element.number("font-size");
                     assert!(size >= 12.0, "{name}: {element:?}");
                     // A character of a wide font is about 0.55 of the font size wide.
-                    let long = 0.55 * size * element.content.chars().count() as f64;
+                    let text_width = 0.55 * size * element.content.chars().count() as f64;
                     let (x, y) = points[0];
                     if element.attribute("transform").is_empty() {
                         let (left, right) = match element.attribute("text-anchor") {
-                            "start" => (0.0, long),
-                            "end" => (long, 0.0),
-                            _ => (long / 2.0, long / 2.0),
+                            "start" => (0.0, text_width),
+                            "end" => (text_width, 0.0),
+                            _ => (text_width / 2.0, text_width / 2.0),
                         };
                         points.extend([(x - left, y - size), (x + right, y)]);
                     }
                 }
                 for (x, y) in points {
-                    let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
-                    assert!(inside, "{name}: {x} {y} {element:?}");
+                    let is_inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
+                    assert!(is_inside, "{name}: {x} {y} {element:?}");
                 }
             }
         }
@@ -53,14 +53,14 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
 fn the_drawings_in_docs_are_up_to_date() {
     let robot = Robot::parse(&paper()).expect("a robot");
     let neutral = robot.lizard().solve(&robot.neutral()).expect("it closes");
-    let above = top_view(&robot, &neutral, true);
+    let view = top_view(&robot, &neutral, true);
     for (name, svg) in [
         ("wiring", wiring(&robot)),
         ("horns", horns(&robot)),
-        ("lizard", above.clone()),
-        ("charts/top-view", above),
+        ("lizard", view.clone()),
+        ("charts/top-view", view),
     ] {
-        let kept = read(&format!("docs/{name}.svg"));
-        assert!(kept == svg, "docs/{name}.svg: run `make docs`");
+        let stored_svg = read(&format!("docs/{name}.svg"));
+        assert!(stored_svg == svg, "docs/{name}.svg: run `make docs`");
     }
 }

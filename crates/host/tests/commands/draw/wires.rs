@@ -12,19 +12,19 @@ use super::files::{SERVOS, files, paper, value_of};
 fn with_pins(pins: [&str; 4]) -> String {
     let mut text = paper();
     for (servo, pin) in SERVOS.into_iter().zip(pins) {
-        let before = format!(
+        let old_entry = format!(
             "[servo.{servo}]\npin = \"{}\"",
             value_of(&paper(), servo, "pin")
         );
-        assert!(text.contains(&before));
-        text = text.replace(&before, &format!("[servo.{servo}]\npin = \"{pin}\""));
+        assert!(text.contains(&old_entry));
+        text = text.replace(&old_entry, &format!("[servo.{servo}]\npin = \"{pin}\""));
     }
     text
 }
 
 /// Sets of four pins, in many orders. 17 is prime, so four pins at equal steps are always distinct.
 fn many_pins() -> Vec<[String; 4]> {
-    let name = |n: usize| {
+    let name_of = |n: usize| {
         let n = n % 17;
         if n < 11 {
             format!("D{}", n + 2)
@@ -34,7 +34,7 @@ fn many_pins() -> Vec<[String; 4]> {
     };
     (1..17)
         .flat_map(|step| (step % 12..17).step_by(12).map(move |start| (start, step)))
-        .map(|(start, step)| [0, 1, 2, 3].map(|k| name(start + k * step)))
+        .map(|(start, step)| [0, 1, 2, 3].map(|k| name_of(start + k * step)))
         .collect()
 }
 
@@ -71,8 +71,9 @@ impl<'a> Nets<'a> {
             ("signals", 5, ["servo", "board"]),
         ] {
             for position in 1..=positions {
-                let [one, other] = sides.map(|side| format!("end-{strip}-{position}-{side}"));
-                nets.join(&one, &other);
+                let [first_end, second_end] =
+                    sides.map(|side| format!("end-{strip}-{position}-{side}"));
+                nets.join(&first_end, &second_end);
             }
         }
         // The single terminal between the switch and the converter.
@@ -82,16 +83,16 @@ impl<'a> Nets<'a> {
 
     /// The terminal or pin nearest to a point.
     fn nearest_terminal(&self, point: Point) -> String {
-        let distance = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
+        let distance_to = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
         let ends = self.drawing.0.iter().filter(|element| {
             let id = element.attribute("id");
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
         });
-        let ends = ends.map(|element| (distance(&element.points()[0]), element.attribute("id")));
-        let (nearest, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
+        let ends = ends.map(|element| (distance_to(&element.points()[0]), element.attribute("id")));
+        let (min_distance, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
         assert!(
-            nearest <= MAX_TERMINAL_DISTANCE,
-            "nothing is at {point:?}; {name} is {nearest} away"
+            min_distance <= MAX_TERMINAL_DISTANCE,
+            "nothing is at {point:?}; {name} is {min_distance} away"
         );
         name.to_owned()
     }
@@ -103,10 +104,10 @@ impl<'a> Nets<'a> {
         }
     }
 
-    fn join(&mut self, a: &str, b: &str) {
-        let (a, b) = (self.root(a), self.root(b));
-        if a != b {
-            self.parent.insert(a, b);
+    fn join(&mut self, first: &str, second: &str) {
+        let (first, second) = (self.root(first), self.root(second));
+        if first != second {
+            self.parent.insert(first, second);
         }
     }
 
@@ -127,21 +128,21 @@ impl<'a> Nets<'a> {
 
 #[test]
 fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
-    let many = many_pins();
-    let many = many.iter().map(|pins| {
+    let pin_sets = many_pins();
+    let pin_sets = pin_sets.iter().map(|pins| {
         let text = with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str()));
         (format!("{pins:?}"), text)
     });
-    for (name, text) in files().into_iter().chain(many) {
+    for (name, text) in files().into_iter().chain(pin_sets) {
         let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
         let nets = Nets::of(&drawing);
-        let grounds = [
+        let servo_grounds = [
             "end-A1-ground",
             "end-A2-ground",
             "end-A3-ground",
             "end-A4-ground",
         ];
-        let ground = [
+        let grounds = [
             "end-battery-minus",
             "end-converter-in-minus",
             "end-converter-out-minus",
@@ -150,10 +151,10 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
             "end-signals-3-servo",
             "pin-GND",
         ];
-        nets.assert_joined(&[&ground[..], &grounds].concat());
-        let five = ["end-converter-out-plus", "end-capacitor-plus"];
-        let servos = ["end-A1-plus", "end-A2-plus", "end-A3-plus", "end-A4-plus"];
-        nets.assert_joined(&[&five[..], &servos].concat());
+        nets.assert_joined(&[&grounds[..], &servo_grounds].concat());
+        let supplies = ["end-converter-out-plus", "end-capacitor-plus"];
+        let servo_supplies = ["end-A1-plus", "end-A2-plus", "end-A3-plus", "end-A4-plus"];
+        nets.assert_joined(&[&supplies[..], &servo_supplies].concat());
         nets.assert_joined(&["end-battery-plus", "end-fuse-2"]);
         nets.assert_joined(&["end-fuse-1", "end-switch-2"]);
         nets.assert_joined(&[
@@ -163,10 +164,10 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
         ]);
         for number in 1..=3 {
             let [battery, alarm] =
-                ["battery-balance", "alarm"].map(|of| format!("end-{of}-{number}"));
+                ["battery-balance", "alarm"].map(|component| format!("end-{component}-{number}"));
             nets.assert_joined(&[&battery, &alarm]);
         }
-        let mut apart = vec![
+        let mut roots = vec![
             nets.root("end-battery-plus"),
             nets.root("end-fuse-1"),
             nets.root("end-switch-1"),
@@ -177,26 +178,26 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
             let pin = value_of(&text, servo, "pin");
             let signal = format!("end-{servo}-signal");
             nets.assert_joined(&[&signal, &format!("pin-{pin}")]);
-            apart.push(nets.root(&signal));
-            let words = format!("to {pin}");
+            roots.push(nets.root(&signal));
+            let label = format!("to {pin}");
             assert!(
-                drawing.0.iter().any(|element| element.content == words),
+                drawing.0.iter().any(|element| element.content == label),
                 "{name}"
             );
             // The servo's resistor leads from its terminal position to ground.
             let leads = drawing.path(&format!("resistor-{servo}"));
-            let ends =
-                [leads[0], leads[leads.len() - 1]].map(|at| nets.root(&nets.nearest_terminal(at)));
+            let ends = [leads[0], leads[leads.len() - 1]]
+                .map(|point| nets.root(&nets.nearest_terminal(point)));
             assert_eq!(
                 ends,
                 [nets.root(&signal), nets.root("pin-GND")],
                 "{name} {servo}"
             );
         }
-        let count = apart.len();
-        apart.sort();
-        apart.dedup();
-        assert_eq!(apart.len(), count, "{name}: two nets are one");
+        let count = roots.len();
+        roots.sort();
+        roots.dedup();
+        assert_eq!(roots.len(), count, "{name}: two nets are one");
         // Spare positions are not joined to ground.
         for position in ["end-ground-11-wire", "end-ground-12-wire"] {
             assert_ne!(nets.root(position), nets.root("pin-GND"));
@@ -230,48 +231,57 @@ fn removing_any_link_splits_its_strip() {
 
 #[test]
 fn wires_only_cross_they_never_run_into_or_along_each_other() {
-    let many = many_pins();
-    let many = many
+    let pin_sets = many_pins();
+    let pin_sets = pin_sets
         .iter()
         .map(|pins| with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str())));
-    for text in files().into_iter().map(|file| file.1).chain(many) {
+    for text in files().into_iter().map(|file| file.1).chain(pin_sets) {
         let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
         // The wires in the radio's panel may touch each other, so they are left out.
         let mut wires = drawing.wires();
         wires.retain(|(name, _)| !name.starts_with("radio-"));
-        let upright = |part: &[Point]| part[0].0 == part[1].0;
+        let is_upright = |segment: &[Point]| segment[0].0 == segment[1].0;
         for (wire, path) in &wires {
-            let is_straight = |part: &[Point]| part[0].0 == part[1].0 || part[0].1 == part[1].1;
+            let is_straight =
+                |segment: &[Point]| segment[0].0 == segment[1].0 || segment[0].1 == segment[1].1;
             assert!(path.windows(2).all(is_straight), "{wire}");
         }
-        for (place, (a, path)) in wires.iter().enumerate() {
-            for (b, other) in &wires[place + 1..] {
-                for (one, two) in path
-                    .windows(2)
-                    .flat_map(|one| other.windows(2).map(move |two| (one, two)))
-                {
-                    let apart = |axis: fn(&Point) -> f64| {
-                        let range = |part: &[Point]| {
-                            let (a, b) = (axis(&part[0]), axis(&part[1]));
-                            (a.min(b), a.max(b))
+        for (index, (wire, path)) in wires.iter().enumerate() {
+            for (other_wire, other_path) in &wires[index + 1..] {
+                for (segment, other_segment) in path.windows(2).flat_map(|segment| {
+                    other_path
+                        .windows(2)
+                        .map(move |other_segment| (segment, other_segment))
+                }) {
+                    let gap_along = |axis: fn(&Point) -> f64| {
+                        let range_of = |segment: &[Point]| {
+                            let (start, end) = (axis(&segment[0]), axis(&segment[1]));
+                            (start.min(end), start.max(end))
                         };
-                        let (one, two) = (range(one), range(two));
-                        (one.0 - two.1).max(two.0 - one.1)
+                        let (segment, other_segment) = (range_of(segment), range_of(other_segment));
+                        (segment.0 - other_segment.1).max(other_segment.0 - segment.1)
                     };
-                    let (x, y) = (apart(|at| at.0), apart(|at| at.1));
-                    if upright(one) == upright(two) {
+                    let (x, y) = (gap_along(|point| point.0), gap_along(|point| point.1));
+                    if is_upright(segment) == is_upright(other_segment) {
                         // Parallel wires keep their distance, unless they share an end or are both links.
-                        let shared = a.starts_with("link-") && b.starts_with("link-");
-                        let near = x < 3.0 && y < 3.0;
+                        let are_links =
+                            wire.starts_with("link-") && other_wire.starts_with("link-");
+                        let are_near = x < 3.0 && y < 3.0;
                         assert!(
-                            !near || shared || one.contains(&two[0]) || one.contains(&two[1]),
-                            "{a} along {b}: {one:?} {two:?}"
+                            !are_near
+                                || are_links
+                                || segment.contains(&other_segment[0])
+                                || segment.contains(&other_segment[1]),
+                            "{wire} along {other_wire}: {segment:?} {other_segment:?}"
                         );
                     } else if x <= 0.0 && y <= 0.0 {
                         // Wires that cross do so well away from the ends of both, unless they share an end.
                         let depth = (-x).min(-y);
-                        let touch = one.iter().any(|end| two.contains(end));
-                        assert!(depth > 2.0 || touch, "{a} runs into {b}: {one:?} {two:?}");
+                        let is_touching = segment.iter().any(|end| other_segment.contains(end));
+                        assert!(
+                            depth > 2.0 || is_touching,
+                            "{wire} runs into {other_wire}: {segment:?} {other_segment:?}"
+                        );
                     }
                 }
             }
@@ -282,29 +292,32 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
 #[test]
 fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
     let drawing = Drawing::of(&wiring(&Robot::parse(&paper()).expect("a robot")));
-    let at = |name: &str| drawing.path(name)[0];
-    let path = |name: &str| drawing.path(name);
-    let [anode, cathode] = ["end-diode-anode", "end-diode-cathode"].map(at);
+    let point_of = |name: &str| drawing.path(name)[0];
+    let path_of = |name: &str| drawing.path(name);
+    let [anode, cathode] = ["end-diode-anode", "end-diode-cathode"].map(point_of);
     // The module pulls D0 low: current flows from D0 into TXD.
-    assert_eq!(path("radio-d0"), [at("end-radio-D0 (RX)"), anode]);
-    assert_eq!(path("radio-txd"), [cathode, at("end-radio-module-TXD")]);
-    assert_eq!(path("radio-d1")[0], at("end-radio-D1 (TX)"));
-    assert_eq!(path("radio-rxd")[1], at("end-radio-module-RXD"));
-    let [rxd, ground] = ["radio-rxd", "radio-ground"].map(|name| path(name)[0].1);
-    let lower = path("radio-2k");
-    assert_eq!([lower[0].1, lower[1].1], [rxd, ground]);
-    let printed = |words: &str| {
+    assert_eq!(path_of("radio-d0"), [point_of("end-radio-D0 (RX)"), anode]);
+    assert_eq!(
+        path_of("radio-txd"),
+        [cathode, point_of("end-radio-module-TXD")]
+    );
+    assert_eq!(path_of("radio-d1")[0], point_of("end-radio-D1 (TX)"));
+    assert_eq!(path_of("radio-rxd")[1], point_of("end-radio-module-RXD"));
+    let [rxd, ground] = ["radio-rxd", "radio-ground"].map(|name| path_of(name)[0].1);
+    let resistor_path = path_of("radio-2k");
+    assert_eq!([resistor_path[0].1, resistor_path[1].1], [rxd, ground]);
+    let has_text = |text: &str| {
         drawing
             .0
             .iter()
-            .any(|element| element.content.contains(words))
+            .any(|element| element.content.contains(text))
     };
-    assert!(printed("Option: a radio module") && printed("1 k\u{3a9}") && printed("2 k\u{3a9}"));
+    assert!(has_text("Option: a radio module") && has_text("1 k\u{3a9}") && has_text("2 k\u{3a9}"));
 }
 
 #[test]
 fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground() {
-    let draw = |tables: &str| {
+    let draw_with = |tables: &str| {
         let text = paper().replace("[limits]", &format!("{tables}\n[limits]"));
         Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")))
     };
@@ -313,14 +326,14 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
         ids.any(|id| id == name)
     };
     let (button, nose) = ("[input.button]\npin = \"A1\"", "[input.nose]\npin = \"D7\"");
-    let (none, one) = (draw(""), draw(button));
-    let both = draw(&format!("{button}\n{nose}"));
+    let (no_inputs, button_only) = (draw_with(""), draw_with(button));
+    let both_inputs = draw_with(&format!("{button}\n{nose}"));
     for name in ["input-button-A1", "input-button-GND"] {
         assert_eq!(
             [
-                has_entry(&none, name),
-                has_entry(&one, name),
-                has_entry(&both, name)
+                has_entry(&no_inputs, name),
+                has_entry(&button_only, name),
+                has_entry(&both_inputs, name)
             ],
             [false, true, true]
         );
@@ -328,20 +341,23 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
     for name in ["input-nose-D7", "input-nose-GND", "input-nose-5V"] {
         assert_eq!(
             [
-                has_entry(&none, name),
-                has_entry(&one, name),
-                has_entry(&both, name)
+                has_entry(&no_inputs, name),
+                has_entry(&button_only, name),
+                has_entry(&both_inputs, name)
             ],
             [false, false, true]
         );
-        let path = both.path(name);
-        let from = name.strip_prefix("input-").expect("it begins so");
-        assert_eq!(path[0], both.path(&format!("end-{from}"))[0]);
+        let path = both_inputs.path(name);
+        let terminal = name.strip_prefix("input-").expect("it begins so");
+        assert_eq!(path[0], both_inputs.path(&format!("end-{terminal}"))[0]);
     }
-    let fill =
+    let fill_of =
         |drawing: &Drawing, pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
-    assert_eq!(fill(&both, "pin-A1"), fill(&both, "pin-D9"));
-    assert_ne!(fill(&none, "pin-A1"), fill(&none, "pin-D9"));
+    assert_eq!(
+        fill_of(&both_inputs, "pin-A1"),
+        fill_of(&both_inputs, "pin-D9")
+    );
+    assert_ne!(fill_of(&no_inputs, "pin-A1"), fill_of(&no_inputs, "pin-D9"));
 }
 
 #[test]
@@ -359,14 +375,14 @@ fn pins_are_where_an_uno_has_them() {
         ("A5", (2500.0, 100.0)),
     ];
     let drawing = Drawing::of(&wiring(&Robot::parse(&paper()).expect("a robot")));
-    let at = |name: &str| drawing.path(&format!("pin-{name}"))[0];
-    let scale = (at("D0").0 - at("D13").0) / (2500.0 - 1140.0);
-    let (zero, first) = (at("D13"), PINS[0].1);
+    let pin_point = |name: &str| drawing.path(&format!("pin-{name}"))[0];
+    let scale = (pin_point("D0").0 - pin_point("D13").0) / (2500.0 - 1140.0);
+    let (origin, origin_mil) = (pin_point("D13"), PINS[0].1);
     for (name, mil) in PINS {
-        let (x, y) = at(name);
+        let (x, y) = pin_point(name);
         let error = (
-            (x - zero.0) / scale - (mil.0 - first.0),
-            (zero.1 - y) / scale - (mil.1 - first.1),
+            (x - origin.0) / scale - (mil.0 - origin_mil.0),
+            (origin.1 - y) / scale - (mil.1 - origin_mil.1),
         );
         assert!(
             error.0.abs() < 1.0 && error.1.abs() < 1.0,
@@ -382,9 +398,9 @@ fn a_rail_that_is_measured_has_its_pin_marked() {
         "[supply.rail]\npin = \"A3\"\nratio = 2.5\n[limits]",
     );
     let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
-    let words = "A3 measures the +5 V strip, divided by 2.50.";
-    assert!(drawing.0.iter().any(|element| element.content == words));
-    let fill = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
-    assert_eq!(fill("pin-A3"), fill("pin-D9"));
-    assert_ne!(fill("pin-A3"), fill("pin-A2"));
+    let remark = "A3 measures the +5 V strip, divided by 2.50.";
+    assert!(drawing.0.iter().any(|element| element.content == remark));
+    let fill_of = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
+    assert_eq!(fill_of("pin-A3"), fill_of("pin-D9"));
+    assert_ne!(fill_of("pin-A3"), fill_of("pin-A2"));
 }

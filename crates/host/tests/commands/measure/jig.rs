@@ -12,7 +12,7 @@ use super::servo::Servo;
 use crate::program::{read, run_in, scratch};
 
 /// Creates an empty folder.
-fn folder(name: &str) -> PathBuf {
+fn new_folder(name: &str) -> PathBuf {
     let folder = scratch().join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
@@ -20,7 +20,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// Writes a picture as a JPEG file that is named after its time.
-fn write(folder: &Path, seconds: f64, picture: &Picture) {
+fn write_picture(folder: &Path, seconds: f64, picture: &Picture) {
     let [width, height] = picture.size().map(|length| length as u16);
     let path = folder.join(format!("{seconds:.4}s.jpg"));
     let encoder = jpeg_encoder::Encoder::new_file(path, 90).expect("a file");
@@ -31,30 +31,30 @@ fn write(folder: &Path, seconds: f64, picture: &Picture) {
 }
 
 /// Writes jig.toml: the paper's robot with pulses that move faster than its servos can follow.
-fn jig(folder: &Path) {
+fn write_jig(folder: &Path) {
     let text = read("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
     fs::write(folder.join("jig.toml"), text).expect("a file");
 }
 
 /// Checks that a figure is within two standard errors of its true value, and that the standard error
-/// is below `largest`.
-fn check(object: &Value, key: &str, truth: f64, largest: f64) {
+/// is below `max_error`.
+fn check_figure(object: &Value, key: &str, truth: f64, max_error: f64) {
     let figures = object["figures"].as_array().expect("figures");
     let figure = figures.iter().find(|figure| figure["key"] == key);
     let figure = figure.unwrap_or_else(|| panic!("{key}: {object}"));
-    let part = |name: &str| figure[name].as_f64().expect("a number");
-    let error = part("error");
+    let number_at = |name: &str| figure[name].as_f64().expect("a number");
+    let error = number_at("error");
     assert!(
-        (part("measured") - truth).abs() < 2.0 * error,
+        (number_at("measured") - truth).abs() < 2.0 * error,
         "{figure} {truth}"
     );
-    assert!(error < largest, "{figure}");
+    assert!(error < max_error, "{figure}");
 }
 
 #[test]
 fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
-    let folder = folder("horn");
-    jig(&folder);
+    let folder = new_folder("horn");
+    write_jig(&folder);
     let servo = Servo {
         gain: -0.9,
         rate: 420.0,
@@ -70,73 +70,81 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
         90.0,
         &mut Rng::with_seed(9),
         |seconds, picture| {
-            write(&folder, seconds, picture);
+            write_picture(&folder, seconds, picture);
         },
     );
-    let line = [
+    let arguments = [
         "measure", "servo", ".", "--servo", "A1", "--robot", "jig.toml", "--height",
     ];
-    let measure = |more: &[&str]| run_in(&folder, &[&line[..], more].concat(), "");
+    let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
     let object = measure(&["40", "--json"]).json();
-    check(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
-    check(&object, "s_per_60_deg", 60.0 / servo.own_rate(), 0.003);
+    check_figure(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
+    check_figure(&object, "s_per_60_deg", 60.0 / servo.own_rate(), 0.003);
     assert_eq!(object["turns_the_other_way"], true);
     let text = measure(&["40"]).expect_success();
-    for words in [
+    for expected in [
         "It turns the other way than robot.toml says",
         "[servo.A1]\nus_per_degree = -11.",
         "Not told: stall_kg_cm",
     ] {
-        assert!(text.contains(words), "{words}: {text}");
+        assert!(text.contains(expected), "{expected}: {text}");
     }
-    let new = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).expect_success();
+    let output = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).expect_success();
     assert!(
-        new.contains("Written: measured.toml, where [limits] slew is still 1000 deg/s"),
-        "{new}"
+        output.contains("Written: measured.toml, where [limits] slew is still 1000 deg/s"),
+        "{output}"
     );
-    let [before, after] = ["jig.toml", "measured.toml"]
+    let [old_text, new_text] = ["jig.toml", "measured.toml"]
         .map(|file| fs::read_to_string(folder.join(file)).expect("a file"));
-    let changed: Vec<&str> = after
+    let changed_lines: Vec<&str> = new_text
         .lines()
-        .filter(|line| before.lines().all(|old| old != *line))
+        .filter(|line| old_text.lines().all(|old| old != *line))
         .collect();
-    let value = |key: &str| {
-        let line = changed.iter().find(|line| line.starts_with(key));
-        let line = line.unwrap_or_else(|| panic!("{key}: {changed:?}"));
+    let value_of = |key: &str| {
+        let line = changed_lines.iter().find(|line| line.starts_with(key));
+        let line = line.unwrap_or_else(|| panic!("{key}: {changed_lines:?}"));
         let number = line[key.len()..].split(['=', '#']).nth(1).expect("a value");
         number.trim().parse::<f64>().expect("a number")
     };
-    assert!((value("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
+    assert!((value_of("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
     // The file states the time at 4.8 V; the film was made at 4.5 V.
-    let time = 60.0 / servo.own_rate() * 4.5 / 4.8;
-    assert!((value("s_per_60_deg") - time).abs() < 0.003, "{changed:?}");
-    assert_eq!(value("volts"), 4.5);
+    let seconds_per_60_deg = 60.0 / servo.own_rate() * 4.5 / 4.8;
     assert!(
-        changed.iter().any(|line| line.contains(", was 10.00")),
-        "{changed:?}"
+        (value_of("s_per_60_deg") - seconds_per_60_deg).abs() < 0.003,
+        "{changed_lines:?}"
+    );
+    assert_eq!(value_of("volts"), 4.5);
+    assert!(
+        changed_lines
+            .iter()
+            .any(|line| line.contains(", was 10.00")),
+        "{changed_lines:?}"
     );
     // Only the measured keys, a table header and blank lines are added.
-    assert!(after.lines().count() - before.lines().count() < 8);
-    let kept = measure(&["40", "--output", "jig.toml"]).expect_refusal();
-    assert!(kept.contains("jig.toml would be overwritten"), "{kept}");
-    let refused = measure(&["90"]).expect_refusal();
+    assert!(new_text.lines().count() - old_text.lines().count() < 8);
+    let refusal = measure(&["40", "--output", "jig.toml"]).expect_refusal();
     assert!(
-        refused.contains("the tag on the deck, or on the horn, is"),
-        "{refused}"
+        refusal.contains("jig.toml would be overwritten"),
+        "{refusal}"
+    );
+    let refusal = measure(&["90"]).expect_refusal();
+    assert!(
+        refusal.contains("the tag on the deck, or on the horn, is"),
+        "{refusal}"
     );
 }
 
 #[test]
 fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
-    let folder = folder("steps");
-    jig(&folder);
-    let steps = |servo: &str, robot: &str| {
-        let line = [
+    let folder = new_folder("steps");
+    write_jig(&folder);
+    let print_steps = |servo: &str, robot: &str| {
+        let arguments = [
             "measure", "steps", "--list", "--servo", servo, "--robot", robot,
         ];
-        run_in(&folder, &line, "")
+        run_in(&folder, &arguments, "")
     };
-    let lines = steps("A1", "jig.toml").expect_success();
+    let lines = print_steps("A1", "jig.toml").expect_success();
     assert!(
         lines.starts_with("factory\npose 138.59 41.41 318.59 221.41\n"),
         "{lines}"
@@ -145,18 +153,18 @@ fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
         lines.contains("\npose 108.59 41.41 318.59 221.41\ndir 1 -\ndir 1 +\n"),
         "{lines}"
     );
-    let slow = steps("A1", "paper").expect_refusal();
+    let refusal = print_steps("A1", "paper").expect_refusal();
     assert!(
-        slow.contains("write slew = 1000.0 under [limits]"),
-        "{slow}"
+        refusal.contains("write slew = 1000.0 under [limits]"),
+        "{refusal}"
     );
-    let none = steps("B1", "jig.toml").expect_refusal();
-    assert!(none.contains("it is A1, A2, A3 or A4"), "{none}");
+    let refusal = print_steps("B1", "jig.toml").expect_refusal();
+    assert!(refusal.contains("it is A1, A2, A3 or A4"), "{refusal}");
 }
 
 #[test]
 fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_tell() {
-    let folder = folder("slope");
+    let folder = new_folder("slope");
     let slide = Board {
         resting: 0.45,
         sliding: 0.4,
@@ -164,23 +172,23 @@ fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_tell() {
         ..BOARD
     };
     slide.pictures(&board::studio(), 30.0, |seconds, picture| {
-        write(&folder, seconds, picture);
+        write_picture(&folder, seconds, picture);
     });
-    let line = [
+    let arguments = [
         "measure", "slope", ".", "--robot", "paper", "--height", "83",
     ];
-    let measure = |more: &[&str]| run_in(&folder, &[&line[..], more].concat(), "");
-    check(
+    let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
+    check_figure(
         &measure(&["--json"]).json(),
         "friction",
         slide.sliding,
         0.02,
     );
     let text = measure(&[]).expect_success();
-    for words in [
+    for expected in [
         "[ground]\nfriction = 0.",
         "A film with the head uphill gives friction_back_over_forward",
     ] {
-        assert!(text.contains(words), "{words}: {text}");
+        assert!(text.contains(expected), "{expected}: {text}");
     }
 }

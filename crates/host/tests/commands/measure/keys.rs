@@ -6,69 +6,73 @@ use std::path::PathBuf;
 use crate::program::{Outcome, read, robot, run_in, scratch};
 
 /// The movement per cycle of a gait, as `lizard measure --json` prints it; all errors are 0.05.
-fn object(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
-    let part = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
+fn gait_json(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
+    let component_json = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
     format!(
         r#"{{"gait":"{gait}","speed":100,"forward":{},"left":{},"turn":{}}}"#,
-        part(forward),
-        part(left),
-        part(turn)
+        component_json(forward),
+        component_json(left),
+        component_json(turn)
     )
 }
 
 /// The movements of several gaits, as `lizard measure --json` prints them.
-fn ways(objects: &[String]) -> String {
+fn gaits_json(objects: &[String]) -> String {
     format!(r#"{{"gaits":[{}]}}"#, objects.join(","))
 }
 
 /// Writes a file into the scratch folder.
-fn file(name: &str, text: &str) -> PathBuf {
+fn write_file(name: &str, text: &str) -> PathBuf {
     let path = scratch().join(name);
     fs::write(&path, text).expect("it is written");
     path
 }
 
-fn keys(files: &[&PathBuf], more: &[&str]) -> Outcome {
+fn measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
     let paper = robot("paper");
     let files: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
-    let line = [&["measure", "keys", "--robot", &paper], &files[..], more].concat();
-    run_in(scratch(), &line, "")
+    let arguments = [&["measure", "keys", "--robot", &paper], &files[..], options].concat();
+    run_in(scratch(), &arguments, "")
 }
 
 #[test]
 fn files_without_information_are_refused_with_advice() {
-    let foreign = file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
-    let message = keys(&[&foreign], &[]).expect_refusal();
+    let foreign_file = write_file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
+    let message = measure_keys(&[&foreign_file], &[]).expect_refusal();
     assert!(
         message.contains("foreign.json") && message.contains("missing field `forward`"),
         "{message}"
     );
-    let empty = file("empty.json", "");
-    let message = keys(&[&empty], &[]).expect_refusal();
+    let empty_file = write_file("empty.json", "");
+    let message = measure_keys(&[&empty_file], &[]).expect_refusal();
     assert!(
         message.contains("empty.json: this is not what"),
         "{message}"
     );
-    let without = file("without.json", &ways(&[]));
-    let message = keys(&[&without], &[]).expect_refusal();
+    let file_without_gaits = write_file("without.json", &gaits_json(&[]));
+    let message = measure_keys(&[&file_without_gaits], &[]).expect_refusal();
     assert!(message.contains("none of these gaits"), "{message}");
-    let unknown = file("unknown.json", &ways(&[object("wakl", [30.0, 0.0, 0.0])]));
+    let file_with_unknown_gait = write_file(
+        "unknown.json",
+        &gaits_json(&[gait_json("wakl", [30.0, 0.0, 0.0])]),
+    );
     assert!(
-        keys(&[&unknown], &[])
+        measure_keys(&[&file_with_unknown_gait], &[])
             .expect_refusal()
             .contains("no gait `wakl`")
     );
-    let still = file("still.json", &ways(&[object("stand", [0.0; 3])]));
+    let file_without_motion =
+        write_file("still.json", &gaits_json(&[gait_json("stand", [0.0; 3])]));
     assert!(
-        keys(&[&still], &[])
+        measure_keys(&[&file_without_motion], &[])
             .expect_refusal()
             .contains("moves no servo")
     );
-    let other = ways(&[object("walk", [30.0, 0.0, 0.0])])
+    let file_of_other_robot = gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])])
         .replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
-    let other = file("other.json", &other);
+    let file_of_other_robot = write_file("other.json", &file_of_other_robot);
     assert!(
-        keys(&[&other], &[])
+        measure_keys(&[&file_of_other_robot], &[])
             .expect_refusal()
             .contains("1.00 s by this robot.toml, but took 1.25 s")
     );
@@ -76,46 +80,57 @@ fn files_without_information_are_refused_with_advice() {
 
 #[test]
 fn no_robot_and_no_input_is_replaced() {
-    let way = file("way.json", &ways(&[object("walk", [30.0, 0.0, 0.0])]));
+    let movement_file = write_file(
+        "way.json",
+        &gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])]),
+    );
     let text = read("robots/grain.toml");
-    let other = file("other-robot.toml", &text);
-    let message = keys(&[&way], &["--output", other.to_str().expect("a name")]).expect_refusal();
+    let robot_file = write_file("other-robot.toml", &text);
+    let message = measure_keys(
+        &[&movement_file],
+        &["--output", robot_file.to_str().expect("a name")],
+    )
+    .expect_refusal();
     assert!(message.contains("describes a robot"), "{message}");
-    let message = keys(&[&way], &["--output", way.to_str().expect("a name")]).expect_refusal();
+    let message = measure_keys(
+        &[&movement_file],
+        &["--output", movement_file.to_str().expect("a name")],
+    )
+    .expect_refusal();
     assert!(message.contains("this command reads it"), "{message}");
-    assert_eq!(fs::read_to_string(&other).expect("it is there"), text);
+    assert_eq!(fs::read_to_string(&robot_file).expect("it is there"), text);
 }
 
 #[test]
 fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
     // The model's movement with a friction ratio of 1.1, extrapolated by its derivatives at the file's ratio, 1.
-    let measured = [
-        object("walk", [33.57, 0.07, 0.0]),
-        object("trot", [25.63, -0.02, 0.0]),
-        object("crawl", [29.72, 0.3, -0.11]),
-        object("back", [-32.91, 0.08, 0.0]),
-        object("left", [1.09, 0.29, 14.53]),
+    let gaits = [
+        gait_json("walk", [33.57, 0.07, 0.0]),
+        gait_json("trot", [25.63, -0.02, 0.0]),
+        gait_json("crawl", [29.72, 0.3, -0.11]),
+        gait_json("back", [-32.91, 0.08, 0.0]),
+        gait_json("left", [1.09, 0.29, 14.53]),
     ];
-    let measured = file("ways.json", &ways(&measured));
+    let measured_file = write_file("ways.json", &gaits_json(&gaits));
     let output = scratch().join("measured.toml");
     let _ = fs::remove_file(&output);
-    let shown = output.to_str().expect("a name");
-    let result = keys(&[&measured], &["--output", shown, "--json"]).json();
-    let verdict = |key: &str| {
-        let mut all = result["keys"].as_array().into_iter().flatten();
-        let found = all.find(|found| found["key"] == key).expect(key);
-        found["verdict"].as_str().expect("a word").to_owned()
+    let output_name = output.to_str().expect("a name");
+    let result = measure_keys(&[&measured_file], &["--output", output_name, "--json"]).json();
+    let verdict_of = |key: &str| {
+        let mut entries = result["keys"].as_array().into_iter().flatten();
+        let entry = entries.find(|entry| entry["key"] == key).expect(key);
+        entry["verdict"].as_str().expect("a word").to_owned()
     };
-    assert_eq!(verdict("ground.friction_back_over_forward"), "moved");
-    assert_eq!(result["written"], shown);
-    let (old, new) = (
+    assert_eq!(verdict_of("ground.friction_back_over_forward"), "moved");
+    assert_eq!(result["written"], output_name);
+    let (old_text, new_text) = (
         read("robots/paper.toml"),
         fs::read_to_string(&output).expect("it is written"),
     );
-    let changed = new
+    let changed_lines = new_text
         .lines()
-        .filter(|line| !old.lines().any(|known| known == *line));
-    for line in changed {
+        .filter(|line| !old_text.lines().any(|old_line| old_line == *line));
+    for line in changed_lines {
         let is_measured =
             line.contains("# measured: ") && line.contains("+-") && line.contains("was ");
         assert!(
@@ -123,7 +138,7 @@ fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
             "{line}"
         );
     }
-    assert!(new.contains("friction_back_over_forward = ") && new != old);
-    let check = run_in(scratch(), &["gaits", "--robot", shown], "");
-    assert!(check.expect_success().contains("walk"));
+    assert!(new_text.contains("friction_back_over_forward = ") && new_text != old_text);
+    let outcome = run_in(scratch(), &["gaits", "--robot", output_name], "");
+    assert!(outcome.expect_success().contains("walk"));
 }

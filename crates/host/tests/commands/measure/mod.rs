@@ -41,24 +41,30 @@ fn studio() -> Studio {
 }
 
 /// Five cycles of `walk` that differ a little from each other.
-fn walked() -> Walk {
+fn varied_walk() -> Walk {
     let gait = gait("walk");
     let start = -truth(&gait).forward * 2.5;
-    let varies = Variation {
+    let variation = Variation {
         cycle: [0.1, 0.1, 0.002],
         ..Variation::default()
     };
-    Walk::new(&gait, [start, 0.0, 0.0], 5, varies, &mut Rng::with_seed(4))
+    Walk::new(
+        &gait,
+        [start, 0.0, 0.0],
+        5,
+        variation,
+        &mut Rng::with_seed(4),
+    )
 }
 
 /// Renders five cycles of `walk` into a new folder.
-fn film(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
-    let walk = walked();
-    film_of(folder, name, walk.seconds(), |time| walk.at(time))
+fn render_walk(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
+    let walk = varied_walk();
+    render_film(folder, name, walk.seconds(), |time| walk.at(time))
 }
 
 /// Renders a moving robot as JPEG files in a new folder; `name` makes a file name from the picture's number.
-fn film_of(
+fn render_film(
     folder: &str,
     name: impl Fn(usize) -> String,
     seconds: f64,
@@ -84,14 +90,14 @@ fn film_of(
 
 /// The words of a table, without its numbers and verdicts, which change with every film.
 fn without_figures(table: &str) -> Vec<&str> {
-    let verdict = ["more", "less", "errors", "agrees"];
-    let part = ["ahead", "left", "turn", "mm", "deg"];
+    let verdict_words = ["more", "less", "errors", "agrees"];
+    let part_names = ["ahead", "left", "turn", "mm", "deg"];
     table
         .lines()
         .flat_map(|line| {
             // The name of the part that is farthest off depends on the figures, so it is skipped, too.
-            let skipped = if line.starts_with("path") {
-                &part[..]
+            let skipped_words = if line.starts_with("path") {
+                &part_names[..]
             } else {
                 &[]
             };
@@ -99,52 +105,52 @@ fn without_figures(table: &str) -> Vec<&str> {
                 .split_whitespace()
                 .map(|word| word.trim_end_matches(','));
             words.filter(move |word| {
-                word.chars().all(char::is_alphabetic) && !skipped.contains(word)
+                word.chars().all(char::is_alphabetic) && !skipped_words.contains(word)
             })
         })
-        .filter(|word| !verdict.contains(word))
+        .filter(|word| !verdict_words.contains(word))
         .collect()
 }
 
 #[test]
 fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
-    let folder = film("walk film", |i| format!("walk-{}ms.jpg", i * 125));
+    let folder = render_walk("walk film", |i| format!("walk-{}ms.jpg", i * 125));
     let folder = folder.to_str().expect("a name");
     let robot = crate::program::robot("paper");
-    let measure = |more: &[&str]| {
-        let line = [
+    let measure = |options: &[&str]| {
+        let arguments = [
             "measure", folder, "--robot", &robot, "--gait", "walk", "--height", "95",
         ];
-        run_in(scratch(), &[&line[..], more].concat(), "")
+        run_in(scratch(), &[&arguments[..], options].concat(), "")
     };
     let object = measure(&["--json"]).json();
     let film = object["films"][0].clone();
     let object = object["gaits"][0].clone();
-    let part = |path: &[&str]| {
+    let number_at = |path: &[&str]| {
         let value = path.iter().fold(&object, |value, key| &value[*key]);
         value
             .as_f64()
             .unwrap_or_else(|| panic!("{path:?}: {object}"))
     };
     let truth = truth(&gait("walk"));
-    for (name, truth, largest) in [
+    for (name, truth, max_error) in [
         ("forward", truth.forward, 0.2),
         ("left", truth.left, 0.2),
         ("turn", truth.turn, 0.5),
     ] {
         assert!(
-            (part(&[name, "mean"]) - truth).abs() < largest,
+            (number_at(&[name, "mean"]) - truth).abs() < max_error,
             "{name}: {object}"
         );
         assert!(
-            (part(&[name, "predicted"]) - truth).abs() < 1e-2,
+            (number_at(&[name, "predicted"]) - truth).abs() < 1e-2,
             "{name}: {object}"
         );
     }
-    assert!(part(&["cycles"]) >= 3.0 && (part(&["period"]) - 1.0).abs() < 0.01);
+    assert!(number_at(&["cycles"]) >= 3.0 && (number_at(&["period"]) - 1.0).abs() < 0.01);
     assert_eq!(
         object["each"].as_array().map(Vec::len),
-        Some(part(&["cycles"]) as usize)
+        Some(number_at(&["cycles"]) as usize)
     );
     let figures = crate::program::read("tools/physics/figures.json");
     let figures: Value = serde_json::from_str(&figures).expect("figures");
@@ -152,25 +158,36 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     assert_eq!(&object["mujoco"], mujoco);
     // The stored MuJoCo figures stay valid if a comment is added to robot.toml, but not if the mass changes.
     let text = crate::program::read("robots/paper.toml");
-    let heavier = text.replace("mass = 435.0", "mass = 500.0");
-    assert_ne!(heavier, text);
-    for (text, mujoco) in [(format!("# mine\n{text}"), mujoco), (heavier, &Value::Null)] {
-        let changed = scratch().join("changed.toml");
-        fs::write(&changed, text).expect("a file");
-        let changed = changed.to_str().expect("a name");
-        let own = run_in(
+    let heavier_text = text.replace("mass = 435.0", "mass = 500.0");
+    assert_ne!(heavier_text, text);
+    for (text, mujoco) in [
+        (format!("# mine\n{text}"), mujoco),
+        (heavier_text, &Value::Null),
+    ] {
+        let changed_path = scratch().join("changed.toml");
+        fs::write(&changed_path, text).expect("a file");
+        let changed_path = changed_path.to_str().expect("a name");
+        let outcome = run_in(
             scratch(),
             &[
-                "measure", folder, "--robot", changed, "--gait", "walk", "--height", "95", "--json",
+                "measure",
+                folder,
+                "--robot",
+                changed_path,
+                "--gait",
+                "walk",
+                "--height",
+                "95",
+                "--json",
             ],
             "",
         );
-        assert_eq!(&own.json()["gaits"][0]["mujoco"], mujoco);
+        assert_eq!(&outcome.json()["gaits"][0]["mujoco"], mujoco);
     }
     let range = &object["range"];
-    let predicted = part(&["forward", "predicted"]);
-    let [least, most] = ["least", "most"].map(|end| range[end].as_f64().expect("a number"));
-    assert!(least < predicted - 5.0 && predicted + 1.0 < most, "{range}");
+    let predicted = number_at(&["forward", "predicted"]);
+    let [min, max] = ["least", "most"].map(|end| range[end].as_f64().expect("a number"));
+    assert!(min < predicted - 5.0 && predicted + 1.0 < max, "{range}");
     assert_eq!(range["least_by"], "mounting of the legs");
     let table = measure(&[]).expect_success();
     assert!(table.contains("agrees"), "{table}");
@@ -197,30 +214,38 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         film["pictures"].as_u64()
     );
     // A film is refused if the path does not fit the named gait; the message names the gait that fits.
-    let another = run_in(
+    let outcome = run_in(
         scratch(),
         &["measure", folder, "--gait", "left", "--height", "95"],
         "",
     );
-    let words = another.expect_refusal();
-    assert!(words.contains("was it another gait"), "{words}");
-    assert!(words.trim_end().ends_with("; it is like walk"), "{words}");
+    let message = outcome.expect_refusal();
+    assert!(message.contains("was it another gait"), "{message}");
+    assert!(
+        message.trim_end().ends_with("; it is like walk"),
+        "{message}"
+    );
 }
 
 /// The gaits of a result with the number of their walks.
-fn gaits(object: &Value) -> Vec<(&str, usize)> {
+fn walk_counts(object: &Value) -> Vec<(&str, usize)> {
     let gaits = object["gaits"].as_array().expect("a list");
-    let gait = |gait: &Value| gait["walks"].as_array().expect("a list").len();
+    let walk_count_of = |result: &Value| result["walks"].as_array().expect("a list").len();
     gaits
         .iter()
-        .map(|own| (own["gait"].as_str().expect("a name"), gait(own)))
+        .map(|result| {
+            (
+                result["gait"].as_str().expect("a name"),
+                walk_count_of(result),
+            )
+        })
         .collect()
 }
 
 #[test]
 fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(gait);
-    let varies = Variation {
+    let variation = Variation {
         cycle: [0.1, 0.1, 0.002],
         ..Variation::default()
     };
@@ -229,10 +254,10 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
         [-90.0, -20.0, 0.0],
         &order,
         2.2,
-        varies,
+        variation,
         &mut Rng::with_seed(4),
     );
-    let folder = film_of(
+    let folder = render_film(
         "gaits",
         |i| format!("{i}.jpg"),
         show.seconds(),
@@ -240,53 +265,58 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     );
     let folder = folder.to_str().expect("a name");
     let robot = crate::program::robot("paper");
-    let measure = |more: &[&str]| {
-        let line = [
+    let measure = |options: &[&str]| {
+        let arguments = [
             "measure", folder, "--robot", &robot, "--fps", "8", "--height", "95",
         ];
-        run_in(scratch(), &[&line[..], more].concat(), "")
+        run_in(scratch(), &[&arguments[..], options].concat(), "")
     };
     let svg = scratch().join("measured.svg");
     let picture = ["--json", "--picture", svg.to_str().expect("a name")];
-    let found = measure(&picture).json();
-    assert_eq!(gaits(&found), [("walk", 2), ("left", 1)], "{found}");
-    let named = measure(&["--json", "--gait", "walk,left,walk"]).json();
-    assert_eq!(gaits(&named), gaits(&found));
-    for (own, gait) in found["gaits"]
+    let found_result = measure(&picture).json();
+    assert_eq!(
+        walk_counts(&found_result),
+        [("walk", 2), ("left", 1)],
+        "{found_result}"
+    );
+    let named_result = measure(&["--json", "--gait", "walk,left,walk"]).json();
+    assert_eq!(walk_counts(&named_result), walk_counts(&found_result));
+    for (result, gait) in found_result["gaits"]
         .as_array()
         .expect("a list")
         .iter()
         .zip([&walk, &left])
     {
         let truth = truth(gait);
-        for (part, truth, largest) in [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)] {
-            let mean = own[part]["mean"].as_f64().expect("a mean");
-            assert!((mean - truth).abs() < largest, "{part}: {own}");
+        for (part, truth, max_error) in [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)]
+        {
+            let mean = result[part]["mean"].as_f64().expect("a mean");
+            assert!((mean - truth).abs() < max_error, "{part}: {result}");
         }
-        assert_eq!(own["farthest"]["agrees"], true, "{own}");
+        assert_eq!(result["farthest"]["agrees"], true, "{result}");
         assert!(
-            own["within"].as_array().expect("a path").len() >= 6,
-            "{own}"
+            result["within"].as_array().expect("a path").len() >= 6,
+            "{result}"
         );
     }
-    let drawn = fs::read_to_string(svg).expect("a picture");
-    for words in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
-        assert!(drawn.contains(words), "{words}: {drawn}");
+    let picture_text = fs::read_to_string(svg).expect("a picture");
+    for label in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
+        assert!(picture_text.contains(label), "{label}: {picture_text}");
     }
     // Refused: a gait that is not in the film, and gaits in the wrong order.
-    let missing = measure(&["--gait", "walk,left,walk,back"]).expect_refusal();
+    let refusal = measure(&["--gait", "walk,left,walk,back"]).expect_refusal();
     assert!(
-        missing.starts_with("lizard: 3 walks between rests of")
-            && missing.contains("names 4: walk, left, walk, back\n")
-            && missing.contains(" s long: like left\n")
-            && missing.trim_end().ends_with("no walk is like back"),
-        "{missing}"
+        refusal.starts_with("lizard: 3 walks between rests of")
+            && refusal.contains("names 4: walk, left, walk, back\n")
+            && refusal.contains(" s long: like left\n")
+            && refusal.trim_end().ends_with("no walk is like back"),
+        "{refusal}"
     );
-    let order = measure(&["--gait", "left,walk,walk"]).expect_refusal();
+    let refusal = measure(&["--gait", "left,walk,walk"]).expect_refusal();
     assert!(
-        order.contains(" s, left: the path is not that of this gait")
-            && order.trim_end().ends_with("; it is like walk"),
-        "{order}"
+        refusal.contains(" s, left: the path is not that of this gait")
+            && refusal.trim_end().ends_with("; it is like walk"),
+        "{refusal}"
     );
 }
 
@@ -294,15 +324,15 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
 fn impossible_measurements_are_refused_with_a_message() {
     let folder = scratch().join("measure troubles");
     let _ = fs::remove_dir_all(&folder);
-    let inside = |name: &str| folder.join(name);
-    fs::create_dir_all(inside("empty")).expect("a folder");
-    fs::create_dir_all(inside("text")).expect("a folder");
-    fs::create_dir_all(inside("untimed")).expect("a folder");
-    fs::write(inside("text/a.png"), "no picture").expect("a file");
-    fs::write(inside("untimed/frame-001.png"), "").expect("a file");
-    let words = |words: &str| {
-        let all: Vec<&str> = words.split(' ').collect();
-        run_in(&folder, &all, "").expect_refusal()
+    let path_in = |name: &str| folder.join(name);
+    fs::create_dir_all(path_in("empty")).expect("a folder");
+    fs::create_dir_all(path_in("text")).expect("a folder");
+    fs::create_dir_all(path_in("untimed")).expect("a folder");
+    fs::write(path_in("text/a.png"), "no picture").expect("a file");
+    fs::write(path_in("untimed/frame-001.png"), "").expect("a file");
+    let refusal_of = |line: &str| {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        run_in(&folder, &arguments, "").expect_refusal()
     };
     for (line, message) in [
         ("measure none --gait walk", "lizard: there is no film none"),
@@ -339,8 +369,8 @@ fn impossible_measurements_are_refused_with_a_message() {
             "error: the argument '--csv' cannot be used with '--gait <NAMES>'",
         ),
     ] {
-        let words = words(line);
-        assert!(words.starts_with(message), "{line}: {words}");
+        let refusal = refusal_of(line);
+        assert!(refusal.starts_with(message), "{line}: {refusal}");
     }
 }
 
@@ -357,10 +387,10 @@ fn a_film_without_ffmpeg_says_what_to_install() {
     let output = lizard_time_limit::LIMIT
         .output(&mut command, b"")
         .expect("it ends");
-    let words = String::from_utf8_lossy(&output.stderr);
+    let message = String::from_utf8_lossy(&output.stderr);
     assert!(
-        words.contains("install ffmpeg, or give a folder of pictures"),
-        "{words}"
+        message.contains("install ffmpeg, or give a folder of pictures"),
+        "{message}"
     );
     assert_eq!(output.status.code(), Some(1));
 }
@@ -375,7 +405,7 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     fs::create_dir_all(&folder).expect("a folder");
     let mut film = b"YUV4MPEG2 W640 H360 F8:1 Ip A1:1 Cmono\n".to_vec();
     let mut times = String::new();
-    let (background, walk) = (studio(), walked());
+    let (background, walk) = (studio(), varied_walk());
     let mut rng = Rng::with_seed(9);
     let background = background.background(&mut rng);
     for i in 0..(walk.seconds() * RATE) as usize {
@@ -414,8 +444,8 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
 #[test]
 fn json_of_a_film_has_no_value_that_is_no_number() {
     // serde_json writes NaN and infinity as null.
-    let folder = film("numbers", |i| format!("{i}.jpg"));
-    let line = [
+    let folder = render_walk("numbers", |i| format!("{i}.jpg"));
+    let arguments = [
         "measure",
         folder.to_str().expect("a name"),
         "--fps",
@@ -423,8 +453,8 @@ fn json_of_a_film_has_no_value_that_is_no_number() {
         "--height",
         "95",
     ];
-    let more = ["--gait", "walk", "--json"];
-    let object: Value = run_in(scratch(), &[&line[..], &more].concat(), "").json();
+    let options = ["--gait", "walk", "--json"];
+    let object: Value = run_in(scratch(), &[&arguments[..], &options].concat(), "").json();
     let text = object.to_string();
     assert!(!text.contains("null"), "{text}");
     assert!(

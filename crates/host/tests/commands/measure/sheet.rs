@@ -27,12 +27,12 @@ fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f6
 fn sheet_on(paper: &str) -> (String, [f64; 2]) {
     let path = scratch().join(format!("sheets/{paper}.pdf"));
     let name = path.to_str().expect("a name");
-    let printed = run(&["measure", "sheet", "--paper", paper, "--output", name]).expect_success();
-    assert!(printed.contains("print it at 100 %"), "{printed}");
+    let output = run(&["measure", "sheet", "--paper", paper, "--output", name]).expect_success();
+    assert!(output.contains("print it at 100 %"), "{output}");
     let text = String::from_utf8_lossy(&fs::read(&path).expect("it is written")).into_owned();
-    let (_, media) = text.split_once("/MediaBox [").expect("a size");
-    let (media, _) = media.split_once(']').expect("its end");
-    let size: Vec<f64> = media
+    let (_, media_box) = text.split_once("/MediaBox [").expect("a size");
+    let (media_box, _) = media_box.split_once(']').expect("its end");
+    let size: Vec<f64> = media_box
         .split(' ')
         .map(|word| word.parse().expect("a number"))
         .collect();
@@ -64,11 +64,11 @@ fn rasterize(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) 
             continue;
         }
         // A pixel is filled if its centre lies in the rectangle.
-        let range = |from: f64, to: f64| {
+        let pixel_range = |from: f64, to: f64| {
             (from * PIXELS_PER_MM + 0.5) as usize..(to * PIXELS_PER_MM + 0.5) as usize
         };
-        for row in range(height - y - h, height - y) {
-            for column in range(x, x + w) {
+        for row in pixel_range(height - y - h, height - y) {
+            for column in pixel_range(x, x + w) {
                 grey[row * columns + column] = fill;
             }
         }
@@ -95,10 +95,11 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
         tags.sort_by_key(|tag| tag.id);
         let ids: Vec<usize> = tags.iter().map(|tag| tag.id).collect();
         assert_eq!(ids, [0, 1, 2, 3, 4], "{paper}");
-        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / PIXELS_PER_MM;
+        let distance_mm =
+            |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / PIXELS_PER_MM;
         for tag in &tags {
             let [left, right, ..] = tag.corners;
-            let edge = distance(left, right);
+            let edge = distance_mm(left, right);
             assert!(
                 (edge - sheet::edge(tag.id)).abs() < 0.4,
                 "{paper} {}: {edge}",
@@ -110,7 +111,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
             );
         }
         for strip in [0, 2] {
-            let span = distance(tags[strip].corners[0], tags[strip + 1].corners[0]);
+            let span = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
             assert!((span - sheet::SPAN).abs() < 0.4, "{paper}: {span}");
         }
     }

@@ -42,8 +42,8 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
         ),
     ];
     for (rows, message) in cases {
-        for json in ["pose", "pose --json"] {
-            let outcome = lizard(json, format!("{HEADER}{rows}"));
+        for command in ["pose", "pose --json"] {
+            let outcome = lizard(command, format!("{HEADER}{rows}"));
             assert_eq!(outcome.code, Some(2), "{rows}");
             assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
             assert!(outcome.out.is_empty() || outcome.out.ends_with('\n'));
@@ -65,7 +65,7 @@ fn rows_before_the_malformed_one_are_answered_whole() {
 
 #[test]
 fn a_wrong_header_is_refused() {
-    let header =
+    let header_hint =
         "; the header is theta1,theta4,theta8,theta5, in any order, and seconds if you like";
     let cases: &[(&[u8], String)] = &[
         (
@@ -75,15 +75,15 @@ fn a_wrong_header_is_refused() {
         ),
         (
             b"A1,A2,A3,A4\n",
-            format!("line 1, column 1: \"A1\" is not a column{header}"),
+            format!("line 1, column 1: \"A1\" is not a column{header_hint}"),
         ),
         (
             b"theta1,theta4,theta5,seconds\n",
-            format!("line 1, column 5: theta8 is missing{header}"),
+            format!("line 1, column 5: theta8 is missing{header_hint}"),
         ),
         (
             b"theta1,theta4,theta5,theta5\n",
-            format!("line 1, column 4: \"theta5\" comes twice{header}"),
+            format!("line 1, column 4: \"theta5\" comes twice{header_hint}"),
         ),
         (
             b"theta1,theta4,\xff,theta8\n",
@@ -96,10 +96,10 @@ fn a_wrong_header_is_refused() {
         assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
         assert_eq!(outcome.out, "");
     }
-    let endless = lizard("pose", vec![b'1'; 100_000]);
-    assert_eq!(endless.code, Some(2));
+    let long_line_outcome = lizard("pose", vec![b'1'; 100_000]);
+    assert_eq!(long_line_outcome.code, Some(2));
     assert_eq!(
-        endless.err.trim_end(),
+        long_line_outcome.err.trim_end(),
         "lizard: line 1, column 1: longer than 1024 bytes"
     );
 }

@@ -9,8 +9,8 @@ fn the_errata_are_what_is_measured_and_every_correction_holds() {
     let entries = measure(SAMPLES);
     assert!(entries.iter().all(|entry| entry.is_settled()));
     // Each printed form has one entry, so no erratum is counted twice.
-    let listed = lizard("errata --samples 1 --json", "").json();
-    let mut forms: Vec<String> = listed
+    let json_entries = lizard("errata --samples 1 --json", "").json();
+    let mut forms: Vec<String> = json_entries
         .as_array()
         .unwrap()
         .iter()
@@ -33,12 +33,12 @@ fn every_command_in_the_walk_through_of_the_paper_prints_what_the_page_shows() {
     let mut commands = 0;
     for block in page.split("```console\n").skip(1) {
         let block = block.split("```").next().expect("a closed block");
-        let (command, shown) = block.split_once('\n').expect("a command and its answer");
+        let (command, expected_output) = block.split_once('\n').expect("a command and its answer");
         let args = command.strip_prefix("$ lizard ").expect("a lizard command");
         let outcome = lizard(&paper(args), "");
         assert_eq!(outcome.code, Some(0), "{args}: {}", outcome.err);
         assert!(
-            outcome.out.trim_end() == shown.trim_end(),
+            outcome.out.trim_end() == expected_output.trim_end(),
             "docs/paper.md is out of date: lizard {args}\n{}",
             outcome.out
         );
@@ -51,8 +51,11 @@ fn every_command_in_the_walk_through_of_the_paper_prints_what_the_page_shows() {
 fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
     let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
     let robot = root().join("robots/paper.toml");
-    let (place, robot) = (folder.display(), robot.display());
-    let outcome = lizard(&format!("draw charts --json {place} --robot {robot}"), "");
+    let (folder_path, robot) = (folder.display(), robot.display());
+    let outcome = lizard(
+        &format!("draw charts --json {folder_path} --robot {robot}"),
+        "",
+    );
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
@@ -96,7 +99,7 @@ const TABLE_1: [(&str, f64); 7] = [
 #[test]
 fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
     let robot = read("robots/paper.toml");
-    let value = |name: &str| -> f64 {
+    let value_of = |name: &str| -> f64 {
         let line = robot
             .lines()
             .find_map(|line| line.strip_prefix(name)?.trim().strip_prefix('='));
@@ -107,11 +110,11 @@ fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
         .iter()
         .flat_map(|(names, mm)| names.split(' ').map(move |name| (name, *mm)));
     let rows: Vec<_> = rows.collect();
-    let differ: Vec<_> = rows
+    let differing_rows: Vec<_> = rows
         .iter()
-        .filter(|(name, mm)| value(name) != *mm)
+        .filter(|(name, mm)| value_of(name) != *mm)
         .collect();
-    assert_eq!(differ, [&("l16", 45.0)]);
+    assert_eq!(differing_rows, [&("l16", 45.0)]);
     let mut links: Vec<_> = rows
         .iter()
         .map(|row| row.0)
@@ -120,7 +123,7 @@ fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
     links.sort_unstable();
     links.dedup();
     assert_eq!(links.len(), 19);
-    assert!(!links.contains(&"l17") && value("l17") == 45.0);
+    assert!(!links.contains(&"l17") && value_of("l17") == 45.0);
     assert!(
         read("docs/paper.md").contains("19 of 20 links; l17 is missing and l16 is there twice")
     );
@@ -137,16 +140,16 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
         .map(|line| line.trim_end_matches(" |").split(" | ").collect())
         .collect();
     let figures = (1..=10).map(|number| format!("Figure {number}"));
-    let others = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
-    let expected: Vec<String> = figures.chain(others).collect();
+    let other_items = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
+    let expected: Vec<String> = figures.chain(other_items).collect();
     let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(names, expected);
     let charts = lizard("draw charts --help", "").expect_success();
     for row in &rows {
-        let [name, _, command, files, agrees] = row[..] else {
+        let [name, _, command, files, agreement] = row[..] else {
             panic!("{row:?}")
         };
-        assert!(!agrees.is_empty(), "{name}");
+        assert!(!agreement.is_empty(), "{name}");
         for file in files.split(", ") {
             assert!(root().join("docs").join(file).is_file(), "{name}: {file}");
         }
@@ -156,17 +159,17 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
         };
         let command = command.trim_end_matches('`');
         // Other tests make all parts and all charts, which takes seconds.
-        if let Some(makes) = command.strip_suffix(" DIR") {
+        if let Some(base_command) = command.strip_suffix(" DIR") {
             assert_eq!(
-                lizard(&format!("{makes} --help"), "").code,
+                lizard(&format!("{base_command} --help"), "").code,
                 Some(0),
                 "{name}"
             );
-            let chart = |file: &str| {
+            let chart_name_of = |file: &str| {
                 let chart = file.strip_prefix("charts/")?.strip_suffix(".svg")?;
                 Some(chart.to_owned())
             };
-            for chart in files.split(", ").filter_map(chart) {
+            for chart in files.split(", ").filter_map(chart_name_of) {
                 assert!(charts.contains(&chart), "{name}: {chart}");
             }
         } else {
@@ -180,7 +183,7 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
 fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
     let page = read("docs/paper.md").replace('\n', " ");
     let rows = lizard(&paper("gaits --json"), "").expect_success();
-    let predicted = |gait: &str, key: &str| -> f64 {
+    let prediction_of = |gait: &str, key: &str| -> f64 {
         let rows = rows
             .lines()
             .map(|row| serde_json::from_str::<serde_json::Value>(row).expect("JSON"));
@@ -190,11 +193,14 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
             .expect(gait);
         row["predicted"][key].as_f64().expect(key)
     };
-    let (walk, left) = (predicted("walk", "forward"), predicted("left", "turn"));
-    let moved = 80.0_f64.hypot(55.0) * left.to_radians();
+    let (walk_mm, left_deg) = (
+        prediction_of("walk", "forward"),
+        prediction_of("left", "turn"),
+    );
+    let foot_travel_mm = 80.0_f64.hypot(55.0) * left_deg.to_radians();
     let table = lizard(&paper("gaits --sensitivity"), "").expect_success();
-    let numbers = |from: &str, name: &str| -> Vec<f64> {
-        let (_, rows) = table.split_once(from).expect(from);
+    let numbers_of = |heading: &str, name: &str| -> Vec<f64> {
+        let (_, rows) = table.split_once(heading).expect(heading);
         let row = rows
             .lines()
             .find_map(|line| line.strip_prefix(&format!("{name} ")));
@@ -203,22 +209,28 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
     };
     // The third column of mounts is 41.4 deg, the fourth friction ratio 1.25; a row of a turn has two numbers per
     // column.
-    let [mounted, turned] = [
-        numbers("mount, deg", "walk")[2],
-        numbers("mount, deg", "left")[5],
+    let [mounted_walk_mm, mounted_turn_deg] = [
+        numbers_of("mount, deg", "walk")[2],
+        numbers_of("mount, deg", "left")[5],
     ];
     assert!(table.contains("41.4") && table.contains("1.25"));
-    let uneven = numbers("friction", "walk")[3];
-    for words in [
-        format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk),
-        format!("`left` turns {left:.1} deg in a cycle"),
-        format!("`trot`, {:.1} mm in a cycle", predicted("trot", "forward")),
-        format!("in a cycle `walk` makes {walk:.1} mm"),
-        format!("the feet, 97 mm from the middle, move by {moved:.1} mm"),
-        format!("`walk` makes {mounted:.1} mm a cycle instead of {walk:.1}"),
-        format!("`left` turns {turned:.1} deg instead of {left:.1}"),
-        format!("1.25 times as strong backward as forward, `walk` makes {uneven:.1} mm"),
+    let uneven_walk_mm = numbers_of("friction", "walk")[3];
+    for phrase in [
+        format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk_mm),
+        format!("`left` turns {left_deg:.1} deg in a cycle"),
+        format!(
+            "`trot`, {:.1} mm in a cycle",
+            prediction_of("trot", "forward")
+        ),
+        format!("in a cycle `walk` makes {walk_mm:.1} mm"),
+        format!("the feet, 97 mm from the middle, move by {foot_travel_mm:.1} mm"),
+        format!("`walk` makes {mounted_walk_mm:.1} mm a cycle instead of {walk_mm:.1}"),
+        format!("`left` turns {mounted_turn_deg:.1} deg instead of {left_deg:.1}"),
+        format!("1.25 times as strong backward as forward, `walk` makes {uneven_walk_mm:.1} mm"),
     ] {
-        assert!(page.contains(&words), "docs/paper.md does not say: {words}");
+        assert!(
+            page.contains(&phrase),
+            "docs/paper.md does not say: {phrase}"
+        );
     }
 }

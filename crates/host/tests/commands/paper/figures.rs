@@ -4,14 +4,14 @@ use serde_json::Value;
 
 use crate::program::{lizard, paper, read};
 
-fn number(value: &Value) -> f64 {
+fn number_of(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
 #[test]
 fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
     let design = lizard("design --json", "").json();
-    let expect = [
+    let expected_values = [
         ("d", 100.0, 1e-9),
         ("l0", 20.0, 1e-9),
         ("l1", 30.0, 1e-9),
@@ -20,25 +20,25 @@ fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
         ("r_mic", 30.0, 1e-9),
         ("y_mic", 48.990, 1e-3),
     ];
-    for (key, value, tolerance) in expect {
-        assert!((number(&design[key]) - value).abs() < tolerance, "{key}");
+    for (key, value, tolerance) in expected_values {
+        assert!((number_of(&design[key]) - value).abs() < tolerance, "{key}");
     }
     let lci = &design["lci"];
-    assert!((number(&lci["mean"]) - 0.736).abs() < 5e-4);
-    assert!((number(&lci["share_above"]) - 0.668).abs() < 1e-3);
-    assert!((number(&lci["radius_above"]) - 15.45).abs() < 0.01);
-    assert!(number(&lci["least"]) < 1e-6);
-    assert!((number(&lci["most"]) - 1.0).abs() < 1e-6);
+    assert!((number_of(&lci["mean"]) - 0.736).abs() < 5e-4);
+    assert!((number_of(&lci["share_above"]) - 0.668).abs() < 1e-3);
+    assert!((number_of(&lci["radius_above"]) - 15.45).abs() < 0.01);
+    assert!(number_of(&lci["least"]) < 1e-6);
+    assert!((number_of(&lci["most"]) - 1.0).abs() < 1e-6);
 }
 
 #[test]
 fn a_design_of_another_size_keeps_its_shape() {
     let small = lizard("design --json --r1 0.35 --r2 0.45", "").json();
     let large = lizard("design --json --r1 0.35 --r2 0.45 --l0 60", "").json();
-    assert!((number(&large["d"]) / number(&small["d"]) - 3.0).abs() < 1e-12);
-    assert!((number(&large["area"]) / number(&small["area"]) - 9.0).abs() < 1e-9);
+    assert!((number_of(&large["d"]) / number_of(&small["d"]) - 3.0).abs() < 1e-12);
+    assert!((number_of(&large["area"]) / number_of(&small["area"]) - 9.0).abs() < 1e-9);
     for key in ["mean", "share_above"] {
-        assert!((number(&large["lci"][key]) - number(&small["lci"][key])).abs() < 1e-6);
+        assert!((number_of(&large["lci"][key]) - number_of(&small["lci"][key])).abs() < 1e-6);
     }
 }
 
@@ -54,11 +54,13 @@ fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
     assert_eq!(points.len(), expected);
     let paper = points
         .iter()
-        .find(|p| (number(&p["r1"]) - 0.3).abs() < 1e-9 && (number(&p["r2"]) - 0.5).abs() < 1e-9)
+        .find(|p| {
+            (number_of(&p["r1"]) - 0.3).abs() < 1e-9 && (number_of(&p["r2"]) - 0.5).abs() < 1e-9
+        })
         .unwrap();
-    assert!((number(&paper["r_mic"]) - 0.3).abs() < 1e-9);
-    assert!((number(&paper["area"]) - 1.48926).abs() < 1e-5);
-    assert!((number(&paper["lci"]["mean"]) - 0.736).abs() < 5e-3);
+    assert!((number_of(&paper["r_mic"]) - 0.3).abs() < 1e-9);
+    assert!((number_of(&paper["area"]) - 1.48926).abs() < 1e-5);
+    assert!((number_of(&paper["lci"]["mean"]) - 0.736).abs() < 5e-3);
 }
 
 #[test]
@@ -66,42 +68,46 @@ fn the_search_keeps_its_promises() {
     let designs = lizard(&paper("design --search --json --step 0.05 --top 50"), "").json();
     let designs = designs.as_array().unwrap();
     assert!(!designs.is_empty());
-    let mut last = f64::INFINITY;
+    let mut last_score = f64::INFINITY;
     for design in designs {
-        let d = number(&design["d"]);
+        let d = number_of(&design["d"]);
         assert!(
-            number(&design["r1"]) * d >= 20.0 - 1e-9 && number(&design["r2"]) * d >= 20.0 - 1e-9
+            number_of(&design["r1"]) * d >= 20.0 - 1e-9
+                && number_of(&design["r2"]) * d >= 20.0 - 1e-9
         );
-        assert!(number(&design["margin"]) >= 0.3 && number(&design["sweep"]) >= 20.0);
-        assert!(number(&design["score"]) <= last);
-        last = number(&design["score"]);
+        assert!(number_of(&design["margin"]) >= 0.3 && number_of(&design["sweep"]) >= 20.0);
+        assert!(number_of(&design["score"]) <= last_score);
+        last_score = number_of(&design["score"]);
     }
 }
 
 #[test]
 fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
-    let all = lizard(&paper("pose --show freedoms --json"), "").json();
-    let freedoms: Vec<(i64, i64)> = all
+    let mechanisms = lizard(&paper("pose --show freedoms --json"), "").json();
+    let freedoms: Vec<(i64, i64)> = mechanisms
         .as_array()
         .unwrap()
         .iter()
-        .map(|m| {
+        .map(|mechanism| {
             (
-                m["gruebler"].as_i64().unwrap(),
-                m["freedoms"].as_i64().unwrap(),
+                mechanism["gruebler"].as_i64().unwrap(),
+                mechanism["freedoms"].as_i64().unwrap(),
             )
         })
         .collect();
     assert_eq!(freedoms, [(4, 4), (1, 1), (1, 1), (1, 1), (1, 1)]);
-    assert_eq!(all[0]["rank"], 32);
+    assert_eq!(mechanisms[0]["rank"], 32);
     // A flat leg gains a freedom, which Gruebler's count does not show.
-    let flat = lizard(
+    let flat_leg_mechanisms = lizard(
         &paper("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
         "",
     )
     .json();
     assert_eq!(
-        (&flat[2]["gruebler"], &flat[2]["freedoms"]),
+        (
+            &flat_leg_mechanisms[2]["gruebler"],
+            &flat_leg_mechanisms[2]["freedoms"]
+        ),
         (&Value::from(1), &Value::from(2))
     );
 }
@@ -115,30 +121,33 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
         "",
     )
     .json();
-    let (eliminated, factored) = (number(&report["determinant"]), number(&report["factored"]));
-    assert!((eliminated / factored - 1.0).abs() < 1e-9);
+    let (eliminated_determinant, factored_determinant) = (
+        number_of(&report["determinant"]),
+        number_of(&report["factored"]),
+    );
+    assert!((eliminated_determinant / factored_determinant - 1.0).abs() < 1e-9);
     let start = [120.0, 70.0, 310.0, 230.0];
-    let mut last = 0.0;
-    for near in report["nearest"].as_array().unwrap() {
-        let distance = number(&near["distance"]);
-        assert!(distance >= last);
-        last = distance;
-        let there: Vec<f64> = (0..4)
-            .map(|i| start[i] + number(&near["turn"][i]))
+    let mut last_distance = 0.0;
+    for near_pose in report["nearest"].as_array().unwrap() {
+        let distance = number_of(&near_pose["distance"]);
+        assert!(distance >= last_distance);
+        last_distance = distance;
+        let near_angles: Vec<f64> = (0..4)
+            .map(|i| start[i] + number_of(&near_pose["turn"][i]))
             .collect();
         let pose = format!(
             "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
-            there[0], there[1], there[2], there[3]
+            near_angles[0], near_angles[1], near_angles[2], near_angles[3]
         );
-        let solved = lizard(&paper("pose --json"), pose).json();
-        let margins: Vec<f64> = match solved["margins"].as_object() {
-            Some(margins) => margins.values().map(number).collect(),
+        let solution = lizard(&paper("pose --json"), pose).json();
+        let margins: Vec<f64> = match solution["margins"].as_object() {
+            Some(margins) => margins.values().map(number_of).collect(),
             None => vec![0.0],
         };
         let smallest = margins
             .iter()
             .fold(1.0_f64, |smallest, m| smallest.min(m.abs()));
-        assert!(smallest < 1e-4, "{} {smallest}", near["what"]);
+        assert!(smallest < 1e-4, "{} {smallest}", near_pose["what"]);
     }
 }
 
@@ -146,34 +155,36 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
 fn rates_agree_with_differences_of_positions() {
     let rows = lizard(&paper("pose --show rates --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700"), "").json();
     for row in rows.as_array().unwrap() {
-        assert!(number(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number(&row["rate"]).abs()));
         assert!(
-            number(&row["acceleration_deviation"]).abs()
-                < 1e-6 * (100.0 + number(&row["acceleration"]).abs())
+            number_of(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number_of(&row["rate"]).abs())
+        );
+        assert!(
+            number_of(&row["acceleration_deviation"]).abs()
+                < 1e-6 * (100.0 + number_of(&row["acceleration"]).abs())
         );
     }
 }
 
 #[test]
 fn rates_of_any_size_agree_with_differences() {
-    for drive in [
+    for options in [
         "--omega1 1e6 --omega8 -3e5",
         "--alpha4 1e9",
         "--omega1 1e-3 --alpha5 1e-3",
     ] {
-        let rows = lizard(&paper(&format!("pose --show rates {drive}")), "").out;
+        let rows = lizard(&paper(&format!("pose --show rates {options}")), "").out;
         let verdicts = rows
             .lines()
             .skip(1)
             .filter(|row| row.ends_with("agree to 1e-6"));
-        assert_eq!(verdicts.count(), 12, "{drive}\n{rows}");
+        assert_eq!(verdicts.count(), 12, "{options}\n{rows}");
     }
 }
 
 #[test]
 fn a_point_leads_to_angles_and_back_to_the_point() {
     // The last two points can only be reached by taking a leg through its change point.
-    for (point, safe) in [
+    for (point, is_safe) in [
         ("5 120", true),
         ("-6 118", true),
         ("0 139", true),
@@ -181,14 +192,14 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
         ("20 105.5", false),
     ] {
         let report = lizard(&paper(&format!("pose --json --head {point}")), "").json();
-        let ways = report["head"]["working_modes"].as_array().unwrap();
-        assert_eq!(ways.len(), 4);
-        for way in ways {
-            assert!(number(&way["error_mm"]) < 1e-9, "{point}");
+        let modes = report["head"]["working_modes"].as_array().unwrap();
+        assert_eq!(modes.len(), 4);
+        for mode in modes {
+            assert!(number_of(&mode["error_mm"]) < 1e-9, "{point}");
         }
-        assert_eq!(ways[0]["reachable"], safe, "{point}");
-        assert_eq!(report["safe"], safe, "{point}");
-        assert_eq!(ways[3]["reachable"], false, "{point}");
+        assert_eq!(modes[0]["reachable"], is_safe, "{point}");
+        assert_eq!(report["safe"], is_safe, "{point}");
+        assert_eq!(modes[3]["reachable"], false, "{point}");
     }
 }
 
@@ -207,55 +218,61 @@ fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
 
 #[test]
 fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
-    let at = |pose: &str| lizard(&paper(&format!("pose --show freedoms --json {pose}")), "").json();
-    let home = at("");
-    for mechanism in home.as_array().unwrap() {
+    let freedoms_at =
+        |pose: &str| lizard(&paper(&format!("pose --show freedoms --json {pose}")), "").json();
+    let home_mechanisms = freedoms_at("");
+    for mechanism in home_mechanisms.as_array().unwrap() {
         assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
     }
     // With these angles the crank tips coincide to about six digits.
-    let head = at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
+    let head_mechanisms =
+        freedoms_at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
     assert_eq!(
-        (&head[0]["freedoms"], &head[0]["locked_freedoms"]),
+        (
+            &head_mechanisms[0]["freedoms"],
+            &head_mechanisms[0]["locked_freedoms"]
+        ),
         (&Value::from(4), &Value::from(1))
     );
     assert_eq!(
-        head[0]["loose"][0],
+        head_mechanisms[0]["loose"][0],
         "the head's end point is loose (type 2)"
     );
-    let tail = at("--theta1 138.59 --theta4 41.41 --theta8 -109.471221 --theta5 -70.528779");
+    let tail_mechanisms =
+        freedoms_at("--theta1 138.59 --theta4 41.41 --theta8 -109.471221 --theta5 -70.528779");
     assert_eq!(
-        tail[0]["loose"][0],
+        tail_mechanisms[0]["loose"][0],
         "the tail's end point is loose (type 2)"
     );
-    let text = lizard(
+    let outcome = lizard(
         &paper(
             "pose --show freedoms --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41",
         ),
         "",
     );
     assert!(
-        !text.out.contains("four servos hold the body"),
+        !outcome.out.contains("four servos hold the body"),
         "{}",
-        text.out
+        outcome.out
     );
     assert!(
-        text.out.contains("the head's end point is loose"),
+        outcome.out.contains("the head's end point is loose"),
         "{}",
-        text.out
+        outcome.out
     );
     // A flat leg is loose even with its crank locked.
-    let flat = at("--theta1 138 --theta4 0 --theta8 318 --theta5 221");
-    assert_eq!(flat[2]["locked_freedoms"], 1);
+    let flat_leg_mechanisms = freedoms_at("--theta1 138 --theta4 0 --theta8 318 --theta5 221");
+    assert_eq!(flat_leg_mechanisms[2]["locked_freedoms"], 1);
 }
 
 #[test]
 fn a_wide_base_has_a_circle() {
     let design = lizard("design --json --r1 0.2 --r2 0.3", "").json();
-    assert!((number(&design["r_mic"]) - 2.5).abs() < 1e-9);
-    assert_eq!(number(&design["y_mic"]), 0.0);
+    assert!((number_of(&design["r_mic"]) - 2.5).abs() < 1e-9);
+    assert_eq!(number_of(&design["y_mic"]), 0.0);
     let points = lizard("design --chart --json --step 0.05", "").json();
     for point in points.as_array().unwrap() {
-        assert!(number(&point["r_mic"]) > 0.0, "{point}");
+        assert!(number_of(&point["r_mic"]) > 0.0, "{point}");
     }
 }
 
@@ -275,12 +292,12 @@ fn matrices_name_their_rows_and_columns_in_servo_order() {
         }
     }
     // The head's rows depend on the front servos only, the tail's on the back ones.
-    for (row, front) in [(0, true), (1, true), (2, false), (3, false)] {
+    for (row, is_front) in [(0, true), (1, true), (2, false), (3, false)] {
         for column in 0..4 {
-            let entry = number(&report["k"]["values"][row][column]);
+            let entry = number_of(&report["k"]["values"][row][column]);
             assert_eq!(
                 entry != 0.0,
-                (column < 2) == front,
+                (column < 2) == is_front,
                 "{row} {column} {entry}"
             );
         }

@@ -7,7 +7,7 @@ use crate::program::{RobotFile, lizard, paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
-fn lines(input: &str) -> Vec<Value> {
+fn solve_lines(input: &str) -> Vec<Value> {
     let outcome = lizard(&paper("pose --json"), input);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     outcome
@@ -19,8 +19,8 @@ fn lines(input: &str) -> Vec<Value> {
 
 #[test]
 fn the_object_has_exactly_the_promised_keys() {
-    let one = &lines(&format!("{HEADER}138,42,318,221\n"))[0];
-    let keys = |value: &Value| {
+    let solution = &solve_lines(&format!("{HEADER}138,42,318,221\n"))[0];
+    let keys_of = |value: &Value| {
         let mut keys: Vec<&str> = value
             .as_object()
             .unwrap()
@@ -31,19 +31,19 @@ fn the_object_has_exactly_the_promised_keys() {
         keys.join(" ")
     };
     assert_eq!(
-        keys(one),
+        keys_of(solution),
         "head left legs margins right safe tail theta2 theta3 theta6 theta7 why"
     );
-    assert_eq!(keys(&one["left"]), "phi s");
-    assert_eq!(keys(&one["right"]), "phi s");
-    assert_eq!(keys(&one["legs"]), "lf lh rf rh");
-    assert_eq!(keys(&one["legs"]["lf"]), "coupler follower");
+    assert_eq!(keys_of(&solution["left"]), "phi s");
+    assert_eq!(keys_of(&solution["right"]), "phi s");
+    assert_eq!(keys_of(&solution["legs"]), "lf lh rf rh");
+    assert_eq!(keys_of(&solution["legs"]["lf"]), "coupler follower");
     assert_eq!(
-        keys(&one["margins"]),
+        keys_of(&solution["margins"]),
         "leg_lf leg_lh leg_rf leg_rh type1_a1 type1_a2 type1_a3 type1_a4 type2_head type2_tail"
     );
-    assert_eq!(one["safe"], true);
-    assert_eq!(one["why"], Value::Array(vec![]));
+    assert_eq!(solution["safe"], true);
+    assert_eq!(solution["why"], Value::Array(vec![]));
 }
 
 #[test]
@@ -51,43 +51,48 @@ fn every_printed_solution_closes_all_loops() {
     let mut input = HEADER.to_string();
     let mut poses = Vec::new();
     for i in 0..2000 {
-        let at = |min: f64, k: usize| min + (i * k % 997) as f64 * 90.0 / 997.0;
-        let pose = [at(85.0, 31), at(10.0, 57), at(265.0, 211), at(190.0, 101)];
+        let angle_at = |min: f64, stride: usize| min + (i * stride % 997) as f64 * 90.0 / 997.0;
+        let pose = [
+            angle_at(85.0, 31),
+            angle_at(10.0, 57),
+            angle_at(265.0, 211),
+            angle_at(190.0, 101),
+        ];
         input += &format!("{},{},{},{}\n", pose[0], pose[1], pose[2], pose[3]);
         poses.push(pose);
     }
-    let solved = lines(&input);
-    assert_eq!(solved.len(), poses.len());
+    let solutions = solve_lines(&input);
+    assert_eq!(solutions.len(), poses.len());
     let cis = |length: f64, degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         [length * cos, length * sin]
     };
-    for ([t1, t4, t8, t5], one) in poses.into_iter().zip(&solved) {
-        let angle = |key: &str| {
-            let angle = one[key].as_f64().unwrap();
+    for ([t1, t4, t8, t5], solution) in poses.into_iter().zip(&solutions) {
+        let angle_of = |key: &str| {
+            let angle = solution[key].as_f64().unwrap();
             assert!(angle > -180.0 && angle <= 180.0);
             angle
         };
-        let close = |links: [[f64; 2]; 4], rest: [f64; 2]| {
+        let assert_closed = |links: [[f64; 2]; 4], rest: [f64; 2]| {
             let [a, b, c, d] = links;
             let x = a[0] + b[0] - c[0] - d[0] - rest[0];
             let y = a[1] + b[1] - c[1] - d[1] - rest[1];
             assert!(x.hypot(y) < 1e-9, "{x} {y}");
         };
-        close(
+        assert_closed(
             [
                 cis(30.0, t1),
-                cis(50.0, angle("theta2")),
-                cis(50.0, angle("theta3")),
+                cis(50.0, angle_of("theta2")),
+                cis(50.0, angle_of("theta3")),
                 cis(30.0, t4),
             ],
             [20.0, 0.0],
         );
-        close(
+        assert_closed(
             [
                 cis(30.0, t5),
-                cis(50.0, angle("theta6")),
-                cis(50.0, angle("theta7")),
+                cis(50.0, angle_of("theta6")),
+                cis(50.0, angle_of("theta7")),
                 cis(30.0, t8),
             ],
             [20.0, 0.0],
@@ -96,17 +101,17 @@ fn every_printed_solution_closes_all_loops() {
             ("left", t5 - 90.0, t1 + 90.0),
             ("right", t8 + 90.0, t4 - 90.0),
         ] {
-            let span = 90.0 + one[side]["s"].as_f64().unwrap();
-            let slider = cis(span, one[side]["phi"].as_f64().unwrap());
-            close(
+            let span = 90.0 + solution[side]["s"].as_f64().unwrap();
+            let slider = cis(span, solution[side]["phi"].as_f64().unwrap());
+            assert_closed(
                 [cis(30.0, rear), slider, cis(30.0, front), [0.0, 0.0]],
                 [0.0, 135.0],
             );
         }
         let head = cis(30.0, t1);
-        let coupler = cis(50.0, angle("theta2"));
-        let x = one["head"][0].as_f64().unwrap() - (-10.0 + head[0] + coupler[0]);
-        let y = one["head"][1].as_f64().unwrap() - (67.5 + head[1] + coupler[1]);
+        let coupler = cis(50.0, angle_of("theta2"));
+        let x = solution["head"][0].as_f64().unwrap() - (-10.0 + head[0] + coupler[0]);
+        let y = solution["head"][1].as_f64().unwrap() - (67.5 + head[1] + coupler[1]);
         assert!(x.hypot(y) < 1e-9);
         for (leg, theta, sign) in [
             ("lf", t1, 1.0),
@@ -114,46 +119,58 @@ fn every_printed_solution_closes_all_loops() {
             ("rh", t8, -1.0),
             ("lh", t5, -1.0),
         ] {
-            let follower = one["legs"][leg]["follower"].as_f64().unwrap();
+            let follower = solution["legs"][leg]["follower"].as_f64().unwrap();
             assert!(wrap(follower - theta).abs() < 1e-9);
-            let margin = one["margins"][format!("leg_{leg}")].as_f64().unwrap();
+            let margin = solution["margins"][format!("leg_{leg}")].as_f64().unwrap();
             assert!((margin - sign * theta.to_radians().sin()).abs() < 1e-12);
         }
         assert_eq!(
-            one["safe"].as_bool().unwrap(),
-            one["why"].as_array().unwrap().is_empty()
+            solution["safe"].as_bool().unwrap(),
+            solution["why"].as_array().unwrap().is_empty()
         );
     }
 }
 
 #[test]
 fn a_singular_row_says_why_and_the_stream_goes_on() {
-    let solved = lines(&format!(
+    let solutions = solve_lines(&format!(
         "{HEADER}70.528779365509308,109.47122063449069,318.59,221.41\n60,60,318,221\n138.59,41.41,318.59,221.41\n"
     ));
-    assert_eq!(solved.len(), 3);
-    assert_eq!(solved[0]["safe"], false);
-    assert!(solved[0]["why"][0].as_str().unwrap().contains("singular"));
-    assert!(solved[0]["theta2"].is_null());
-    assert_eq!(solved[1]["why"][0], "margin type1_a1 -0.317 is below 0.300");
-    assert_eq!(solved[2]["safe"], true);
+    assert_eq!(solutions.len(), 3);
+    assert_eq!(solutions[0]["safe"], false);
+    assert!(
+        solutions[0]["why"][0]
+            .as_str()
+            .unwrap()
+            .contains("singular")
+    );
+    assert!(solutions[0]["theta2"].is_null());
+    assert_eq!(
+        solutions[1]["why"][0],
+        "margin type1_a1 -0.317 is below 0.300"
+    );
+    assert_eq!(solutions[2]["safe"], true);
 }
 
 #[test]
 fn columns_come_in_any_order_and_line_ends_and_quotes_do_not_matter() {
-    let plain = lines(&format!("{HEADER}138,42,318,221\n"));
-    let other = lines("\u{feff}theta8, theta1,theta4,\"theta5\"\r\n\r\n318,138,42,\"221\"");
-    assert_eq!(plain, other);
+    let plain_solutions = solve_lines(&format!("{HEADER}138,42,318,221\n"));
+    let reordered_solutions =
+        solve_lines("\u{feff}theta8, theta1,theta4,\"theta5\"\r\n\r\n318,138,42,\"221\"");
+    assert_eq!(plain_solutions, reordered_solutions);
 }
 
 #[test]
 fn flags_and_stream_agree() {
-    let flags = lizard(
+    let flag_solution = lizard(
         &paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
         "",
     )
     .json();
-    assert_eq!(flags, lines(&format!("{HEADER}138,42,-42,-139\n"))[0]);
+    assert_eq!(
+        flag_solution,
+        solve_lines(&format!("{HEADER}138,42,-42,-139\n"))[0]
+    );
 }
 
 #[test]
@@ -162,10 +179,10 @@ fn a_long_stream_keeps_its_order() {
     for i in 0..30_000 {
         input += &format!("{},42,318,221\n", 100.0 + f64::from(i) / 1000.0);
     }
-    let solved = lines(&input);
-    assert_eq!(solved.len(), 30_000);
-    for (i, one) in solved.iter().enumerate() {
-        let follower = one["legs"]["lf"]["follower"].as_f64().unwrap();
+    let solutions = solve_lines(&input);
+    assert_eq!(solutions.len(), 30_000);
+    for (i, solution) in solutions.iter().enumerate() {
+        let follower = solution["legs"]["lf"]["follower"].as_f64().unwrap();
         assert!((follower - 100.0 - i as f64 / 1000.0).abs() < 1e-9);
     }
 }
@@ -178,23 +195,29 @@ fn the_table_is_aligned_and_says_safe() {
     );
     let lines: Vec<&str> = outcome.out.lines().collect();
     assert_eq!(lines.len(), 3);
-    let bars = |line: &str| -> Vec<usize> { line.match_indices('|').map(|(i, _)| i).collect() };
-    assert_eq!(bars(lines[0]), bars(lines[1]));
-    assert_eq!(bars(lines[0]), bars(lines[2]));
+    let bars_of = |line: &str| -> Vec<usize> { line.match_indices('|').map(|(i, _)| i).collect() };
+    assert_eq!(bars_of(lines[0]), bars_of(lines[1]));
+    assert_eq!(bars_of(lines[0]), bars_of(lines[2]));
     assert!(lines[1].ends_with("safe"));
 }
 
 #[test]
 fn without_a_header_the_columns_are_the_servos_in_order() {
-    let named = lines(&format!("{HEADER}138,42,318,221\n100,40,-50,220\n"));
-    assert_eq!(lines("138,42,318,221\n100,40,-50,220\n"), named);
-    assert_eq!(lines("\u{feff}138,42,318,221\n\"100\",40,-50,220"), named);
+    let named_solutions = solve_lines(&format!("{HEADER}138,42,318,221\n100,40,-50,220\n"));
+    assert_eq!(
+        solve_lines("138,42,318,221\n100,40,-50,220\n"),
+        named_solutions
+    );
+    assert_eq!(
+        solve_lines("\u{feff}138,42,318,221\n\"100\",40,-50,220"),
+        named_solutions
+    );
 }
 
 #[test]
 fn a_time_is_passed_through() {
-    let with = lines("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
-    assert_eq!(with[0]["seconds"], 0.02);
+    let solutions = solve_lines("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
+    assert_eq!(solutions[0]["seconds"], 0.02);
     let table = lizard(
         &paper("pose"),
         "seconds,theta1,theta4,theta8,theta5\n0.02,138,42,318,221\n",
@@ -218,17 +241,25 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
         let gait: Value = serde_json::from_str(gait).expect("JSON");
         let name = gait["gait"].as_str().unwrap();
         let trace = lizard(&format!("gaits --trace {name}"), "");
-        let solved = lizard("pose --json", trace.out.as_bytes());
-        assert_eq!(solved.code, Some(0), "{name}: {}", solved.err);
-        assert_eq!(solved.out.lines().count(), trace.out.lines().count() - 1);
-        for (line, row) in solved.out.lines().zip(trace.out.lines().skip(1)) {
-            let one: Value = serde_json::from_str(line).expect("JSON");
+        let solved_outcome = lizard("pose --json", trace.out.as_bytes());
+        assert_eq!(
+            solved_outcome.code,
+            Some(0),
+            "{name}: {}",
+            solved_outcome.err
+        );
+        assert_eq!(
+            solved_outcome.out.lines().count(),
+            trace.out.lines().count() - 1
+        );
+        for (line, row) in solved_outcome.out.lines().zip(trace.out.lines().skip(1)) {
+            let solution: Value = serde_json::from_str(line).expect("JSON");
             let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
-            assert_eq!(one["seconds"], fields[0], "{name}");
-            assert_eq!(one["safe"], true, "{name} {row}: {line}");
+            assert_eq!(solution["seconds"], fields[0], "{name}");
+            assert_eq!(solution["safe"], true, "{name} {row}: {line}");
             // The columns are in the order of the legs.
             for (leg, angle) in ["lf", "rf", "rh", "lh"].iter().zip(&fields[1..]) {
-                let follower = one["legs"][leg]["follower"].as_f64().unwrap();
+                let follower = solution["legs"][leg]["follower"].as_f64().unwrap();
                 assert!(wrap(follower - angle).abs() < 1e-9, "{name} {row}: {leg}");
             }
         }
@@ -246,16 +277,20 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
             "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 2050.0\nus_per_degree = 20.0\nmin_us = 1000.0\nmax_us = 2450.0",
         )],
     );
-    let at = |theta8: f64| {
+    let pose_at = |theta8: f64| {
         let pose =
             format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
         lizard(&robot.add_to(&pose), "").json()
     };
-    assert_eq!(at(318.590378 + 20.0)["safe"], true, "the end of the travel");
-    let beyond = at(318.590378 + 20.1);
-    assert_eq!(beyond["safe"], false);
     assert_eq!(
-        beyond["why"][0],
+        pose_at(318.590378 + 20.0)["safe"],
+        true,
+        "the end of the travel"
+    );
+    let beyond_travel = pose_at(318.590378 + 20.1);
+    assert_eq!(beyond_travel["safe"], false);
+    assert_eq!(
+        beyond_travel["why"][0],
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg, its travel is 266.1 to 338.6 deg"
     );
     let page = lizard(
@@ -270,24 +305,27 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     let table = lizard(&robot.add_to("pose"), "138.59,41.41,338.8,221.41\n");
     assert!(table.out.contains("| servo A3 would turn"), "{}", table.out);
     // The inverse kinematics, too, reports the tail point of that pose as unreachable.
-    let tail: Vec<f64> = beyond["tail"]
+    let tail_point: Vec<f64> = beyond_travel["tail"]
         .as_array()
         .unwrap()
         .iter()
         .map(|v| v.as_f64().unwrap())
         .collect();
     let inverse = lizard(
-        &robot.add_to(&format!("pose --json --tail {} {}", tail[0], tail[1])),
+        &robot.add_to(&format!(
+            "pose --json --tail {} {}",
+            tail_point[0], tail_point[1]
+        )),
         "",
     )
     .json();
     assert_eq!(inverse["safe"], false);
-    let reason = inverse["why"].as_array().unwrap();
+    let reasons = inverse["why"].as_array().unwrap();
     assert!(
-        reason
+        reasons
             .iter()
             .any(|reason| reason.as_str().unwrap().starts_with("servo A3")),
-        "{reason:?}"
+        "{reasons:?}"
     );
     assert_eq!(inverse["tail"]["working_modes"][0]["reachable"], false);
 }

@@ -7,7 +7,7 @@ use crate::model::text::{escape_attribute, join_numbers, round};
 use crate::model::writer::Writer;
 
 /// Time step of the simulation, s.
-const STEP: f64 = 0.0002;
+const TIME_STEP: f64 = 0.0002;
 /// Stiffness (`solref`) of constraints and limits: time constant, s, and damping ratio.
 const CONSTRAINT_SOLREF: &str = "0.002 1";
 /// Stiffness (`solref`) of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's
@@ -50,7 +50,7 @@ impl Writer<'_> {
         xml.write_empty_element(r#"compiler angle="radian" autolimits="true""#);
         // Feet of a few grams chatter with MuJoCo's default contact settings.
         xml.write_empty_element(format!(
-            r#"option timestep="{STEP}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
+            r#"option timestep="{TIME_STEP}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
             self.scene.floor.gravity()
         ));
         xml.open("visual");
@@ -69,7 +69,7 @@ impl Writer<'_> {
 
     fn write_assets(&mut self) {
         const SIZE: &str = r#"width="256" height="256""#;
-        let shown = self.visible_pieces();
+        let pieces = self.visible_pieces();
         let xml = &mut self.xml;
         xml.open("asset");
         xml.write_empty_element(format!(
@@ -82,9 +82,9 @@ impl Writer<'_> {
         xml.write_empty_element(
             r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#,
         );
-        for Piece { name, mesh, .. } in shown {
+        for Piece { name, mesh, .. } in pieces {
             let corners = mesh.corners.as_flattened().iter();
-            let vertex = corners.map(|part| (part * 1e5).round() / 1e5 + 0.0);
+            let vertex = corners.map(|coordinate| (coordinate * 1e5).round() / 1e5 + 0.0);
             let face = mesh.triangles.as_flattened().iter();
             let (vertex, face) = (join_numbers(vertex), join_numbers(face));
             xml.write_empty_element(format!(

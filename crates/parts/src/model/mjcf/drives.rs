@@ -12,9 +12,12 @@ use crate::model::writer::Writer;
 impl Writer<'_> {
     pub(super) fn write_loops(&mut self) {
         self.xml.open("equality");
-        for closed in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
-            let [first, second] = closed.bodies.map(Node::name);
-            let (name, anchor) = (closed.name, metres([closed.at.x, closed.at.y, 0.0]));
+        for loop_joint in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
+            let [first, second] = loop_joint.bodies.map(Node::name);
+            let (name, anchor) = (
+                loop_joint.name,
+                metres([loop_joint.at.x, loop_joint.at.y, 0.0]),
+            );
             self.xml.write_empty_element(format!(
                 r#"connect name="{name}" body1="{first}" body2="{second}" anchor="{anchor}""#
             ));

@@ -9,12 +9,12 @@ use lizard_robot::GRAVITY;
 use lizard_robot::servo::LEGS;
 
 /// Height of a flat pad, mm.
-const FLAT: f64 = 3.0;
+const FLAT_PAD_HEIGHT: f64 = 3.0;
 
 /// The MJCF attributes of a disc of this radius and height, mm.
-fn disc(radius: f64, high: f64) -> String {
-    let [radius, half] = [radius, high / 2.0].map(|length| round(length * MILLI));
-    format!(r#"type="cylinder" size="{radius} {half}""#)
+fn disc_attributes(radius: f64, height: f64) -> String {
+    let [radius, half_height] = [radius, height / 2.0].map(|length| round(length * MILLI));
+    format!(r#"type="cylinder" size="{radius} {half_height}""#)
 }
 
 impl Floor {
@@ -34,17 +34,17 @@ impl Writer<'_> {
             let Block {
                 centre: [x, y],
                 size,
-                rotation: turned,
+                rotation,
             } = block;
             // The box is twice as high as the block; its lower half is under the floor.
-            let [wide, long, high] = *size;
-            let (half, at) = (
-                metres([wide / 2.0, long / 2.0, high]),
+            let [width, length, height] = *size;
+            let (half_size, position) = (
+                metres([width / 2.0, length / 2.0, height]),
                 metres([*x, *y, 0.0]),
             );
             self.xml.write_empty_element(format!(
-                r#"geom type="box" size="{half}" pos="{at}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
-                round(turned.to_radians())
+                r#"geom type="box" size="{half_size}" pos="{position}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
+                round(rotation.to_radians())
             ));
         }
     }
@@ -63,26 +63,40 @@ impl Writer<'_> {
             }
             Pads::Terraces(layer) => {
                 // A layer has the dome's radius at the middle of the layer's height.
-                let wide = |up: f64| (up * (2.0 * pad.radius - up)).sqrt();
+                let radius_at = |height: f64| (height * (2.0 * pad.radius - height)).sqrt();
                 let layers = (0..).map(|number| (f64::from(number) + 0.5) * layer);
-                let layers = layers.take_while(|up| wide(*up) < pad.width / 2.0);
-                for (number, up) in layers.enumerate() {
+                let layers = layers.take_while(|height| radius_at(*height) < pad.width / 2.0);
+                for (number, height) in layers.enumerate() {
                     let name = format!(" {number}");
-                    let at = [x, y, lowest + up];
-                    self.write_pad_shape(servo, &name, &disc(wide(up), layer), at);
+                    let position = [x, y, lowest + height];
+                    self.write_pad_shape(
+                        servo,
+                        &name,
+                        &disc_attributes(radius_at(height), layer),
+                        position,
+                    );
                 }
             }
             Pads::Flat(diameter) => {
-                let at = [x, y, lowest + FLAT / 2.0];
-                self.write_pad_shape(servo, "", &disc(diameter / 2.0, FLAT), at);
+                let position = [x, y, lowest + FLAT_PAD_HEIGHT / 2.0];
+                self.write_pad_shape(
+                    servo,
+                    "",
+                    &disc_attributes(diameter / 2.0, FLAT_PAD_HEIGHT),
+                    position,
+                );
             }
         }
     }
 
-    fn write_pad_shape(&mut self, servo: usize, name: &str, shape: &str, at: [f64; 3]) {
-        let (leg, at, friction) = (LEGS[servo], metres(at), self.scene.floor.friction[servo]);
+    fn write_pad_shape(&mut self, servo: usize, name: &str, shape: &str, position: [f64; 3]) {
+        let (leg, position, friction) = (
+            LEGS[servo],
+            metres(position),
+            self.scene.floor.friction[servo],
+        );
         self.xml.write_empty_element(format!(
-            r#"geom name="pad {leg}{name}" {shape} pos="{at}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
+            r#"geom name="pad {leg}{name}" {shape} pos="{position}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
         ));
     }
 }

@@ -6,7 +6,7 @@ use crate::model::text::{MILLI, metres, round};
 use crate::model::writer::Writer;
 
 /// Radius of a pad's site as a share of its dome's: contacts lie a little outside the dome.
-const SITE: f64 = 1.05;
+const SITE_RADIUS_SHARE: f64 = 1.05;
 
 impl Writer<'_> {
     /// Writes sensors for the servos' angles, rates and torques, the force on each pad, and the
@@ -14,9 +14,9 @@ impl Writer<'_> {
     pub(super) fn write_sensors(&mut self) {
         self.xml.open("sensor");
         for name in NAMES {
-            for (what, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
+            for (quantity, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
                 self.xml.write_empty_element(format!(
-                    r#"actuator{kind} name="{name} {what}" actuator="{name}""#
+                    r#"actuator{kind} name="{name} {quantity}" actuator="{name}""#
                 ));
             }
         }
@@ -39,10 +39,10 @@ impl Writer<'_> {
     /// Writes the site on a servo's pad at which the pad's load is measured.
     pub(super) fn write_pad_site(&mut self, servo: usize) {
         let radius = self.assembly.robot().parts().pad.radius;
-        let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));
-        let size = round(SITE * radius * MILLI);
+        let (leg, position) = (LEGS[servo], metres(self.pad_middle(servo)));
+        let size = round(SITE_RADIUS_SHARE * radius * MILLI);
         self.xml.write_empty_element(format!(
-            r#"site name="pad {leg}" type="sphere" size="{size}" pos="{at}" group="3""#
+            r#"site name="pad {leg}" type="sphere" size="{size}" pos="{position}" group="3""#
         ));
     }
 }

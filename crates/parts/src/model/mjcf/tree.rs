@@ -12,14 +12,17 @@ use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn write_body(&mut self, node: Node) {
-        let place = self.place_on_parent(node);
+        let placement = self.place_on_parent(node);
         let is_chassis = self.parent(node).is_none();
-        let up = if is_chassis { self.height() } else { 0.0 };
-        let half = place.x_axis.angle().to_radians() / 2.0;
-        let (name, at) = (node.name(), metres([place.origin.x, place.origin.y, up]));
-        let (cos, sin) = (round(half.cos()), round(half.sin()));
+        let height = if is_chassis { self.height() } else { 0.0 };
+        let half_angle = placement.x_axis.angle().to_radians() / 2.0;
+        let (name, position) = (
+            node.name(),
+            metres([placement.origin.x, placement.origin.y, height]),
+        );
+        let (cos, sin) = (round(half_angle.cos()), round(half_angle.sin()));
         self.xml.open(format!(
-            r#"body name="{name}" pos="{at}" quat="{cos} 0 0 {sin}""#
+            r#"body name="{name}" pos="{position}" quat="{cos} 0 0 {sin}""#
         ));
         self.write_joint(node);
         let mass = self.mass(node);
@@ -97,9 +100,10 @@ impl Writer<'_> {
             }
             (Node::Slot(_), Some(Pull { force, rate })) => {
                 let (end, limits) = (round(SLOT * MILLI), limits());
-                let (stiffness, rest) = (round(rate / MILLI), round(-force / rate * MILLI));
+                let (stiffness, rest_position) =
+                    (round(rate / MILLI), round(-force / rate * MILLI));
                 joint += &format!(
-                    r#" range="0 {end}" {limits} stiffness="{stiffness}" springref="{rest}" damping="0.1""#
+                    r#" range="0 {end}" {limits} stiffness="{stiffness}" springref="{rest_position}" damping="0.1""#
                 );
             }
             _ => {}

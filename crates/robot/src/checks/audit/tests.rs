@@ -8,25 +8,25 @@ use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
 /// The smallest and largest slider travel on each side over a gait, mm.
-fn travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
-    let mut found = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
+    let mut travels = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for phase in (0..=u16::MAX).step_by(32) {
-        let solved = robot.lizard().solve(&gait.table_angles(phase).into());
-        let solved = solved.expect("a checked gait closes");
-        for (found, side) in found.iter_mut().zip(Side::ALL) {
-            let s = solved.side(side).s;
-            *found = (found.0.min(s), found.1.max(s));
+        let solution = robot.lizard().solve(&gait.table_angles(phase).into());
+        let solution = solution.expect("a checked gait closes");
+        for (travel, side) in travels.iter_mut().zip(Side::ALL) {
+            let s = solution.side(side).s;
+            *travel = (travel.0.min(s), travel.1.max(s));
         }
     }
-    found
+    travels
 }
 
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
 /// The unequal robot with sliders at nominal in its neutral pose, and one gait that moves the legs of one side, so
 /// that only one slider moves.
-fn lean(right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
-    let legs = if right {
+fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
+    let legs = if is_right {
         "LF = 0.0, LH = 0.0"
     } else {
         "RF = 0.0, RH = 0.0"
@@ -45,73 +45,75 @@ fn lean(right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
 
 #[test]
 fn both_sides_count_to_the_sliders_travel() {
-    for right in [false, true] {
-        let robot = lean(right, &[]).expect("it leans");
+    for is_right in [false, true] {
+        let robot = leaning_robot(is_right, &[]).expect("it leans");
         let gait = robot.gait("lean").expect("lean");
-        let moving = travels(&robot, gait)[usize::from(right)];
-        let (smallest, largest) = gait.audit().stroke;
-        assert!(moving.0 < -5.0 && moving.1 > 3.0, "{moving:?}");
-        assert!((moving.0 - smallest).abs() < 0.05, "{smallest}");
-        assert!((largest - moving.1).abs() < 0.05, "{largest}");
+        let travel = slider_travels(&robot, gait)[usize::from(is_right)];
+        let (min_stroke, max_stroke) = gait.audit().stroke;
+        assert!(travel.0 < -5.0 && travel.1 > 3.0, "{travel:?}");
+        assert!((travel.0 - min_stroke).abs() < 0.05, "{min_stroke}");
+        assert!((max_stroke - travel.1).abs() < 0.05, "{max_stroke}");
     }
 }
 
 #[test]
 fn a_slider_that_runs_out_on_one_side_alone_is_named() {
-    for (right, side) in [(false, "left"), (true, "right")] {
-        let robot = lean(right, &[]).expect("it leans");
+    for (is_right, side) in [(false, "left"), (true, "right")] {
+        let robot = leaning_robot(is_right, &[]).expect("it leans");
         let gait = robot.gait("lean").expect("lean");
-        let (smallest, largest) = travels(&robot, gait)[usize::from(right)];
+        let (min_stroke, max_stroke) = slider_travels(&robot, gait)[usize::from(is_right)];
         for (from, to, word) in [
             (
                 "stroke_min = -19.0",
-                format!("stroke_min = {:.2}", smallest + 0.5),
+                format!("stroke_min = {:.2}", min_stroke + 0.5),
                 "below",
             ),
             (
                 "stroke_max = 41.0",
-                format!("stroke_max = {:.2}", largest - 0.5),
+                format!("stroke_max = {:.2}", max_stroke - 0.5),
                 "above",
             ),
         ] {
-            let refused = lean(right, &[(from, to)]).expect_err(word).to_string();
-            let begin = format!(
+            let message = leaning_robot(is_right, &[(from, to)])
+                .expect_err(word)
+                .to_string();
+            let expected_start = format!(
                 "in \"lean\" the {side} slider would run into its end: {side} slider travel "
             );
-            assert!(refused.starts_with(&begin), "{refused}");
-            assert!(refused.ends_with(": gait.lean)"), "{refused}");
-            assert!(refused.contains(word), "{refused}");
+            assert!(message.starts_with(&expected_start), "{message}");
+            assert!(message.ends_with(": gait.lean)"), "{message}");
+            assert!(message.contains(word), "{message}");
         }
-        let enough = [
+        let wide_limits = [
             (
                 "stroke_min = -19.0",
-                format!("stroke_min = {:.2}", smallest - 0.2),
+                format!("stroke_min = {:.2}", min_stroke - 0.2),
             ),
             (
                 "stroke_max = 41.0",
-                format!("stroke_max = {:.2}", largest + 0.2),
+                format!("stroke_max = {:.2}", max_stroke + 0.2),
             ),
         ];
-        assert!(lean(right, &enough).is_ok());
+        assert!(leaning_robot(is_right, &wide_limits).is_ok());
     }
 }
 
 #[test]
 fn a_hazard_of_the_guard_has_the_name_of_its_condition() {
-    let margin = |margin| Hazard::Margin {
+    let margin_hazard = |margin| Hazard::Margin {
         margin,
         value: Sine(0),
     };
-    let stroke = |side| Hazard::Stroke { side, length: 0 };
+    let stroke_hazard = |side| Hazard::Stroke { side, length: 0 };
     for (hazard, name) in [
-        (margin(Margin::Type2(End::Head)), "type2_head"),
-        (margin(Margin::Type2(End::Tail)), "type2_tail"),
-        (margin(Margin::Type1(Servo::A2)), "type1_a2"),
-        (margin(Margin::Type1(Servo::A4)), "type1_a4"),
-        (margin(Margin::Leg(Servo::A1)), "leg_lf"),
-        (margin(Margin::Leg(Servo::A3)), "leg_rh"),
-        (stroke(CoreSide::Left), "stroke_left"),
-        (stroke(CoreSide::Right), "stroke_right"),
+        (margin_hazard(Margin::Type2(End::Head)), "type2_head"),
+        (margin_hazard(Margin::Type2(End::Tail)), "type2_tail"),
+        (margin_hazard(Margin::Type1(Servo::A2)), "type1_a2"),
+        (margin_hazard(Margin::Type1(Servo::A4)), "type1_a4"),
+        (margin_hazard(Margin::Leg(Servo::A1)), "leg_lf"),
+        (margin_hazard(Margin::Leg(Servo::A3)), "leg_rh"),
+        (stroke_hazard(CoreSide::Left), "stroke_left"),
+        (stroke_hazard(CoreSide::Right), "stroke_right"),
     ] {
         assert_eq!(super::condition(&hazard).name(), name);
     }
@@ -135,63 +137,80 @@ fn every_sample_of_every_servo_is_checked() {
 #[test]
 fn a_swing_backward_is_as_fast_as_one_forward() {
     // All legs have a negative gain, so they swing backward.
-    let against = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
-    let robot = with("unequal", &[("[gait.trot]", against)]).expect("a gait");
-    let speed = |name: &str| robot.gait(name).expect(name).audit().peak.speed;
-    assert!((speed("against") - speed("walk")).abs() < 1e-9);
+    let table = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
+    let robot = with("unequal", &[("[gait.trot]", table)]).expect("a gait");
+    let speed_of = |name: &str| robot.gait(name).expect(name).audit().peak.speed;
+    assert!((speed_of("against") - speed_of("walk")).abs() < 1e-9);
 }
 
 #[test]
 fn a_gait_may_be_as_fast_as_its_limit() {
-    let fastest = robot("unequal");
-    let speed = |gait: &CheckedGait| gait.audit().peak.speed;
-    let largest = fastest.gaits().iter().map(speed).fold(0.0, f64::max);
-    let limit = |speed: f64| format!("gait_slew = {speed:?}");
-    assert!(with("unequal", &[("gait_slew = 330.0", &limit(largest))]).is_ok());
-    let refused = with("unequal", &[("gait_slew = 330.0", &limit(largest - 1e-6))]);
-    let refused = refused.expect_err("it is too fast").to_string();
-    assert!(refused.contains("limits.gait_slew is"), "{refused}");
+    let unequal = robot("unequal");
+    let speed_of = |gait: &CheckedGait| gait.audit().peak.speed;
+    let largest_speed = unequal.gaits().iter().map(speed_of).fold(0.0, f64::max);
+    let limit_line = |speed: f64| format!("gait_slew = {speed:?}");
+    assert!(
+        with(
+            "unequal",
+            &[("gait_slew = 330.0", &limit_line(largest_speed))]
+        )
+        .is_ok()
+    );
+    let refusal = with(
+        "unequal",
+        &[("gait_slew = 330.0", &limit_line(largest_speed - 1e-6))],
+    );
+    let refusal = refusal.expect_err("it is too fast").to_string();
+    assert!(refusal.contains("limits.gait_slew is"), "{refusal}");
 }
 
 #[test]
 fn a_gait_may_use_all_of_a_servos_travel() {
     // A held leg swings exactly its amplitude to either side of neutral.
-    let travel = |degrees: f64| {
-        let servo = format!("us_per_degree = 8.5\nmin_us = {:?}", 1500.0 - degrees * 8.5);
-        let body =
-            text_before_gaits("unequal").replacen("us_per_degree = 8.5\nmin_us = 700.0", &servo, 1);
+    let robot_with_travel = |degrees: f64| {
+        let servo_keys = format!("us_per_degree = 8.5\nmin_us = {:?}", 1500.0 - degrees * 8.5);
+        let body = text_before_gaits("unequal").replacen(
+            "us_per_degree = 8.5\nmin_us = 700.0",
+            &servo_keys,
+            1,
+        );
         Robot::parse(&format!(
             "{body}{STAND}[gait.sway]\nperiod = 2.0\nwaveform = \"held\"\namplitude = 17.0\norder = [\"LH\", \"LF\", \"RH\", \"RF\"]\n"
         ))
     };
-    assert_eq!(travel(17.0).map(|robot| robot.gaits().len()), Ok(2));
-    let refused = travel(16.9).expect_err("a tenth less").to_string();
+    assert_eq!(
+        robot_with_travel(17.0).map(|robot| robot.gaits().len()),
+        Ok(2)
+    );
+    let message = robot_with_travel(16.9)
+        .expect_err("a tenth less")
+        .to_string();
     assert!(
-        refused.starts_with("in \"sway\" servo A3 would have to turn farther than it can: ")
-            && refused.contains(" is outside its travel of 299.10 to"),
-        "{refused}"
+        message.starts_with("in \"sway\" servo A3 would have to turn farther than it can: ")
+            && message.contains(" is outside its travel of 299.10 to"),
+        "{message}"
     );
 }
 
 #[test]
 fn every_end_of_every_travel_is_checked() {
     // A servo with only about a degree of travel on one side cannot walk.
-    for (servo, smallest, largest, neutral) in [
+    for (servo, min_line, max_line, neutral) in [
         ("A1", "min_us = 610.0", "max_us = 2350.0", 1470.0),
         ("A2", "min_us = 560.0", "max_us = 2420.0", 1535.0),
         ("A3", "min_us = 700.0", "max_us = 2300.0", 1500.0),
         ("A4", "min_us = 590.0", "max_us = 2460.0", 1440.0),
     ] {
         for (from, to) in [
-            (smallest, format!("min_us = {}", neutral - 9.0)),
-            (largest, format!("max_us = {}", neutral + 9.0)),
+            (min_line, format!("min_us = {}", neutral - 9.0)),
+            (max_line, format!("max_us = {}", neutral + 9.0)),
         ] {
-            let refused = with("unequal", &[(from, &to)]).expect_err(&to).to_string();
+            let message = with("unequal", &[(from, &to)]).expect_err(&to).to_string();
             assert!(
-                refused.starts_with(&format!(
+                message.starts_with(&format!(
                     "in \"walk\" servo {servo} would have to turn farther"
                 )),
-                "{refused}"
+                "{message}"
             );
         }
     }
@@ -200,33 +219,37 @@ fn every_end_of_every_travel_is_checked() {
 #[test]
 fn each_kind_of_margin_has_the_limit_of_its_kind() {
     let unequal = robot("unequal");
-    for (key, kind) in [
+    for (key, checks) in [
         ("type2 = 0.32 ", &Check::TYPE2[..]),
         ("type1 = 0.27 ", &Check::TYPE1),
         ("leg = 0.38 ", &Check::LEG),
     ] {
         let name = key.split(' ').next().expect("a name");
-        let smallest = |gait: &CheckedGait| {
+        let least_margin_of = |gait: &CheckedGait| {
             let audit = gait.audit();
-            let [of] = [audit.type2, audit.type1, audit.leg]
+            let [least] = [audit.type2, audit.type1, audit.leg]
                 .into_iter()
-                .filter(|smallest| kind.contains(&smallest.what))
+                .filter(|margin| checks.contains(&margin.what))
                 .collect::<Vec<_>>()[..]
             else {
                 panic!("{audit:?}")
             };
-            of.value
+            least.value
         };
-        let smallest = unequal.gaits().iter().map(smallest).fold(1.0, f64::min);
-        let limit = |value: f64| format!("{name} = {value:?} ");
+        let least_margin = unequal
+            .gaits()
+            .iter()
+            .map(least_margin_of)
+            .fold(1.0, f64::min);
+        let limit_line = |value: f64| format!("{name} = {value:?} ");
         // The firmware's guard is accurate to one or two thousandths.
         assert!(
-            with("unequal", &[(key, &limit(smallest - 0.003))]).is_ok(),
+            with("unequal", &[(key, &limit_line(least_margin - 0.003))]).is_ok(),
             "{name}"
         );
-        let refused = with("unequal", &[(key, &limit(smallest + 1e-6))]);
-        let refused = refused.expect_err(name).to_string();
-        assert!(refused.contains(&format!("margin {name}_")), "{refused}");
+        let refusal = with("unequal", &[(key, &limit_line(least_margin + 1e-6))]);
+        let refusal = refusal.expect_err(name).to_string();
+        assert!(refusal.contains(&format!("margin {name}_")), "{refusal}");
     }
 }
 
@@ -242,26 +265,30 @@ fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
         ("unequal", "type1 = 0.27 "),
     ] {
         let robot = robot(name);
-        let smallest = |gait: &CheckedGait| {
+        let least_margin_of = |gait: &CheckedGait| {
             if key.starts_with("leg") {
                 gait.audit().leg.value
             } else {
                 gait.audit().type1.value
             }
         };
-        let smallest = robot.gaits().iter().map(smallest).fold(1.0, f64::min);
-        let kind = key.split(' ').next().expect("a name");
+        let least_margin = robot
+            .gaits()
+            .iter()
+            .map(least_margin_of)
+            .fold(1.0, f64::min);
+        let limit_name = key.split(' ').next().expect("a name");
         for i in 1..10 {
-            let limit = format!("{kind} = {:?} ", smallest - f64::from(i) * 1e-5);
-            let refused = with(name, &[(key, &limit)]).err();
-            refusals.extend(refused.map(|error| error.to_string()));
+            let limit_line = format!("{limit_name} = {:?} ", least_margin - f64::from(i) * 1e-5);
+            let refusal = with(name, &[(key, &limit_line)]).err();
+            refusals.extend(refusal.map(|error| error.to_string()));
         }
     }
     assert!(!refusals.is_empty(), "no limit is too near");
-    for refused in refusals {
+    for refusal in refusals {
         assert!(
-            refused.contains(": margin or travel ") && refused.contains("leave it a little room ("),
-            "{refused}"
+            refusal.contains(": margin or travel ") && refusal.contains("leave it a little room ("),
+            "{refusal}"
         );
     }
 }
@@ -271,15 +298,15 @@ fn the_least_margins_are_those_at_their_phases() {
     for (name, robot) in all() {
         for gait in robot.gaits() {
             let audit = gait.audit();
-            for smallest in [audit.type2, audit.type1, audit.leg] {
-                let phase = (smallest.phase * 65536.0) as u16;
+            for least in [audit.type2, audit.type1, audit.leg] {
+                let phase = (least.phase * 65536.0) as u16;
                 let pose = gait.table_angles(phase).into();
-                let solved = robot.lizard().solve(&pose).expect("closes");
-                let (_, value) = solved
+                let solution = robot.lizard().solve(&pose).expect("closes");
+                let (_, value) = solution
                     .conditions()
-                    .find(|(what, _)| *what == smallest.what)
+                    .find(|(check, _)| *check == least.what)
                     .expect("a condition");
-                assert_eq!(value, smallest.value, "{name} {}", gait.name());
+                assert_eq!(value, least.value, "{name} {}", gait.name());
             }
         }
     }

@@ -15,7 +15,7 @@ const WALK: &str = "[gait.walk]\nperiod = 1.0\nwaveform = \"wave\"\nduty = 0.75\
 #[test]
 fn a_gait_reversed_twice_goes_forward() {
     let robot = robot("own-gaits");
-    let reversed = |name| robot.gait(name).expect(name).is_reversed();
+    let is_reversed = |name| robot.gait(name).expect(name).is_reversed();
     assert_eq!(
         [
             "stroll",
@@ -25,36 +25,36 @@ fn a_gait_reversed_twice_goes_forward() {
             "veer-right-back",
             "veer-left-back"
         ]
-        .map(reversed),
+        .map(is_reversed),
         [false, true, false, false, true, true]
     );
-    let on = robot.gait("stroll-on").expect("stroll-on");
-    assert_eq!((on.phase(0.32), on.period()), (0.25, 1.28));
-    let back = robot.gait("stroll-back").expect("stroll-back");
-    assert_eq!((back.phase(0.3), back.period()), (0.75, 1.2));
+    let stroll_on = robot.gait("stroll-on").expect("stroll-on");
+    assert_eq!((stroll_on.phase(0.32), stroll_on.period()), (0.25, 1.28));
+    let stroll_back = robot.gait("stroll-back").expect("stroll-back");
+    assert_eq!((stroll_back.phase(0.3), stroll_back.period()), (0.75, 1.2));
 }
 
 #[test]
 fn a_mirror_exchanges_the_legs_and_its_gains_count_after_it() {
     let robot = robot("own-gaits");
-    let strides = |name| {
+    let amplitudes_and_starts = |name| {
         let strides = robot.gait(name).expect(name).strides();
         strides.each_ref().map(|s| (s.amplitude, s.start))
     };
     assert_eq!(
-        strides("stroll"),
+        amplitudes_and_starts("stroll"),
         [(16.0, 0.0), (16.0, 0.5), (16.0, 0.25), (16.0, 0.75)]
     );
     assert_eq!(
-        strides("veer-left"),
+        amplitudes_and_starts("veer-left"),
         [(8.0, 0.0), (16.0, 0.5), (16.0, 0.25), (8.0, 0.75)]
     );
     assert_eq!(
-        strides("veer-right"),
+        amplitudes_and_starts("veer-right"),
         [(16.0, 0.5), (8.0, 0.0), (8.0, 0.75), (16.0, 0.25)]
     );
     assert_eq!(
-        strides("veer-left-back"),
+        amplitudes_and_starts("veer-left-back"),
         [(8.0, 0.0), (19.2, 0.5), (16.0, 0.25), (8.0, 0.75)]
     );
 }
@@ -65,9 +65,9 @@ fn an_order_gives_each_leg_its_turn() {
     let creep = robot.gait("creep").expect("creep");
     // All legs move back in the first fifth; then RF, LH, LF and RH swing forward, each in one of the next fifths.
     for (leg, fifth) in [(1, 1), (3, 2), (0, 3), (2, 4)] {
-        let sweeps = |phase: f64| creep.sweeps(phase)[leg];
-        assert!((sweeps(0.2 * f64::from(fifth)) + 17.5).abs() < 1e-9);
-        assert!((sweeps(0.2 * f64::from(fifth + 1)) - 17.5).abs() < 1e-9);
+        let sweep_at = |phase: f64| creep.sweeps(phase)[leg];
+        assert!((sweep_at(0.2 * f64::from(fifth)) + 17.5).abs() < 1e-9);
+        assert!((sweep_at(0.2 * f64::from(fifth + 1)) - 17.5).abs() < 1e-9);
     }
 }
 
@@ -79,18 +79,18 @@ fn a_path_leads_the_end_that_it_names_and_leaves_the_other() {
     let nod = robot.gait("nod").expect("nod");
     for i in 0..64 {
         let phase = f64::from(i) / 64.0;
-        let turn = std::f64::consts::TAU * phase;
-        let solved = robot.lizard().solve(&wag.pose(phase)).expect("closes");
-        let tail = solved.tail.end_point;
+        let angle = std::f64::consts::TAU * phase;
+        let solution = robot.lizard().solve(&wag.pose(phase)).expect("closes");
+        let tail = solution.tail.end_point;
         let (x, y) = (
-            9.0 * turn.sin(),
-            54.0 + 3.0 * (2.0 * turn + 0.5 * std::f64::consts::PI).sin(),
+            9.0 * angle.sin(),
+            54.0 + 3.0 * (2.0 * angle + 0.5 * std::f64::consts::PI).sin(),
         );
         assert!((tail.x - x).hypot(tail.y - y) < 1e-9, "{tail:?}");
         assert_eq!(wag.angles(phase)[..2], neutral[..2]);
-        let solved = robot.lizard().solve(&nod.pose(phase)).expect("closes");
-        let head = solved.head.end_point;
-        let (x, y) = (4.0 + 2.0 * turn.sin(), 56.0 + 5.0 * turn.sin());
+        let solution = robot.lizard().solve(&nod.pose(phase)).expect("closes");
+        let head = solution.head.end_point;
+        let (x, y) = (4.0 + 2.0 * angle.sin(), 56.0 + 5.0 * angle.sin());
         assert!((head.x - x).hypot(head.y - y) < 1e-9, "{head:?}");
         assert_eq!(nod.angles(phase)[2..], neutral[2..]);
     }
@@ -98,7 +98,7 @@ fn a_path_leads_the_end_that_it_names_and_leaves_the_other() {
 
 #[test]
 fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
-    let path = |end: &str, centre: &str| {
+    let refusal_of = |end: &str, centre: &str| {
         let gaits =
             format!("{STAND}[gait.point]\nperiod = 4.0\n[gait.point.{end}]\ncentre = {centre}\n");
         paper_with_gaits(&gaits).expect_err(&gaits).to_string()
@@ -109,11 +109,11 @@ fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
             ("[-45.0, 60.0]", "(-45.00, 60.00)"),
             ("[0.0, 82.0]", "(0.00, 82.00)"),
         ] {
-            let refused = path(end, centre);
+            let message = refusal_of(end, centre);
             let expected = format!(
                 "in \"point\" the {end} would not reach its line: the point {point} mm at phase 0.0000 is out of reach of the {end} ("
             );
-            assert!(refused.starts_with(&expected), "{refused}");
+            assert!(message.starts_with(&expected), "{message}");
         }
     }
 }
@@ -123,21 +123,24 @@ fn a_gait_may_have_the_name_of_a_word_of_the_console_that_is_not_reserved() {
     for word in Word::ALL.iter().filter(|word| **word != Word::QuestionMark) {
         for name in [word.text().to_owned(), format!("{}-on", word.text())] {
             let gaits = format!("{STAND}{}", WALK.replace("walk", &name));
-            let taken = paper_with_gaits(&gaits).is_ok();
-            assert_eq!(taken, !word.is_reserved(), "{name}");
+            let is_accepted = paper_with_gaits(&gaits).is_ok();
+            assert_eq!(is_accepted, !word.is_reserved(), "{name}");
         }
     }
 }
 
 #[test]
 fn a_name_may_have_48_characters() {
-    let name = |length: usize| format!("{STAND}{}", WALK.replace("walk", &"w".repeat(length)));
-    let longest = paper_with_gaits(&name(48)).expect("48 characters");
-    assert_eq!(longest.gaits()[1].name().len(), 48);
-    let longer = paper_with_gaits(&name(49)).expect_err("49").to_string();
+    let gaits_of_name_length =
+        |length: usize| format!("{STAND}{}", WALK.replace("walk", &"w".repeat(length)));
+    let robot = paper_with_gaits(&gaits_of_name_length(48)).expect("48 characters");
+    assert_eq!(robot.gaits()[1].name().len(), 48);
+    let message = paper_with_gaits(&gaits_of_name_length(49))
+        .expect_err("49")
+        .to_string();
     assert!(
-        longer.contains("has 49 characters") && longer.ends_with("so it may have 48"),
-        "{longer}"
+        message.contains("has 49 characters") && message.ends_with("so it may have 48"),
+        "{message}"
     );
 }
 
@@ -146,21 +149,26 @@ const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other ha
 
 #[test]
 fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
-    let gaits = |count: usize| {
-        let like = |i| format!("[gait.walk{i}]\nlike = \"walk\"\n");
-        let more: String = (2..count).map(like).collect();
-        format!("{STAND}{WALK}{more}")
+    let text_of_gaits = |count: usize| {
+        let derive_gait = |i| format!("[gait.walk{i}]\nlike = \"walk\"\n");
+        let derived_gaits: String = (2..count).map(derive_gait).collect();
+        format!("{STAND}{WALK}{derived_gaits}")
     };
-    let many = paper_with_gaits(&gaits(80)).expect("80 gaits");
-    assert_eq!(many.gaits().len(), 80);
-    assert_eq!(many.gait("walk79").map(|gait| gait.index()), Some(79));
+    let robot_with_80 = paper_with_gaits(&text_of_gaits(80)).expect("80 gaits");
+    assert_eq!(robot_with_80.gaits().len(), 80);
     assert_eq!(
-        many.gait("walk79").map(|gait| gait.table_sweeps(99)),
-        many.gait("walk").map(|gait| gait.table_sweeps(99))
+        robot_with_80.gait("walk79").map(|gait| gait.index()),
+        Some(79)
+    );
+    assert_eq!(
+        robot_with_80
+            .gait("walk79")
+            .map(|gait| gait.table_sweeps(99)),
+        robot_with_80.gait("walk").map(|gait| gait.table_sweeps(99))
     );
     // More gaits leave no room for the maps of cells, but are accepted until the section is full.
     for count in 80..255 {
-        match paper_with_gaits(&gaits(count)) {
+        match paper_with_gaits(&text_of_gaits(count)) {
             Ok(robot) => {
                 assert!(robot.section().len() <= usize::from(lizard_core::numbers::section::SPACE))
             }
@@ -171,46 +179,52 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
             }
         }
     }
-    let max = paper_with_gaits(&gaits(255)).expect_err("255").to_string();
-    assert!(max.ends_with(LEAVE_OUT), "{max}");
-    let more = paper_with_gaits(&gaits(256)).expect_err("256").to_string();
+    let message_at_255 = paper_with_gaits(&text_of_gaits(255))
+        .expect_err("255")
+        .to_string();
+    assert!(message_at_255.ends_with(LEAVE_OUT), "{message_at_255}");
+    let message_at_256 = paper_with_gaits(&text_of_gaits(256))
+        .expect_err("256")
+        .to_string();
     assert!(
-        more.ends_with(
+        message_at_256.ends_with(
             "gait holds 256 gaits; the firmware numbers them with a byte, so leave at most 255"
         ),
-        "{more}"
+        "{message_at_256}"
     );
 }
 
 #[test]
 fn waveforms_are_refused_that_the_section_has_no_room_for() {
     // The walk takes one waveform, and each nod, along its own line, takes two.
-    let gaits = |count: usize| {
-        let nod = |i: usize| {
+    let text_of_gaits = |count: usize| {
+        let make_nod = |i: usize| {
             let x = 0.03 * (i as f64 + 1.0);
             format!(
                 "[gait.nod{i}]\nperiod = 4.0\n[gait.nod{i}.head]\ncentre = [{x:.2}, 55.0]\nx = [{{ k = 1, amplitude = 3.0 }}]\ny = [{{ k = 2, amplitude = {x:.2}, shift = 0.1 }}]\n"
             )
         };
-        let more: String = (0..count).map(nod).collect();
-        format!("{STAND}{WALK}{more}")
+        let nods: String = (0..count).map(make_nod).collect();
+        format!("{STAND}{WALK}{nods}")
     };
-    let some = paper_with_gaits(&gaits(6)).expect("13 waveforms");
-    assert_eq!(some.firmware().waves().len(), 13);
+    let robot = paper_with_gaits(&text_of_gaits(6)).expect("13 waveforms");
+    assert_eq!(robot.firmware().waves().len(), 13);
     for count in [14, 127] {
-        let max = paper_with_gaits(&gaits(count))
+        let message = paper_with_gaits(&text_of_gaits(count))
             .expect_err("too many")
             .to_string();
-        assert!(max.ends_with(LEAVE_OUT), "{max}");
+        assert!(message.ends_with(LEAVE_OUT), "{message}");
     }
-    let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
-    assert!(more.contains("gait.nod127 needs one waveform more than the 255 that the firmware can number with a byte; gaits"), "{more}");
+    let message = paper_with_gaits(&text_of_gaits(128))
+        .expect_err("257")
+        .to_string();
+    assert!(message.contains("gait.nod127 needs one waveform more than the 255 that the firmware can number with a byte; gaits"), "{message}");
 }
 
 #[test]
 fn a_mistake_in_one_gait_is_named_by_its_line_there() {
     let paper = paper_with_gaits(STAND).expect("it is right");
-    for (table, line, words) in [
+    for (table, line, phrase) in [
         (
             "[gait.a]\nperiod = 1.0\nwaveform = \"wav\"\n",
             3,
@@ -224,6 +238,6 @@ fn a_mistake_in_one_gait_is_named_by_its_line_there() {
     ] {
         let error = paper.with_gait(table).expect_err(table);
         assert_eq!(error.line, Some(line), "{error}");
-        assert!(error.to_string().contains(words), "{error}");
+        assert!(error.to_string().contains(phrase), "{error}");
     }
 }

@@ -38,7 +38,7 @@ impl EndConditions {
     pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
         let integers = &numbers.ends[end as usize];
         let Limits { type2, type1, leg } = numbers.limits;
-        let sine = |limit: Sine| f64::from(limit.0) / ONE_Q15;
+        let sine_of = |limit: Sine| f64::from(limit.0) / ONE_Q15;
         Self {
             end,
             bars: lizard.end(end),
@@ -46,14 +46,14 @@ impl EndConditions {
                 scale: integers.scale,
                 couplers: integers.couplers,
             },
-            type2: sine(type2),
-            type1: sine(type1),
-            leg: sine(leg),
+            type2: sine_of(type2),
+            type1: sine_of(type1),
+            leg: sine_of(leg),
         }
     }
 
     /// Returns the smallest sine of a leg over a range of its servo's angles, which is narrower than half a turn.
-    fn least_leg(&self, span: &Span) -> f64 {
+    fn least_leg_sine(&self, span: &Span) -> f64 {
         let half = span.half();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
         // The centre, rotated by half the range in either direction.
@@ -83,35 +83,38 @@ impl Condition for EndConditions {
             return Verdict::Broken;
         };
         let type1 = [pose.type1_left(), pose.type1_right()];
-        let keeps = pose.gap.x > 0.0
+        let keeps_limits = pose.gap.x > 0.0
             && pose.type2 >= self.type2
             && type1.iter().all(|margin| *margin >= self.type1)
             && directions.iter().all(|crank| crank.y >= self.leg);
-        if !keeps {
+        if !keeps_limits {
             return Verdict::Broken;
         }
 
         let crank_movement =
             self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
-        let apart = pose.gap.length();
-        let range = [(apart - crank_movement).max(0.0), apart + crank_movement];
+        let tip_distance = pose.gap.length();
+        let range = [
+            (tip_distance - crank_movement).max(0.0),
+            tip_distance + crank_movement,
+        ];
         let errors = bounds::EndErrors::between(&self.bars, self.integers, range);
-        let uncrossed = pose.gap.x - crank_movement > errors.along + ROUNDING_ALLOWANCE;
-        if !(errors.is_known && uncrossed) {
+        let is_uncrossed = pose.gap.x - crank_movement > errors.along + ROUNDING_ALLOWANCE;
+        if !(errors.is_known && is_uncrossed) {
             return Verdict::Open;
         }
         let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.min_type2);
-        let elbows = [
+        let elbow_losses = [
             left.half() + coupler_turn(self.bars.coupler_left) + errors.type1_left,
             right.half() + coupler_turn(self.bars.coupler_right) + errors.type1_right,
         ];
         let is_kept = errors.min_type2 - errors.type2 >= self.type2 + ROUNDING_ALLOWANCE
             && type1
                 .iter()
-                .zip(elbows)
-                .all(|(margin, less)| margin - less >= self.type1 + ROUNDING_ALLOWANCE)
+                .zip(elbow_losses)
+                .all(|(margin, loss)| margin - loss >= self.type1 + ROUNDING_ALLOWANCE)
             && [left, right].iter().all(|span| {
-                self.least_leg(span) - MAX_DIRECTION_ERROR >= self.leg + ROUNDING_ALLOWANCE
+                self.least_leg_sine(span) - MAX_DIRECTION_ERROR >= self.leg + ROUNDING_ALLOWANCE
             });
         if is_kept {
             Verdict::Kept
@@ -128,7 +131,7 @@ mod tests {
 
     /// Makes a cell of a single pose, the neutral one, for the head of a robot without symmetry, and conditions whose
     /// limits every pose keeps.
-    fn standing() -> (EndConditions, Cell) {
+    fn neutral_cell() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
         let rule = EndConditions {
@@ -137,29 +140,29 @@ mod tests {
             leg: 0.0,
             ..EndConditions::new(robot.lizard(), numbers, End::Head)
         };
-        let span = |servo: usize| {
+        let span_of = |servo: usize| {
             let angle = f64::from(numbers.neutral[servo].0);
             Span {
                 low: angle,
                 high: angle,
             }
         };
-        (rule, Cell([span(0), span(1)]))
+        (rule, Cell([span_of(0), span_of(1)]))
     }
 
     type Limit = fn(&mut EndConditions) -> &mut f64;
 
     #[test]
     fn a_single_pose_is_proved_if_clear_of_each_limit_by_the_rounding_error() {
-        let (mut rule, cell) = standing();
+        let (mut rule, cell) = neutral_cell();
         // Without limits every pose passes.
         assert_eq!(rule.judge(&cell), Verdict::Kept);
         let cranks = cell.0.map(|span| span.direction());
         let [left, right] = cranks;
         let pose = rule.bars.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("it stands");
-        let apart = pose.gap.length();
-        let errors = bounds::EndErrors::between(&rule.bars, rule.integers, [apart; 2]);
+        let tip_distance = pose.gap.length();
+        let errors = bounds::EndErrors::between(&rule.bars, rule.integers, [tip_distance; 2]);
         let (lower, bound) = if pose.type1_left() < pose.type1_right() {
             (pose.type1_left(), errors.type1_left)
         } else {
@@ -176,25 +179,25 @@ mod tests {
         ];
         for (limit, value, bound) in limits {
             assert!(bound > 1e-5 && bound < 0.01, "{bound}");
-            let none = *limit(&mut rule);
-            for (clear, verdict) in [
+            let unlimited = *limit(&mut rule);
+            for (clearance, verdict) in [
                 (1.01 * bound, Verdict::Kept),
                 (0.99 * bound, Verdict::Open),
                 (0.01 * bound, Verdict::Open),
                 (-0.01 * bound, Verdict::Broken),
             ] {
-                *limit(&mut rule) = value - clear;
-                assert_eq!(rule.judge(&cell), verdict, "{value} {clear}");
+                *limit(&mut rule) = value - clearance;
+                assert_eq!(rule.judge(&cell), verdict, "{value} {clearance}");
             }
-            *limit(&mut rule) = none;
+            *limit(&mut rule) = unlimited;
         }
     }
 
     #[test]
     fn crank_tips_that_may_have_crossed_prove_nothing() {
-        let (rule, _) = standing();
+        let (rule, _) = neutral_cell();
         let per_step = f64::from(rule.integers.scale.bits).exp2().recip();
-        let turn = |degrees: f64| {
+        let span_at = |degrees: f64| {
             let angle = degrees * 65536.0 / 360.0;
             Span {
                 low: angle,
@@ -202,8 +205,8 @@ mod tests {
             }
         };
         // The right crank leans far to the left, so that one tip passes well above the other and the linkage closes.
-        let right = turn(165.0);
-        let gap = |left: Span| {
+        let right = span_at(165.0);
+        let gap_at = |left: Span| {
             let left = left.direction();
             rule.bars
                 .pose_unchecked(AssemblyMode::Ahead, left, right.direction())
@@ -211,24 +214,24 @@ mod tests {
                 .x
         };
         // Bisects for the left crank's angle at which one tip is directly above the other.
-        let (mut apart, mut crossed) = (150.0, 10.0);
-        assert!(gap(turn(apart)) > 0.0 && gap(turn(crossed)) < 0.0);
+        let (mut apart_deg, mut crossed_deg) = (150.0, 10.0);
+        assert!(gap_at(span_at(apart_deg)) > 0.0 && gap_at(span_at(crossed_deg)) < 0.0);
         for _ in 0..60 {
-            let middle = (apart + crossed) / 2.0;
-            if gap(turn(middle)) > 0.0 {
-                apart = middle;
+            let middle = (apart_deg + crossed_deg) / 2.0;
+            if gap_at(span_at(middle)) > 0.0 {
+                apart_deg = middle;
             } else {
-                crossed = middle;
+                crossed_deg = middle;
             }
         }
-        let beside = |mm: f64| {
-            let slope = rule.bars.crank_left * apart.to_radians().sin();
-            let left = turn(apart + (mm / slope).to_degrees());
-            assert!((gap(left) - mm).abs() < per_step);
+        let judge_at = |mm: f64| {
+            let slope = rule.bars.crank_left * apart_deg.to_radians().sin();
+            let left = span_at(apart_deg + (mm / slope).to_degrees());
+            assert!((gap_at(left) - mm).abs() < per_step);
             rule.judge(&Cell([left, right]))
         };
-        assert_eq!(beside(-per_step), Verdict::Broken);
-        assert_eq!(beside(per_step), Verdict::Open);
-        assert_eq!(beside(20.0 * per_step), Verdict::Kept);
+        assert_eq!(judge_at(-per_step), Verdict::Broken);
+        assert_eq!(judge_at(per_step), Verdict::Open);
+        assert_eq!(judge_at(20.0 * per_step), Verdict::Kept);
     }
 }

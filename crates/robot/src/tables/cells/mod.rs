@@ -41,14 +41,15 @@ const NO_CELL: [i8; 2] = [1, 0];
 impl CellMaps {
     /// Computes the maps from the true lengths and from the integers that the firmware computes with.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
-        let end = |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
-        let side =
+        let certify_end =
+            |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
+        let certify_side =
             |side: Side| certify(&side::StrokeCondition::new(lizard, numbers, side), numbers);
         Self {
-            head: end(End::Head),
-            tail: end(End::Tail),
-            left: side(Side::Left),
-            right: side(Side::Right),
+            head: certify_end(End::Head),
+            tail: certify_end(End::Tail),
+            left: certify_side(Side::Left),
+            right: certify_side(Side::Right),
         }
     }
 
@@ -68,33 +69,33 @@ fn certify(rule: &impl Condition, numbers: &Content) -> Map {
         neutral: numbers.neutral[servo],
         travel: numbers.calibration[servo],
     });
-    let max = MAX_ROWS as i32 / 2;
-    let rows = row.cells(ROW_BITS, -max..=max - 1);
+    let half_rows = MAX_ROWS as i32 / 2;
+    let rows = row.cells(ROW_BITS, -half_rows..=half_rows - 1);
     let columns = column.cells(COLUMN_BITS, i8::MIN.into()..=i8::MAX.into());
-    let first = *rows.start();
-    let all: Vec<[i8; 2]> = rows
+    let first_row = *rows.start();
+    let all_rows: Vec<[i8; 2]> = rows
         .map(|cell| {
-            let across = row.span(cell, ROW_BITS);
+            let row_span = row.span(cell, ROW_BITS);
             certified_columns(&columns, |cell| {
-                let along = column.span(cell, COLUMN_BITS);
-                Cell([across, along]).proves(rule)
+                let column_span = column.span(cell, COLUMN_BITS);
+                Cell([row_span, column_span]).proves(rule)
             })
         })
         .collect();
     let is_occupied = |row: &[i8; 2]| row[0] <= row[1];
-    let Some(start) = all.iter().position(is_occupied) else {
+    let Some(start) = all_rows.iter().position(is_occupied) else {
         return Map {
             first: 0,
             rows: Vec::new(),
         };
     };
-    let end = all
+    let end = all_rows
         .iter()
         .rposition(is_occupied)
         .map_or(start, |last| last + 1);
     Map {
-        first: (first + start as i32) as i8,
-        rows: all[start..end].to_vec(),
+        first: (first_row + start as i32) as i8,
+        rows: all_rows[start..end].to_vec(),
     }
 }
 
@@ -124,18 +125,18 @@ impl Servo {
 /// Finds the first and last of the contiguous columns that keep a condition, around the kept column nearest to
 /// neutral. Returns [`NO_CELL`] if no column keeps it.
 fn certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
-    let mut outwards: Vec<i32> = columns.clone().collect();
-    outwards.sort_by_key(|column| (2 * column + 1).abs());
-    let Some(nearest) = outwards.into_iter().find(|column| is_kept(*column)) else {
+    let mut candidates: Vec<i32> = columns.clone().collect();
+    candidates.sort_by_key(|column| (2 * column + 1).abs());
+    let Some(nearest) = candidates.into_iter().find(|column| is_kept(*column)) else {
         return NO_CELL;
     };
-    let last = (nearest + 1..=*columns.end()).take_while(|column| is_kept(*column));
-    let first = (*columns.start()..nearest)
+    let columns_after = (nearest + 1..=*columns.end()).take_while(|column| is_kept(*column));
+    let columns_before = (*columns.start()..nearest)
         .rev()
         .take_while(|column| is_kept(*column));
     [
-        first.last().unwrap_or(nearest) as i8,
-        last.last().unwrap_or(nearest) as i8,
+        columns_before.last().unwrap_or(nearest) as i8,
+        columns_after.last().unwrap_or(nearest) as i8,
     ]
 }
 

@@ -26,13 +26,13 @@ impl StrokeCondition {
     pub fn new(lizard: &Lizard, numbers: &Content, side: Side) -> Self {
         let integers = &numbers.sides[side as usize];
         let slider = lizard.side(side);
-        let mm = |steps: u16| f64::from(steps) / scale::steps_per_mm(integers.scale);
+        let mm_of = |steps: u16| f64::from(steps) / scale::steps_per_mm(integers.scale);
         Self {
             side,
             slider,
             error: bounds::slider_error(&slider, integers),
-            min: mm(integers.min),
-            max: mm(integers.max),
+            min: mm_of(integers.min),
+            max: mm_of(integers.max),
         }
     }
 
@@ -52,12 +52,12 @@ impl Condition for StrokeCondition {
     fn judge(&self, cell: &Cell) -> Verdict {
         let [front, rear] = cell.0;
         let length = self.length(cell);
-        let room = (length - self.min).min(self.max - length);
-        if room < 0.0 {
+        let clearance = (length - self.min).min(self.max - length);
+        if clearance < 0.0 {
             return Verdict::Broken;
         }
         let arm_movement = self.slider.front * front.half() + self.slider.rear * rear.half();
-        if room - arm_movement - self.error >= ROUNDING_ALLOWANCE {
+        if clearance - arm_movement - self.error >= ROUNDING_ALLOWANCE {
             Verdict::Kept
         } else {
             Verdict::Open
@@ -87,25 +87,25 @@ mod tests {
             let cell = Cell(spans);
             assert_eq!(rule.judge(&cell), Verdict::Kept);
             let length = rule.length(&cell);
-            for (clear, verdict) in [
+            for (clearance, verdict) in [
                 (1.01, Verdict::Kept),
                 (0.99, Verdict::Open),
                 (0.01, Verdict::Open),
                 (-0.01, Verdict::Broken),
             ] {
                 let (min, max) = (rule.min, rule.max);
-                rule.min = length - clear * rule.error;
+                rule.min = length - clearance * rule.error;
                 assert_eq!(
                     rule.judge(&cell),
                     verdict,
-                    "{side} {clear} from the shortest"
+                    "{side} {clearance} from the shortest"
                 );
                 rule.min = min;
-                rule.max = length + clear * rule.error;
+                rule.max = length + clearance * rule.error;
                 assert_eq!(
                     rule.judge(&cell),
                     verdict,
-                    "{side} {clear} from the longest"
+                    "{side} {clearance} from the longest"
                 );
                 rule.max = max;
             }

@@ -35,15 +35,28 @@ fn measures(robot: &Robot) -> Measures {
 }
 
 /// Makes a strategy of random robots without symmetry: their links, limits and servos vary.
-fn random() -> impl Strategy<Value = Measures> {
+fn random_measures() -> impl Strategy<Value = Measures> {
     let paper = robot("paper");
-    let end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
-    let side = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
+    let end_lengths = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
+    let side_lengths = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
     let limits = (0.12..0.4, 0.0..0.35, 0.0..0.35, -40.0..-5.0, 5.0..60.0);
-    let servo = || (-15.0..15.0f64, 6.0..22.0f64, any::<bool>());
-    let servos = [servo(), servo(), servo(), servo()];
-    let all = (end(), end(), 90.0..200.0, side(), side(), limits, servos);
-    all.prop_map(move |(head, tail, base, left, right, limits, servos)| {
+    let servo_values = || (-15.0..15.0f64, 6.0..22.0f64, any::<bool>());
+    let servos = [
+        servo_values(),
+        servo_values(),
+        servo_values(),
+        servo_values(),
+    ];
+    let all_values = (
+        end_lengths(),
+        end_lengths(),
+        90.0..200.0,
+        side_lengths(),
+        side_lengths(),
+        limits,
+        servos,
+    );
+    all_values.prop_map(move |(head, tail, base, left, right, limits, servos)| {
         let mut links = [0.0; 20];
         for (index, (l0, l1, l2, l3, l4)) in [head, tail].into_iter().enumerate() {
             links[5 * index..][..5].copy_from_slice(&[l0, l1, l2, l3, l4]);
@@ -66,9 +79,9 @@ fn random() -> impl Strategy<Value = Measures> {
                 stroke_max,
             },
             servos: std::array::from_fn(|n| {
-                let (aside, gain, reversed) = servos[n];
+                let (offset, gain, reversed) = servos[n];
                 Servo {
-                    neutral: neutral[n] + aside,
+                    neutral: neutral[n] + offset,
                     us_per_degree: if reversed { -gain } else { gain },
                     ..paper.servos()[n]
                 }
@@ -106,7 +119,7 @@ impl Subject {
     }
 
     /// Makes a subject without gaits from measures alone.
-    fn still(name: &str, measures: &Measures) -> Self {
+    fn from_measures(name: &str, measures: &Measures) -> Self {
         let content = numbers::content(name, measures, &Tables::new(&[]).expect("no gait"), &[]);
         Self {
             name: name.to_string(),
@@ -116,7 +129,7 @@ impl Subject {
     }
 
     fn parts(&self) -> [Part<'_>; 4] {
-        let part = |map, servos, margins, slider| Part {
+        let make_part = |map, servos, margins, slider| Part {
             map,
             servos,
             margins,
@@ -129,10 +142,10 @@ impl Subject {
             right,
         } = &self.maps;
         [
-            part(head, [0, 1], &[0, 2, 3, 6, 7], None),
-            part(tail, [2, 3], &[1, 4, 5, 8, 9], None),
-            part(left, [0, 3], &[], Some(0)),
-            part(right, [1, 2], &[], Some(1)),
+            make_part(head, [0, 1], &[0, 2, 3, 6, 7], None),
+            make_part(tail, [2, 3], &[1, 4, 5, 8, 9], None),
+            make_part(left, [0, 3], &[], Some(0)),
+            make_part(right, [1, 2], &[], Some(1)),
         ]
     }
 
@@ -141,7 +154,7 @@ impl Subject {
     /// refused pose.
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
-        let min = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
+        let min_margins = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
         let sides = [0, 1].map(|side| self.robot.side(lizard_core::numbers::part::Side::ALL[side]));
         let mut cells = 0;
         for part in self.parts() {
@@ -155,27 +168,31 @@ impl Subject {
             for (row, [first, last]) in (i32::from(map.first)..).zip(&map.rows) {
                 for column in i32::from(*first)..=i32::from(*last) {
                     cells += 1;
-                    let near = (0..256i32, 0..128i32);
-                    let [one, two] = [0; 2].map(|_| {
-                        let tree = near.new_tree(runner).expect("a pair");
+                    let offsets = (0..256i32, 0..128i32);
+                    let [first_pair, second_pair] = [0; 2].map(|_| {
+                        let tree = offsets.new_tree(runner).expect("a pair");
                         tree.current()
                     });
                     let corners = [(0, 0), (0, 127), (255, 0), (255, 127)];
-                    for (down, along) in corners.into_iter().chain([(128, 64), one, two]) {
+                    for (row_offset, column_offset) in
+                        corners
+                            .into_iter()
+                            .chain([(128, 64), first_pair, second_pair])
+                    {
                         let mut pose = Pose::NEUTRAL;
-                        pose.0[row_servo] = Sweep((row * 256 + down) as i16);
-                        pose.0[column_servo] = Sweep((column * 128 + along) as i16);
+                        pose.0[row_servo] = Sweep((row * 256 + row_offset) as i16);
+                        pose.0[column_servo] = Sweep((column * 128 + column_offset) as i16);
                         assert!(
                             map.cells()
                                 .contains(pose.0[row_servo], pose.0[column_servo])
                         );
                         let clearance = Clearance::of(&self.robot, &pose);
-                        let kept = margins
+                        let is_kept = margins
                             .iter()
-                            .all(|margin| clearance.margins[*margin] >= min[*margin])
+                            .all(|margin| clearance.margins[*margin] >= min_margins[*margin])
                             && slider
                                 .is_none_or(|side| sides[side].allows(clearance.sliders_sq[side]));
-                        if !kept {
+                        if !is_kept {
                             return Err(format!("{} at {pose:?}: {clearance:?}", self.name));
                         }
                     }
@@ -191,7 +208,7 @@ fn the_guard_accepts_the_corners_the_centre_and_any_pair_of_every_cell() {
     let mut runner = TestRunner::deterministic();
     for (name, robot) in all() {
         let cells = Subject::of(name, &robot).check(&mut runner);
-        let cells = cells.unwrap_or_else(|refused| panic!("{refused}"));
+        let cells = cells.unwrap_or_else(|message| panic!("{message}"));
         assert!(cells > 2000, "{name}: {cells}");
     }
 }
@@ -199,12 +216,12 @@ fn the_guard_accepts_the_corners_the_centre_and_any_pair_of_every_cell() {
 #[test]
 fn the_guard_accepts_every_cell_of_random_robots() {
     let mut runner = TestRunner::deterministic();
-    let (random, mut cells) = (random(), 0);
+    let (strategy, mut cells) = (random_measures(), 0);
     for number in 0..100 {
-        let measures = random.new_tree(&mut runner).expect("a robot").current();
-        let subject = Subject::still(&format!("robot {number}"), &measures);
-        let more = subject.check(&mut runner);
-        cells += more.unwrap_or_else(|refused| panic!("{refused}"));
+        let measures = strategy.new_tree(&mut runner).expect("a robot").current();
+        let subject = Subject::from_measures(&format!("robot {number}"), &measures);
+        let checked_cells = subject.check(&mut runner);
+        cells += checked_cells.unwrap_or_else(|message| panic!("{message}"));
     }
     assert!(cells > 100 * 1000, "{cells} cells of 100 robots");
 }
@@ -217,12 +234,12 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
         let travels = robot
             .calibration()
             .map(|servo| (servo.min.0..=servo.max.0).prop_map(Sweep));
-        let mut held = 0;
+        let mut held_count = 0;
         for _ in 0..200_000 {
             let pose = travels.new_tree(&mut runner).expect("a pose").current();
             let pose = Pose(pose);
             if maps.contains(&pose) {
-                held += 1;
+                held_count += 1;
                 assert_eq!(
                     Clearance::of(&robot, &pose).first_hazard(&robot),
                     None,
@@ -230,7 +247,7 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
                 );
             }
         }
-        assert!(held > 200, "{name}: {held} of 200 000 poses");
+        assert!(held_count > 200, "{name}: {held_count} of 200 000 poses");
     }
 }
 
@@ -239,22 +256,22 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
 #[test]
 fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
     let robot = robot("unequal");
-    let stricter: [fn(&mut lizard_kinematics::Limits); 5] = [
+    let changes: [fn(&mut lizard_kinematics::Limits); 5] = [
         |limits| limits.type2 += 0.3,
         |limits| limits.type1 += 0.05,
         |limits| limits.leg += 0.03,
         |limits| limits.stroke_min += 1.0,
         |limits| limits.stroke_max -= 1.0,
     ];
-    for (index, stricter) in stricter.into_iter().enumerate() {
-        let mut changed = measures(&robot);
-        stricter(&mut changed.limits);
-        let own = Subject::still("of its own", &changed);
+    for (index, change) in changes.into_iter().enumerate() {
+        let mut stricter_measures = measures(&robot);
+        change(&mut stricter_measures.limits);
+        let subject = Subject::from_measures("of its own", &stricter_measures);
         let maps = robot.cell_maps();
-        assert_ne!(own.maps, maps, "limit {index}");
-        let mixed = Subject { maps, ..own };
-        let checked = mixed.check(&mut TestRunner::deterministic());
-        assert!(checked.is_err(), "limit {index}");
+        assert_ne!(subject.maps, maps, "limit {index}");
+        let mixed = Subject { maps, ..subject };
+        let outcome = mixed.check(&mut TestRunner::deterministic());
+        assert!(outcome.is_err(), "limit {index}");
     }
 }
 
@@ -274,12 +291,12 @@ fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
 }
 
 /// Returns the share of a gait's phases at which all four maps contain its pose.
-fn share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
+fn certified_share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
     let gait = robot.gait(gait);
-    let held = (0..1u32 << 16)
+    let held_count = (0..1u32 << 16)
         .filter(|phase| maps.contains(&gait.pose(robot.waves(), phase << 8)))
         .count();
-    held as f64 / 65536.0
+    held_count as f64 / 65536.0
 }
 
 #[test]
@@ -287,7 +304,7 @@ fn every_gait_of_every_robot_is_within_the_cells_at_every_phase() {
     for (name, robot) in all() {
         let maps = robot.cell_maps();
         for (gait, id) in robot.gaits().iter().zip(GaitId::all(robot.gaits().len())) {
-            let share = share(robot.firmware(), &maps, id);
+            let share = certified_share(robot.firmware(), &maps, id);
             assert_eq!(share, 1.0, "{name} {}", gait.name());
         }
     }

@@ -3,16 +3,16 @@
 use super::*;
 
 /// A `pose` line with this angle at an index, and neutral angles at the other three.
-fn pose_with(index: usize, angle: &str) -> String {
+fn pose_line(index: usize, angle: &str) -> String {
     let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
     words[index] = angle.to_string();
     format!("pose {}", words.join(" "))
 }
 
-fn angle_read(index: usize, angle: &str) -> Result<i32, Misread> {
-    match with_shared_robot(|robot| parse(pose_with(index, angle).as_bytes(), robot)) {
+fn read_angle(index: usize, angle: &str) -> Result<i32, Misread> {
+    match with_shared_robot(|robot| parse(pose_line(index, angle).as_bytes(), robot)) {
         Ok(Command::Order(Order::Pose(angles))) => Ok(angles[index].centideg().into()),
-        Ok(other) => panic!("{other:?}"),
+        Ok(command) => panic!("{command:?}"),
         Err(misread) => Err(misread),
     }
 }
@@ -24,27 +24,27 @@ fn every_hundredth_of_a_degree_within_a_turn_is_read_and_printed_back() {
         .chain([-36_000, -1, 36_000, 36_001])
     {
         let sign = if centideg < 0 { "-" } else { "" };
-        let size: i32 = i32::abs(centideg);
-        let angle = format!("{sign}{}.{:02}", size / 100, size % 100);
-        let index = size as usize % 4;
-        let expected = if size > 36_000 {
+        let magnitude: i32 = i32::abs(centideg);
+        let angle = format!("{sign}{}.{:02}", magnitude / 100, magnitude % 100);
+        let index = magnitude as usize % 4;
+        let expected = if magnitude > 36_000 {
             Err(Misread::AngleOutOfRange(Servo::at(index)))
         } else {
             Ok(centideg.rem_euclid(36_000))
         };
-        assert_eq!(angle_read(index, &angle), expected, "{angle}");
+        assert_eq!(read_angle(index, &angle), expected, "{angle}");
     }
 }
 
 #[test]
 fn an_angle_may_be_written_in_several_ways() {
-    for (ways, centideg) in [
+    for (notations, centideg) in [
         (["7.5", "7.50", "+7.5", "007.5", "-352.5"], 750),
         (["7", "7.", "7.0", "7.00", "+7"], 700),
         (["0", "-0", "360", "-360", "-0.00"], 0),
     ] {
-        for way in ways {
-            assert_eq!(angle_read(1, way), Ok(centideg), "{way}");
+        for notation in notations {
+            assert_eq!(read_angle(1, notation), Ok(centideg), "{notation}");
         }
     }
 }
@@ -56,7 +56,7 @@ fn an_invalid_angle_is_refused() {
         "1.-5", ".", "0x10",
     ] {
         assert_eq!(
-            angle_read(2, word),
+            read_angle(2, word),
             Err(Misread::WrongArguments(Text::PoseWants)),
             "{word}"
         );

@@ -5,13 +5,13 @@ use super::*;
 #[test]
 fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
     let mut dialogue = wake_odd_robot();
-    let refused = "err 6 a line has at most 63 characters";
-    assert_eq!(dialogue.send_line(&"stand".repeat(13)), refused);
+    let message = "err 6 a line has at most 63 characters";
+    assert_eq!(dialogue.send_line(&"stand".repeat(13)), message);
     assert_eq!(dialogue.send_line("stand"), "ok stand");
 }
 
 /// Lines that are refused in every state of the robot.
-const REFUSED: [&str; 9] = [
+const REFUSED_LINES: [&str; 9] = [
     "dance",
     "sway fast",
     "speed 9",
@@ -24,12 +24,12 @@ const REFUSED: [&str; 9] = [
 ];
 
 /// Bytes as from a person, from a faulty program, and from a broken cable.
-fn bytes() -> impl Strategy<Value = Vec<u8>> {
+fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     let mut lines = GAITS.to_vec();
     lines.extend([
         "help", "stop", "rest", "speed 33", "watch 9", "watch 0", "status", NEUTRAL,
     ]);
-    lines.extend(REFUSED);
+    lines.extend(REFUSED_LINES);
     let line = prop::sample::select(lines).prop_map(|line| format!("{line}\r").into_bytes());
     let piece = prop_oneof![
         4 => line,
@@ -55,46 +55,46 @@ proptest! {
 
     #[test]
     fn every_line_of_any_bytes_gets_one_final_line_with_any_frames_between(
-        bytes in bytes(),
-        frames in 0u32..3,
+        bytes in any_bytes(),
+        frames_between in 0u32..3,
     ) {
-        let (mut at_once, mut apart) = (wake_odd_robot(), wake_odd_robot());
-        let finals = |printed: Vec<String>| -> Vec<String> {
-            printed.into_iter().filter(|line| is_final(line)).collect()
+        let (mut whole_dialogue, mut slow_dialogue) = (wake_odd_robot(), wake_odd_robot());
+        let final_lines_of = |lines: Vec<String>| -> Vec<String> {
+            lines.into_iter().filter(|line| is_final(line)).collect()
         };
-        let once = finals(at_once.send(&bytes));
-        prop_assert_eq!(once.len(), count_answers_due(&bytes));
-        let mut printed = Vec::new();
+        let whole_lines = final_lines_of(whole_dialogue.send(&bytes));
+        prop_assert_eq!(whole_lines.len(), count_answers_due(&bytes));
+        let mut slow_lines = Vec::new();
         for byte in &bytes {
-            printed.extend(apart.send(&[*byte]));
-            printed.extend(apart.run_frames(frames));
+            slow_lines.extend(slow_dialogue.send(&[*byte]));
+            slow_lines.extend(slow_dialogue.run_frames(frames_between));
         }
         // Only the answer to `status` depends on time; it is the one with `=`.
-        let timeless = |printed: Vec<String>| -> Vec<String> {
-            printed.into_iter().filter(|line| !line.contains('=')).collect()
+        let timeless_lines_of = |lines: Vec<String>| -> Vec<String> {
+            lines.into_iter().filter(|line| !line.contains('=')).collect()
         };
-        prop_assert_eq!(timeless(finals(printed)), timeless(once));
+        prop_assert_eq!(timeless_lines_of(final_lines_of(slow_lines)), timeless_lines_of(whole_lines));
     }
 
     #[test]
     fn a_refused_line_changes_nothing(
         history in prop::collection::vec((prop::sample::select(GAITS.to_vec()), 0u32..90), 0..4),
         speed in 10u8..=100,
-        line in prop::sample::select(REFUSED.to_vec()),
+        line in prop::sample::select(REFUSED_LINES.to_vec()),
     ) {
-        let [mut asked, mut spared] = [(); 2].map(|()| wake_odd_robot());
-        for dialogue in [&mut asked, &mut spared] {
+        let [mut asked_dialogue, mut spared_dialogue] = [(); 2].map(|()| wake_odd_robot());
+        for dialogue in [&mut asked_dialogue, &mut spared_dialogue] {
             dialogue.send_line(&format!("speed {speed}"));
             for (gait, frames) in &history {
                 dialogue.send_line(gait);
                 dialogue.run_frames(*frames);
             }
         }
-        prop_assert!(asked.send_line(line).starts_with("err "));
+        prop_assert!(asked_dialogue.send_line(line).starts_with("err "));
         for _ in 0..40 {
-            prop_assert_eq!(asked.frame(), spared.frame());
-            prop_assert_eq!(asked.read_lines(), spared.read_lines());
+            prop_assert_eq!(asked_dialogue.frame(), spared_dialogue.frame());
+            prop_assert_eq!(asked_dialogue.read_lines(), spared_dialogue.read_lines());
         }
-        prop_assert_eq!(asked.send_line("status"), spared.send_line("status"));
+        prop_assert_eq!(asked_dialogue.send_line("status"), spared_dialogue.send_line("status"));
     }
 }

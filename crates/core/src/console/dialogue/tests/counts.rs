@@ -19,9 +19,9 @@ fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
             (dialogue.status("gait"), dialogue.status("fault")),
             ("stop".into(), "none".into())
         );
-        let held = dialogue.frame();
+        let held_pulses = dialogue.frame();
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
-        assert_eq!(dialogue.frame(), held);
+        assert_eq!(dialogue.frame(), held_pulses);
     }
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("sway");
@@ -46,40 +46,46 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 
 #[test]
 fn whatever_stops_the_robot_ends_a_count_without_done() {
-    let begun = || {
+    let begin_count = || {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("sway 2");
         dialogue.run_frames(30);
         dialogue
     };
     for line in ["stop", "rest", "stand", NEUTRAL, "sway"] {
-        let mut dialogue = begun();
+        let mut dialogue = begin_count();
         dialogue.send_line(line);
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty(), "{line}");
     }
-    let mut silent = begun();
-    silent.send_line("deadman 100");
-    let printed = silent.run_frames(LONG_FRAMES);
-    assert_eq!(printed.len(), 1, "{printed:?}");
-    assert!(printed[0].starts_with("# fault: no line"), "{printed:?}");
-    let mut weak = begun();
-    supply(&mut weak, 4_200);
-    let printed = weak.run_frames(LONG_FRAMES);
-    assert!(!printed.contains(&"# done".to_string()), "{printed:?}");
-    assert_eq!(weak.status("fault"), "supply");
-    let mut unsafe_one = wake_odd_robot();
-    unsafe_one.send_line("stray 9");
-    let printed = unsafe_one.run_frames(5 * LONG_FRAMES);
-    assert_eq!(printed.len(), 1, "{printed:?}");
-    assert!(printed[0].starts_with("# held"), "{printed:?}");
+    let mut silent_dialogue = begin_count();
+    silent_dialogue.send_line("deadman 100");
+    let printed_lines = silent_dialogue.run_frames(LONG_FRAMES);
+    assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
+    assert!(
+        printed_lines[0].starts_with("# fault: no line"),
+        "{printed_lines:?}"
+    );
+    let mut weak_dialogue = begin_count();
+    supply(&mut weak_dialogue, 4_200);
+    let printed_lines = weak_dialogue.run_frames(LONG_FRAMES);
+    assert!(
+        !printed_lines.contains(&"# done".to_string()),
+        "{printed_lines:?}"
+    );
+    assert_eq!(weak_dialogue.status("fault"), "supply");
+    let mut unsafe_dialogue = wake_odd_robot();
+    unsafe_dialogue.send_line("stray 9");
+    let printed_lines = unsafe_dialogue.run_frames(5 * LONG_FRAMES);
+    assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
+    assert!(printed_lines[0].starts_with("# held"), "{printed_lines:?}");
 }
 
 #[test]
 fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
-    let frames = |mv: Option<u16>| {
+    let count_frames = |supply_mv: Option<u16>| {
         let mut dialogue = wake_odd_robot();
-        if let Some(mv) = mv {
-            supply(&mut dialogue, mv.into());
+        if let Some(supply_mv) = supply_mv {
+            supply(&mut dialogue, supply_mv.into());
             dialogue.run_frames(40);
         }
         dialogue.send_line("sway 2");
@@ -87,12 +93,12 @@ fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
             .find(|_| dialogue.run_frames(1) == ["# done"])
             .expect("an end")
     };
-    let (full, slow) = (frames(None), frames(Some(4_400)));
+    let (full_frames, slow_frames) = (count_frames(None), count_frames(Some(4_400)));
     // An upper bound: at a lower pace, the cycles take longer, but speeding up and braking hardly do.
-    let most = full * 100 / u32::from(SLOW_PACE);
+    let max_frames = full_frames * 100 / u32::from(SLOW_PACE);
     assert!(
-        slow > u32::midpoint(full, most) && slow < most,
-        "{full} and {slow}"
+        slow_frames > u32::midpoint(full_frames, max_frames) && slow_frames < max_frames,
+        "{full_frames} and {slow_frames}"
     );
 }
 
@@ -103,8 +109,11 @@ fn a_reset_ends_a_count() {
         dialogue.send_line("sway 2");
         dialogue.run_frames(60);
         dialogue.reset(cause);
-        let printed = dialogue.run_frames(LONG_FRAMES);
-        assert!(!printed.contains(&"# done".to_string()), "{printed:?}");
+        let printed_lines = dialogue.run_frames(LONG_FRAMES);
+        assert!(
+            !printed_lines.contains(&"# done".to_string()),
+            "{printed_lines:?}"
+        );
         assert!(["stand", "stop"].contains(&dialogue.status("gait").as_str()));
     }
 }

@@ -21,11 +21,11 @@ pub(super) fn wake_odd_robot() -> Dialogue {
 /// A robot, awake, with its banner read.
 pub(super) fn wake_robot(robot: Sample) -> Dialogue {
     let mut dialogue = Dialogue::power_on(*robot);
-    let printed = dialogue.read_lines();
+    let printed_lines = dialogue.read_lines();
     assert_eq!(
-        printed.len(),
+        printed_lines.len(),
         2,
-        "the banner, and that nothing is saved: {printed:?}"
+        "the banner, and that nothing is saved: {printed_lines:?}"
     );
     dialogue.run_frames(WAKING);
     dialogue
@@ -50,8 +50,8 @@ pub(super) fn pairs(text: &str) -> HashMap<String, String> {
 /// Sets the board's supply, mV, and its rail to 6 V.
 pub(super) fn supply(dialogue: &mut Dialogue, mv: u32) {
     let supplies = dialogue.motion().robot().supplies();
-    let truth = compute_reading(&supplies, mv, 6_000);
-    dialogue.board.converter.set(truth);
+    let reading = compute_reading(&supplies, mv, 6_000);
+    dialogue.board.converter.set(reading);
 }
 
 /// The neutral pose in the format of `status`.

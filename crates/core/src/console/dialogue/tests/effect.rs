@@ -6,35 +6,47 @@ use crate::console::word::Effect;
 /// Frames within which every effect is visible.
 const FRAMES: usize = 40;
 
-fn frames(robot: &mut Dialogue) -> Vec<[u16; 4]> {
+fn run_frames_and_read_widths(robot: &mut Dialogue) -> Vec<[u16; 4]> {
     (0..FRAMES).map(|_| widths(robot)).collect()
 }
 
 /// Observes the effect of a line on a robot's pulses and calibration.
 fn observe_effect(line: &str) -> Effect {
-    let mut walking = wake_robot(Sample::paper());
+    let mut walking_dialogue = wake_robot(Sample::paper());
     // With these settings `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
-        assert!(walking.send_line(setting).starts_with("ok "), "{setting}");
-        walking.run_frames(60);
+        assert!(
+            walking_dialogue.send_line(setting).starts_with("ok "),
+            "{setting}"
+        );
+        walking_dialogue.run_frames(60);
     }
-    let mut unchanged = walking.clone();
-    let mut still = walking.clone();
-    still.send_line("stop");
-    still.run_frames(60);
-    still.send_line(line);
-    assert!(walking.send_line(line).starts_with("ok "), "{line}");
-    let [with, without, from_still] = [&mut walking, &mut unchanged, &mut still].map(frames);
+    let mut undisturbed_dialogue = walking_dialogue.clone();
+    let mut standing_dialogue = walking_dialogue.clone();
+    standing_dialogue.send_line("stop");
+    standing_dialogue.run_frames(60);
+    standing_dialogue.send_line(line);
+    assert!(
+        walking_dialogue.send_line(line).starts_with("ok "),
+        "{line}"
+    );
+    let [changed_frames, undisturbed_frames, standing_frames] = [
+        &mut walking_dialogue,
+        &mut undisturbed_dialogue,
+        &mut standing_dialogue,
+    ]
+    .map(run_frames_and_read_widths);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
-    if with[FRAMES - 1] == [0; 4] {
+    if changed_frames[FRAMES - 1] == [0; 4] {
         Effect::Rests
-    } else if walking.motion().calibration() != unchanged.motion().calibration() {
+    } else if walking_dialogue.motion().calibration() != undisturbed_dialogue.motion().calibration()
+    {
         Effect::Calibrates
-    } else if !is_constant(&from_still) {
+    } else if !is_constant(&standing_frames) {
         Effect::Moves
-    } else if is_constant(&with) {
+    } else if is_constant(&changed_frames) {
         Effect::Freezes
-    } else if with != without {
+    } else if changed_frames != undisturbed_frames {
         Effect::Paces
     } else {
         Effect::None

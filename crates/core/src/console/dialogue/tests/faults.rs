@@ -9,21 +9,25 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
         dialogue.send_line(&format!("boot {boot}"));
         dialogue.expect_accepted("save");
         let eeprom = dialogue.board.memory.clone();
-        let mut unattended =
+        let mut unattended_dialogue =
             Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
-        let printed = unattended.run_frames(149);
-        assert_eq!(printed.len(), 1, "{printed:?}");
+        let printed_lines = unattended_dialogue.run_frames(149);
+        assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
         assert_eq!(
-            unattended.motion().activity(),
+            unattended_dialogue.motion().activity(),
             Activity::Gait(GaitId::STAND)
         );
-        assert_eq!(unattended.run_frames(1), [format!("# boot: {boot}")]);
-        assert_eq!(unattended.status("gait"), boot.replace(' ', "-"));
-        let mut watched = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::default());
-        watched.run_frames(100);
-        watched.board.send(b" ");
-        watched.run_frames(400);
-        assert_eq!(watched.status("gait"), "stand");
+        assert_eq!(
+            unattended_dialogue.run_frames(1),
+            [format!("# boot: {boot}")]
+        );
+        assert_eq!(unattended_dialogue.status("gait"), boot.replace(' ', "-"));
+        let mut interrupted_dialogue =
+            Dialogue::with_memory(*Sample::odd(), eeprom, Restart::default());
+        interrupted_dialogue.run_frames(100);
+        interrupted_dialogue.board.send(b" ");
+        interrupted_dialogue.run_frames(400);
+        assert_eq!(interrupted_dialogue.status("gait"), "stand");
     }
 }
 
@@ -36,9 +40,9 @@ fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
         assert!(dialogue.run_frames(15).is_empty());
         dialogue.send_line("status");
     }
-    let printed = dialogue.run_frames(21);
+    let printed_lines = dialogue.run_frames(21);
     assert_eq!(
-        printed,
+        printed_lines,
         ["# fault: no line for as long as deadman says, stopped"]
     );
     assert_eq!(
@@ -73,22 +77,27 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
 
 #[test]
 fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command() {
-    for (deadman, wait, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)] {
+    for (deadman_ms, wait_frames, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)]
+    {
         let mut dialogue = wake_odd_robot();
-        dialogue.send_line(&format!("deadman {deadman}"));
+        dialogue.send_line(&format!("deadman {deadman_ms}"));
         dialogue.board.send(b"sway 1");
-        dialogue.run_frames(wait);
+        dialogue.run_frames(wait_frames);
         // The link broke within `sway 12`, and noise ends the line.
         dialogue.board.send(b"\n");
-        let printed = dialogue.run_frames(2);
+        let printed_lines = dialogue.run_frames(2);
         let gait = if is_obeyed { "sway" } else { "stand" };
         assert_eq!(
             dialogue.status("gait"),
             gait,
-            "{deadman} {wait} {printed:?}"
+            "{deadman_ms} {wait_frames} {printed_lines:?}"
         );
         // The next line is valid.
-        assert_eq!(dialogue.send_line("swing"), "ok swing", "{deadman} {wait}");
+        assert_eq!(
+            dialogue.send_line("swing"),
+            "ok swing",
+            "{deadman_ms} {wait_frames}"
+        );
     }
 }
 
@@ -110,26 +119,26 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("sway");
     dialogue.run_frames(150);
-    let pace = |dialogue: &mut Dialogue| {
-        let before = dialogue.motion().phase();
+    let measure_pace = |dialogue: &mut Dialogue| {
+        let phase_before = dialogue.motion().phase();
         dialogue.run_frames(10);
-        dialogue.motion().phase().wrapping_sub(before) & 0xff_ffff
+        dialogue.motion().phase().wrapping_sub(phase_before) & 0xff_ffff
     };
-    let full = pace(&mut dialogue);
+    let full_pace = measure_pace(&mut dialogue);
     supply(&mut dialogue, 4_400);
-    let printed = dialogue.run_frames(40);
+    let printed_lines = dialogue.run_frames(40);
     assert!(
-        printed[0].starts_with("# supply: 4.")
-            && printed[0].ends_with(&format!("V, low: no saving, speed up to {SLOW_PACE}")),
-        "{printed:?}"
+        printed_lines[0].starts_with("# supply: 4.")
+            && printed_lines[0].ends_with(&format!("V, low: no saving, speed up to {SLOW_PACE}")),
+        "{printed_lines:?}"
     );
-    let slow = f64::from(pace(&mut dialogue)) / f64::from(full);
+    let slow_ratio = f64::from(measure_pace(&mut dialogue)) / f64::from(full_pace);
     let expected = f64::from(SLOW_PACE) / 100.0;
-    assert!((slow - expected).abs() < 0.02, "{slow}");
+    assert!((slow_ratio - expected).abs() < 0.02, "{slow_ratio}");
     dialogue.expect_refused("save", "8 the supply is too low");
     supply(&mut dialogue, 4_200);
-    let printed = dialogue.run_frames(40);
-    assert_eq!(printed.len(), 2);
+    let printed_lines = dialogue.run_frames(40);
+    assert_eq!(printed_lines.len(), 2);
     assert_eq!(dialogue.status("gait"), "stop");
     assert_eq!(dialogue.status("fault"), "supply");
     dialogue.expect_refused("sway", "8 ");
@@ -139,12 +148,12 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     assert_eq!(dialogue.status("gait"), "rest");
     assert_eq!(dialogue.frame(), Pulses::default());
     supply(&mut dialogue, 5_000);
-    let printed = dialogue.run_frames(100);
+    let printed_lines = dialogue.run_frames(100);
     assert!(
-        printed
+        printed_lines
             .last()
             .is_some_and(|line| line.ends_with(" V, good")),
-        "{printed:?}"
+        "{printed_lines:?}"
     );
     assert_eq!(dialogue.status("gait"), "rest");
     dialogue.expect_accepted("stand");
@@ -179,10 +188,10 @@ fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
         Eeprom::blank(),
         restart_after_hang(3, stance),
     );
-    let printed = dialogue.run_frames(1);
+    let printed_lines = dialogue.run_frames(1);
     assert!(
-        printed.contains(&"# fault: the program hung and began anew".to_string()),
-        "{printed:?}"
+        printed_lines.contains(&"# fault: the program hung and began anew".to_string()),
+        "{printed_lines:?}"
     );
     for _ in 0..400 {
         assert_eq!(dialogue.frame(), stance.sent, "at once, and for good");
@@ -223,17 +232,18 @@ fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
     dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
     // 132.37 deg plus 30 is safe, but beyond 160.
-    let beyond = held_stance([5461, 0, 0, 0]);
-    let mut within = Dialogue::with_memory(
+    let wide_stance = held_stance([5461, 0, 0, 0]);
+    let mut unlimited_dialogue = Dialogue::with_memory(
         *Sample::odd(),
         Eeprom::blank(),
-        restart_after_hang(1, beyond),
+        restart_after_hang(1, wide_stance),
     );
-    within.run_frames(10);
-    assert_eq!(within.status("gait"), "stop");
-    let mut narrow = Dialogue::with_memory(*Sample::odd(), eeprom, restart_after_hang(1, beyond));
-    narrow.run_frames(10);
-    assert_eq!(narrow.status("gait"), "rest");
+    unlimited_dialogue.run_frames(10);
+    assert_eq!(unlimited_dialogue.status("gait"), "stop");
+    let mut narrow_dialogue =
+        Dialogue::with_memory(*Sample::odd(), eeprom, restart_after_hang(1, wide_stance));
+    narrow_dialogue.run_frames(10);
+    assert_eq!(narrow_dialogue.status("gait"), "rest");
 }
 
 #[test]
@@ -249,29 +259,30 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
         dialogue.run_frames(100);
         assert!(dialogue.send_line(setting).starts_with("ok "), "{setting}");
         dialogue.run_frames(100);
-        let mut last = dialogue.frame();
+        let mut last_pulses = dialogue.frame();
         dialogue.reset(cause);
         let calibration = *dialogue.motion().calibration();
-        let mut moved = 0;
+        let mut moved_frames = 0;
         for _ in 0..200 {
             let pulses = dialogue.frame();
-            for (index, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
+            for (index, (pulse, last_pulse)) in pulses.0.iter().zip(&mut last_pulses.0).enumerate()
+            {
                 if pulse.0 == 0 {
                     continue;
                 }
                 let max_change = calibration[index].slew(Sample::odd().slew().per_frame);
-                let change = pulse.0.abs_diff(before.0);
+                let change = pulse.0.abs_diff(last_pulse.0);
                 assert!(
                     change <= max_change + 1,
                     "{setting} A{}: {change} of {max_change}",
                     index + 1
                 );
-                moved += usize::from(index == servo && change > 0);
-                *before = *pulse;
+                moved_frames += usize::from(index == servo && change > 0);
+                *last_pulse = *pulse;
             }
         }
-        assert!(moved > 3, "{setting}: it was undone");
-        assert_eq!(last, dialogue.motion().pose().pulses(&calibration));
+        assert!(moved_frames > 3, "{setting}: it was undone");
+        assert_eq!(last_pulses, dialogue.motion().pose().pulses(&calibration));
     }
 }
 
@@ -284,22 +295,25 @@ fn a_reset_while_servos_wake_wakes_no_two_together() {
             dialogue.run_frames(10);
             dialogue.send_line("stand");
             dialogue.run_frames(frames);
-            let mut had = dialogue.frame().0.map(|width| width.0 > 0);
+            let mut had_pulses = dialogue.frame().0.map(|width| width.0 > 0);
             dialogue.reset(cause);
-            let known = had;
+            let had_pulses_at_reset = had_pulses;
             if cause != Cause::Watchdog {
-                had = [false; 4];
+                had_pulses = [false; 4];
             }
             for _ in 0..60 {
-                let has = dialogue.frame().0.map(|width| width.0 > 0);
-                let woken = (0..4).filter(|servo| has[*servo] && !had[*servo]);
-                let unknown = woken.clone().filter(|servo| !known[*servo]).count();
-                assert!(unknown <= 1, "{cause:?} after {frames}");
-                let together = woken.count();
-                assert!(together <= 1, "{cause:?} after {frames}");
-                had = has;
+                let has_pulses = dialogue.frame().0.map(|width| width.0 > 0);
+                let woken_servos = (0..4).filter(|servo| has_pulses[*servo] && !had_pulses[*servo]);
+                let unknown_count = woken_servos
+                    .clone()
+                    .filter(|servo| !had_pulses_at_reset[*servo])
+                    .count();
+                assert!(unknown_count <= 1, "{cause:?} after {frames}");
+                let woken_count = woken_servos.count();
+                assert!(woken_count <= 1, "{cause:?} after {frames}");
+                had_pulses = has_pulses;
             }
-            assert_eq!(had, [true; 4]);
+            assert_eq!(had_pulses, [true; 4]);
         }
     }
 }
@@ -312,18 +326,18 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
         dialogue.run_frames(150);
         dialogue.send_line("rest");
         dialogue.run_frames(5);
-        let kept = *dialogue.board.memory.bytes();
+        let memory_bytes = *dialogue.board.memory.bytes();
         dialogue.reset(cause);
         dialogue.board.memory.log.clear();
         for _ in 0..149 {
             assert_eq!(dialogue.frame(), Pulses::default(), "{cause:?}");
         }
-        assert_eq!(*dialogue.board.memory.bytes(), kept, "{cause:?}");
+        assert_eq!(*dialogue.board.memory.bytes(), memory_bytes, "{cause:?}");
         assert!(dialogue.board.memory.log.is_empty(), "it is there already");
         // The `boot` setting is `stand`; a hang cancels it.
-        let printed = dialogue.run_frames(1);
-        let boots = printed.iter().any(|line| line == "# boot: stand");
-        assert_eq!(boots, cause != Cause::Watchdog, "{printed:?}");
+        let printed_lines = dialogue.run_frames(1);
+        let has_booted = printed_lines.iter().any(|line| line == "# boot: stand");
+        assert_eq!(has_booted, cause != Cause::Watchdog, "{printed_lines:?}");
         assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
     }
 }
@@ -342,30 +356,33 @@ fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run_frames(100);
         let eeprom = dialogue.board.memory.clone();
-        let mut again = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
-        assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
+        let mut restarted = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+        assert_eq!(restarted.status("pose"), "140.00,50.00,311.00,224.50");
     }
 }
 
 #[test]
 fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
     // Because a boot loader hides the cause, a press counts like a brown-out.
-    for (boot_loader, cause) in [
+    for (has_boot_loader, cause) in [
         (false, Cause::BrownOut),
         (true, Cause::BrownOut),
         (true, Cause::External),
     ] {
         let mut dialogue = wake_odd_robot();
-        dialogue.board.has_boot_loader = boot_loader;
+        dialogue.board.has_boot_loader = has_boot_loader;
         dialogue.read_lines();
-        for resets in 1..=5 {
+        for reset_count in 1..=5 {
             dialogue.reset(cause);
-            let printed = dialogue.run_frames(17);
-            let rests = dialogue.frame() == Pulses::default();
-            assert_eq!(rests, resets >= 3, "{resets}");
-            let reason =
+            let printed_lines = dialogue.run_frames(17);
+            let is_resting = dialogue.frame() == Pulses::default();
+            assert_eq!(is_resting, reset_count >= 3, "{reset_count}");
+            let notice =
                 "# fault: reset several times in a row by the button or a weak supply, resting";
-            assert_eq!(printed.iter().any(|line| line == reason), resets >= 3);
+            assert_eq!(
+                printed_lines.iter().any(|line| line == notice),
+                reset_count >= 3
+            );
         }
         dialogue.run_frames(300);
         assert_eq!(dialogue.frame(), Pulses::default(), "boot is cancelled");
@@ -399,11 +416,11 @@ fn opening_the_port_and_sending_a_line_does_not_count_as_a_weak_supply() {
 fn lines_by_radio_do_not_excuse_a_supply_that_fails_while_servos_wake() {
     let mut dialogue = wake_odd_robot();
     dialogue.board.has_boot_loader = true;
-    for resets in 1..=3 {
+    for reset_count in 1..=3 {
         dialogue.reset(Cause::External);
         dialogue.run_frames(5);
-        let fault = if resets < 3 { "none" } else { "brownout" };
-        assert_eq!(dialogue.status("fault"), fault, "{resets}");
+        let fault = if reset_count < 3 { "none" } else { "brownout" };
+        assert_eq!(dialogue.status("fault"), fault, "{reset_count}");
         // The third servo wakes.
         dialogue.run_frames(10);
     }

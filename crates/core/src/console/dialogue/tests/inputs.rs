@@ -48,7 +48,7 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
 }
 
 /// The name of the running gait, or the activity if it is not a gait.
-fn gait(dialogue: &Dialogue) -> String {
+fn gait_name(dialogue: &Dialogue) -> String {
     match dialogue.motion().activity() {
         Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
         activity => format!("{activity:?}"),
@@ -58,14 +58,14 @@ fn gait(dialogue: &Dialogue) -> String {
 /// Runs until the robot's activity changes, at most [`LONG_FRAMES`] frames; returns the number of frames and the
 /// activity.
 fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
-    let before = gait(dialogue);
+    let gait_before = gait_name(dialogue);
     for frames in 0..LONG_FRAMES {
-        if gait(dialogue) != before {
-            return (frames, gait(dialogue));
+        if gait_name(dialogue) != gait_before {
+            return (frames, gait_name(dialogue));
         }
         dialogue.run_frames(1);
     }
-    (LONG_FRAMES, before)
+    (LONG_FRAMES, gait_before)
 }
 
 #[test]
@@ -74,21 +74,21 @@ fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
     for _ in 0..2 {
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
         assert_eq!(
-            (gait(&dialogue), dialogue.status("gait")),
+            (gait_name(&dialogue), dialogue.status("gait")),
             ("Stop".into(), "patrol".into())
         );
         assert_eq!(
             press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES),
             ["# waiting for nose"]
         );
-        assert_eq!(gait(&dialogue), "sway");
+        assert_eq!(gait_name(&dialogue), "sway");
         assert!(
             dialogue.run_frames(3 * LONG_FRAMES).is_empty(),
             "no wall, no end"
         );
-        assert_eq!(gait(&dialogue), "sway");
+        assert_eq!(gait_name(&dialogue), "sway");
         assert!(press(&mut dialogue, NOSE, DEBOUNCE_FRAMES).is_empty());
-        assert_eq!(gait(&dialogue), "back");
+        assert_eq!(gait_name(&dialogue), "back");
         assert_eq!(run_until_change(&mut dialogue).1, "sway left");
     }
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
@@ -103,7 +103,7 @@ fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
         press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES - 1);
         dialogue.run_frames(1);
     }
-    assert_eq!(gait(&dialogue), "Stop");
+    assert_eq!(gait_name(&dialogue), "Stop");
     set_contact(&mut dialogue, BUTTON, true);
     let frames = run_until_change(&mut dialogue);
     assert_eq!(frames, (DEBOUNCE_FRAMES, "sway".to_string()));
@@ -118,14 +118,14 @@ fn a_stuck_button_never_starts_the_robot_and_has_to_be_released_first() {
         dialogue.run_frames(5 * LONG_FRAMES),
         ["# waiting for button"]
     );
-    assert_eq!(gait(&dialogue), "Stop");
+    assert_eq!(gait_name(&dialogue), "Stop");
     set_contact(&mut dialogue, BUTTON, false);
     dialogue.run_frames(DEBOUNCE_FRAMES - 1);
     press(&mut dialogue, BUTTON, LONG_FRAMES);
-    assert_eq!(gait(&dialogue), "Stop", "too short to have been open");
+    assert_eq!(gait_name(&dialogue), "Stop", "too short to have been open");
     dialogue.run_frames(DEBOUNCE_FRAMES);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-    assert_eq!(gait(&dialogue), "sway");
+    assert_eq!(gait_name(&dialogue), "sway");
 }
 
 #[test]
@@ -143,31 +143,31 @@ fn a_wall_that_is_there_already_ends_the_way_at_once() {
 #[test]
 fn a_contact_ends_a_step_of_every_kind_and_without_it_count_or_time_do() {
     let stand = (FRAMES, "stand", 20);
-    for (step, doing, alone) in [
+    for (step, activity, expected_frames) in [
         ((CYCLES, "sway", 2), "sway", 100..400),
         ((FRAMES, "sway", 150), "sway", 149..151),
         ((REST, "stand", 150), "Rest", 149..151),
         ((WAIT, "stand", 150), "Stop", 120..151),
     ] {
         let steps = [(FRAMES, "back", 40), (UNTIL, "nose", 0), step, stand];
-        let at_step = || {
+        let run_to_step = || {
             let mut dialogue = start_patrol(1, &steps);
-            while gait(&dialogue) != doing {
+            while gait_name(&dialogue) != activity {
                 dialogue.run_frames(1);
             }
             dialogue
         };
-        let mut ended = at_step();
-        ended.run_frames(10);
-        set_contact(&mut ended, NOSE, true);
+        let mut interrupted_dialogue = run_to_step();
+        interrupted_dialogue.run_frames(10);
+        set_contact(&mut interrupted_dialogue, NOSE, true);
         assert_eq!(
-            run_until_change(&mut ended),
+            run_until_change(&mut interrupted_dialogue),
             (DEBOUNCE_FRAMES, "stand".to_string()),
             "{step:?}"
         );
-        let (frames, next) = run_until_change(&mut at_step());
-        assert_eq!(next, "stand");
-        assert!(alone.contains(&frames), "{step:?}: {frames}");
+        let (frames, next_activity) = run_until_change(&mut run_to_step());
+        assert_eq!(next_activity, "stand");
+        assert!(expected_frames.contains(&frames), "{step:?}: {frames}");
     }
 }
 
@@ -193,9 +193,9 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
             ["# waiting for button"],
             "{step:?}"
         );
-        assert!(["Stop", "Rest"].contains(&gait(&dialogue).as_str()));
+        assert!(["Stop", "Rest"].contains(&gait_name(&dialogue).as_str()));
         press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-        assert_eq!(gait(&dialogue), "back");
+        assert_eq!(gait_name(&dialogue), "back");
     }
 }
 
@@ -213,7 +213,7 @@ fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
         assert_eq!(dialogue.frame(), Pulses::default());
     }
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-    assert_eq!(gait(&dialogue), "back");
+    assert_eq!(gait_name(&dialogue), "back");
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
 }
 
@@ -225,18 +225,28 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
         (WAIT, "stand", ENDLESS),
     ];
     let mut dialogue = start_patrol(1, &steps);
-    let mut last = widths(&mut dialogue);
+    let mut last_widths = widths(&mut dialogue);
     let mut changes = Vec::new();
     for _ in 0..200 {
-        let now = widths(&mut dialogue);
-        let change = last.iter().zip(now).map(|(a, b)| a.abs_diff(b)).max();
+        let new_widths = widths(&mut dialogue);
+        let change = last_widths
+            .iter()
+            .zip(new_widths)
+            .map(|(a, b)| a.abs_diff(b))
+            .max();
         changes.push(change.expect("four"));
-        last = now;
+        last_widths = new_widths;
     }
-    let braked = changes[90..].iter().position(|change| *change == 0);
-    assert!((4..12).contains(&braked.expect("it stands")), "{changes:?}");
-    let walking = changes[80..90].iter().max();
-    assert!(changes[90..].iter().max() <= walking, "{changes:?}");
+    let braking_frames = changes[90..].iter().position(|change| *change == 0);
+    assert!(
+        (4..12).contains(&braking_frames.expect("it stands")),
+        "{changes:?}"
+    );
+    let max_walking_change = changes[80..90].iter().max();
+    assert!(
+        changes[90..].iter().max() <= max_walking_change,
+        "{changes:?}"
+    );
     assert!(
         changes[110..].iter().all(|change| *change == 0),
         "{changes:?}"
@@ -244,67 +254,67 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
 }
 
 /// Two robots on patrol: one waits for the button, the other walks until the nose switch closes.
-fn waiting() -> [Dialogue; 2] {
-    let mut for_button = start_patrol(0, &PATROL);
-    for_button.run_frames(100);
-    let mut for_nose = for_button.clone();
-    press(&mut for_nose, BUTTON, 100);
-    [for_button, for_nose]
+fn start_waiting() -> [Dialogue; 2] {
+    let mut button_dialogue = start_patrol(0, &PATROL);
+    button_dialogue.run_frames(100);
+    let mut nose_dialogue = button_dialogue.clone();
+    press(&mut nose_dialogue, BUTTON, 100);
+    [button_dialogue, nose_dialogue]
 }
 
 #[test]
 fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
-    let stays = |mut dialogue: Dialogue, event: &str| {
+    let assert_stays = |mut dialogue: Dialogue, event: &str| {
         dialogue.run_frames(60);
-        let now = gait(&dialogue);
+        let gait_before = gait_name(&dialogue);
         for input in [BUTTON, NOSE] {
             press(&mut dialogue, input, 50);
             assert_eq!(dialogue.run_frames(50), Vec::<String>::new(), "{event}");
-            assert_eq!(gait(&dialogue), now, "{event}");
+            assert_eq!(gait_name(&dialogue), gait_before, "{event}");
         }
     };
-    for begun in waiting() {
+    for waiting_dialogue in start_waiting() {
         for line in ["stop", "rest", "stand", NEUTRAL] {
-            let mut dialogue = begun.clone();
+            let mut dialogue = waiting_dialogue.clone();
             dialogue.expect_accepted(line);
             dialogue.run_frames(300);
-            stays(dialogue, line);
+            assert_stays(dialogue, line);
         }
         for mv in [4_200, 3_900] {
-            let mut weak = begun.clone();
-            supply(&mut weak, mv);
-            weak.run_frames(60);
-            assert_eq!(weak.status("fault"), "supply");
-            supply(&mut weak, 5_000);
-            stays(weak, "a weak supply");
+            let mut weak_dialogue = waiting_dialogue.clone();
+            supply(&mut weak_dialogue, mv);
+            weak_dialogue.run_frames(60);
+            assert_eq!(weak_dialogue.status("fault"), "supply");
+            supply(&mut weak_dialogue, 5_000);
+            assert_stays(weak_dialogue, "a weak supply");
         }
-        let mut late = begun.clone();
-        late.board.late_edges = 1;
-        stays(late, "a late edge");
-        let mut silent = begun.clone();
-        silent.expect_accepted("deadman 200");
-        silent.run_frames(20);
-        assert_eq!(silent.status("fault"), "link");
-        stays(silent, "silence");
+        let mut late_dialogue = waiting_dialogue.clone();
+        late_dialogue.board.late_edges = 1;
+        assert_stays(late_dialogue, "a late edge");
+        let mut silent_dialogue = waiting_dialogue.clone();
+        silent_dialogue.expect_accepted("deadman 200");
+        silent_dialogue.run_frames(20);
+        assert_eq!(silent_dialogue.status("fault"), "link");
+        assert_stays(silent_dialogue, "silence");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
-            let mut reset = begun.clone();
-            reset.reset(cause);
-            reset.run_frames(300);
-            stays(reset, "a reset");
+            let mut reset_dialogue = waiting_dialogue.clone();
+            reset_dialogue.reset(cause);
+            reset_dialogue.run_frames(300);
+            assert_stays(reset_dialogue, "a reset");
         }
-        let mut hung = begun.clone();
-        assert!(hung.stall(1_000));
-        hung.run_frames(300);
-        stays(hung, "a hang");
+        let mut hung_dialogue = waiting_dialogue.clone();
+        assert!(hung_dialogue.stall(1_000));
+        hung_dialogue.run_frames(300);
+        assert_stays(hung_dialogue, "a hang");
     }
 }
 
 #[test]
 fn a_low_supply_slows_the_way_and_the_contact_ends_it_as_always() {
-    let [_, mut dialogue] = waiting();
+    let [_, mut dialogue] = start_waiting();
     supply(&mut dialogue, 4_400);
     dialogue.run_frames(60);
-    assert_eq!(gait(&dialogue), "sway");
+    assert_eq!(gait_name(&dialogue), "sway");
     set_contact(&mut dialogue, NOSE, true);
     assert_eq!(
         run_until_change(&mut dialogue),
@@ -319,17 +329,17 @@ fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that()
         dialogue.expect_accepted(line);
     }
     let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
-    let mut unattended =
+    let mut unattended_dialogue =
         Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
-    let lines = unattended.run_frames(10 * LONG_FRAMES);
+    let lines = unattended_dialogue.run_frames(10 * LONG_FRAMES);
     assert_eq!(
         lines[lines.len() - 2..],
         ["# boot: patrol", "# waiting for button"]
     );
-    let lines = press(&mut unattended, BUTTON, DEBOUNCE_FRAMES);
+    let lines = press(&mut unattended_dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(lines, ["# waiting for nose"]);
-    assert_eq!(gait(&unattended), "sway");
-    assert!(unattended.run_frames(10 * LONG_FRAMES).is_empty());
+    assert_eq!(gait_name(&unattended_dialogue), "sway");
+    assert!(unattended_dialogue.run_frames(10 * LONG_FRAMES).is_empty());
 }
 
 #[test]
@@ -361,10 +371,10 @@ fn a_pin_of_a_servo_of_the_rail_or_of_none_is_never_touched() {
         dialogue.expect_accepted("patrol");
         dialogue.run_frames(10);
         let is_free = (2..=12).contains(&pin) || (15..=19).contains(&pin);
-        let expected = is_free && !pins.contains(&pin);
-        let pulled_up = if expected { 1 << pin } else { 0 };
+        let is_pulled_up = is_free && !pins.contains(&pin);
+        let pulled_up = if is_pulled_up { 1 << pin } else { 0 };
         assert_eq!(dialogue.board.pulled_up, pulled_up, "{pin}");
-        assert_eq!(gait(&dialogue), "Stop");
+        assert_eq!(gait_name(&dialogue), "Stop");
     }
 }
 
@@ -379,9 +389,9 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
         set_contact(&mut dialogue, NOSE, true);
         assert_eq!(dialogue.run_frames(20), ["# done"]);
         assert_eq!(dialogue.status("gait"), "stop");
-        let held = widths(&mut dialogue);
+        let held_widths = widths(&mut dialogue);
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
-        assert_eq!(widths(&mut dialogue), held);
+        assert_eq!(widths(&mut dialogue), held_widths);
     }
 }
 
@@ -397,7 +407,7 @@ fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     for _ in 0..3 {
-        assert_eq!(gait(&dialogue), "sway");
+        assert_eq!(gait_name(&dialogue), "sway");
         set_contact(&mut dialogue, NOSE, true);
         assert_eq!(run_until_change(&mut dialogue).1, "back");
         set_contact(&mut dialogue, NOSE, false);

@@ -19,15 +19,15 @@ const STEPS: [(u8, &str, u16); 5] = [
 /// More frames than a round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
-fn robot(rounds: u16) -> Sample {
+fn robot_with_routine(rounds: u16) -> Sample {
     Sample::odd().with_routine("patrol", rounds, &STEPS)
 }
 
 /// Runs a robot for some frames; returns its gaits, one after another, and the lines that it printed.
 fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
-    let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
+    let (mut gaits, mut printed_lines): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
-        printed.extend(dialogue.run_frames(1));
+        printed_lines.extend(dialogue.run_frames(1));
         let gait = match dialogue.motion().activity() {
             Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
             activity => format!("{activity:?}"),
@@ -36,58 +36,59 @@ fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Ve
             gaits.push(gait);
         }
     }
-    (gaits, printed)
+    (gaits, printed_lines)
 }
 
 /// Snapshots of the dialogue at many moments of the routine.
-fn at_every_step(robot: fn() -> Sample) -> Vec<Dialogue> {
-    let mut dialogue = wake_robot(robot());
+fn record_snapshots(make_robot: fn() -> Sample) -> Vec<Dialogue> {
+    let mut dialogue = wake_robot(make_robot());
     dialogue.send_line("patrol");
-    let mut all = Vec::new();
+    let mut snapshots = Vec::new();
     for _ in 0..40 {
         dialogue.run_frames(17);
         if dialogue.status("gait") == "patrol" {
-            all.push(dialogue.clone());
+            snapshots.push(dialogue.clone());
         }
     }
-    assert!(all.len() > 20, "{}", all.len());
-    all
+    assert!(snapshots.len() > 20, "{}", snapshots.len());
+    snapshots
 }
 
 #[test]
 fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
     for rounds in [1, 2, 3] {
-        let mut dialogue = wake_robot(robot(rounds));
+        let mut dialogue = wake_robot(robot_with_routine(rounds));
         assert_eq!(dialogue.send_line("Patrol"), "ok patrol");
         assert_eq!(dialogue.status("gait"), "patrol");
-        let (gaits, printed) = run_recording_gaits(&mut dialogue, LONG_FRAMES * u32::from(rounds));
-        assert_eq!(printed, ["# done"]);
+        let (gaits, printed_lines) =
+            run_recording_gaits(&mut dialogue, LONG_FRAMES * u32::from(rounds));
+        assert_eq!(printed_lines, ["# done"]);
         let round = ["stand", "sway", "back", "sway left"];
-        let (last, all) = gaits.split_last().expect("a course");
-        assert_eq!(last, "Stop");
+        let (last_gait, earlier_gaits) = gaits.split_last().expect("a course");
+        assert_eq!(last_gait, "Stop");
         let expected = round.repeat(rounds.into());
-        assert!(all.iter().eq(&expected), "{gaits:?}");
+        assert!(earlier_gaits.iter().eq(&expected), "{gaits:?}");
         assert_eq!(dialogue.status("gait"), "stop");
     }
 }
 
 #[test]
 fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
-    let mut counted = wake_robot(robot(0));
-    counted.send_line("patrol 2");
-    let (gaits, printed) = run_recording_gaits(&mut counted, 3 * LONG_FRAMES);
-    assert_eq!(printed, ["# done"]);
+    let mut counted_dialogue = wake_robot(robot_with_routine(0));
+    counted_dialogue.send_line("patrol 2");
+    let (gaits, printed_lines) = run_recording_gaits(&mut counted_dialogue, 3 * LONG_FRAMES);
+    assert_eq!(printed_lines, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
-    let mut endless = wake_robot(robot(0));
-    endless.send_line("patrol");
-    let (gaits, printed) = run_recording_gaits(&mut endless, 20 * LONG_FRAMES);
-    assert!(printed.is_empty(), "{printed:?}");
+    let mut endless_dialogue = wake_robot(robot_with_routine(0));
+    endless_dialogue.send_line("patrol");
+    let (gaits, printed_lines) = run_recording_gaits(&mut endless_dialogue, 20 * LONG_FRAMES);
+    assert!(printed_lines.is_empty(), "{printed_lines:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
 }
 
 #[test]
 fn a_step_of_some_time_lasts_that_time() {
-    let mut dialogue = wake_robot(robot(1));
+    let mut dialogue = wake_robot(robot_with_routine(1));
     dialogue.send_line("patrol");
     let (gaits, _) = run_recording_gaits(&mut dialogue, 29);
     assert_eq!(gaits, ["stand"]);
@@ -97,7 +98,7 @@ fn a_step_of_some_time_lasts_that_time() {
 
 #[test]
 fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
-    let mut dialogue = wake_robot(robot(1));
+    let mut dialogue = wake_robot(robot_with_routine(1));
     assert!(dialogue.send(b"help\r")[0].ends_with("|stray|patrol"));
     assert_eq!(dialogue.send_line("boot patrol"), "ok boot patrol");
     assert!(
@@ -107,69 +108,73 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
     );
     dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
-    let mut unattended = Dialogue::with_memory(*robot(1), eeprom, Restart::default());
-    let printed = unattended.run_frames(150);
-    assert_eq!(printed.last().map(String::as_str), Some("# boot: patrol"));
-    assert_eq!(unattended.status("gait"), "patrol");
+    let mut unattended_dialogue =
+        Dialogue::with_memory(*robot_with_routine(1), eeprom, Restart::default());
+    let printed_lines = unattended_dialogue.run_frames(150);
+    assert_eq!(
+        printed_lines.last().map(String::as_str),
+        Some("# boot: patrol")
+    );
+    assert_eq!(unattended_dialogue.status("gait"), "patrol");
     dialogue.send_line("rest");
     dialogue.expect_refused("patrol", "7 servos are resting, send stand first");
 }
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
-    for midway in at_every_step(|| robot(0)) {
+    for snapshot in record_snapshots(|| robot_with_routine(0)) {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
-            let mut dialogue = midway.clone();
+            let mut dialogue = snapshot.clone();
             dialogue.expect_accepted(line);
-            let (gaits, printed) = run_recording_gaits(&mut dialogue, 600);
+            let (gaits, printed_lines) = run_recording_gaits(&mut dialogue, 600);
             assert!(gaits.len() <= 2, "{line}: {gaits:?}");
             assert_eq!(
-                printed.len(),
+                printed_lines.len(),
                 usize::from(line == "back 1"),
-                "{line}: {printed:?}"
+                "{line}: {printed_lines:?}"
             );
             assert_ne!(dialogue.status("gait"), "patrol");
         }
-        let mut again = midway.clone();
-        again.send_line("patrol");
+        let mut repeated_dialogue = snapshot.clone();
+        repeated_dialogue.send_line("patrol");
         assert_eq!(
-            run_recording_gaits(&mut again, 30)
+            run_recording_gaits(&mut repeated_dialogue, 30)
                 .0
                 .last()
                 .map(String::as_str),
             Some("sway")
         );
-        let mut weak = midway.clone();
-        supply(&mut weak, 4_200);
-        weak.run_frames(60);
+        let mut weak_dialogue = snapshot.clone();
+        supply(&mut weak_dialogue, 4_200);
+        weak_dialogue.run_frames(60);
         assert_eq!(
-            (weak.status("gait"), weak.status("fault")),
+            (weak_dialogue.status("gait"), weak_dialogue.status("fault")),
             ("stop".into(), "supply".into())
         );
-        supply(&mut weak, 5_000);
+        supply(&mut weak_dialogue, 5_000);
         assert_eq!(
-            run_recording_gaits(&mut weak, 300).0,
+            run_recording_gaits(&mut weak_dialogue, 300).0,
             ["Stop"],
             "it does not go on by itself"
         );
-        let mut empty = midway.clone();
-        supply(&mut empty, 3_900);
-        empty.run_frames(60);
-        assert_eq!(empty.status("gait"), "rest");
+        let mut empty_dialogue = snapshot.clone();
+        supply(&mut empty_dialogue, 3_900);
+        empty_dialogue.run_frames(60);
+        assert_eq!(empty_dialogue.status("gait"), "rest");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
-            let mut reset = midway.clone();
-            reset.reset(cause);
-            let (gaits, printed) = run_recording_gaits(&mut reset, 400);
-            let still = ["stand", "Stop"].contains(&gaits[0].as_str());
-            assert!(still && gaits.len() == 1, "{cause:?}: {gaits:?}");
-            assert!(!printed.contains(&"# done".to_string()));
+            let mut reset_dialogue = snapshot.clone();
+            reset_dialogue.reset(cause);
+            let (gaits, printed_lines) = run_recording_gaits(&mut reset_dialogue, 400);
+            let is_still = ["stand", "Stop"].contains(&gaits[0].as_str());
+            assert!(is_still && gaits.len() == 1, "{cause:?}: {gaits:?}");
+            assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }
 }
 
 #[test]
 fn a_low_supply_slows_a_routine_and_does_not_end_it() {
-    let mut dialogue = wake_robot(robot(1));
+    let mut dialogue = wake_robot(robot_with_routine(1));
     supply(&mut dialogue, 4_400);
     dialogue.run_frames(40);
     dialogue.send_line("patrol");
@@ -181,50 +186,54 @@ fn a_low_supply_slows_a_routine_and_does_not_end_it() {
 
 #[test]
 fn the_guard_ends_a_routine_as_it_ends_a_gait() {
-    let stray = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &stray));
+    let stray_steps = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &stray_steps));
     dialogue.send_line("patrol");
-    let (gaits, printed) = run_recording_gaits(&mut dialogue, LONG_FRAMES);
+    let (gaits, printed_lines) = run_recording_gaits(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
-    assert_eq!(printed.len(), 1);
-    assert!(printed[0].starts_with("# held"), "{printed:?}");
+    assert_eq!(printed_lines.len(), 1);
+    assert!(printed_lines[0].starts_with("# held"), "{printed_lines:?}");
     assert_eq!(dialogue.status("fault"), "guard");
 }
 
 #[test]
 fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
-    for midway in at_every_step(|| robot(0)) {
-        let mut dialogue = midway;
+    for snapshot in record_snapshots(|| robot_with_routine(0)) {
+        let mut dialogue = snapshot;
         dialogue.send_line("deadman 200");
-        let printed = dialogue.run_frames(100);
+        let printed_lines = dialogue.run_frames(100);
         assert_eq!(
-            printed,
+            printed_lines,
             ["# fault: no line for as long as deadman says, stopped"]
         );
         assert_eq!(dialogue.status("gait"), "stop");
     }
-    let mut dialogue = wake_robot(robot(0));
+    let mut dialogue = wake_robot(robot_with_routine(0));
     dialogue.send_line("boot patrol");
     dialogue.send_line("deadman 200");
     dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
-    let unattended = || {
-        let mut unattended = Dialogue::with_memory(*robot(0), eeprom.clone(), Restart::default());
-        unattended.run_frames(150);
-        unattended
+    let start_unattended = || {
+        let mut unattended_dialogue =
+            Dialogue::with_memory(*robot_with_routine(0), eeprom.clone(), Restart::default());
+        unattended_dialogue.run_frames(150);
+        unattended_dialogue
     };
-    let mut idle = unattended();
-    assert!(idle.run_frames(5 * LONG_FRAMES).is_empty(), "it goes on");
+    let mut idle_dialogue = start_unattended();
+    assert!(
+        idle_dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
+        "it goes on"
+    );
     // The first valid line arms the dead-man timer.
-    idle.send_line("speed 90");
-    assert_eq!(idle.run_frames(100).len(), 1);
-    assert_eq!(idle.status("fault"), "link");
+    idle_dialogue.send_line("speed 90");
+    assert_eq!(idle_dialogue.run_frames(100).len(), 1);
+    assert_eq!(idle_dialogue.status("fault"), "link");
     // Neither single bytes nor an invalid line arm the dead-man timer.
-    let mut noisy = unattended();
-    noisy.board.send(b"x");
-    assert!(noisy.run_frames(LONG_FRAMES).is_empty());
-    noisy.board.send(b"x\r");
-    assert_eq!(noisy.run_frames(100).len(), 1, "the refusal");
+    let mut noisy_dialogue = start_unattended();
+    noisy_dialogue.board.send(b"x");
+    assert!(noisy_dialogue.run_frames(LONG_FRAMES).is_empty());
+    noisy_dialogue.board.send(b"x\r");
+    assert_eq!(noisy_dialogue.run_frames(100).len(), 1, "the refusal");
 }
 
 #[test]
@@ -237,9 +246,9 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 2, &steps));
     dialogue.send_line("patrol");
     let (mut frames_without_pulses, mut pulsing_counts) = (0, Vec::new());
-    let mut printed = Vec::new();
+    let mut printed_lines = Vec::new();
     for _ in 0..LONG_FRAMES {
-        printed.extend(dialogue.run_frames(1));
+        printed_lines.extend(dialogue.run_frames(1));
         let pulses = dialogue.board.submitted().0;
         let count = pulses.iter().filter(|width| width.0 > 0).count();
         frames_without_pulses += usize::from(count == 0);
@@ -247,7 +256,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
             pulsing_counts.push(count);
         }
     }
-    assert_eq!(printed, ["# done"]);
+    assert_eq!(printed_lines, ["# done"]);
     assert_eq!(pulsing_counts, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
     // Each of the two rests takes 50 frames, and the first servo wakes five frames later.
     assert!(
@@ -259,7 +268,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
 #[test]
 fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
-    let resting = || {
+    let start_and_rest = || {
         let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 2, &steps));
         dialogue.send_line("patrol");
         while !dialogue.motion().is_resting() {
@@ -270,12 +279,12 @@ fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
         dialogue
     };
     for line in ["stop", "rest"] {
-        let mut dialogue = resting();
+        let mut dialogue = start_and_rest();
         dialogue.expect_accepted(line);
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert!(dialogue.motion().is_resting());
     }
-    let mut dialogue = resting();
+    let mut dialogue = start_and_rest();
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
     assert!(dialogue.motion().is_resting());
     let pose = *dialogue.motion().pose();

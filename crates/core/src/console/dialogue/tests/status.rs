@@ -75,7 +75,7 @@ fn the_longest_possible_status_fits_a_line() {
     let line = dialogue.send_line("status");
     // The longest value of each key.
     let values = pairs(line.strip_prefix("ok ").expect("a status"));
-    let longest = [
+    let longest_values = [
         ("phase", "0.999"),
         ("pose", "359.99,359.99,359.99,359.99"),
         ("margin", "-1.000"),
@@ -83,11 +83,11 @@ fn the_longest_possible_status_fits_a_line() {
         ("frames", "4294967295"),
         ("guard", "clear"),
     ];
-    let more: usize = longest
+    let extra_bytes: usize = longest_values
         .iter()
-        .map(|(key, longest)| longest.len() - values[*key].len())
+        .map(|(key, longest_value)| longest_value.len() - values[*key].len())
         .sum();
-    assert!(line.len() + more + "\r\n".len() <= usize::from(LONGEST_LINE));
+    assert!(line.len() + extra_bytes + "\r\n".len() <= usize::from(LONGEST_LINE));
 }
 
 #[test]
@@ -96,20 +96,20 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("sway");
         dialogue.send_line(&format!("watch {interval}"));
-        let start = dialogue.motion().frames();
-        let mut times = Vec::new();
+        let start_frame = dialogue.motion().frames();
+        let mut report_frames = Vec::new();
         for _ in 0..200 {
             for line in dialogue.run_frames(1) {
                 let report = pairs(line.strip_prefix("# ").expect("a report"));
-                let time: u32 = report["t"].parse().expect("a number");
-                assert_eq!(time, dialogue.motion().frames());
+                let frame: u32 = report["t"].parse().expect("a number");
+                assert_eq!(frame, dialogue.motion().frames());
                 assert_eq!(report["pose"], dialogue.status("pose"));
                 assert_eq!(report.len(), 2);
-                times.push(time - start);
+                report_frames.push(frame - start_frame);
             }
         }
-        let expected: Vec<u32> = (1..=200).filter(|time| time % interval == 0).collect();
-        assert_eq!(times, expected);
+        let expected: Vec<u32> = (1..=200).filter(|frame| frame % interval == 0).collect();
+        assert_eq!(report_frames, expected);
         dialogue.send_line("watch 0");
         assert!(dialogue.run_frames(200).is_empty());
     }
@@ -136,10 +136,10 @@ fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
     dialogue.run_without_reader(2);
     assert!(dialogue.has_output());
     dialogue.board.send(b"watch 0\r");
-    let printed = dialogue.read_lines();
+    let printed_lines = dialogue.read_lines();
     assert!(
-        printed.len() == 2 && printed[1] == "ok watch 0",
-        "{printed:?}"
+        printed_lines.len() == 2 && printed_lines[1] == "ok watch 0",
+        "{printed_lines:?}"
     );
     assert!(dialogue.run_frames(10).is_empty());
 }

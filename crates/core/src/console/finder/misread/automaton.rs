@@ -39,9 +39,9 @@ impl LineAutomaton {
     pub const START: usize = 0;
 
     pub fn new() -> Self {
-        let mut text = Self::default();
-        text.add_state();
-        text
+        let mut automaton = Self::default();
+        automaton.add_state();
+        automaton
     }
 
     fn add_state(&mut self) -> usize {
@@ -73,7 +73,7 @@ impl LineAutomaton {
     }
 
     /// Adds up to `max_digits` digits; returns the states in which the number may end.
-    fn digits(&mut self, from: &[usize], max_digits: usize) -> Vec<usize> {
+    fn add_digits(&mut self, from: &[usize], max_digits: usize) -> Vec<usize> {
         let mut states = from.to_vec();
         let mut ends = Vec::new();
         for _ in 0..max_digits {
@@ -87,82 +87,84 @@ impl LineAutomaton {
     /// which the number may end.
     fn add_decimal(&mut self, blank: usize) -> Vec<usize> {
         let sign = self.add_transition(&[blank], *b"+-");
-        let mut ends = self.digits(&[blank, sign], 3);
+        let mut ends = self.add_digits(&[blank, sign], 3);
         let point = self.add_transition(&ends, *b".");
-        ends.extend(self.digits(&[point], 2));
+        ends.extend(self.add_digits(&[point], 2));
         ends
     }
 
-    /// The state before state `at`: the start if no state precedes it, `None` if several do.
-    pub fn previous_state(&self, at: usize) -> Option<usize> {
-        let leads = |from: &usize| self.transitions[*from].values().any(|to| *to == at);
-        let mut before = (0..self.transitions.len()).filter(leads);
-        let first = before.next().unwrap_or(Self::START);
-        before.next().is_none().then_some(first)
+    /// The state before this one: the start if no state precedes it, `None` if several do.
+    pub fn previous_state(&self, state: usize) -> Option<usize> {
+        let leads_to_state = |from: &usize| self.transitions[*from].values().any(|to| *to == state);
+        let mut previous_states = (0..self.transitions.len()).filter(leads_to_state);
+        let first = previous_states.next().unwrap_or(Self::START);
+        previous_states.next().is_none().then_some(first)
     }
 
     /// All commands, as programs and people write them.
     pub fn all_commands() -> Self {
-        let mut text = Self::new();
+        let mut automaton = Self::new();
         for gait in &*GAITS {
-            let name = text.add_word(gait);
-            let blank = text.add_transition(&[name], *b" ");
-            let counts = text.digits(&[blank], 3);
-            text.accepting_states.insert(name);
-            text.accepting_states.extend(counts);
+            let name_end = automaton.add_word(gait);
+            let blank_state = automaton.add_transition(&[name_end], *b" ");
+            let count_ends = automaton.add_digits(&[blank_state], 3);
+            automaton.accepting_states.insert(name_end);
+            automaton.accepting_states.extend(count_ends);
         }
         for word in Word::ALL {
-            let end = text.add_word(word.text());
+            let word_end = automaton.add_word(word.text());
             if *word == Word::Boot {
                 for argument in GAITS.iter().map(String::as_str).chain(["rest"]) {
-                    let end = text.add_word(&format!("boot {argument}"));
-                    text.accepting_states.insert(end);
+                    let boot_end = automaton.add_word(&format!("boot {argument}"));
+                    automaton.accepting_states.insert(boot_end);
                 }
                 continue;
             }
-            let mut ends = vec![end];
+            let mut ends = vec![word_end];
             // The example has as many arguments as the word takes.
             for (index, example) in word.example().split(' ').skip(1).enumerate() {
-                let blank = text.add_transition(&ends, *b" ");
-                let whole = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
+                let blank_state = automaton.add_transition(&ends, *b" ");
+                let is_whole_number = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
                 ends = match (word, index) {
                     (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
-                        vec![text.add_transition(&[blank], *b"1234")]
+                        vec![automaton.add_transition(&[blank_state], *b"1234")]
                     }
                     _ if matches!(example, "+" | "-") => {
-                        vec![text.add_transition(&[blank], *b"+-")]
+                        vec![automaton.add_transition(&[blank_state], *b"+-")]
                     }
-                    _ if whole => text.digits(&[blank], 5),
-                    _ => text.add_decimal(blank),
+                    _ if is_whole_number => automaton.add_digits(&[blank_state], 5),
+                    _ => automaton.add_decimal(blank_state),
                 };
             }
-            text.accepting_states.extend(ends);
+            automaton.accepting_states.extend(ends);
         }
-        text
+        automaton
     }
 
     /// A superset of the lines that the parser accepts: arguments of any length and number.
     pub fn accepted_lines() -> Self {
-        let mut text = Self::new();
+        let mut automaton = Self::new();
         for word in GAITS
             .iter()
             .map(String::as_str)
             .chain(Word::ALL.iter().map(|word| word.text()))
         {
-            let end = text.add_word(word);
-            let blank = text.add_transition(&[end], *b" \t\x0c");
-            let any: Vec<u8> = match word {
+            let word_end = automaton.add_word(word);
+            let blank_state = automaton.add_transition(&[word_end], *b" \t\x0c");
+            let argument_bytes: Vec<u8> = match word {
                 "boot" => (b' '..=b'~').collect(),
                 _ => b"0123456789.+- \t\x0c".to_vec(),
             };
-            for byte in any {
-                text.transitions[blank].entry(byte).or_insert(blank);
+            for byte in argument_bytes {
+                automaton.transitions[blank_state]
+                    .entry(byte)
+                    .or_insert(blank_state);
             }
-            text.accepting_states.extend([end, blank]);
+            automaton.accepting_states.extend([word_end, blank_state]);
         }
         for blank in *b" \t\x0c" {
-            text.transitions[Self::START].insert(blank, Self::START);
+            automaton.transitions[Self::START].insert(blank, Self::START);
         }
-        text
+        automaton
     }
 }

@@ -17,8 +17,8 @@ enum Ask {
 }
 
 /// Random orders, each with the number of frames that follow it.
-fn asks() -> impl Strategy<Value = Vec<(Ask, u32)>> {
-    let ask = prop_oneof![
+fn any_orders() -> impl Strategy<Value = Vec<(Ask, u32)>> {
+    let any_order = prop_oneof![
         5 => prop::sample::select(GAITS.to_vec()).prop_map(Ask::Gait),
         3 => prop::array::uniform4(-3000i16..3000).prop_map(Ask::Pose),
         1 => prop::array::uniform4(-7000i16..7000).prop_map(Ask::Pose),
@@ -26,7 +26,7 @@ fn asks() -> impl Strategy<Value = Vec<(Ask, u32)>> {
         1 => Just(Ask::Rest),
         2 => (10u8..=100).prop_map(Ask::Speed),
     ];
-    prop::collection::vec((ask, 0u32..90), 1..12)
+    prop::collection::vec((any_order, 0u32..90), 1..12)
 }
 
 proptest! {
@@ -35,17 +35,17 @@ proptest! {
     #[test]
     fn no_frame_is_unsafe_or_faster_than_a_move_or_the_gait_may_be(
         robot in Sample::random(),
-        asks in asks(),
+        orders in any_orders(),
     ) {
         let mut motion = Motion::awake(robot);
-        for (ask, frames) in asks {
-            match ask {
+        for (order, frames) in orders {
+            match order {
                 Ask::Gait(name) => motion.start(name),
                 Ask::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
-                    let beyond = pose.first_beyond_travel(motion.calibration()).map(Hazard::Travel);
+                    let travel_hazard = pose.first_beyond_travel(motion.calibration()).map(Hazard::Travel);
                     let hazard = Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot);
-                    let hazard = beyond.or(hazard);
+                    let hazard = travel_hazard.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
                 }
                 Ask::Stop => motion.stop(),
@@ -53,15 +53,15 @@ proptest! {
                 Ask::Speed(percent) => motion.set_speed(percent),
             }
             for _ in 0..frames {
-                let (before, cycling) = (*motion.pose(), motion.is_cycling());
+                let (pose_before, was_cycling) = (*motion.pose(), motion.is_cycling());
                 let pulses = motion.tick();
                 let clearance = Clearance::of(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
-                for (actual, held) in pulses.0.into_iter().zip(motion.held().0) {
-                    prop_assert!(actual == Width(0) || actual == held);
+                for (actual, held_width) in pulses.0.into_iter().zip(motion.held().0) {
+                    prop_assert!(actual == Width(0) || actual == held_width);
                 }
-                if !cycling {
-                    let distance = before.largest_turn_to(motion.pose());
+                if !was_cycling {
+                    let distance = pose_before.largest_turn_to(motion.pose());
                     prop_assert!(distance <= motion.robot.slew().per_frame, "{}", distance);
                 }
             }

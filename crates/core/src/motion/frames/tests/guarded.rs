@@ -3,7 +3,7 @@
 use super::*;
 
 /// A robot that the guard has just stopped.
-fn guarded() -> Motion {
+fn run_until_guarded() -> Motion {
     let mut motion = Motion::standing();
     motion.start("stray");
     for _ in 0..200 {
@@ -19,17 +19,17 @@ fn guarded() -> Motion {
 fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
     let mut motion = Motion::standing();
     motion.start("stray");
-    let mut last = *motion.pose();
+    let mut last_pose = *motion.pose();
     while motion.hazard().is_none() {
-        last = *motion.pose();
+        last_pose = *motion.pose();
         motion.tick();
     }
     let hazard = motion.hazard();
-    assert_eq!(motion.pose(), &last);
+    assert_eq!(motion.pose(), &last_pose);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.phase(), 0);
     for _ in 0..100 {
-        assert_eq!(motion.tick(), last.pulses(&motion.calibration));
+        assert_eq!(motion.tick(), last_pose.pulses(&motion.calibration));
         assert_eq!(motion.hazard(), hazard);
     }
     // The reported hazard is that of the frame that was not sent.
@@ -42,28 +42,28 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
             Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot)
         })
         .collect();
-    let same = |reason: &Hazard| match (reason, hazard) {
+    let is_same_kind = |reason: &Hazard| match (reason, hazard) {
         (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => *a == b,
         (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => *a == b,
         _ => false,
     };
-    assert!(reasons.iter().any(same), "{hazard:?}");
+    assert!(reasons.iter().any(is_same_kind), "{hazard:?}");
 }
 
 #[test]
 fn the_reason_goes_when_the_next_motion_begins_and_not_before() {
-    let mut stays = guarded();
-    stays.stop();
-    stays.run(20);
-    assert!(stays.hazard().is_some(), "stop begins no motion");
-    let mut refused = guarded();
-    assert!(refused.go_to(&Pose([Sweep(13_000); 4])).is_err());
-    refused.run(20);
+    let mut stopped_motion = run_until_guarded();
+    stopped_motion.stop();
+    stopped_motion.run(20);
+    assert!(stopped_motion.hazard().is_some(), "stop begins no motion");
+    let mut refused_motion = run_until_guarded();
+    assert!(refused_motion.go_to(&Pose([Sweep(13_000); 4])).is_err());
+    refused_motion.run(20);
     assert!(
-        refused.hazard().is_some(),
+        refused_motion.hazard().is_some(),
         "nor does a pose that is refused"
     );
-    let mut motion = guarded();
+    let mut motion = run_until_guarded();
     motion.start("sway");
     assert!(motion.hazard().is_some());
     motion.tick();
@@ -76,12 +76,13 @@ fn the_reason_goes_when_the_next_motion_begins_and_not_before() {
 fn a_pose_that_is_refused_changes_nothing_and_says_why() {
     for name in GAITS {
         for frames in [0, 3, 20, 70] {
-            let mut asked = Motion::in_gait(name, frames);
+            let mut asked_motion = Motion::in_gait(name, frames);
             let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
-            let reason = Clearance::of(&asked.robot, &pose).first_hazard(&asked.robot);
-            assert_eq!(asked.go_to(&pose).err(), reason);
+            let reason =
+                Clearance::of(&asked_motion.robot, &pose).first_hazard(&asked_motion.robot);
+            assert_eq!(asked_motion.go_to(&pose).err(), reason);
             assert!(reason.is_some());
-            assert_same(asked, Motion::in_gait(name, frames));
+            assert_same(asked_motion, Motion::in_gait(name, frames));
         }
     }
 }

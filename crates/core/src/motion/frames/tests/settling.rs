@@ -7,16 +7,18 @@ use crate::numbers::units::Width;
 fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     // The gains of this robot differ from servo to servo.
     let mut motion = Motion::standing();
-    let before = motion.sent().0;
+    let pulses_before = motion.sent().0;
     let per_frame = f64::from(motion.robot.slew().per_frame);
-    let steps = motion.calibration.map(|servo| {
+    let max_changes = motion.calibration.map(|servo| {
         // CPU cycles per frame at the slew limit, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
-    for (index, step) in steps.iter().enumerate() {
+    for (index, max_change) in max_changes.iter().enumerate() {
         assert!(
-            steps[..index].iter().all(|other| other != step),
-            "{steps:?}"
+            max_changes[..index]
+                .iter()
+                .all(|other_change| other_change != max_change),
+            "{max_changes:?}"
         );
     }
     for index in 0..4 {
@@ -28,10 +30,10 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     for frame in 1..=1000u16 {
         motion.tick();
         for (index, sent) in motion.sent().0.iter().enumerate() {
-            let change = sent.0 - before[index].0;
+            let change = sent.0 - pulses_before[index].0;
             assert_eq!(
                 change,
-                1000.min(frame.saturating_mul(steps[index])),
+                1000.min(frame.saturating_mul(max_changes[index])),
                 "A{}",
                 index + 1
             );
@@ -42,15 +44,15 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
 #[test]
 fn the_first_pulses_after_a_hang_repeat_the_last_ones_however_far_the_settings_differ() {
     // The last pulses before the hang may never have been sent, because the reset came first.
-    let before = *Motion::standing().stance();
+    let stance_before = *Motion::standing().stance();
     let mut motion = Motion::new(*Sample::odd());
     for index in 0..4 {
         let mut servo = motion.calibration[index];
         servo.neutral = Width(servo.neutral.0 + 1000);
         motion.calibrate(Servo::at(index), servo);
     }
-    assert!(motion.resume(&before, false));
-    assert_eq!(motion.tick(), before.sent);
-    let next = motion.tick();
-    assert!((0..4).all(|index| next.0[index].0 > before.sent.0[index].0));
+    assert!(motion.resume(&stance_before, false));
+    assert_eq!(motion.tick(), stance_before.sent);
+    let next_pulses = motion.tick();
+    assert!((0..4).all(|index| next_pulses.0[index].0 > stance_before.sent.0[index].0));
 }

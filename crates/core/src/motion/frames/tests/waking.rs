@@ -17,9 +17,9 @@ fn while_it_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
 
 #[test]
 fn stop_and_rest_change_nothing_while_it_rests() {
-    for ask in [Motion::stop, Motion::rest] {
+    for order in [Motion::stop, Motion::rest] {
         let mut motion = resting();
-        ask(&mut motion);
+        order(&mut motion);
         assert_eq!(motion.activity(), Activity::Rest);
         assert_eq!(motion.tick(), Pulses::default());
     }
@@ -27,10 +27,10 @@ fn stop_and_rest_change_nothing_while_it_rests() {
 
 #[test]
 fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
-    for pose in [false, true] {
+    for is_pose in [false, true] {
         let mut motion = resting();
-        let left = *motion.pose();
-        if pose {
+        let left_pose = *motion.pose();
+        if is_pose {
             motion.head_for_pose(THERE);
             assert_eq!(motion.activity(), Activity::Pose);
         } else {
@@ -39,12 +39,12 @@ fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
         }
         for _ in 0..WAKING {
             motion.tick();
-            assert_eq!(motion.pose(), &left);
+            assert_eq!(motion.pose(), &left_pose);
         }
         assert_eq!(motion.tick(), motion.held());
         assert!(motion.is_moving());
         motion.run(LONG_ENOUGH);
-        if pose {
+        if is_pose {
             assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
         } else {
             assert!(motion.is_cycling());
@@ -54,25 +54,25 @@ fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
 
 #[test]
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
-    let mut again = resting();
-    again.start("stand");
-    for mut motion in [Motion::new(*Sample::odd()), again] {
-        let held = motion.held();
-        let mut since = [0; 4];
+    let mut woken_motion = resting();
+    woken_motion.start("stand");
+    for mut motion in [Motion::new(*Sample::odd()), woken_motion] {
+        let held_pulses = motion.held();
+        let mut first_frames = [0; 4];
         for frame in 1..=WAKING {
             for (index, width) in motion.tick().0.into_iter().enumerate() {
-                if width != Width(0) && since[index] == 0 {
-                    since[index] = frame;
+                if width != Width(0) && first_frames[index] == 0 {
+                    first_frames[index] = frame;
                 }
-                let expected = if since[index] > 0 {
-                    held.0[index]
+                let expected = if first_frames[index] > 0 {
+                    held_pulses.0[index]
                 } else {
                     Width(0)
                 };
                 assert_eq!(width, expected);
             }
         }
-        assert_eq!(since, [5, 10, 15, 20]);
+        assert_eq!(first_frames, [5, 10, 15, 20]);
     }
 }
 
@@ -83,10 +83,10 @@ fn a_robot_that_is_told_to_rest_while_it_wakes_wakes_from_the_beginning_later() 
     motion.rest();
     assert_eq!(motion.tick(), Pulses::default());
     motion.start("stand");
-    let awake = (0..WAKING).map(|_| motion.tick().0.map(|width| u8::from(width.0 > 0)));
-    let awake: Vec<u8> = awake.map(|servos| servos.iter().sum()).collect();
+    let pulse_flags = (0..WAKING).map(|_| motion.tick().0.map(|width| u8::from(width.0 > 0)));
+    let awake_counts: Vec<u8> = pulse_flags.map(|servos| servos.iter().sum()).collect();
     let expected: Vec<u8> = (1..=WAKING).map(|frame| (frame / 5) as u8).collect();
-    assert_eq!(awake, expected);
+    assert_eq!(awake_counts, expected);
 }
 
 #[test]

@@ -70,13 +70,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// # Errors
     /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
-        let before = calibration::ask(link)?;
+        let initial = calibration::ask(link)?;
         link.command("stand")?;
         let pose = wait_until_still(link)?;
         Ok(Self {
             link,
-            active_calibration: before.clone(),
-            saved_calibration: before,
+            active_calibration: initial.clone(),
+            saved_calibration: initial,
             neutral: pose,
             step_index: 0,
             moved_degrees: None,
@@ -102,7 +102,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// user leaves. Other refusals are not errors: they are shown.
     pub fn press_key(&mut self, key: Key) -> Result<bool, LinkError> {
         self.message.clear();
-        let is_done = match (key, self.step()) {
+        let result = match (key, self.step()) {
             (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
             (Key::Leave, _) => self.leave().map(|()| true),
             (Key::Back, Step::Walk) if self.skips_scales => {
@@ -125,8 +125,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
             (Key::Next, Step::Save) => self.save().map(|()| false),
             (Key::Next, _) => self.enter_step(self.step_index + 1).map(|()| false),
-            (Key::Act, Step::Sign(servo)) => self.move_one(servo, &SIGN_ANGLES).map(|()| false),
-            (Key::Act, Step::Scale(servo)) => self.move_one(servo, &SCALE_ANGLES).map(|()| false),
+            (Key::Act, Step::Sign(servo)) => self.move_servo(servo, &SIGN_ANGLES).map(|()| false),
+            (Key::Act, Step::Scale(servo)) => self.move_servo(servo, &SCALE_ANGLES).map(|()| false),
             (Key::Turn(degrees), Step::Scale(servo)) => {
                 self.change_scale(servo, degrees).map(|()| false)
             }
@@ -140,12 +140,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
             _ => Ok(false),
         };
-        match is_done {
+        match result {
             Err(LinkError::Refused { line, reason }) if key != Key::Leave => {
                 self.message = format!("The robot refuses `{line}`: {reason}.");
                 Ok(false)
             }
-            other => other,
+            result => result,
         }
     }
 
@@ -189,12 +189,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<(), LinkError> {
-        let index = STEPS.iter().position(|other| *other == step);
+        let index = STEPS.iter().position(|step_at| *step_at == step);
         self.enter_step(index.unwrap_or(self.step_index))
     }
 
-    fn enter_step(&mut self, to: usize) -> Result<(), LinkError> {
-        match STEPS[to] {
+    fn enter_step(&mut self, index: usize) -> Result<(), LinkError> {
+        match STEPS[index] {
             Step::Horns => {
                 self.stand()?;
                 self.link.command("center")?;
@@ -203,7 +203,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             _ if self.step() == Step::Save => {}
             _ => self.stand()?,
         }
-        self.step_index = to;
+        self.step_index = index;
         Ok(())
     }
 
@@ -216,7 +216,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     /// Moves one servo by the first of these angles (degrees) that the robot accepts.
-    fn move_one(&mut self, servo: usize, angles: &[f64]) -> Result<(), LinkError> {
+    fn move_servo(&mut self, servo: usize, angles: &[f64]) -> Result<(), LinkError> {
         self.stand()?;
         let mut refusal = None;
         for angle in angles {
@@ -255,12 +255,14 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         let old = self.active_calibration.servos[servo];
         let new = old.with_scale(old.scale * (1.0 + degrees / ordered));
         next.servos[servo] = new;
-        let (n, scale, trim) = (servo + 1, new.scale, new.trim);
-        self.link.command(&format!("scale {n} {scale:.2}"))?;
+        let (servo_number, scale, trim) = (servo + 1, new.scale, new.trim);
+        self.link
+            .command(&format!("scale {servo_number} {scale:.2}"))?;
         if trim != old.trim
-            && let Err(error) = self.link.command(&format!("trim {n} {trim:.2}"))
+            && let Err(error) = self.link.command(&format!("trim {servo_number} {trim:.2}"))
         {
-            self.link.command(&format!("scale {n} {:.2}", old.scale))?;
+            self.link
+                .command(&format!("scale {servo_number} {:.2}", old.scale))?;
             return Err(error);
         }
         self.active_calibration = next;
@@ -290,18 +292,20 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             return self.enter_step(self.step_index + 1);
         }
         self.stand()?;
-        let n = servo + 1;
+        let servo_number = servo + 1;
         let mut next = self.active_calibration.clone();
         next.servos[servo] = next.servos[servo].reversed();
         let ServoSettings { dir, trim, .. } = next.servos[servo];
-        self.link.command(&format!("dir {n} {dir}"))?;
+        self.link.command(&format!("dir {servo_number} {dir}"))?;
         if trim != 0.0 {
-            self.link.command(&format!("trim {n} {trim:.2}"))?;
+            self.link
+                .command(&format!("trim {servo_number} {trim:.2}"))?;
         }
         self.active_calibration = next;
         wait_until_still(self.link)?;
-        self.message =
-            format!("The sign of A{n} is `{dir}` now. Press the space bar to look once more.");
+        self.message = format!(
+            "The sign of A{servo_number} is `{dir}` now. Press the space bar to look once more."
+        );
         Ok(())
     }
 
@@ -326,7 +330,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// `walk` if the robot has it, else its first gait besides `stand`, else `stand`.
+    /// The gait for the test walk: `walk` if the robot has it, else its first gait besides `stand`, else `stand`.
     fn first_gait(&mut self) -> Result<String, LinkError> {
         let help = self.link.command("help")?;
         let gaits = help
@@ -334,9 +338,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "));
         let gaits: Vec<&str> = gaits.flat_map(|names| names.split('|')).collect();
-        let moves = gaits.iter().copied().find(|name| *name == "walk");
-        let moves = moves.or_else(|| gaits.iter().copied().find(|name| *name != "stand"));
-        Ok(moves.unwrap_or("stand").to_owned())
+        let gait = gaits.iter().copied().find(|name| *name == "walk");
+        let gait = gait.or_else(|| gaits.iter().copied().find(|name| *name != "stand"));
+        Ok(gait.unwrap_or("stand").to_owned())
     }
 }
 
@@ -348,7 +352,7 @@ fn round_to_hundredths(value: f64) -> f64 {
 /// Waits until the robot stands still, at most [`MOTION_TIMEOUT`], and returns its pose, degrees.
 fn wait_until_still<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let mut deadline = Deadline::after(MOTION_TIMEOUT);
-    let mut last: Option<Status> = None;
+    let mut last_status: Option<Status> = None;
     loop {
         let reply = link.command("status")?;
         let status = Status::parse(&reply.answer);
@@ -360,15 +364,17 @@ fn wait_until_still<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], Lin
             });
         };
         let frames = status.frames;
-        let since = last
+        let frames_since = last_status
             .as_ref()
-            .and_then(|last| frames.checked_sub(last.frames));
+            .and_then(|last_status| frames.checked_sub(last_status.frames));
         let is_over = deadline.has_passed();
-        match since {
+        match frames_since {
             Some(0..STILL_FRAMES) if !is_over => {}
-            Some(_) if last.is_some_and(|last| last.pose == Some(pose)) => return Ok(pose),
+            Some(_) if last_status.is_some_and(|last_status| last_status.pose == Some(pose)) => {
+                return Ok(pose);
+            }
             _ if is_over => return Ok(pose),
-            _ => last = Some(status),
+            _ => last_status = Some(status),
         }
         link.pause(STATUS_INTERVAL)?;
     }

@@ -39,22 +39,22 @@ const KEY_INTERVAL: Duration = Duration::from_millis(20);
 /// Fails if there is no terminal or no board, or the connection breaks.
 pub fn run(args: Args) -> Result<(), Failure> {
     if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
-        let words = "calibrate asks for single keys; run it in a terminal";
-        return Err(Failure::Input(words.to_owned()));
+        let message = "calibrate asks for single keys; run it in a terminal";
+        return Err(Failure::Input(message.to_owned()));
     }
     let finder = args.connect.finder("calibrate")?;
     let (mut board, _) = finder.open_and_greet()?;
-    let ended = Guide::new(&mut board.link).map_err(DialogueError::from);
-    let ended = ended.and_then(|mut guide| run_guide(&mut guide));
-    match ended {
-        Ok(saved) => {
+    let result = Guide::new(&mut board.link).map_err(DialogueError::from);
+    let result = result.and_then(|mut guide| run_guide(&mut guide));
+    match result {
+        Ok(is_saved) => {
             // The terminal may be gone; then nobody can read this.
-            let words = if saved {
+            let message = if is_saved {
                 "the calibration is saved"
             } else {
                 "cancelled: the robot keeps its old calibration"
             };
-            let _ = writeln!(io::stdout(), "{words}");
+            let _ = writeln!(io::stdout(), "{message}");
             Ok(())
         }
         Err(DialogueError::Io(error)) => Err(error.into()),
@@ -75,7 +75,7 @@ fn run_guide<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
             guide.press_key(Key::Leave)?;
             Ok(false)
         }
-        ended => ended,
+        result => result,
     }
 }
 
@@ -132,8 +132,8 @@ fn interpret_key(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
-    let fine = key.modifiers.contains(KeyModifiers::SHIFT);
-    let step = if fine { 0.1 } else { 0.5 };
+    let is_fine = key.modifiers.contains(KeyModifiers::SHIFT);
+    let step = if is_fine { 0.1 } else { 0.5 };
     Some(match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => Key::Leave,
         KeyCode::Char('q' | 'Q') | KeyCode::Esc => Key::Leave,

@@ -50,14 +50,21 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let mut printer = Printer::new(true);
     for entry in &session.entries {
-        let (from, text) = match &entry.event {
+        let (sender, text) = match &entry.event {
             Event::Sent(line) => (Sender::User, line.clone()),
             Event::Answer(line) | Event::Note(line) => (Sender::Robot, line.clone()),
             Event::Gone => (Sender::Robot, "(the port was gone)".to_owned()),
             Event::Begin { .. } | Event::Status(_) | Event::Pose { .. } => continue,
         };
         let ms = entry.ms as f64;
-        printer.print(&DialogueLine { ms, from, text }, &mut out)?;
+        printer.print(
+            &DialogueLine {
+                ms,
+                from: sender,
+                text,
+            },
+            &mut out,
+        )?;
     }
     writeln!(out)?;
     summary::print(&session, &mut out)?;

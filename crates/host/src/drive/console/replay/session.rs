@@ -50,8 +50,8 @@ impl Session {
     pub(super) fn parse(text: &str) -> Result<Self, SessionError> {
         let mut entries: Vec<Entry> = Vec::new();
         for (index, line) in text.lines().enumerate() {
-            let cut = !text.ends_with('\n') && index + 1 == text.lines().count();
-            let wrong = |problem: String| match index {
+            let is_cut = !text.ends_with('\n') && index + 1 == text.lines().count();
+            let error_of = |problem: String| match index {
                 0 => SessionError::Format,
                 _ => SessionError::Line {
                     line: index + 1,
@@ -60,15 +60,17 @@ impl Session {
             };
             let entry: Entry = match serde_json::from_str(line) {
                 Ok(entry) => entry,
-                Err(_) if cut && index > 0 => break,
-                Err(error) => return Err(wrong(format!("it is not an event: {error}"))),
+                Err(_) if is_cut && index > 0 => break,
+                Err(error) => return Err(error_of(format!("it is not an event: {error}"))),
             };
-            let begins = matches!(&entry.event, Event::Begin { format, .. } if format == FORMAT);
-            if begins != (index == 0) {
-                return Err(wrong("a session begins once, in its first line".to_owned()));
+            let is_begin = matches!(&entry.event, Event::Begin { format, .. } if format == FORMAT);
+            if is_begin != (index == 0) {
+                return Err(error_of(
+                    "a session begins once, in its first line".to_owned(),
+                ));
             }
             if entry.ms > LONGEST_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
-                return Err(wrong(format!("{} ms is out of order", entry.ms)));
+                return Err(error_of(format!("{} ms is out of order", entry.ms)));
             }
             entries.push(Entry {
                 event: entry.event.plain(),
@@ -98,30 +100,31 @@ impl Session {
     /// rested or was silent.
     pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
-        let mut resting = false;
+        let mut is_resting = false;
         // The robot's frame count and the index in `widths` at the last pose for which the clock matched them.
         let mut last_match: Option<(u64, usize)> = None;
         let mut count = 0;
         // The index in `widths` of the last pose; `None` if the robot has rested or was reset since.
-        let mut last: Option<usize> = None;
+        let mut last_index: Option<usize> = None;
         for entry in &self.entries {
             match &entry.event {
-                Event::Answer(line) if line == "ok rest" => resting = true,
-                Event::Answer(line) if line == "ok stand" => resting = false,
+                Event::Answer(line) if line == "ok rest" => is_resting = true,
+                Event::Answer(line) if line == "ok stand" => is_resting = false,
                 Event::Status(line) => {
                     if let Some(status) = Status::parse(line) {
-                        resting = status.gait == "rest";
+                        is_resting = status.gait == "rest";
                     }
                 }
                 Event::Pose { frame, angles } => {
                     let slot_now = (entry.ms / FRAME_MS) as usize;
                     if *frame < count {
-                        (last_match, last) = (None, None);
+                        (last_match, last_index) = (None, None);
                     }
                     count = *frame;
                     // The robot's count is steadier than the time at which a line arrives.
-                    let counted_index = last_match.and_then(|(first, at)| {
-                        at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
+                    let counted_index = last_match.and_then(|(first_frame, first_index)| {
+                        first_index
+                            .checked_add(usize::try_from(frame.checked_sub(first_frame)?).ok()?)
                     });
                     let slot_index = counted_index
                         .filter(|slot_index| slot_index.abs_diff(slot_now) <= MAX_CLOCK_DIFFERENCE)
@@ -132,8 +135,8 @@ impl Session {
                     let Some(slot) = widths.get_mut(slot_index) else {
                         continue;
                     };
-                    if resting {
-                        last = None;
+                    if is_resting {
+                        last_index = None;
                         continue;
                     }
                     let pulses = std::array::from_fn(|servo| {
@@ -141,7 +144,7 @@ impl Session {
                         (us * CYCLES_PER_US as f64).round().clamp(1.0, 65_534.0) as u16
                     });
                     *slot = pulses;
-                    if let Some(previous_slot) = last.filter(|previous_slot| {
+                    if let Some(previous_slot) = last_index.filter(|previous_slot| {
                         slot_index.saturating_sub(*previous_slot) <= MAX_HELD_FRAMES
                     }) {
                         let held_widths = widths[previous_slot];
@@ -149,7 +152,7 @@ impl Session {
                             *slot = held_widths;
                         }
                     }
-                    last = Some(slot_index);
+                    last_index = Some(slot_index);
                 }
                 _ => {}
             }
@@ -244,8 +247,8 @@ mod tests {
 
     #[test]
     fn a_robot_that_falls_behind_the_clock_has_no_gap() {
-        let slow = (0..100).map(|n| pose(20 + 30 * n, n, 138.590378));
-        let log = session(&slow.collect::<Vec<_>>()).frames(&named("paper"));
+        let slow_poses = (0..100).map(|n| pose(20 + 30 * n, n, 138.590378));
+        let log = session(&slow_poses.collect::<Vec<_>>()).frames(&named("paper"));
         let first = log.widths.iter().position(|widths| widths[0] > 0);
         assert_eq!(first, Some(1));
         assert!(log.widths[1..140].iter().all(|widths| widths[0] == 24_000));
@@ -267,8 +270,8 @@ mod tests {
             pose(190, u64::MAX, 138.590378),
         ]);
         let log = session.frames(&named("paper"));
-        let lit: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
-        assert_eq!(lit, [1, 4, 8, 9]);
+        let pulsed_frames: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
+        assert_eq!(pulsed_frames, [1, 4, 8, 9]);
     }
 
     #[test]
@@ -281,27 +284,34 @@ mod tests {
             "{\"ms\":3000,\"sent\":\"stop\"}".to_owned(),
         ]);
         let spans = session.spans();
-        let found: Vec<(&str, f64)> = spans
+        let commands: Vec<(&str, f64)> = spans
             .iter()
             .map(|span| (span.command.as_str(), span.from))
             .collect();
-        assert_eq!(found, [("stand", 0.0), ("walk", 1.0), ("stop", 3.0)]);
+        assert_eq!(commands, [("stand", 0.0), ("walk", 1.0), ("stop", 3.0)]);
     }
 
     #[test]
     fn an_invalid_session_is_refused_with_the_line_number() {
-        let words = |text: &str| Session::parse(text).expect_err("it is wrong").to_string();
+        let message_of = |text: &str| Session::parse(text).expect_err("it is wrong").to_string();
         for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {
-            assert!(words(text).starts_with("this is not a session"), "{text}");
+            assert!(
+                message_of(text).starts_with("this is not a session"),
+                "{text}"
+            );
         }
-        let line = |line: &str| words(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
-        assert!(line("{\"ms\":10,\"flew\":1}").starts_with("line 3: it is not an event: "));
+        let message_of_third_line =
+            |line: &str| message_of(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
+        assert!(
+            message_of_third_line("{\"ms\":10,\"flew\":1}")
+                .starts_with("line 3: it is not an event: ")
+        );
         assert_eq!(
-            line("{\"ms\":8,\"gone\":null}"),
+            message_of_third_line("{\"ms\":8,\"gone\":null}"),
             "line 3: 8 ms is out of order"
         );
         assert_eq!(
-            line("{\"ms\":99999999999,\"gone\":null}"),
+            message_of_third_line("{\"ms\":99999999999,\"gone\":null}"),
             "line 3: 99999999999 ms is out of order"
         );
     }

@@ -10,7 +10,12 @@ use super::session::Session;
 /// Prints the session's length, commands, smallest margin, supply voltages and problems.
 pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     let entries = &session.entries;
-    let count = |is: fn(&Event) -> bool| entries.iter().filter(|entry| is(&entry.event)).count();
+    let count = |is_counted: fn(&Event) -> bool| {
+        entries
+            .iter()
+            .filter(|entry| is_counted(&entry.event))
+            .count()
+    };
     if let Some(Event::Begin { port, banner, .. }) = entries.first().map(|entry| &entry.event) {
         writeln!(out, "board       {port}")?;
         let banner = banner
@@ -25,9 +30,13 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         out,
         "time        {seconds:.1} s, the pose of {poses} of {frames} frames"
     )?;
-    let refused = count(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
+    let refused_count =
+        count(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
     let sent_count = count(|event| matches!(event, Event::Sent(_)));
-    writeln!(out, "commands    {sent_count}, of these refused: {refused}")?;
+    writeln!(
+        out,
+        "commands    {sent_count}, of these refused: {refused_count}"
+    )?;
 
     let statuses: Vec<(u64, Status)> = entries
         .iter()
@@ -66,7 +75,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     }
     let mut faults = 0;
     for entry in entries {
-        let words = match &entry.event {
+        let text = match &entry.event {
             Event::Note(line) if is_trouble(line) => line.trim_start_matches("# "),
             Event::Gone => "the port was gone",
             _ => continue,
@@ -74,7 +83,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         faults += 1;
         writeln!(
             out,
-            "trouble     at {:.1} s: {words}",
+            "trouble     at {:.1} s: {text}",
             entry.ms as f64 / 1000.0
         )?;
     }
@@ -96,11 +105,11 @@ fn print_range(
     name: &str,
     volts: impl Iterator<Item = f64>,
 ) -> io::Result<()> {
-    let ends = volts.fold(None, |ends: Option<(f64, f64)>, volts| {
-        let (low, high) = ends.unwrap_or((volts, volts));
+    let range = volts.fold(None, |range: Option<(f64, f64)>, volts| {
+        let (low, high) = range.unwrap_or((volts, volts));
         Some((low.min(volts), high.max(volts)))
     });
-    match ends {
+    match range {
         Some((low, high)) => writeln!(out, "{name:<12}{low:.2}..{high:.2} V"),
         None => Ok(()),
     }

@@ -106,20 +106,22 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.stop(now);
-    let mut at = now;
+    let mut time = now;
     for _ in 0..9 {
-        assert_eq!(session.next_line(at).as_deref(), Some("stop"));
-        assert_eq!(session.next_line(at), None);
-        at += STOP_INTERVAL;
+        assert_eq!(session.next_line(time).as_deref(), Some("stop"));
+        assert_eq!(session.next_line(time), None);
+        time += STOP_INTERVAL;
     }
-    let printed = session.end_overdue_question(at).expect("the user is told");
-    assert!(printed.contains("may go on"), "{printed}");
-    assert_eq!(session.end_overdue_question(at), None, "once");
+    let message = session
+        .end_overdue_question(time)
+        .expect("the user is told");
+    assert!(message.contains("may go on"), "{message}");
+    assert_eq!(session.end_overdue_question(time), None, "once");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     session.queue("walk");
-    assert_eq!(session.next_line(at), None, "others may still come");
-    at += LATE_ANSWER_TIME;
-    assert_eq!(session.next_line(at).as_deref(), Some("walk"));
+    assert_eq!(session.next_line(time), None, "others may still come");
+    time += LATE_ANSWER_TIME;
+    assert_eq!(session.next_line(time).as_deref(), Some("walk"));
     assert_eq!(session.receive("ok stop"), None, "it is not that of walk");
     assert!(!session.is_idle());
     assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
@@ -210,40 +212,40 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
             .map_err(|failure| failure.to_string())
     };
     assert_eq!(ask("walk", Some("ok walk")), Ok(()));
-    let first =
+    let message_of =
         |count| format!("the robot did not accept {count} lines, the first `fly`: err 1 no");
-    assert_eq!(ask("fly", Some("err 1 no")), Err(first("1 of 2")));
-    assert_eq!(ask("swim", Some("err 2 no")), Err(first("2 of 3")));
-    assert_eq!(ask("stop", None), Err(first("3 of 4")));
+    assert_eq!(ask("fly", Some("err 1 no")), Err(message_of("1 of 2")));
+    assert_eq!(ask("swim", Some("err 2 no")), Err(message_of("2 of 3")));
+    assert_eq!(ask("stop", None), Err(message_of("3 of 4")));
     session.receive("err 3 late");
     assert!(
         session
             .check_all_accepted()
-            .is_err_and(|it| it.to_string() == first("3 of 4"))
+            .is_err_and(|failure| failure.to_string() == message_of("3 of 4"))
     );
 }
 
-/// Runs the session for `ms`, with the robot's answers from `answer`; returns the lines that the session sends,
-/// with their times in ms.
-fn sent(
+/// Runs the session for `duration_ms`, with the robot's answers from `answer_to`; returns the lines that the session
+/// sends, with their times in ms.
+fn run_session(
     session: &mut Session,
-    from: Instant,
-    ms: u64,
-    answer: impl Fn(&str) -> String,
+    start: Instant,
+    duration_ms: u64,
+    answer_to: impl Fn(&str) -> String,
 ) -> Vec<(u64, String)> {
     let mut lines = Vec::new();
-    for at in (0..ms).step_by(10) {
-        if let Some(line) = session.next_line(from + Duration::from_millis(at)) {
-            for printed in answer(&line).lines() {
+    for time_ms in (0..duration_ms).step_by(10) {
+        if let Some(line) = session.next_line(start + Duration::from_millis(time_ms)) {
+            for printed in answer_to(&line).lines() {
                 session.receive(printed);
             }
-            lines.push((at, line));
+            lines.push((time_ms, line));
         }
     }
     lines
 }
 
-fn robot(line: &str) -> String {
+fn answer_of_robot(line: &str) -> String {
     match line {
         "status" => STATUS.to_owned(),
         "cal" => "# boot stand\n# deadman 700\nok cal".to_owned(),
@@ -251,9 +253,9 @@ fn robot(line: &str) -> String {
     }
 }
 
-fn words(lines: &[(u64, String)]) -> Vec<&str> {
-    let all = lines.iter().map(|(_, line)| line.as_str());
-    all.filter(|line| *line != "status").collect()
+fn lines_except_status(lines: &[(u64, String)]) -> Vec<&str> {
+    let texts = lines.iter().map(|(_, line)| line.as_str());
+    texts.filter(|line| *line != "status").collect()
 }
 
 #[test]
@@ -261,8 +263,8 @@ fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("walk");
-    let lines = sent(&mut session, now, 5000, robot);
-    assert_eq!(words(&lines), ["cal", "deadman 700", "walk"]);
+    let lines = run_session(&mut session, now, 5000, answer_of_robot);
+    assert_eq!(lines_except_status(&lines), ["cal", "deadman 700", "walk"]);
     let gaps = lines.windows(2).map(|pair| pair[1].0 - pair[0].0);
     assert!(gaps.max().is_some_and(|gap| gap <= 700 / 3), "{lines:?}");
 }
@@ -274,7 +276,7 @@ fn a_robot_that_just_began_to_walk_has_deadman_again_after_a_question() {
     for line in ["walk", "cal"] {
         session.queue(line);
     }
-    let lines = sent(&mut session, now, 500, robot);
+    let lines = run_session(&mut session, now, 500, answer_of_robot);
     let expected = [
         "cal",
         "deadman 700",
@@ -283,24 +285,38 @@ fn a_robot_that_just_began_to_walk_has_deadman_again_after_a_question() {
         "cal",
         "deadman 700",
     ];
-    assert_eq!(words(&lines), expected);
+    assert_eq!(lines_except_status(&lines), expected);
 }
 
 #[test]
 fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
-    let own = |line: &str| robot(line).replace("700", "2000");
+    let answer_with_own_deadman = |line: &str| answer_of_robot(line).replace("700", "2000");
     session.queue("walk");
-    let lines = sent(&mut session, now, 1000, own);
-    assert_eq!(words(&lines), ["cal", "deadman 901", "walk"]);
+    let lines = run_session(&mut session, now, 1000, answer_with_own_deadman);
+    assert_eq!(lines_except_status(&lines), ["cal", "deadman 901", "walk"]);
     session.queue("save");
-    let saved = sent(&mut session, now + Duration::from_secs(1), 500, own);
-    assert_eq!(words(&saved), ["deadman 2000", "save", "deadman 901"]);
+    let saved_lines = run_session(
+        &mut session,
+        now + Duration::from_secs(1),
+        500,
+        answer_with_own_deadman,
+    );
+    assert_eq!(
+        lines_except_status(&saved_lines),
+        ["deadman 2000", "save", "deadman 901"]
+    );
     session.stop(now + Duration::from_secs(2));
-    let stopped = |line: &str| own(line).replace("gait=walk", "gait=stop");
-    let lines = sent(&mut session, now + Duration::from_secs(2), 2000, stopped);
-    assert_eq!(words(&lines), ["stop", "deadman 2000"]);
+    let answer_of_stopped =
+        |line: &str| answer_with_own_deadman(line).replace("gait=walk", "gait=stop");
+    let lines = run_session(
+        &mut session,
+        now + Duration::from_secs(2),
+        2000,
+        answer_of_stopped,
+    );
+    assert_eq!(lines_except_status(&lines), ["stop", "deadman 2000"]);
     assert_eq!(session.restore_deadman(), None);
 }
 
@@ -309,8 +325,8 @@ fn a_robot_that_its_user_leaves_continues_with_its_own_deadman() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("arc left");
-    let left = |line: &str| robot(line).replace("700", "901");
-    sent(&mut session, now, 1000, left);
+    let answer_after_leaving = |line: &str| answer_of_robot(line).replace("700", "901");
+    run_session(&mut session, now, 1000, answer_after_leaving);
     assert_eq!(session.restore_deadman().as_deref(), Some("deadman 0"));
 }
 
@@ -319,7 +335,10 @@ fn a_script_sets_no_deadman() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false);
     session.queue("walk");
-    assert_eq!(words(&sent(&mut session, now, 1000, robot)), ["walk"]);
+    assert_eq!(
+        lines_except_status(&run_session(&mut session, now, 1000, answer_of_robot)),
+        ["walk"]
+    );
 }
 
 #[test]
@@ -332,8 +351,8 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
     session.receive("ok cal");
     assert_eq!(session.next_line(now).as_deref(), Some("deadman 901"));
     let later = now + TIMEOUT;
-    let printed = session.end_overdue_question(later).expect("it is said");
-    assert!(printed.contains("not sent"), "{printed}");
+    let message = session.end_overdue_question(later).expect("it is said");
+    assert!(message.contains("not sent"), "{message}");
     assert_eq!(session.next_line(later), None, "walk is not sent");
     assert!(session.check_all_accepted().is_err(), "a script learns it");
     session.queue("walk");
@@ -344,10 +363,10 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
 fn a_silent_robot_is_reported_once_until_it_answers_again() {
     let mut now = Instant::now();
     let mut session = Session::new(now, true, false);
-    let mut ask = |answers: bool| {
+    let mut ask = |is_answered: bool| {
         now += STATUS_INTERVAL;
         assert_eq!(session.next_line(now).as_deref(), Some("status"));
-        if answers {
+        if is_answered {
             session.receive(STATUS);
         }
         now += STATUS_TIMEOUT;

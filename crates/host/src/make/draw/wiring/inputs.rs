@@ -14,15 +14,15 @@ use crate::shared::ink::{
 /// Height of the panel, pixels.
 const HEIGHT: f64 = 214.0;
 /// x of the board's pins, pixels.
-const BOARD: f64 = 120.0;
+const BOARD_X: f64 = 120.0;
 /// x of the pins of the button and of the obstacle switch, pixels.
 const COMPONENT_X: f64 = 400.0;
 /// Pixels from a row to the next one.
-const ROW: f64 = 26.0;
+const ROW_HEIGHT: f64 = 26.0;
 /// Distance of the button's first row from the panel's top, pixels.
-const BUTTON: f64 = 58.0;
+const BUTTON_ROW_Y: f64 = 58.0;
 /// Distance of the obstacle switch's first row from the panel's top, pixels.
-const NOSE: f64 = 122.0;
+const NOSE_ROW_Y: f64 = 122.0;
 
 /// Height of a robot's panel, pixels; 0 if the robot has no inputs.
 pub fn height(robot: &Robot) -> f64 {
@@ -42,33 +42,33 @@ pub fn draw(robot: &Robot, top: f64) -> Group {
         .add(text_start(title, (30.0, top + 26.0), 15.0).set("font-weight", "bold"));
     for (name, pin) in robot.inputs().each() {
         group = match name {
-            "button" => draw_button(group, pin, top + BUTTON),
-            _ => draw_nose(group, pin, top + NOSE),
+            "button" => draw_button(group, pin, top + BUTTON_ROW_Y),
+            _ => draw_nose(group, pin, top + NOSE_ROW_Y),
         };
     }
     group
 }
 
 /// A wire from the board to a component; `names` are the component, the board's pin, and a label.
-fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
-    let [thing, of_board, of_thing] = names;
+fn draw_wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
+    let [component, board_pin, label] = names;
     // The wire crosses no other wire, so it needs no white edge, which would cut the component's outline.
-    let path = curve(&[(BOARD, y), (COMPONENT_X, y)], colour, THIN);
+    let path = curve(&[(BOARD_X, y), (COMPONENT_X, y)], colour, THIN);
     group
-        .add(path.set("id", format!("input-{thing}-{of_board}")))
+        .add(path.set("id", format!("input-{component}-{board_pin}")))
         .add(text_end(
-            &format!("UNO {of_board}"),
-            (BOARD - 10.0, y + 5.0),
+            &format!("UNO {board_pin}"),
+            (BOARD_X - 10.0, y + 5.0),
             13.0,
         ))
-        .add(text_start(of_thing, (COMPONENT_X + 40.0, y + 5.0), 13.0))
+        .add(text_start(label, (COMPONENT_X + 40.0, y + 5.0), 13.0))
         .add(draw_terminal(
-            &format!("{thing}-{of_board}"),
-            (BOARD, y),
+            &format!("{component}-{board_pin}"),
+            (BOARD_X, y),
             DARK,
         ))
         .add(draw_terminal(
-            &format!("{thing}-at-{of_board}"),
+            &format!("{component}-at-{board_pin}"),
             (COMPONENT_X, y),
             DARK,
         ))
@@ -78,17 +78,17 @@ fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
 fn draw_button(group: Group, pin: u8, y: f64) -> Group {
     let case = rectangle(
         (COMPONENT_X - 12.0, y - 14.0),
-        (44.0, ROW + 28.0),
+        (44.0, ROW_HEIGHT + 28.0),
         "#e6eef7",
     )
     .set("rx", 5);
-    let middle = y + ROW / 2.0;
+    let middle = y + ROW_HEIGHT / 2.0;
     let group = group
         .add(edged(case, DARK, 1.5))
         .add(line((COMPONENT_X, y), (COMPONENT_X + 16.0, y), DARK, THIN))
         .add(line(
-            (COMPONENT_X, y + ROW),
-            (COMPONENT_X + 16.0, y + ROW),
+            (COMPONENT_X, y + ROW_HEIGHT),
+            (COMPONENT_X + 16.0, y + ROW_HEIGHT),
             DARK,
             THIN,
         ))
@@ -97,16 +97,16 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
             DARK,
             1.5,
         ));
-    let group = wire(
+    let group = draw_wire(
         group,
         ["button", &pin_name(pin), "push button, closes when pressed"],
         y,
         ORANGE,
     );
-    wire(
+    draw_wire(
         group,
         ["button", "GND", "its other contact"],
-        y + ROW,
+        y + ROW_HEIGHT,
         BLACK,
     )
 }
@@ -115,12 +115,12 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
 fn draw_nose(group: Group, pin: u8, y: f64) -> Group {
     let case = rectangle(
         (COMPONENT_X - 12.0, y - 14.0),
-        (44.0, 2.0 * ROW + 28.0),
+        (44.0, 2.0 * ROW_HEIGHT + 28.0),
         "#e6eef7",
     )
     .set("rx", 5);
     let group = group.add(edged(case, DARK, 1.5));
-    let group = wire(
+    let group = draw_wire(
         group,
         [
             "nose",
@@ -130,11 +130,11 @@ fn draw_nose(group: Group, pin: u8, y: f64) -> Group {
         y,
         ORANGE,
     );
-    let group = wire(group, ["nose", "GND", "GND"], y + ROW, BLACK);
-    wire(
+    let group = draw_wire(group, ["nose", "GND", "GND"], y + ROW_HEIGHT, BLACK);
+    draw_wire(
         group,
         ["nose", "5V", "VCC, 3.3 to 5 V, at most 40 mA"],
-        y + 2.0 * ROW,
+        y + 2.0 * ROW_HEIGHT,
         RED,
     )
 }

@@ -24,17 +24,17 @@ use wire::{BLACK, THICK, THIN, Wire, draw_terminal};
 
 const WIDTH: f64 = 700.0;
 /// Horizontal position of the middle of the leftmost servo.
-const FIRST: f64 = 170.0;
+const FIRST_SERVO_X: f64 = 170.0;
 /// Distance between the middles of neighbouring servos.
 const SERVO_SPACING: f64 = 118.0;
 /// Vertical position of the upper edges of the servos.
-const TOP: f64 = 420.0;
+const SERVO_TOP_Y: f64 = 420.0;
 /// Width and height of a servo on the page.
-const BODY: (f64, f64) = (50.0, 92.0);
+const SERVO_SIZE: (f64, f64) = (50.0, 92.0);
 /// Distance from a servo's middle at which its supply wires leave it.
-const LEAD: f64 = 14.0;
+const LEAD_OFFSET: f64 = 14.0;
 /// Heights of the uppermost horizontal parts of the signal wires, above their strip and below it.
-const LEVELS: [f64; 2] = [530.0, 694.0];
+const SIGNAL_LEVELS: [f64; 2] = [530.0, 694.0];
 /// Heights of the horizontal parts of the ground wires of signals and board, below all other wires.
 const GROUND_LEVELS: [f64; 2] = [582.0, 748.0];
 /// Horizontal position at which the wire from the ground strip to the signal strip runs down.
@@ -43,23 +43,26 @@ const UNO: Uno = Uno {
     corner: (120.0, 776.0),
 };
 /// The middle of the board's round power socket, relative to its corner.
-const SOCKET: (f64, f64) = (-11.0, 252.0);
+const SOCKET_OFFSET: (f64, f64) = (-11.0, 252.0);
 /// Distance between the lines of the remarks.
-const LINE: f64 = 19.0;
+const LINE_HEIGHT: f64 = 19.0;
 
 /// The wiring of a robot, as SVG text.
 pub fn wiring(robot: &Robot) -> String {
     let pins = robot.servos().map(|servo| servo.pin);
-    let order = order(pins);
-    let around = order
+    let order = left_to_right(pins);
+    let wires_around = order
         .iter()
         .filter(|servo| is_analogue(pins[**servo]))
         .count();
-    let mut used = pins.to_vec();
-    used.extend(robot.firmware().rail_pin());
-    used.extend(robot.inputs().each().map(|(_, pin)| pin));
-    let notes = UNO.far_corner().1 + GAP * around as f64 + 50.0;
-    let socket = (UNO.corner.0 + SOCKET.0, UNO.corner.1 + SOCKET.1);
+    let mut used_pins = pins.to_vec();
+    used_pins.extend(robot.firmware().rail_pin());
+    used_pins.extend(robot.inputs().each().map(|(_, pin)| pin));
+    let notes_y = UNO.far_corner().1 + GAP * wires_around as f64 + 50.0;
+    let socket = (
+        UNO.corner.0 + SOCKET_OFFSET.0,
+        UNO.corner.1 + SOCKET_OFFSET.1,
+    );
     let mut group = Group::new();
     let mut wires = supply::wires(socket);
     wires.extend(strips::links());
@@ -72,22 +75,22 @@ pub fn wiring(robot: &Robot) -> String {
         .add(supply::draw(socket))
         .add(strips::draw())
         .add(strips::resistor_bodies())
-        .add(UNO.draw(&used));
+        .add(UNO.draw(&used_pins));
     for (index, servo) in order.into_iter().enumerate() {
-        group = group.add(body(servo, index, pins[servo]));
+        group = group.add(draw_servo(servo, index, pins[servo]));
     }
     let lines = remarks(robot);
-    let option = notes + LINE * lines.len() as f64 + 6.0;
-    for (index, words) in lines.iter().enumerate() {
-        let y = notes + LINE * index as f64;
-        group = group.add(text_start(words, (16.0, y), 14.0));
+    let option_y = notes_y + LINE_HEIGHT * lines.len() as f64 + 6.0;
+    for (index, remark) in lines.iter().enumerate() {
+        let y = notes_y + LINE_HEIGHT * index as f64;
+        group = group.add(text_start(remark, (16.0, y), 14.0));
     }
-    let inputs = option + radio::HEIGHT;
-    group = group.add(draw_board_notes()).add(radio::draw(option));
+    let inputs_y = option_y + radio::HEIGHT;
+    group = group.add(draw_board_notes()).add(radio::draw(option_y));
     if inputs::height(robot) > 0.0 {
-        group = group.add(inputs::draw(robot, inputs));
+        group = group.add(inputs::draw(robot, inputs_y));
     }
-    page((WIDTH, inputs + inputs::height(robot)), group)
+    page((WIDTH, inputs_y + inputs::height(robot)), group)
 }
 
 fn is_analogue(pin: u8) -> bool {
@@ -96,7 +99,7 @@ fn is_analogue(pin: u8) -> bool {
 
 /// The servos from left to right, in the order of their pins around the UNO from its upper left, so that no two
 /// signals cross.
-fn order(pins: [u8; 4]) -> [usize; 4] {
+fn left_to_right(pins: [u8; 4]) -> [usize; 4] {
     let mut order = [0, 1, 2, 3];
     order.sort_by_key(|servo| {
         let pin = pins[*servo];
@@ -107,7 +110,7 @@ fn order(pins: [u8; 4]) -> [usize; 4] {
 
 /// Horizontal position of the middle of a servo; `index` counts the servos from left to right.
 fn servo_x(index: usize) -> f64 {
-    FIRST + SERVO_SPACING * index as f64
+    FIRST_SERVO_X + SERVO_SPACING * index as f64
 }
 
 /// The wires of the servos, and those of their signals to the board. `order` has the servos from left to right.
@@ -115,30 +118,47 @@ fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
         let (x, name) = (servo_x(index), NAMES[servo]);
-        let ground = strips::ground_hole(supply::FIRST_SERVO_WAY + index);
-        let brown = vec![(x + LEAD, TOP), (x + LEAD, ground.1), ground];
-        wires.push(Wire::new(format!("ground-{name}"), brown, BROWN, THIN));
+        let ground_hole = strips::ground_hole(supply::FIRST_SERVO_WAY + index);
+        let ground_path = vec![
+            (x + LEAD_OFFSET, SERVO_TOP_Y),
+            (x + LEAD_OFFSET, ground_hole.1),
+            ground_hole,
+        ];
+        wires.push(Wire::new(
+            format!("ground-{name}"),
+            ground_path,
+            BROWN,
+            THIN,
+        ));
         // The first ways of the strip belong to the converter and the capacitor.
-        let plus = strips::supply_hole(strips::SUPPLIES - 1 - index);
-        let red = vec![(x - LEAD, TOP), (x - LEAD, plus.1), plus];
-        wires.push(Wire::new(format!("plus-{name}"), red, RED, THIN));
+        let supply_hole = strips::supply_hole(strips::SUPPLIES - 1 - index);
+        let supply_path = vec![
+            (x - LEAD_OFFSET, SERVO_TOP_Y),
+            (x - LEAD_OFFSET, supply_hole.1),
+            supply_hole,
+        ];
+        wires.push(Wire::new(format!("plus-{name}"), supply_path, RED, THIN));
     }
-    let places: [usize; 4] = [0, 1, 2, 3];
-    let from = places.map(|index| (servo_x(index), TOP + BODY.1));
-    let paths = between_rows(&from, &places.map(strips::servo_hole), LEVELS[0]);
+    let indices: [usize; 4] = [0, 1, 2, 3];
+    let servo_points = indices.map(|index| (servo_x(index), SERVO_TOP_Y + SERVO_SIZE.1));
+    let paths = between_rows(
+        &servo_points,
+        &indices.map(strips::servo_hole),
+        SIGNAL_LEVELS[0],
+    );
     for (servo, path) in order.into_iter().zip(paths) {
         let name = format!("signal-{}", NAMES[servo]);
         wires.push(Wire::new(name, path, ORANGE, THIN));
     }
-    let last = strips::ground_hole(strips::GROUNDS - 1);
-    let to = strips::signal_ground();
+    let last_hole = strips::ground_hole(strips::GROUNDS - 1);
+    let signal_hole = strips::signal_ground();
     let level = GROUND_LEVELS[0];
     let path = vec![
-        last,
-        (GROUND_WIRE_X, last.1),
+        last_hole,
+        (GROUND_WIRE_X, last_hole.1),
         (GROUND_WIRE_X, level),
-        (to.0, level),
-        to,
+        (signal_hole.0, level),
+        signal_hole,
     ];
     wires.push(Wire::new("signals-ground", path, BLACK, THICK));
     wires.extend(board_wires(order, pins));
@@ -151,20 +171,20 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let level = GROUND_LEVELS[1];
     let path = vec![from, (from.0, level), (to.0, level), to];
     let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN)];
-    let from = [0, 1, 2, 3].map(strips::board_hole);
-    let mut around = 0;
+    let strip_holes = [0, 1, 2, 3].map(strips::board_hole);
+    let mut wires_around = 0;
     let mut ends: Vec<Path> = Vec::new();
-    let to = order.map(|servo| {
+    let pin_points = order.map(|servo| {
         let pin = UNO.pin(pins[servo]);
         if !is_analogue(pins[servo]) {
             ends.push(vec![]);
             return pin;
         }
-        ends.push(route_end(UNO.far_corner(), around, pin));
-        around += 1;
-        turn_point(UNO.far_corner(), around - 1)
+        ends.push(route_end(UNO.far_corner(), wires_around, pin));
+        wires_around += 1;
+        turn_point(UNO.far_corner(), wires_around - 1)
     });
-    let paths = between_rows(&from, &to, LEVELS[1]);
+    let paths = between_rows(&strip_holes, &pin_points, SIGNAL_LEVELS[1]);
     for ((servo, mut path), end) in order.into_iter().zip(paths).zip(ends) {
         path.extend(end.iter().skip(1));
         let name = format!("pin-wire-{}", NAMES[servo]);
@@ -174,52 +194,68 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
 }
 
 /// A servo from above, with its name, its place in the robot and its pin.
-fn body(servo: usize, index: usize, pin: u8) -> Group {
+fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let x = servo_x(index);
     let colour = SERVO[servo];
-    let corner = (x - BODY.0 / 2.0, TOP);
+    let corner = (x - SERVO_SIZE.0 / 2.0, SERVO_TOP_Y);
     let name = NAMES[servo];
     Group::new()
-        .add(rectangle(corner, BODY, "white").set("rx", 5))
+        .add(rectangle(corner, SERVO_SIZE, "white").set("rx", 5))
         .add(edged(
-            rectangle(corner, BODY, colour)
+            rectangle(corner, SERVO_SIZE, colour)
                 .set("rx", 5)
                 .set("fill-opacity", 0.18),
             colour,
             2,
         ))
-        .add(edged(circle((x, TOP + 32.0), 15.0, "white"), colour, 2))
-        .add(circle((x, TOP + 32.0), 5.0, DARK))
-        .add(text_middle(name, (x, TOP + 72.0), 20.0).set("font-weight", "bold"))
-        .add(text_start(PLACES[servo], (x + 28.0, TOP + 28.0), 12.0))
+        .add(edged(
+            circle((x, SERVO_TOP_Y + 32.0), 15.0, "white"),
+            colour,
+            2,
+        ))
+        .add(circle((x, SERVO_TOP_Y + 32.0), 5.0, DARK))
+        .add(text_middle(name, (x, SERVO_TOP_Y + 72.0), 20.0).set("font-weight", "bold"))
+        .add(text_start(
+            PLACES[servo],
+            (x + 28.0, SERVO_TOP_Y + 28.0),
+            12.0,
+        ))
         .add(text_start(
             &format!("to {}", pin_name(pin)),
-            (x + 28.0, TOP + 46.0),
+            (x + 28.0, SERVO_TOP_Y + 46.0),
             13.0,
         ))
         .add(draw_terminal(
             &format!("{name}-ground"),
-            (x + LEAD, TOP),
+            (x + LEAD_OFFSET, SERVO_TOP_Y),
             BROWN,
         ))
-        .add(draw_terminal(&format!("{name}-plus"), (x - LEAD, TOP), RED))
+        .add(draw_terminal(
+            &format!("{name}-plus"),
+            (x - LEAD_OFFSET, SERVO_TOP_Y),
+            RED,
+        ))
         .add(draw_terminal(
             &format!("{name}-signal"),
-            (x, TOP + BODY.1),
+            (x, SERVO_TOP_Y + SERVO_SIZE.1),
             ORANGE,
         ))
 }
 
 /// The cable to a computer, and the 5V pin, which stays free.
 fn draw_board_notes() -> Group {
-    let five = UNO.five_volts();
-    let edge = UNO.far_corner().1;
-    let usb = UNO.corner.1 + 82.0;
+    let pin_5v = UNO.five_volts();
+    let lower_edge_y = UNO.far_corner().1;
+    let usb_y = UNO.corner.1 + 82.0;
     Group::new()
-        .add(cross(five, 6.0, RED, 2.5))
-        .add(text_middle("no servo at 5V", (five.0, edge + 17.0), 13.0))
-        .add(line((44.0, usb), (84.0, usb), GREY, 7.0))
-        .add(text_start("computer", (42.0, usb - 12.0), 13.0))
+        .add(cross(pin_5v, 6.0, RED, 2.5))
+        .add(text_middle(
+            "no servo at 5V",
+            (pin_5v.0, lower_edge_y + 17.0),
+            13.0,
+        ))
+        .add(line((44.0, usb_y), (84.0, usb_y), GREY, 7.0))
+        .add(text_start("computer", (42.0, usb_y - 12.0), 13.0))
 }
 
 /// Remarks about facts that a drawing cannot show.

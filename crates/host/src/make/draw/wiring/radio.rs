@@ -15,15 +15,15 @@ use crate::shared::ink::{
 /// Height of the panel, px.
 pub const HEIGHT: f64 = 246.0;
 /// Horizontal position of the board's pins.
-const BOARD: f64 = 120.0;
+const BOARD_X: f64 = 120.0;
 /// Horizontal position of the module's pins.
-const MODULE: f64 = 500.0;
+const MODULE_X: f64 = 500.0;
 /// Horizontal position of the diode.
-const DIODE: f64 = 300.0;
+const DIODE_X: f64 = 300.0;
 /// Horizontal position of the divider's upper resistor.
-const UPPER: f64 = 260.0;
+const UPPER_RESISTOR_X: f64 = 260.0;
 /// Horizontal position of the divider's tap and lower resistor.
-const DIVIDED: f64 = 390.0;
+const DIVIDER_X: f64 = 390.0;
 /// Rows: the board's pin, the module's pin, and the distance below the panel's top.
 const ROWS: [(&str, &str, f64); 4] = [
     ("D0 (RX)", "TXD", 64.0),
@@ -34,19 +34,39 @@ const ROWS: [(&str, &str, f64); 4] = [
 
 /// Draws the panel with its upper edge at this height.
 pub fn draw(top: f64) -> Group {
-    let y = |row: usize| top + ROWS[row].2;
-    let row = |row: usize, from: f64, to: f64| vec![(from, y(row)), (to, y(row))];
+    let y_of = |row: usize| top + ROWS[row].2;
+    let row_path = |row: usize, from: f64, to: f64| vec![(from, y_of(row)), (to, y_of(row))];
     let frame = rectangle((16.0, top), (668.0, HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
     let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
-    let divided = vec![(DIVIDED, y(1)), (DIVIDED, y(2))];
+    let divider_path = vec![(DIVIDER_X, y_of(1)), (DIVIDER_X, y_of(2))];
     let wires = [
-        Wire::new("radio-d0", row(0, BOARD, DIODE - 12.0), ORANGE, THIN),
-        Wire::new("radio-txd", row(0, DIODE + 12.0, MODULE), ORANGE, THIN),
-        Wire::new("radio-d1", row(1, BOARD, UPPER - 14.0), ORANGE, THIN),
-        Wire::new("radio-rxd", row(1, UPPER + 14.0, MODULE), ORANGE, THIN),
-        Wire::new("radio-2k", divided, DARK, LEG),
-        Wire::new("radio-ground", row(2, BOARD, MODULE), BLACK, THIN),
-        Wire::new("radio-vcc", row(3, BOARD, MODULE), RED, THIN),
+        Wire::new(
+            "radio-d0",
+            row_path(0, BOARD_X, DIODE_X - 12.0),
+            ORANGE,
+            THIN,
+        ),
+        Wire::new(
+            "radio-txd",
+            row_path(0, DIODE_X + 12.0, MODULE_X),
+            ORANGE,
+            THIN,
+        ),
+        Wire::new(
+            "radio-d1",
+            row_path(1, BOARD_X, UPPER_RESISTOR_X - 14.0),
+            ORANGE,
+            THIN,
+        ),
+        Wire::new(
+            "radio-rxd",
+            row_path(1, UPPER_RESISTOR_X + 14.0, MODULE_X),
+            ORANGE,
+            THIN,
+        ),
+        Wire::new("radio-2k", divider_path, DARK, LEG),
+        Wire::new("radio-ground", row_path(2, BOARD_X, MODULE_X), BLACK, THIN),
+        Wire::new("radio-vcc", row_path(3, BOARD_X, MODULE_X), RED, THIN),
     ];
     let mut group = Group::new().add(frame).add(
         text_start(
@@ -61,46 +81,50 @@ pub fn draw(top: f64) -> Group {
         let path = curve(&wire.path, wire.colour, wire.width);
         group = group.add(path.set("id", wire.name));
     }
-    group = draw_diode(group, (DIODE, y(0)));
-    group = draw_resistor(group, (UPPER, y(1)), (28.0, 10.0)).add(text_middle(
+    group = draw_diode(group, (DIODE_X, y_of(0)));
+    group = draw_resistor(group, (UPPER_RESISTOR_X, y_of(1)), (28.0, 10.0)).add(text_middle(
         "1 k\u{3a9}",
-        (UPPER, y(1) - 10.0),
+        (UPPER_RESISTOR_X, y_of(1) - 10.0),
         13.0,
     ));
-    let lower = (DIVIDED, (y(1) + y(2)) / 2.0);
-    group = draw_resistor(group, lower, (10.0, 26.0)).add(text_start(
+    let lower_resistor = (DIVIDER_X, (y_of(1) + y_of(2)) / 2.0);
+    group = draw_resistor(group, lower_resistor, (10.0, 26.0)).add(text_start(
         "2 k\u{3a9}",
-        (DIVIDED + 12.0, lower.1 + 5.0),
+        (DIVIDER_X + 12.0, lower_resistor.1 + 5.0),
         13.0,
     ));
     group = group
-        .add(circle((DIVIDED, y(1)), 4.5, ORANGE))
-        .add(circle((DIVIDED, y(2)), 4.5, BLACK))
-        .add(text_middle("1N4148 or BAT85", (DIODE, y(0) - 13.0), 13.0));
-    let module = rectangle((MODULE, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
+        .add(circle((DIVIDER_X, y_of(1)), 4.5, ORANGE))
+        .add(circle((DIVIDER_X, y_of(2)), 4.5, BLACK))
+        .add(text_middle(
+            "1N4148 or BAT85",
+            (DIODE_X, y_of(0) - 13.0),
+            13.0,
+        ));
+    let module = rectangle((MODULE_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
     group = group.add(edged(module, DARK, 1.5)).add(text_end(
         "HM-10, HC-05",
-        (MODULE + 142.0, top + 126.0),
+        (MODULE_X + 142.0, top + 126.0),
         13.0,
     ));
-    for (pin, of_module, below) in ROWS {
-        let y = top + below;
+    for (pin, module_pin, offset) in ROWS {
+        let y = top + offset;
         group = group
             .add(text_end(
                 &format!("UNO {pin}"),
-                (BOARD - 10.0, y + 5.0),
+                (BOARD_X - 10.0, y + 5.0),
                 13.0,
             ))
-            .add(text_start(of_module, (MODULE + 10.0, y + 5.0), 13.0))
-            .add(draw_terminal(&format!("radio-{pin}"), (BOARD, y), DARK))
+            .add(text_start(module_pin, (MODULE_X + 10.0, y + 5.0), 13.0))
+            .add(draw_terminal(&format!("radio-{pin}"), (BOARD_X, y), DARK))
             .add(draw_terminal(
-                &format!("radio-module-{of_module}"),
-                (MODULE, y),
+                &format!("radio-module-{module_pin}"),
+                (MODULE_X, y),
                 DARK,
             ));
     }
-    let words = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";
-    group.add(text_start(words, (30.0, top + 220.0), 13.0))
+    let note = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";
+    group.add(text_start(note, (30.0, top + 220.0), 13.0))
 }
 
 /// A diode that conducts from left to right, with its stripe at the right.

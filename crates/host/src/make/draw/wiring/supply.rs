@@ -12,39 +12,39 @@ use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middl
 type Point = (f64, f64);
 
 /// The battery's left edge.
-const BATTERY: f64 = 560.0;
+const BATTERY_X: f64 = 560.0;
 /// Vertical position of the battery's plus contact, and of the fuse, the switch and the single way (terminal) after
 /// them. Positions grow downwards.
-const PLUS: f64 = 40.0;
+const PLUS_Y: f64 = 40.0;
 /// Vertical position of the battery's minus contact.
-const MINUS: f64 = 112.0;
+const MINUS_Y: f64 = 112.0;
 /// Vertical positions of the contacts of the battery's balance plug.
-const BALANCE: [f64; 3] = [62.0, 76.0, 90.0];
+const BALANCE_Y: [f64; 3] = [62.0, 76.0, 90.0];
 /// The left edge of the battery's cells.
-const CELLS: f64 = 600.0;
+const CELLS_X: f64 = 600.0;
 /// The alarm's right edge.
-const ALARM: f64 = 500.0;
+const ALARM_X: f64 = 500.0;
 /// Horizontal positions of the fuse's left and right contacts.
-const FUSE_AT: [f64; 2] = [458.0, 518.0];
+const FUSE_X: [f64; 2] = [458.0, 518.0];
 /// Horizontal positions of the switch's left and right contacts.
-const SWITCH_AT: [f64; 2] = [362.0, 428.0];
+const SWITCH_X: [f64; 2] = [362.0, 428.0];
 /// Horizontal positions of the left and right holes of the single way after the switch.
-const WAY: [f64; 2] = [286.0, 322.0];
+const WAY_X: [f64; 2] = [286.0, 322.0];
 /// Distance from the middle of the single way to each of the two wires at its left hole.
 const WIRE_OFFSET: f64 = 5.0;
 /// The converter's left and right edges.
-const CONVERTER: [f64; 2] = [130.0, 235.0];
+const CONVERTER_X: [f64; 2] = [130.0, 235.0];
 /// Vertical position of the contact IN+ of the converter.
-const CONVERTER_IN_PLUS: f64 = PLUS - WIRE_OFFSET;
+const CONVERTER_IN_PLUS_Y: f64 = PLUS_Y - WIRE_OFFSET;
 /// Vertical position of the contacts IN- and OUT- of the converter.
-const CONVERTER_MINUS: f64 = 104.0;
+const CONVERTER_MINUS_Y: f64 = 104.0;
 /// The capacitor's horizontal position.
-const CAPACITOR: f64 = 150.0;
+const CAPACITOR_X: f64 = 150.0;
 /// Horizontal positions of the two wires that lead down to the round plug.
-const MARGINS: [f64; 2] = [20.0, 34.0];
+const MARGIN_WIRES_X: [f64; 2] = [20.0, 34.0];
 
 /// Parts of the supply, each with its way (terminal) of the ground strip, counted from 0.
-const GROUND_OF: [(&str, usize); 5] = [
+const WAY_OF_PART: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
     ("converter-out", 2),
@@ -53,86 +53,96 @@ const GROUND_OF: [(&str, usize); 5] = [
 ];
 
 /// The index of the ground strip's first way (terminal) for a servo.
-pub const FIRST_SERVO_WAY: usize = GROUND_OF.len();
+pub const FIRST_SERVO_WAY: usize = WAY_OF_PART.len();
 
 /// The wire hole of the ground strip for a part of the supply.
-fn ground_way(name_of_part: &str) -> Point {
-    let index = GROUND_OF.iter().find(|(name, _)| *name == name_of_part);
-    ground_hole(index.map_or(0, |(_, way)| *way))
+fn ground_hole_of(name_of_part: &str) -> Point {
+    let entry = WAY_OF_PART.iter().find(|(name, _)| *name == name_of_part);
+    ground_hole(entry.map_or(0, |(_, way)| *way))
 }
 
 /// All wires of the supply; `socket` is the middle of the board's round socket.
 pub fn wires(socket: Point) -> Vec<Wire> {
-    let [plug_plus, plug_minus] = round_plug(socket);
+    let [plug_plus, plug_minus] = round_plug_terminals(socket);
     let segment = |a: Point, b: Point| vec![a, b];
-    let thick = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
-    let out = supply_hole(0);
-    let minus = ground_way("battery");
-    let inner = ground_way("converter-in");
-    let outer = ground_way("converter-out");
-    let round = ground_way("round-plug");
+    let thick_wire = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
+    let supply_end = supply_hole(0);
+    let battery_hole = ground_hole_of("battery");
+    let converter_in_hole = ground_hole_of("converter-in");
+    let converter_out_hole = ground_hole_of("converter-out");
+    let plug_hole = ground_hole_of("round-plug");
     let mut wires = vec![
-        thick(
+        thick_wire(
             "battery-fuse",
-            segment((BATTERY, PLUS), (FUSE_AT[1], PLUS)),
+            segment((BATTERY_X, PLUS_Y), (FUSE_X[1], PLUS_Y)),
             RED,
         ),
-        thick(
+        thick_wire(
             "fuse-switch",
-            segment((FUSE_AT[0], PLUS), (SWITCH_AT[1], PLUS)),
+            segment((FUSE_X[0], PLUS_Y), (SWITCH_X[1], PLUS_Y)),
             RED,
         ),
-        thick(
+        thick_wire(
             "switch-way",
-            segment((SWITCH_AT[0], PLUS), (WAY[1], PLUS)),
+            segment((SWITCH_X[0], PLUS_Y), (WAY_X[1], PLUS_Y)),
             RED,
         ),
-        thick(
+        thick_wire(
             "way-converter",
             segment(
-                (WAY[0], CONVERTER_IN_PLUS),
-                (CONVERTER[1], CONVERTER_IN_PLUS),
+                (WAY_X[0], CONVERTER_IN_PLUS_Y),
+                (CONVERTER_X[1], CONVERTER_IN_PLUS_Y),
             ),
             RED,
         ),
-        thick(
+        thick_wire(
             "battery-ground",
-            vec![(BATTERY, MINUS), (546.0, MINUS), (546.0, minus.1), minus],
+            vec![
+                (BATTERY_X, MINUS_Y),
+                (546.0, MINUS_Y),
+                (546.0, battery_hole.1),
+                battery_hole,
+            ],
             BLACK,
         ),
-        thick(
+        thick_wire(
             "converter-in-ground",
             vec![
-                (CONVERTER[1], CONVERTER_MINUS),
-                (252.0, CONVERTER_MINUS),
-                (252.0, inner.1),
-                inner,
+                (CONVERTER_X[1], CONVERTER_MINUS_Y),
+                (252.0, CONVERTER_MINUS_Y),
+                (252.0, converter_in_hole.1),
+                converter_in_hole,
             ],
             BLACK,
         ),
-        thick(
+        thick_wire(
             "converter-out-ground",
             vec![
-                (CONVERTER[0], CONVERTER_MINUS),
-                (119.0, CONVERTER_MINUS),
-                (119.0, outer.1),
-                outer,
+                (CONVERTER_X[0], CONVERTER_MINUS_Y),
+                (119.0, CONVERTER_MINUS_Y),
+                (119.0, converter_out_hole.1),
+                converter_out_hole,
             ],
             BLACK,
         ),
-        thick(
+        thick_wire(
             "converter-supply",
-            vec![(CONVERTER[0], PLUS), (106.0, PLUS), (106.0, out.1), out],
+            vec![
+                (CONVERTER_X[0], PLUS_Y),
+                (106.0, PLUS_Y),
+                (106.0, supply_end.1),
+                supply_end,
+            ],
             RED,
         ),
         Wire::new(
             "round-plug-plus",
             vec![
-                (WAY[0], PLUS + WIRE_OFFSET),
-                (268.0, PLUS + WIRE_OFFSET),
+                (WAY_X[0], PLUS_Y + WIRE_OFFSET),
+                (268.0, PLUS_Y + WIRE_OFFSET),
                 (268.0, 138.0),
-                (MARGINS[0], 138.0),
-                (MARGINS[0], plug_plus.1),
+                (MARGIN_WIRES_X[0], 138.0),
+                (MARGIN_WIRES_X[0], plug_plus.1),
                 plug_plus,
             ],
             RED,
@@ -141,43 +151,43 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         Wire::new(
             "round-plug-ground",
             vec![
-                round,
-                (MARGINS[1], round.1),
-                (MARGINS[1], plug_minus.1),
+                plug_hole,
+                (MARGIN_WIRES_X[1], plug_hole.1),
+                (MARGIN_WIRES_X[1], plug_minus.1),
                 plug_minus,
             ],
             BLACK,
             THIN,
         ),
     ];
-    let [above, below] = capacitor();
-    wires.push(thick(
+    let [upper_leg, lower_leg] = capacitor_legs();
+    wires.push(thick_wire(
         "capacitor-ground",
-        segment(above, ground_way("capacitor")),
+        segment(upper_leg, ground_hole_of("capacitor")),
         BLACK,
     ));
-    wires.push(thick(
+    wires.push(thick_wire(
         "capacitor-supply",
-        segment(below, supply_hole(1)),
+        segment(lower_leg, supply_hole(1)),
         RED,
     ));
-    for (number, (y, colour)) in (1..).zip(BALANCE.into_iter().zip([RED, GREY_WIRE, BLACK])) {
-        let path = segment((BATTERY, y), (ALARM, y));
+    for (number, (y, colour)) in (1..).zip(BALANCE_Y.into_iter().zip([RED, GREY_WIRE, BLACK])) {
+        let path = segment((BATTERY_X, y), (ALARM_X, y));
         wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
     }
     wires
 }
 
 /// The terminals of the round plug, plus and minus.
-fn round_plug((x, y): Point) -> [Point; 2] {
+fn round_plug_terminals((x, y): Point) -> [Point; 2] {
     [(x - 40.0, y - 9.0), (x - 40.0, y + 9.0)]
 }
 
 /// The ends of the capacitor's legs, minus and plus.
-fn capacitor() -> [Point; 2] {
+fn capacitor_legs() -> [Point; 2] {
     [
-        (CAPACITOR, ground_way("capacitor").1),
-        (CAPACITOR, supply_hole(1).1),
+        (CAPACITOR_X, ground_hole_of("capacitor").1),
+        (CAPACITOR_X, supply_hole(1).1),
     ]
 }
 
@@ -191,33 +201,33 @@ pub fn draw(socket: Point) -> Group {
     group = draw_alarm(group);
     group = draw_supply_line(group);
     group = draw_converter(group);
-    let [above, below] = capacitor();
+    let [upper_leg, lower_leg] = capacitor_legs();
     group = draw_case(
         group,
-        (CAPACITOR - 9.0, above.1 + 5.0),
-        (18.0, below.1 - above.1 - 10.0),
+        (CAPACITOR_X - 9.0, upper_leg.1 + 5.0),
+        (18.0, lower_leg.1 - upper_leg.1 - 10.0),
         "#dddddd",
     )
     .add(rectangle(
-        (CAPACITOR - 9.0, above.1 + 5.0),
+        (CAPACITOR_X - 9.0, upper_leg.1 + 5.0),
         (18.0, 7.0),
         DARK,
     ))
-    .add(draw_terminal("capacitor-minus", above, DARK))
-    .add(draw_terminal("capacitor-plus", below, RED))
+    .add(draw_terminal("capacitor-minus", upper_leg, DARK))
+    .add(draw_terminal("capacitor-plus", lower_leg, RED))
     .add(text_start(
         "1000 µF, 10 V",
-        (CAPACITOR + 8.0, above.1 - 6.0),
+        (CAPACITOR_X + 8.0, upper_leg.1 - 6.0),
         13.0,
     ));
-    for (words, at) in [
+    for (label, point) in [
         ("0.5 mm\u{b2}", (300.0, 176.0)),
         ("0.25 mm\u{b2}", (140.0, 134.0)),
         ("26 AWG", (545.0, 330.0)),
     ] {
-        group = group.add(text_start(words, at, 12.0));
+        group = group.add(text_start(label, point, 12.0));
     }
-    let [plus, minus] = round_plug(socket);
+    let [plus, minus] = round_plug_terminals(socket);
     draw_case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
         .add(rectangle(
             (plus.0 + 34.0, socket.1 - 5.0),
@@ -231,30 +241,34 @@ pub fn draw(socket: Point) -> Group {
 }
 
 fn draw_battery(group: Group) -> Group {
-    let mut group = draw_case(group, (BATTERY, 18.0), (132.0, 114.0), "#f4efe2");
+    let mut group = draw_case(group, (BATTERY_X, 18.0), (132.0, 114.0), "#f4efe2");
     for (number, top) in [(2, 30.0), (1, 82.0)] {
-        group = draw_case(group, (CELLS, top), (82.0, 38.0), "white").add(text_middle(
+        group = draw_case(group, (CELLS_X, top), (82.0, 38.0), "white").add(text_middle(
             &format!("cell {number}: 3.7 V"),
-            (CELLS + 41.0, top + 23.0),
+            (CELLS_X + 41.0, top + 23.0),
             12.0,
         ));
     }
-    let inside = |group: Group, from: Point, to: Point| group.add(line(from, to, DARK, 1.6));
-    group = inside(group, (BATTERY, PLUS), (CELLS, PLUS));
-    group = inside(group, (BATTERY, BALANCE[0]), (CELLS, BALANCE[0]));
-    group = inside(group, (CELLS + 41.0, 68.0), (CELLS + 41.0, 82.0));
-    group = inside(group, (BATTERY, BALANCE[1]), (CELLS + 41.0, BALANCE[1]));
-    group = inside(group, (BATTERY, BALANCE[2]), (CELLS, BALANCE[2]));
-    group = inside(group, (BATTERY, MINUS), (CELLS, MINUS));
-    for (number, y) in (1..).zip(BALANCE) {
+    let add_line = |group: Group, from: Point, to: Point| group.add(line(from, to, DARK, 1.6));
+    group = add_line(group, (BATTERY_X, PLUS_Y), (CELLS_X, PLUS_Y));
+    group = add_line(group, (BATTERY_X, BALANCE_Y[0]), (CELLS_X, BALANCE_Y[0]));
+    group = add_line(group, (CELLS_X + 41.0, 68.0), (CELLS_X + 41.0, 82.0));
+    group = add_line(
+        group,
+        (BATTERY_X, BALANCE_Y[1]),
+        (CELLS_X + 41.0, BALANCE_Y[1]),
+    );
+    group = add_line(group, (BATTERY_X, BALANCE_Y[2]), (CELLS_X, BALANCE_Y[2]));
+    group = add_line(group, (BATTERY_X, MINUS_Y), (CELLS_X, MINUS_Y));
+    for (number, y) in (1..).zip(BALANCE_Y) {
         group = group.add(draw_terminal(
             &format!("battery-balance-{number}"),
-            (BATTERY, y),
+            (BATTERY_X, y),
             DARK,
         ));
     }
     // The plug that disconnects both wires.
-    for y in [PLUS, MINUS] {
+    for y in [PLUS_Y, MINUS_Y] {
         group = group.add(edged(
             rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808"),
             DARK,
@@ -262,23 +276,27 @@ fn draw_battery(group: Group) -> Group {
         ));
     }
     group
-        .add(draw_terminal("battery-plus", (BATTERY, PLUS), RED))
-        .add(draw_terminal("battery-minus", (BATTERY, MINUS), DARK))
+        .add(draw_terminal("battery-plus", (BATTERY_X, PLUS_Y), RED))
+        .add(draw_terminal("battery-minus", (BATTERY_X, MINUS_Y), DARK))
         .add(text_end("plug", (556.0, 24.0), 12.0))
         .add(text_end("battery, 7.4 V", (690.0, 147.0), 13.0))
 }
 
 fn draw_alarm(group: Group) -> Group {
-    let mut group = draw_case(group, (ALARM - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
-        .add(text_start("low-voltage", (ALARM - 84.0, 74.0), 13.0))
-        .add(text_start("alarm", (ALARM - 84.0, 90.0), 13.0))
+    let mut group = draw_case(group, (ALARM_X - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
+        .add(text_start("low-voltage", (ALARM_X - 84.0, 74.0), 13.0))
+        .add(text_start("alarm", (ALARM_X - 84.0, 90.0), 13.0))
         .add(text_end(
             "balance plug, its own wires",
-            (ALARM + 26.0, 113.0),
+            (ALARM_X + 26.0, 113.0),
             12.0,
         ));
-    for (number, y) in (1..).zip(BALANCE) {
-        group = group.add(draw_terminal(&format!("alarm-{number}"), (ALARM, y), DARK));
+    for (number, y) in (1..).zip(BALANCE_Y) {
+        group = group.add(draw_terminal(
+            &format!("alarm-{number}"),
+            (ALARM_X, y),
+            DARK,
+        ));
     }
     group
 }
@@ -287,77 +305,77 @@ fn draw_alarm(group: Group) -> Group {
 fn draw_supply_line(group: Group) -> Group {
     let mut group = group;
     for ([left, right], fill) in [
-        (FUSE_AT, "#fde9e9"),
-        (SWITCH_AT, "#e9f3e9"),
-        (WAY, "#f2f2f2"),
+        (FUSE_X, "#fde9e9"),
+        (SWITCH_X, "#e9f3e9"),
+        (WAY_X, "#f2f2f2"),
     ] {
-        group = draw_case(group, (left, PLUS - 13.0), (right - left, 26.0), fill);
+        group = draw_case(group, (left, PLUS_Y - 13.0), (right - left, 26.0), fill);
     }
-    let middle = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
+    let middle_of = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
     let lever = [
-        (SWITCH_AT[0] + 16.0, PLUS + 4.0),
-        (SWITCH_AT[1] - 18.0, PLUS - 8.0),
+        (SWITCH_X[0] + 16.0, PLUS_Y + 4.0),
+        (SWITCH_X[1] - 18.0, PLUS_Y - 8.0),
     ];
     group = group
-        .add(line((WAY[0], PLUS), (WAY[1], PLUS), "#c9b26b", 9.0))
+        .add(line((WAY_X[0], PLUS_Y), (WAY_X[1], PLUS_Y), "#c9b26b", 9.0))
         .add(line(lever[0], lever[1], DARK, 2.5))
-        .add(text_middle("fuse", (middle(FUSE_AT), 20.0), 13.0))
+        .add(text_middle("fuse", (middle_of(FUSE_X), 20.0), 13.0))
         .add(text_middle(
             &format!("{FUSE} A"),
-            (middle(FUSE_AT), PLUS + 5.0),
+            (middle_of(FUSE_X), PLUS_Y + 5.0),
             14.0,
         ))
         .add(text_middle(
             &format!("switch, {SWITCH} A"),
-            (middle(SWITCH_AT), 20.0),
+            (middle_of(SWITCH_X), 20.0),
             13.0,
         ))
-        .add(text_middle("single way", (middle(WAY), 20.0), 13.0));
-    let ends = [("fuse", FUSE_AT), ("switch", SWITCH_AT), ("way", WAY)];
+        .add(text_middle("single way", (middle_of(WAY_X), 20.0), 13.0));
+    let ends = [("fuse", FUSE_X), ("switch", SWITCH_X), ("way", WAY_X)];
     for (name, [left, right]) in ends {
         group = group
-            .add(draw_terminal(&format!("{name}-1"), (left, PLUS), RED))
-            .add(draw_terminal(&format!("{name}-2"), (right, PLUS), RED));
+            .add(draw_terminal(&format!("{name}-1"), (left, PLUS_Y), RED))
+            .add(draw_terminal(&format!("{name}-2"), (right, PLUS_Y), RED));
     }
     group
 }
 
 fn draw_converter(group: Group) -> Group {
-    let [left, right] = CONVERTER;
+    let [left, right] = CONVERTER_X;
     let middle = (left + right) / 2.0;
     draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
         .add(text_middle("converter", (middle, 66.0), 14.0))
         .add(text_middle("to 5.0 V, 3 A", (middle, 84.0), 14.0))
-        .add(text_start("OUT+", (left + 8.0, PLUS + 5.0), 12.0))
+        .add(text_start("OUT+", (left + 8.0, PLUS_Y + 5.0), 12.0))
         .add(text_start(
             "OUT\u{2212}",
-            (left + 8.0, CONVERTER_MINUS + 5.0),
+            (left + 8.0, CONVERTER_MINUS_Y + 5.0),
             12.0,
         ))
         .add(text_end(
             "IN+",
-            (right - 8.0, CONVERTER_IN_PLUS + 5.0),
+            (right - 8.0, CONVERTER_IN_PLUS_Y + 5.0),
             12.0,
         ))
         .add(text_end(
             "IN\u{2212}",
-            (right - 8.0, CONVERTER_MINUS + 5.0),
+            (right - 8.0, CONVERTER_MINUS_Y + 5.0),
             12.0,
         ))
-        .add(draw_terminal("converter-out-plus", (left, PLUS), RED))
+        .add(draw_terminal("converter-out-plus", (left, PLUS_Y), RED))
         .add(draw_terminal(
             "converter-out-minus",
-            (left, CONVERTER_MINUS),
+            (left, CONVERTER_MINUS_Y),
             DARK,
         ))
         .add(draw_terminal(
             "converter-in-plus",
-            (right, CONVERTER_IN_PLUS),
+            (right, CONVERTER_IN_PLUS_Y),
             RED,
         ))
         .add(draw_terminal(
             "converter-in-minus",
-            (right, CONVERTER_MINUS),
+            (right, CONVERTER_MINUS_Y),
             DARK,
         ))
 }

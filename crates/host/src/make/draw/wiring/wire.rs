@@ -47,6 +47,6 @@ impl Wire {
 }
 
 /// A terminal, where a wire ends.
-pub fn draw_terminal(name: &str, at: (f64, f64), colour: &str) -> Circle {
-    edged(circle(at, 4.5, "#e9e4d8"), colour, 2.0).set("id", format!("end-{name}"))
+pub fn draw_terminal(name: &str, point: (f64, f64), colour: &str) -> Circle {
+    edged(circle(point, 4.5, "#e9e4d8"), colour, 2.0).set("id", format!("end-{name}"))
 }

@@ -62,12 +62,12 @@ pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
         || code & 0xfe0f == 0x9200 // sts
         || code & 0xfe0c == 0x940c; // jmp, call
     let size = if is_long { 4 } else { 2 };
-    let second = if is_long {
+    let second_word = if is_long {
         word(flash, address + 2)?
     } else {
         0
     };
-    let effect = decode_effect(code, second, address);
+    let effect = decode_effect(code, second_word, address);
     Some(Instruction { effect, size })
 }
 
@@ -86,8 +86,8 @@ fn word(flash: &[u8], address: u32) -> Option<u16> {
     Some(u16::from_le_bytes([bytes[0], bytes[1]]))
 }
 
-/// The effect of the instruction with these words at a byte address; `second` is 0 if there is only one word.
-fn decode_effect(code: u16, second: u16, address: u32) -> Effect {
+/// The effect of the instruction with these words at a byte address; `second_word` is 0 if there is only one word.
+fn decode_effect(code: u16, second_word: u16, address: u32) -> Effect {
     let register = code >> 4 & 0x1f;
     match code {
         0x9508 | 0x9518 => Effect::Return, // ret, reti
@@ -95,8 +95,8 @@ fn decode_effect(code: u16, second: u16, address: u32) -> Effect {
         0x9478 => Effect::EnableInterrupts,
         _ if code & 0xfe0f == 0x920f => Effect::Push,
         _ if code & 0xfe0f == 0x900f => Effect::Pop,
-        _ if code & 0xfe0e == 0x940e => Effect::Call(far_target(code, second)),
-        _ if code & 0xfe0e == 0x940c => Effect::Jump(far_target(code, second)),
+        _ if code & 0xfe0e == 0x940e => Effect::Call(far_target(code, second_word)),
+        _ if code & 0xfe0e == 0x940c => Effect::Jump(far_target(code, second_word)),
         _ if code & 0xf000 == 0xc000 => Effect::Jump(relative_target(code, 12, address)), // rjmp
         _ if code & 0xf000 == 0xd000 => Effect::Call(relative_target(code, 12, address)), // rcall
         _ if code & 0xf800 == 0xf000 => Effect::Branch(relative_target(code >> 3, 7, address)),
@@ -104,7 +104,7 @@ fn decode_effect(code: u16, second: u16, address: u32) -> Effect {
         _ if code & 0xfc00 == 0x1000 => Effect::Skip,
         _ if code & 0xfc08 == 0xfc00 => Effect::Skip,
         _ if code & 0xfd00 == 0x9900 => Effect::Skip,
-        _ if code & 0xfe0f == 0x9200 && SP_DATA.contains(&second) => Effect::StackFromOther,
+        _ if code & 0xfe0f == 0x9200 && SP_DATA.contains(&second_word) => Effect::StackFromOther,
         _ if code & 0xf800 == 0xb000 => match (io_address(code), register) {
             (SPL, 28) => Effect::PointerFromStack,
             (SPH, 29) => Effect::None,
@@ -133,18 +133,18 @@ fn decode_effect(code: u16, second: u16, address: u32) -> Effect {
 }
 
 /// The target of `jmp` and `call`: 22 bits, which count words.
-fn far_target(code: u16, second: u16) -> u32 {
+fn far_target(code: u16, second_word: u16) -> u32 {
     let high = u32::from(code >> 3 & 0x3e | code & 1);
-    (high << 16 | u32::from(second)) * 2
+    (high << 16 | u32::from(second_word)) * 2
 }
 
 /// A target relative to the next instruction: a signed number of words with this many bits.
 fn relative_target(offset: u16, bits: u32, address: u32) -> u32 {
     let shift = 16 - bits;
-    let words = (offset << shift) as i16 >> shift;
+    let word_offset = (offset << shift) as i16 >> shift;
     address
         .wrapping_add(2)
-        .wrapping_add_signed(i32::from(words) * 2)
+        .wrapping_add_signed(i32::from(word_offset) * 2)
 }
 
 /// The I/O address of `in` and `out`.

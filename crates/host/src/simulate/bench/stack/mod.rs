@@ -60,33 +60,33 @@ impl StackDepth {
     /// See [`StackError`].
     pub fn of(image: &Image) -> Result<Self, StackError> {
         let flash = image.flash();
-        let unused = image.symbol("__bad_interrupt");
-        let unused = unused.map(|symbol| symbol.address as u32);
-        let (mut handler, mut last) = (0, 0);
+        let unused_target = image.symbol("__bad_interrupt");
+        let unused_target = unused_target.map(|symbol| symbol.address as u32);
+        let (mut handler_depth, mut final_depth) = (0, 0);
         let mut walk = Walk::new(image, &flash, Context::Interrupt);
         for vector in 1..VECTOR_COUNT {
             let target = instruction::jump_target(&flash, 0)
                 .and_then(|_| instruction::jump_target(&flash, vector * 4));
-            if let Some(target) = target.filter(|target| Some(*target) != unused) {
+            if let Some(target) = target.filter(|target| Some(*target) != unused_target) {
                 let function = walk.analyse_function(target)?;
                 match function.interrupts_enabled_at {
-                    None => handler = handler.max(ENTRY_BYTES + function.depth),
+                    None => handler_depth = handler_depth.max(ENTRY_BYTES + function.depth),
                     Some(address) if function.can_return => {
-                        let what = "lets interrupts into an interrupt";
-                        return Err(walk.error_at(target, address, what));
+                        let reason = "lets interrupts into an interrupt";
+                        return Err(walk.error_at(target, address, reason));
                     }
-                    Some(_) => last = last.max(ENTRY_BYTES + function.depth),
+                    Some(_) => final_depth = final_depth.max(ENTRY_BYTES + function.depth),
                 }
             }
         }
-        let main = Walk::new(image, &flash, Context::Main)
+        let main_depth = Walk::new(image, &flash, Context::Main)
             .analyse_function(0)?
             .depth;
         let floor = image.data_end();
         Ok(Self {
-            main,
-            handler,
-            final_handler: last,
+            main: main_depth,
+            handler: handler_depth,
+            final_handler: final_depth,
             floor,
         })
     }

@@ -8,7 +8,7 @@ use super::StackError;
 use super::instruction::{Effect, decode};
 
 /// Bytes that a call pushes.
-const RETURN_ADDRESS: i32 = 2;
+const RETURN_ADDRESS_BYTES: i32 = 2;
 
 /// The context in which the analysed code runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,16 +53,16 @@ impl SharedRoutines {
     /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are
     /// 20 - K bytes, besides the room given in r26.
     fn of(image: &Image) -> Self {
-        let all = |prefix: &str| {
-            let bytes = |symbol: &simulated_uno::Symbol| {
-                let first: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
-                Some((symbol.address as u32, 20 - first))
+        let routines_with = |prefix: &str| {
+            let saved_bytes = |symbol: &simulated_uno::Symbol| {
+                let first_register: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
+                Some((symbol.address as u32, 20 - first_register))
             };
-            image.symbols().iter().filter_map(bytes).collect()
+            image.symbols().iter().filter_map(saved_bytes).collect()
         };
         Self {
-            save: all("__frame_save_"),
-            restore: all("__frame_restore_"),
+            save: routines_with("__frame_save_"),
+            restore: routines_with("__frame_restore_"),
         }
     }
 }
@@ -116,22 +116,22 @@ impl<'a> Walk<'a> {
 
     /// Follows every path through the function at `entry`.
     fn follow_paths(&mut self, entry: u32) -> Result<Function, StackError> {
-        let mut worst = 0;
-        let mut returns = false;
-        let mut lets_in = None;
+        let mut max_depth = 0;
+        let mut can_return = false;
+        let mut interrupts_enabled_at = None;
         let mut states: HashMap<u32, State> = HashMap::new();
-        let start = State {
+        let start_state = State {
             depth: 0,
             pointer: Pointer::Unknown,
             low: 0,
             frame_size: None,
         };
-        let mut open = vec![(entry, start)];
-        while let Some((address, mut state)) = open.pop() {
+        let mut pending = vec![(entry, start_state)];
+        while let Some((address, mut state)) = pending.pop() {
             if let Some(state_before) = states.get(&address) {
                 if state_before.depth != state.depth {
-                    let what = "is reached with more or less on the stack than before";
-                    return Err(self.error_at(entry, address, what));
+                    let reason = "is reached with more or less on the stack than before";
+                    return Err(self.error_at(entry, address, reason));
                 }
                 if state_before.pointer == state.pointer || state_before.pointer == Pointer::Unknown
                 {
@@ -143,38 +143,40 @@ impl<'a> Walk<'a> {
             let Some(instruction) = decode(self.flash, address) else {
                 return Err(self.error_at(entry, address, "runs out of the code"));
             };
-            let next = address + instruction.size;
-            let room = state.frame_size.take().map(i32::from);
-            let mut next_addresses = vec![next];
+            let next_address = address + instruction.size;
+            let frame_bytes = state.frame_size.take().map(i32::from);
+            let mut next_addresses = vec![next_address];
             match instruction.effect {
                 // A call of the next instruction: short code that makes room for two bytes.
-                Effect::Call(target) if target == next => state.depth += RETURN_ADDRESS,
+                Effect::Call(target) if target == next_address => {
+                    state.depth += RETURN_ADDRESS_BYTES
+                }
                 Effect::Call(target) if self.shared.save.contains_key(&target) => {
-                    let Some(room) = room else {
-                        return Err(self.error_at(entry, address, ROOM));
+                    let Some(frame_bytes) = frame_bytes else {
+                        return Err(self.error_at(entry, address, UNKNOWN_ROOM));
                     };
-                    state.depth += self.shared.save[&target] + room;
+                    state.depth += self.shared.save[&target] + frame_bytes;
                     state.pointer = Pointer::Depth(state.depth);
                     // The return address of the shared prologue lies below the room that the prologue makes.
-                    worst = worst.max(state.depth + RETURN_ADDRESS);
+                    max_depth = max_depth.max(state.depth + RETURN_ADDRESS_BYTES);
                 }
                 Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
-                    let Some(room) = room else {
-                        return Err(self.error_at(entry, address, ROOM));
+                    let Some(frame_bytes) = frame_bytes else {
+                        return Err(self.error_at(entry, address, UNKNOWN_ROOM));
                     };
-                    if state.depth != self.shared.restore[&target] + room {
-                        let what = "restores other registers than it saved";
-                        return Err(self.error_at(entry, address, what));
+                    if state.depth != self.shared.restore[&target] + frame_bytes {
+                        let reason = "restores other registers than it saved";
+                        return Err(self.error_at(entry, address, reason));
                     }
-                    returns = true;
+                    can_return = true;
                     next_addresses.clear();
                 }
                 Effect::Call(target) => {
-                    let called = self.analyse_function(target)?;
-                    let callee_depth = i32::from(called.depth);
-                    worst = worst.max(state.depth + RETURN_ADDRESS + callee_depth);
-                    lets_in = lets_in.or(called.interrupts_enabled_at);
-                    if !called.can_return {
+                    let callee = self.analyse_function(target)?;
+                    let callee_depth = i32::from(callee.depth);
+                    max_depth = max_depth.max(state.depth + RETURN_ADDRESS_BYTES + callee_depth);
+                    interrupts_enabled_at = interrupts_enabled_at.or(callee.interrupts_enabled_at);
+                    if !callee.can_return {
                         next_addresses.clear();
                     }
                 }
@@ -183,11 +185,12 @@ impl<'a> Walk<'a> {
                 Effect::Jump(target) => next_addresses = vec![target],
                 Effect::Branch(target) => next_addresses.push(target),
                 Effect::Skip => {
-                    let skipped = decode(self.flash, next).map_or(2, |skipped| skipped.size);
-                    next_addresses.push(next + skipped);
+                    let skipped_size =
+                        decode(self.flash, next_address).map_or(2, |skipped| skipped.size);
+                    next_addresses.push(next_address + skipped_size);
                 }
                 Effect::Return if state.depth == 0 => {
-                    returns = true;
+                    can_return = true;
                     next_addresses.clear();
                 }
                 Effect::Return => {
@@ -198,28 +201,30 @@ impl<'a> Walk<'a> {
                     ));
                 }
                 Effect::Indirect => {
-                    let what = "goes to an address that it computes";
-                    return Err(self.error_at(entry, address, what));
+                    let reason = "goes to an address that it computes";
+                    return Err(self.error_at(entry, address, reason));
                 }
                 Effect::EnableInterrupts if self.context == Context::Interrupt => {
-                    lets_in = Some(address);
+                    interrupts_enabled_at = Some(address);
                 }
-                Effect::StackFromOther => return Err(self.error_at(entry, address, POINTER)),
+                Effect::StackFromOther => {
+                    return Err(self.error_at(entry, address, UNKNOWN_POINTER));
+                }
                 effect => {
                     if !state.apply(effect) {
-                        return Err(self.error_at(entry, address, POINTER));
+                        return Err(self.error_at(entry, address, UNKNOWN_POINTER));
                     }
                 }
             }
-            worst = worst.max(state.depth);
-            open.extend(next_addresses.into_iter().map(|address| (address, state)));
+            max_depth = max_depth.max(state.depth);
+            pending.extend(next_addresses.into_iter().map(|address| (address, state)));
         }
-        let depth = u16::try_from(worst)
+        let depth = u16::try_from(max_depth)
             .map_err(|_| self.error_at(entry, entry, "needs more stack than there is"))?;
         Ok(Function {
             depth,
-            can_return: returns,
-            interrupts_enabled_at: lets_in,
+            can_return,
+            interrupts_enabled_at,
         })
     }
 
@@ -229,23 +234,23 @@ impl<'a> Walk<'a> {
             symbol.is_function && u64::from(entry) >= symbol.address
         };
         let symbols = self.image.symbols().iter().filter(is_before);
-        let nearest = symbols.max_by_key(|symbol| symbol.address);
+        let nearest_symbol = symbols.max_by_key(|symbol| symbol.address);
         StackError {
-            function: nearest.map_or_else(|| "the code".to_owned(), |symbol| symbol.path()),
+            function: nearest_symbol.map_or_else(|| "the code".to_owned(), |symbol| symbol.path()),
             address,
             what,
         }
     }
 }
 
-const ROOM: &str = "makes room of an unknown size";
-const POINTER: &str = "sets the stack pointer to something unknown";
+const UNKNOWN_ROOM: &str = "makes room of an unknown size";
+const UNKNOWN_POINTER: &str = "sets the stack pointer to something unknown";
 
 impl State {
     /// Applies an instruction that only changes the stack or its pointer. Returns false
     /// if the stack pointer would become unknown.
     fn apply(&mut self, effect: Effect) -> bool {
-        let add = |pointer: Pointer, change: i16| match pointer {
+        let add_to = |pointer: Pointer, change: i16| match pointer {
             Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(change)),
             Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(change)),
             Pointer::Unknown => Pointer::Unknown,
@@ -262,11 +267,11 @@ impl State {
                     Pointer::Unknown => return false,
                 }
             }
-            Effect::AddToPointer(change) => self.pointer = add(self.pointer, change),
+            Effect::AddToPointer(change) => self.pointer = add_to(self.pointer, change),
             Effect::SubtractLow(low) => self.low = low,
             Effect::SubtractHigh(high) => {
                 let amount = i16::from_le_bytes([self.low, high]);
-                self.pointer = add(self.pointer, amount.wrapping_neg());
+                self.pointer = add_to(self.pointer, amount.wrapping_neg());
             }
             Effect::LoadLow(low) => self.pointer = Pointer::Address(low.into()),
             Effect::LoadHigh(high) => {

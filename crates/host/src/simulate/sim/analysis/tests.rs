@@ -2,20 +2,20 @@
 
 use super::*;
 
-fn robot() -> Robot {
+fn paper_robot() -> Robot {
     crate::shared::robot_file::named("paper")
 }
 
 /// Frames with the pulses for `angles(seconds)`; the first one is at 1 s.
 fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
-    let width = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
-    let frame = |n: u64| {
+    let width_of = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
+    let widths_at = |n: u64| {
         let angles = angles(n as f64 / 50.0);
-        std::array::from_fn(|i| width(i, angles[i]))
+        std::array::from_fn(|i| width_of(i, angles[i]))
     };
     FrameLog {
         first: FREQUENCY,
-        widths: (0..count).map(frame).collect(),
+        widths: (0..count).map(widths_at).collect(),
         ..FrameLog::default()
     }
 }
@@ -27,15 +27,15 @@ fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
 
 #[test]
 fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
-    let robot = robot();
+    let robot = paper_robot();
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = frames_of(&robot, 2, |_| pose);
     let (robot, log) = (&robot, &log);
-    let first = Run { robot, log }
+    let first_frame = Run { robot, log }
         .servo_frames()
         .next()
         .expect("two frames");
-    let angles = first.angles.expect("all four have a pulse");
+    let angles = first_frame.angles.expect("all four have a pulse");
     for i in 0..4 {
         // Half a cycle of 62.5 ns at 10 us per degree.
         assert!(
@@ -45,12 +45,12 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
             pose[i]
         );
     }
-    assert_eq!(first.seconds, 1.0);
+    assert_eq!(first_frame.seconds, 1.0);
 }
 
 #[test]
 fn walking_and_turning_lead_where_the_contact_model_says() {
-    let robot = robot();
+    let robot = paper_robot();
     for (gait, forward, turn) in [
         ("walk", 34.16, 0.0),
         ("left", 0.0, 15.34),
@@ -67,17 +67,24 @@ fn walking_and_turning_lead_where_the_contact_model_says() {
             log: &frames,
         };
         let paths = command_paths(run, &[span]);
-        let all = paths.last().expect("the whole run");
-        let error = |found: Option<f64>, wanted: f64| found.map(|found| (found - wanted).abs());
-        assert!(error(all.forward, forward) < Some(0.35), "{gait}: {all:?}");
-        assert!(error(all.turn, turn) < Some(0.2), "{gait}: {all:?}");
-        assert!(all.forward.is_some() && all.turn.is_some());
+        let whole_path = paths.last().expect("the whole run");
+        let error_of =
+            |actual: Option<f64>, expected: f64| actual.map(|actual| (actual - expected).abs());
+        assert!(
+            error_of(whole_path.forward, forward) < Some(0.35),
+            "{gait}: {whole_path:?}"
+        );
+        assert!(
+            error_of(whole_path.turn, turn) < Some(0.2),
+            "{gait}: {whole_path:?}"
+        );
+        assert!(whole_path.forward.is_some() && whole_path.turn.is_some());
     }
 }
 
 #[test]
 fn a_path_that_depends_on_a_tie_is_not_reported() {
-    let robot = robot();
+    let robot = paper_robot();
     let log = gait_frames(&robot, "look", 100);
     let run = Run {
         robot: &robot,
@@ -95,7 +102,7 @@ fn a_path_that_depends_on_a_tie_is_not_reported() {
 
 #[test]
 fn the_steps_of_a_path_add_up_to_the_path() {
-    let robot = robot();
+    let robot = paper_robot();
     for gait in ["arc-left", "right"] {
         let log = gait_frames(&robot, gait, 400);
         let run = Run {
@@ -108,29 +115,33 @@ fn the_steps_of_a_path_add_up_to_the_path() {
             to,
         };
         let paths = command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
-        let whole = robot
-            .ground()
-            .travel(run.servo_frames().filter_map(|at| at.sweeps));
-        let [first, second, all] = &paths[..] else {
+        let whole_travel = robot.ground().travel(
+            run.servo_frames()
+                .filter_map(|servo_frame| servo_frame.sweeps),
+        );
+        let [first, second, whole_path] = &paths[..] else {
             panic!("two commands and the whole: {paths:?}")
         };
-        let travel = |path: &CommandPath| Travel {
+        let travel_of = |path: &CommandPath| Travel {
             forward: path.forward.expect("it is decided"),
             left: path.left.expect("it is decided"),
             turn: path.turn.expect("it is decided"),
         };
-        let distance = |a: Travel, b: Travel| {
+        let distance_between = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
-        assert!(distance(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
-        let both = compose_travel(travel(first), travel(second));
-        assert!(distance(travel(all), both) < 1e-6);
+        assert!(
+            distance_between(travel_of(whole_path), whole_travel) < 1e-6,
+            "{whole_path:?} {whole_travel:?}"
+        );
+        let combined = compose_travel(travel_of(first), travel_of(second));
+        assert!(distance_between(travel_of(whole_path), combined) < 1e-6);
     }
 }
 
 #[test]
 fn the_table_has_widths_periods_slew_and_errors() {
-    let robot = robot();
+    let robot = paper_robot();
     let mut frames = frames_of(&robot, 3, |seconds| {
         let mut angles: [f64; 4] = robot.neutral().into();
         angles[0] += 100.0 * seconds;
@@ -160,12 +171,12 @@ fn the_table_has_widths_periods_slew_and_errors() {
 
 #[test]
 fn a_pose_near_a_singularity_is_reported() {
-    let robot = robot();
-    let of = |log: &FrameLog| check_safety(Run { robot: &robot, log });
-    let fine = of(&gait_frames(&robot, "walk", 50));
-    assert_eq!(fine.violations, 0);
-    assert!(fine.least.is_some_and(|min| min.value > 0.3));
-    let found = of(&frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
-    assert_eq!(found.violations, 2);
-    assert!(found.first_violation.is_some());
+    let robot = paper_robot();
+    let safety_of = |log: &FrameLog| check_safety(Run { robot: &robot, log });
+    let walk_safety = safety_of(&gait_frames(&robot, "walk", 50));
+    assert_eq!(walk_safety.violations, 0);
+    assert!(walk_safety.least.is_some_and(|min| min.value > 0.3));
+    let singular_safety = safety_of(&frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
+    assert_eq!(singular_safety.violations, 2);
+    assert!(singular_safety.first_violation.is_some());
 }

@@ -4,11 +4,11 @@ use crate::drive::console::double::{PAPER, connect_paper_robot};
 use lizard_core::virtual_board::RunningRobot;
 
 fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
-    let mut done = false;
+    let mut is_done = false;
     for key in keys {
-        done = guide.press_key(*key).expect("the robot answers");
+        is_done = guide.press_key(*key).expect("the robot answers");
     }
-    done
+    is_done
 }
 
 const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
@@ -61,15 +61,15 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     assert!(guide.is_saved(), "{:?}", guide.view());
     press(&mut guide, &[Key::Back]);
     assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
-    let left = calibration::ask(&mut link).expect("it answers");
-    assert_eq!(left.servos[0].trim, 0.9);
+    let after_leaving = calibration::ask(&mut link).expect("it answers");
+    assert_eq!(after_leaving.servos[0].trim, 0.9);
     link.command("factory").expect("it is accepted");
     link.command("load").expect("it was saved");
-    let kept = calibration::ask(&mut link).expect("it answers");
-    assert_eq!(kept.servos[0].trim, 0.9);
-    assert_eq!(kept.servos[1].trim, -0.5);
-    assert_eq!(kept.servos[1].dir, '-');
-    assert_eq!(kept.servos[2].dir, '+');
+    let loaded = calibration::ask(&mut link).expect("it answers");
+    assert_eq!(loaded.servos[0].trim, 0.9);
+    assert_eq!(loaded.servos[1].trim, -0.5);
+    assert_eq!(loaded.servos[1].dir, '-');
+    assert_eq!(loaded.servos[2].dir, '+');
 }
 
 #[test]
@@ -112,8 +112,8 @@ fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
     assert_eq!(guide.active_calibration.servos[0].trim, -3.0);
-    let now = calibration::ask(&mut link).expect("it answers");
-    assert_eq!((now.servos[0].trim, now.servos[0].dir), (-3.0, '-'));
+    let current = calibration::ask(&mut link).expect("it answers");
+    assert_eq!((current.servos[0].trim, current.servos[0].dir), (-3.0, '-'));
 }
 
 #[test]
@@ -135,13 +135,13 @@ fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
 #[test]
 fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
     // The slowest that a robot may be, and the smallest turn of a key.
-    let slow = PAPER.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
-    assert_ne!(slow, PAPER);
+    let slow_robot = PAPER.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
+    assert_ne!(slow_robot, PAPER);
     for (text, degrees) in [
         (PAPER, 10.0),
         (PAPER, 0.1),
-        (slow.as_str(), 10.0),
-        (slow.as_str(), 0.1),
+        (slow_robot.as_str(), 10.0),
+        (slow_robot.as_str(), 0.1),
     ] {
         let robot = lizard_robot::Robot::parse(text).expect("it is right");
         let mut running = RunningRobot::power_on(*robot.firmware());
@@ -150,14 +150,14 @@ fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
         let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
         let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + degrees);
         assert!(running.send_line(&line).starts_with("ok pose"), "{line}");
-        let unseen = (0..100).take_while(|_| {
+        let unseen_frames = (0..100).take_while(|_| {
             running.run_frames(1);
             running.status("pose") == before
         });
-        let unseen = unseen.count() as u64;
+        let unseen_frames = unseen_frames.count() as u64;
         assert!(
-            unseen + 2 < STILL_FRAMES,
-            "{degrees} deg: {unseen} frames show nothing"
+            unseen_frames + 2 < STILL_FRAMES,
+            "{degrees} deg: {unseen_frames} frames show nothing"
         );
     }
 }
@@ -185,7 +185,7 @@ fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
 }
 
 /// The keys from the beginning to the first scale.
-fn to_scales() -> Vec<Key> {
+fn keys_to_scales() -> Vec<Key> {
     let mut keys = vec![Key::Next, Key::Next];
     keys.extend(CONFIRM_SIGN_KEYS.repeat(4));
     keys.extend([Key::Next; 4]);
@@ -198,7 +198,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     let mut link = connect_paper_robot();
     link.command("trim 1 2.00").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
-    press(&mut guide, &to_scales());
+    press(&mut guide, &keys_to_scales());
     assert!(
         guide
             .view()
@@ -208,15 +208,18 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     press(&mut guide, &[Key::Turn(0.5)]);
     assert!(guide.view().message.contains("space bar first"));
     press(&mut guide, &[Key::Act]);
-    let by = guide.moved_degrees.expect("it was moved");
-    assert!(by.abs() >= 20.0, "{by}");
-    // Four corrections by half a degree of a turn of `by` degrees.
+    let moved_degrees = guide.moved_degrees.expect("it was moved");
+    assert!(moved_degrees.abs() >= 20.0, "{moved_degrees}");
+    // Four corrections by half a degree of a turn of `moved_degrees` degrees.
     press(&mut guide, &[Key::Turn(0.5); 4]);
-    let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
-    let now = calibration::ask(&mut link).expect("it answers").servos[0];
-    assert!((now.scale - expected).abs() < 0.03, "{now:?}");
+    let expected = 10.0 * (1.0 + 0.5 / moved_degrees).powi(4);
+    let current = calibration::ask(&mut link).expect("it answers").servos[0];
+    assert!((current.scale - expected).abs() < 0.03, "{current:?}");
     // The neutral pulse is unchanged: its offset is trim times scale.
-    assert!((now.trim * now.scale - 20.0).abs() < 0.2, "{now:?}");
+    assert!(
+        (current.trim * current.scale - 20.0).abs() < 0.2,
+        "{current:?}"
+    );
 }
 
 #[test]
@@ -224,18 +227,24 @@ fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     let mut link = connect_paper_robot();
     let before = calibration::ask(&mut link).expect("it answers").servos[0];
     let mut guide = Guide::new(&mut link).expect("it answers");
-    press(&mut guide, &to_scales());
+    press(&mut guide, &keys_to_scales());
     press(&mut guide, &[Key::Next; 4]);
     let title = guide.view().title;
     assert!(title.contains("how far may A1, front left turn"), "{title}");
     press(&mut guide, &[Key::Turn(0.5); 3]);
     press(&mut guide, &[Key::Turn(-0.1); 2]);
-    let now = guide.active_calibration.servos[0];
-    assert_eq!(now.limit, [before.limit[0] + 3.0, before.limit[1] - 2.0]);
+    let current = guide.active_calibration.servos[0];
+    assert_eq!(
+        current.limit,
+        [before.limit[0] + 3.0, before.limit[1] - 2.0]
+    );
     press(&mut guide, &[Key::Turn(-0.1); 90]);
     let view = guide.view();
     assert!(view.message.contains("refuses `limit 1"), "{view:?}");
-    let now = calibration::ask(&mut link).expect("it answers").servos[0];
-    let shown = format!("    limits {:.2} to {:.2} deg", now.limit[0], now.limit[1]);
-    assert!(view.text.contains(&shown), "{view:?}, {now:?}");
+    let current = calibration::ask(&mut link).expect("it answers").servos[0];
+    let shown = format!(
+        "    limits {:.2} to {:.2} deg",
+        current.limit[0], current.limit[1]
+    );
+    assert!(view.text.contains(&shown), "{view:?}, {current:?}");
 }

@@ -23,8 +23,8 @@ pub struct View {
 impl<P: Read + Write> Guide<'_, P> {
     /// The screen for the current step.
     pub fn view(&self) -> View {
-        let servo = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
-        let next = "Enter: next    b: back    q: cancel, nothing is saved";
+        let servo_name = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
+        let next_keys = "Enter: next    b: back    q: cancel, nothing is saved";
         let (name, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
                 "before you begin".to_owned(),
@@ -35,9 +35,14 @@ impl<P: Read + Write> Guide<'_, P> {
                 "Enter: next    q: cancel, nothing is saved",
             ),
             Step::Horns => {
-                let angle =
-                    |index| format!("    {:<16} {:6.2} deg\n", servo(index), self.neutral[index]);
-                let angles: String = (0..4).map(angle).collect();
+                let angle_line = |index| {
+                    format!(
+                        "    {:<16} {:6.2} deg\n",
+                        servo_name(index),
+                        self.neutral[index]
+                    )
+                };
+                let angles: String = (0..4).map(angle_line).collect();
                 let text = format!(
                     "Every servo stands in its middle now, and holds.\n\
                      Take the horns off. Press each crank on as near to its angle as the\n\
@@ -46,23 +51,23 @@ impl<P: Read + Write> Guide<'_, P> {
                      {angles}\n\
                      If the horns are on already, go on."
                 );
-                ("fit the horns".to_owned(), text, next)
+                ("fit the horns".to_owned(), text, next_keys)
             }
             Step::Sign(index) => {
                 let ordered = self.moved_degrees.unwrap_or(SIGN_ANGLES[0]);
-                let sense = if ordered < 0.0 {
+                let direction = if ordered < 0.0 {
                     "clockwise"
                 } else {
                     "counter-clockwise"
                 };
                 let text = format!(
                     "The space bar moves A{} alone, by {:.0} degrees.\n\
-                     Seen from above: did it turn {sense}?",
+                     Seen from above: did it turn {direction}?",
                     index + 1,
                     ordered.abs()
                 );
                 (
-                    format!("which way does {} turn?", servo(index)),
+                    format!("which way does {} turn?", servo_name(index)),
                     text,
                     "space: move it    y: yes    n: no    b: back    q: cancel, nothing is saved",
                 )
@@ -78,7 +83,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     self.active_calibration.servos[index].trim
                 );
                 (
-                    format!("straighten {}", servo(index)),
+                    format!("straighten {}", servo_name(index)),
                     text,
                     "left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
                 )
@@ -104,7 +109,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     self.active_calibration.servos[index].scale
                 );
                 (
-                    format!("how far does {} turn?", servo(index)),
+                    format!("how far does {} turn?", servo_name(index)),
                     text,
                     "space: move it    left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
                 )
@@ -119,32 +124,32 @@ impl<P: Read + Write> Guide<'_, P> {
                     index + 1
                 );
                 (
-                    format!("how far may {} turn?", servo(index)),
+                    format!("how far may {} turn?", servo_name(index)),
                     text,
                     "left, right: first, 1 deg    up, down: second, 1 deg    Enter: next    b: back    q: leave",
                 )
             }
             Step::Walk => {
-                let bar = match self.is_walking {
+                let hint = match self.is_walking {
                     true => "It walks. The space bar ends it.",
                     false => "The space bar starts it, and ends it.",
                 };
                 (
                     "a test walk".to_owned(),
-                    format!("Put the robot on the floor, with room in front of it.\n{bar}"),
+                    format!("Put the robot on the floor, with room in front of it.\n{hint}"),
                     "space: start, stop    Enter: next    b: back    q: cancel, nothing is saved",
                 )
             }
             Step::Save => {
                 let mut text = "This will be kept in the board:\n\n".to_owned();
-                for (index, set) in self.active_calibration.servos.iter().enumerate() {
-                    let [min, max] = set.limit;
+                for (index, settings) in self.active_calibration.servos.iter().enumerate() {
+                    let [min, max] = settings.limit;
                     text += &format!(
                         "    {:<15} sign {}  trim {:+.2}  limits {min:.2} to {max:.2}  scale {:.2}\n",
-                        servo(index),
-                        set.dir,
-                        set.trim,
-                        set.scale
+                        servo_name(index),
+                        settings.dir,
+                        settings.trim,
+                        settings.scale
                     );
                 }
                 text += "\nTrims and limits in deg, scales in us per deg.";
