@@ -1,5 +1,5 @@
 //! The note in the ELF file that tells stock simavr the chip, the clock and the voltages. It is not
-//! part of the flash. Without the note, simavr assumes a supply of 3.3 V, too low to move.
+//! part of the flash. Without the note, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
 
 /// Returns a tag of simavr's `avr_mcu_section.h` with a number of 32 bits.
 const fn number(tag: u8, value: u32) -> [u8; 6] {

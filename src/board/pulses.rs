@@ -9,7 +9,7 @@ use servo_pulses::Pin;
 
 servo_pulses::engine!(later: 4);
 
-/// Connects A1 to A4 to the pins with these Arduino numbers. A robot with other numbers is refused
+/// Connects the servos A1 to A4 to the pins with these Arduino numbers. A robot with other numbers is refused
 /// ([`lizard_core::numbers::robot::Robot::open`]).
 #[inline(always)]
 pub fn connect_numbers(numbers: [u8; 4]) {

@@ -9,7 +9,7 @@
 //!
 //! Do not use this crate on an AVR with more than 64 KiB of flash: addresses have 16 bits here. For tables that
 //! are always indexed within their bounds, `avr-progmem` also keeps them in flash; it has a richer interface, and
-//! needs a nightly compiler.
+//! needs a nightly compiler on other machines, too.
 
 #![no_std]
 #![allow(unsafe_code)] // Access to flash and the multiplier needs it; see flash.rs, multiply.rs.

@@ -7,8 +7,8 @@
 
 use crate::{Flash, Plain};
 
-/// True for a build that avr-gcc links alone. Its code is longer, since tools/linker does not shorten it, so the
-/// region begins later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
+/// True if avr-gcc links the program without tools/linker, which makes the code shorter: without it the region begins
+/// later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
 const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(value) => matches!(value.as_bytes(), b"1"),
     None => false,

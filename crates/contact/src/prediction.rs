@@ -11,8 +11,8 @@ use crate::walker::Walker;
 
 /// Unevenness of the pads in the test for ties, as a share. No printed pad and no floor is more even.
 const UNEVEN: f64 = 0.01;
-/// Share of the path's length, or of the sum of its turns, up to which a difference on uneven pads leaves a part of
-/// the movement decided.
+/// Largest difference on uneven pads of a component of the movement that counts as decided, as a share of the path's
+/// length, or of the sum of its turns.
 const DECIDED_SHARE: f64 = 0.05;
 /// Difference on uneven pads up to which a movement ahead or to the left is always decided, mm.
 const DECIDED_LENGTH: f64 = 1.0;
@@ -65,11 +65,12 @@ impl Ground {
     ///
     /// The same sweeps are followed on uneven pads: the load of each pad in turn, then the backward friction of all
     /// of them, is changed by a hundredth. If two feet pull against two, the body then follows one pair or the
-    /// other. A part of the movement is undecided if it differs at the end by more than 1 mm (0.5 deg) and by more
-    /// than a twentieth of the length of the path (of the sum of its turns). Ahead and turn are also compared step
-    /// by step: a body dragged to and fro by one pair of feet ends at its start, whichever pair it is, but if the
-    /// pairs change in between, it may end anywhere on that path. For the movement to the side only the end counts:
-    /// legs that swing together always spread and close, and bring the body back within one swing.
+    /// other. The distances ahead and to the left are undecided if they differ at the end by more than 1 mm and by
+    /// more than a twentieth of the length of the path; the turn, if it differs by more than 0.5 deg and by more than a
+    /// twentieth of the sum of all turns. The distance ahead and the turn are also compared step by step: a body
+    /// dragged to and fro by one pair of feet ends at its start, whichever pair it is, but if the pairs change in
+    /// between, it may end anywhere on that path. For the movement to the side only the end counts: legs that swing
+    /// together always spread and close, and bring the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
         let mut sweeps = sweeps.into_iter();
         let first_sweeps = sweeps.next().unwrap_or_default();

@@ -1,9 +1,10 @@
 //! The fit of all keys, and the choice of the keys whose value changes.
 //!
-//! First all keys are free. The standard errors of this fit are the ones that are reported, since they trust none
-//! of the file's values. Then keys return to the file's value one by one: always the key that is nearest to its
-//! file value in units of its error, as long as that distance is below two. After each step the free keys adjust,
-//! so if two keys have the same effect, one of them explains what both have to explain.
+//! First all keys are free. The standard errors of this fit are the ones that are reported, since no key is
+//! held at its file value there: the file has a part in them only by the wide priors. Then keys return to the file's
+//! value one by one: always the key that is nearest to its file value in units of its error, as long as that distance
+//! is below two. After each step the free keys adjust, so if two keys have the same effect, one of them explains what
+//! both have to explain.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
@@ -20,8 +21,8 @@ use crate::way::MeasuredMovement;
 const NONLINEAR_KEYS: [usize; 3] = [PLAY, TWIST, RATIO];
 /// Least distance from the file's value, in standard errors, at which a key takes its new value.
 const MIN_DISTANCE_ERRORS: f64 = 2.0;
-/// Least rise of the sum of squares that counts when a key is moved by [`MIN_DISTANCE_ERRORS`] standard errors; a
-/// smaller rise may be the model's roughness. This limits the growth of an error to a factor of four.
+/// Lower bound for the rise of the sum of squares when a key is moved by [`MIN_DISTANCE_ERRORS`] standard errors. A
+/// smaller rise may be only roughness of the model. The bound limits the growth of an error to a factor of four.
 const LEAST_RISE: f64 = 0.25;
 /// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
 const MAX_ERROR_SHARE: f64 = 0.5;
@@ -32,8 +33,8 @@ const MIN_CORRELATION: f64 = 0.8;
 /// on all cores, and returns the results in order.
 pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
-/// Identifies the keys of a robot from its measured movements. The last argument runs the gaits of the model: some
-/// hundreds, a tenth of a second each.
+/// Identifies the keys of a robot from its measured movements. `run_all` runs gaits of the model: a few hundred runs of
+/// about a tenth of a second each.
 ///
 /// # Errors
 /// Fails for a gait that the robot does not have or that moves no servo, for figures that are not finite or out of
@@ -108,7 +109,7 @@ pub(crate) fn solve(
         false => (full_fit.chi_square / freedom).sqrt().max(1.0),
     };
     let errors = errors_of(&problem, &full_fit).map(|error| error_factor * error);
-    let (last_fit, verdicts) = choose(&problem, &full_fit, &errors)?;
+    let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
     let card_only_fit = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
     let card_only = card_only_fit.ok_or(Trouble::NoFit)?;
     let differences = problem
@@ -173,8 +174,8 @@ struct Fit {
 ///
 /// The model is not linear: which feet carry the body changes with the foot that is too long, and small play may
 /// have no effect at all. So a fit that leaves a larger sum of squares than a correct model does on average is
-/// repeated from starts in which one of the nonlinear keys is far above or below the file's value. A sum below the
-/// limit of a correct model is not enough, since a local minimum may reach that limit, too.
+/// repeated from starts in which one of the nonlinear keys is one prior standard deviation above or below the file's
+/// value. A sum below the limit of a correct model is not enough, since a local minimum may reach that limit, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     let all_unknowns: Vec<usize> = (0..UNKNOWNS).collect();
     let start = problem.start_unknowns();
@@ -248,8 +249,9 @@ fn freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
 }
 
 /// Returns keys to the file's values until every free key differs from its file value by at least
-/// [`MIN_DISTANCE_ERRORS`] standard errors.
-fn choose(
+/// [`MIN_DISTANCE_ERRORS`] standard errors. Undetermined keys return first. Returns the last fit and the verdict on
+/// each key.
+fn choose_keys(
     problem: &Problem,
     full_fit: &Solution,
     errors: &[f64; UNKNOWNS],

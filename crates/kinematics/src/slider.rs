@@ -64,14 +64,14 @@ impl Slider {
     /// the left, theta13 and theta16 on the right).
     ///
     /// # Errors
-    /// Returns [`Fault::Collapsed`] where the arm tips coincide, [`Fault::NotFinite`] for input
-    /// that is not finite or that overflows.
+    /// Returns [`Fault::Collapsed`] if the arm tips coincide, or [`Fault::NotFinite`] if the input is not finite or
+    /// overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
         let [rear, front] = [theta_rear, theta_front].map(Vector::direction);
         self.close(rear, front)
     }
 
-    /// The slider between arms of two directions of length one.
+    /// The slider between arms that point along two unit vectors.
     ///
     /// # Errors
     /// Fails as [`Slider::forward`] does.
@@ -100,7 +100,7 @@ impl Slider {
         is_closed
     }
 
-    /// The pose at arm directions of length one, without checking that the slider has a
+    /// The pose with arms along two unit vectors, without checking that the slider has a
     /// direction: see [`Slider::closes`]. The compiler leaves out the parts that the caller
     /// does not use.
     #[inline(always)]

@@ -1,7 +1,7 @@
-//! The Rust part of the Python package `lizard`: converts numpy arrays into calls of the crates.
+//! The Rust part of the Python package `lizard`: passes numpy arrays to the crates.
 //!
-//! The users' classes are in `lizard/*.py`, which documents their shapes and units. Here poses are rows of a
-//! two-dimensional array.
+//! The classes for users are in `lizard/*.py`, where the shapes and units of the arrays are documented. Here poses are
+//! rows of a two-dimensional array.
 //!
 //! # When not to use it
 //! From Rust, use `lizard-kinematics` and `lizard-robot` directly.
@@ -34,7 +34,7 @@ mod _lizard {
     }
 }
 
-/// Runs a line of the program `lizard`, and returns its exit code.
+/// Runs the program `lizard` with these arguments, and returns its exit code.
 #[pyfunction]
 fn program(py: Python<'_>, words: Vec<String>) -> u8 {
     let words = words.into_iter().map(Into::into).collect();

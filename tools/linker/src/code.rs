@@ -24,8 +24,8 @@ pub struct Code {
 }
 
 impl Code {
-    /// Decodes the code; `None` if a jump in it has no relocation, because then its target is
-    /// unknown and nothing may be moved.
+    /// Decodes the code; `None` if it ends inside an instruction, or if a jump in it has no reference, because then
+    /// its target is unknown and nothing may be moved.
     pub fn read(bytes: &[u8], references: Vec<Reference>) -> Option<Self> {
         let word = |index: usize| {
             Some(u16::from_le_bytes([

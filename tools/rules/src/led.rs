@@ -11,7 +11,7 @@ const FAULTS: [&str; 8] = [
 /// Returns the code of a fault from its word in `status`.
 ///
 /// # Errors
-/// Fails if the word names no fault.
+/// Fails if the word is not one of [`FAULTS`].
 pub fn code(fault: &str) -> Result<u8, String> {
     let code = FAULTS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
@@ -34,8 +34,11 @@ pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> 
             (true, 150..=170) if code > 0 => flashes = flashes.map(|n: u8| n + 1),
             (false, 150..=170) if code > 0 => {}
             (false, 1_100..=1_140) if code > 0 => {
-                if flashes.is_some_and(|n| n != code) {
-                    return Err(format!("fault {code}: the LED flashes {flashes:?} times"));
+                // None until the first pause: the count before it is incomplete.
+                if let Some(count) = flashes
+                    && count != code
+                {
+                    return Err(format!("fault {code}: the LED flashes {count} times"));
                 }
                 flashes = Some(0);
             }

@@ -8,8 +8,8 @@ export interface Surface {
 }
 
 /**
- * Returns a canvas with its context in CSS pixels; null while its room or its panel is closed. The canvas is cleared,
- * except an opaque one: the caller must fill it. An opaque canvas saves blending.
+ * Prepares a canvas for drawing in CSS pixels. Returns null while it is not shown. Clears the canvas, unless it is
+ * opaque, which saves blending: then the caller must fill it.
  */
 export function surface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -28,8 +28,8 @@ export function surface(canvas: HTMLCanvasElement, isOpaque = false): Surface | 
 }
 
 /**
- * Adds a circle to the path, as two half circles: with the y axis upward, the context for SVG draws an arc in the
- * wrong direction, which makes no difference for half circles.
+ * Adds a circle to the path, as two half circles: with the y axis upward, the context that writes SVG reverses the
+ * direction of an arc, and a half circle looks the same in both directions.
  */
 export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   pen.moveTo(x + radius, y);

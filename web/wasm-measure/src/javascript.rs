@@ -33,17 +33,17 @@ export interface Report {
   forward: Part;
   left: Part;
   turn: Part;
-  /** The way of a cycle by MuJoCo with ideal servos: mm ahead and to the left, deg; it is known for some robots. */
+  /** The movement per cycle by MuJoCo with ideal servos: mm ahead and to the left, deg; known only for some robots. */
   mujoco?: [number, number, number];
   range?: Range;
 }
-/** The predicted way ahead or turn of a cycle if one assumption at a time is otherwise: mm or deg. */
+/** The range of the predicted distance or turn per cycle when one assumption at a time is changed: mm or deg. */
 export interface Range {
   /** Its name and unit. */
   part: string;
   least: number;
   most: number;
-  /** The assumptions that make it so; null for those of robot.toml. */
+  /** The assumption that gives each bound; null if it is that of robot.toml. */
   least_by: string | null;
   most_by: string | null;
 }
@@ -60,7 +60,7 @@ fn js(answer: impl Serialize) -> JsValue {
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
-/// The film that the page takes.
+/// The page's camera: finds tags in pictures, and adds pictures to a film.
 #[wasm_bindgen(js_name = Camera)]
 #[derive(Default)]
 pub struct PageCamera(Camera);

@@ -16,9 +16,8 @@ const WRONG_BYTES: i8 = 4;
 /// sender, must not cut off a robot that is being driven.
 const EXTRA_WRONG_BYTES: i8 = 28;
 
-/// Length of the shortest command, in bytes, that is obeyed at a rate other than USB's that has not
-/// carried a command yet. A shorter one may be misread: some `pose` lines sent at 57 600 baud read as
-/// `cal` at 9600.
+/// Least length, in bytes, of a command that is obeyed at a guessed rate, one that has carried no command yet and is
+/// not USB's. A shorter one may be misread: some `pose` lines sent at 57 600 baud read as `cal` at 9600.
 const MIN_COMMAND_BYTES: usize = 4;
 
 /// The present rate, and the number of wrong bytes received at it.

@@ -25,7 +25,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// No contact; it never ends a step as long as its level is open.
+    /// No contact. While its level is given as open, it ends no step.
     pub const NONE: Self = Self {
         input: Input::NONE,
         history: 0,
@@ -44,7 +44,7 @@ impl Contact {
         Self { input, history: 0 }
     }
 
-    /// Takes the level of a frame; true once the contact has closed.
+    /// Adds the level of a frame; returns true once the contact has closed.
     pub fn count_frame(&mut self, is_closed: bool) -> bool {
         if self.history & LEVELS == 0 {
             self.history |= READY_BIT;

@@ -6,7 +6,8 @@
 //! to its other working mode: type 1. The margins are the sines of the angles between the
 //! bars, so 0 is singular and 1 is a right angle.
 //!
-//! With `k` the vector from the left crank tip to the right one, couplers `a`
+//! theta1 and theta4 are the directions of the left and the right crank, theta2 and theta3 those of their couplers, as
+//! in the paper. With `k` the vector from the left crank tip to the right one, couplers `a`
 //! (left) and `b` (right), the rise and the skew of [`crate::numbers::couplers`] at
 //! `s = |k|^2`, and for a crank of direction `u` `cross = k_x u_y - k_y u_x` and
 //! `dot = k . u`:
@@ -68,7 +69,7 @@ impl<'a> FiveBar<'a> {
     #[inline(never)]
     pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
         let bars = &self.bars;
-        // In units of two steps of the bars: the vector then fits into 16 bits, and each product is shifted by whole
+        // One unit is two steps of the bars, so that the vector fits into 16 bits and each product is shifted by whole
         // bytes.
         let tips = TipVector {
             along: (bars.base >> 1)

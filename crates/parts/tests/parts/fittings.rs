@@ -83,7 +83,7 @@ fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
 #[test]
 fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
     let screw = lizard_robot::Parts::default().screw;
-    // ISO 7380-1 for M3: head at most 5.70 x 1.65 mm; DIN 985: 5.5 mm over flats, 4.0 mm high.
+    // ISO 7380-1 for M3: head 5.70 x 1.65 mm, drawn up to 0.1 mm higher; DIN 985: 5.5 mm over flats, 4.0 mm high.
     assert_eq!([screw.diameter, screw.head], [3.0, 5.7]);
     assert!((1.65..1.75).contains(&screw.head_height));
     assert_eq!([screw.nut, screw.nut_height], [5.5, 4.0]);

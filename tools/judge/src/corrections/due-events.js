@@ -1,5 +1,6 @@
-// All events that become due during an instruction are due at its end. avr8js handles one event
-// and leaves the next to the next instruction, so that a byte delays a timer's flag.
+// Handles all events that become due during an instruction at its end. avr8js handles one event per instruction and
+// leaves the others for later instructions: if a serial byte and a timer's flag are due together, the byte delays the
+// flag by an instruction.
 const SREG = 0x5f;
 const I = 0x80;
 
@@ -7,7 +8,7 @@ export function dueEvents({ cpu }) {
   const tick = cpu.tick.bind(cpu);
   cpu.tick = () => {
     const enabledBit = cpu.data[SREG] & I;
-    // All events but the last, without interrupts, which are to see all of them.
+    // All due events but the last are handled with interrupts off, so that an interrupt sees the effects of all.
     while (cpu.nextClockEvent?.next && cpu.nextClockEvent.next.cycles <= cpu.cycles) {
       cpu.data[SREG] &= ~I;
       tick();

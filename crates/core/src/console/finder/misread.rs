@@ -34,7 +34,7 @@ enum LineReading {
     Mismatch(usize, u8),
     /// A line with a garbled byte.
     Garbled,
-    /// A line of unknown content: a byte was deleted whose previous state is ambiguous.
+    /// A line of unknown content: a backspace deleted a byte, and the state before that byte is ambiguous.
     Deleted,
     /// A command with its line end, in this state; `usize::MAX` if its content is unknown.
     CompleteCommand(usize),

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn turning_left_pushes_forward_on_the_left_and_back_on_the_right() {
+    fn turning_left_moves_the_left_feet_forward_and_the_right_feet_back() {
         // In the first fifth of `left` all legs make their common stroke.
         let phases = [0, 1, 2, 3].map(|servo| phase_at("left", servo, 1.1));
         let [left, right] = [Some(Phase::Swing), Some(Phase::Stance)];

@@ -18,7 +18,7 @@ fn read_angle(index: usize, angle: &str) -> Result<i32, Misread> {
 }
 
 #[test]
-fn every_hundredth_of_a_degree_within_a_turn_is_read_and_printed_back() {
+fn hundredths_of_a_degree_within_a_turn_are_read_and_others_refused() {
     for centideg in (-36_100..36_100)
         .step_by(3)
         .chain([-36_000, -1, 36_000, 36_001])
