@@ -192,6 +192,21 @@ test('an older Nano, whose boot loader has another baud rate, is found, written 
   await until(page, 'it greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
 });
 
+test('an older Nano that is unplugged while its baud rate is set is gone, and the simulation goes on', async () => {
+  const page = await openPage({}, fakeSerial);
+  await page.evaluate(() => {
+    let openings = 0;
+    const openPort = () => {
+      if (openings++ > 0) throw new Error('The device has been lost.');
+    };
+    Object.assign(window, { flashed: null, loaderBaud: 57_600, openPort });
+  });
+  await page.locator('#connect').click();
+  await until(page, 'it is gone', async () => (await text(page, '#trouble')).startsWith('The board is gone: The device has been lost. The simulation goes on.'));
+  await until(page, 'a board may be connected', () => page.locator('#connect').isEnabled());
+  assert.match(await text(page, '#where'), /simulated UNO/);
+});
+
 test('pages that the board has already are not written', async () => {
   const page = await openPanel(await openWithBoard('robot', 8000));
   const measureWrite = async () => {

@@ -101,7 +101,10 @@ export class PortLink implements Link {
       // Only opening sets a port's speed.
       await this.close();
       this.baud = baud;
-      await this.openPort().catch(() => Promise.reject(new Error(GONE_MESSAGE)));
+      await this.openPort().catch((error: unknown) => {
+        this.onGone(messageOf(error));
+        throw new Error(GONE_MESSAGE);
+      });
     }
     for (const isLow of [false, true]) {
       await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
