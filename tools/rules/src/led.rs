@@ -11,7 +11,7 @@ const FAULTS: [&str; 8] = [
 /// Returns the code of a fault from its word in `status`.
 ///
 /// # Errors
-/// Fails if the word is not one of [`FAULTS`].
+/// Fails if `status` has no such word.
 pub fn code(fault: &str) -> Result<u8, String> {
     let code = FAULTS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
