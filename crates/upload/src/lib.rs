@@ -25,6 +25,6 @@ pub use board::{Board, BoardError};
 pub use chip::Chip;
 pub use contents::{FlashContents, Program, RobotInFlash, label, robot_in};
 pub use image::{BLANK, BOOT_ADDRESS, Image, ImageError, NANO_BOOT_ADDRESS, PAGE_BYTES, Page};
-pub use loader::{Kind, Loader, LoaderError, Timeouts};
+pub use loader::{Kind, Loader, LoaderError};
 pub use target::{Model, Target, TooLong};
 pub use upload::{Event, FlashState, PageCounts, Step, UploadError, identify, upload};

@@ -31,6 +31,17 @@ const MAX_CALLS: usize = 5;
 /// Largest number of bytes before the answer to a call: about as many as the line carries in the time for a call.
 const MAX_STRAY_BYTES: usize = 1300;
 
+/// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its receiver, and
+/// half a command makes it give up.
+const BLINK_TIME: Duration = Duration::from_millis(400);
+/// Time for each byte of the answer to a call.
+const CALL_TIME: Duration = Duration::from_millis(110);
+/// Time after the first answer in which late answers to earlier calls are discarded.
+const DRAIN_TIME: Duration = Duration::from_millis(40);
+/// Time for an answer to any other command. Writing a page takes about 20 ms, but a busy machine may pass the bytes on
+/// a second later.
+const ANSWER_TIME: Duration = Duration::from_secs(2);
+
 /// A kind of boot loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -55,32 +66,6 @@ impl Kind {
         match self {
             Self::Optiboot => BOOT_ADDRESS,
             Self::AtmegaBoot => NANO_BOOT_ADDRESS,
-        }
-    }
-}
-
-/// Time limits for answers of a boot loader.
-#[derive(Debug, Clone, Copy)]
-pub struct Timeouts {
-    /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its
-    /// receiver, and half a command makes it give up.
-    pub blink_time: Duration,
-    /// Time for each byte of the answer to a call.
-    pub call: Duration,
-    /// Time after the first answer in which late answers to earlier calls are discarded.
-    pub drain_time: Duration,
-    /// Time for an answer to any other command. Writing a page takes about 20 ms, but a busy
-    /// machine may pass the bytes on a second later.
-    pub answer: Duration,
-}
-
-impl Default for Timeouts {
-    fn default() -> Self {
-        Self {
-            blink_time: Duration::from_millis(400),
-            call: Duration::from_millis(110),
-            drain_time: Duration::from_millis(40),
-            answer: Duration::from_secs(2),
         }
     }
 }
@@ -120,13 +105,12 @@ impl From<BoardError> for LoaderError {
 #[derive(Debug)]
 pub struct Loader<B> {
     board: B,
-    timeouts: Timeouts,
 }
 
 impl<B: Board> Loader<B> {
     /// Creates a client; nothing is sent before [`Loader::call`].
-    pub fn new(board: B, timeouts: Timeouts) -> Self {
-        Self { board, timeouts }
+    pub fn new(board: B) -> Self {
+        Self { board }
     }
 
     /// Returns the connection; bytes that were not read stay in it.
@@ -141,11 +125,11 @@ impl<B: Board> Loader<B> {
     pub async fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud()).await?;
         // The last output of the program that ran before the reset also arrives in this time.
-        self.board.discard(self.timeouts.blink_time).await?;
+        self.board.discard(BLINK_TIME).await?;
         for _ in 0..MAX_CALLS {
             self.board.write(&[GET_SYNC, CRC_EOP]).await?;
             if self.wait_for_sync().await? {
-                return Ok(self.board.discard(self.timeouts.drain_time).await?);
+                return Ok(self.board.discard(DRAIN_TIME).await?);
             }
         }
         Err(LoaderError::Silent)
@@ -206,7 +190,7 @@ impl<B: Board> Loader<B> {
     async fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write(&[bytes, &[CRC_EOP]].concat()).await?;
         let mut read = vec![0; answer.len() + 2];
-        let count = self.board.read(&mut read, self.timeouts.answer).await?;
+        let count = self.board.read(&mut read, ANSWER_TIME).await?;
         match read.as_slice() {
             _ if count < read.len() => Err(LoaderError::Silent),
             [IN_SYNC, between @ .., OK] => {
@@ -223,7 +207,7 @@ impl<B: Board> Loader<B> {
         let mut last = 0;
         for _ in 0..MAX_STRAY_BYTES {
             let mut byte = [0];
-            if self.board.read(&mut byte, self.timeouts.call).await? == 0 {
+            if self.board.read(&mut byte, CALL_TIME).await? == 0 {
                 return Ok(false);
             }
             if [last, byte[0]] == [IN_SYNC, OK] {

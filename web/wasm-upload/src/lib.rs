@@ -14,7 +14,7 @@ mod line;
 
 use js_sys::Function;
 use lizard_core::numbers::mark::Mark;
-use lizard_upload::{Event, Image, Kind, Loader, Model, Step, Target, Timeouts};
+use lizard_upload::{Event, Image, Kind, Loader, Model, Step, Target};
 use wasm_bindgen::prelude::*;
 
 use line::JsBoard;
@@ -86,7 +86,7 @@ pub async fn upload(
         // An error of the page is no reason to stop in the middle of an upload.
         let _ = report.call3(&JsValue::NULL, &step.into(), &done.into(), &of.into());
     };
-    let mut loader = Loader::new(JsBoard(line), Timeouts::default());
+    let mut loader = Loader::new(JsBoard(line));
     lizard_upload::upload(&mut loader, &image, target, &mut |event| match event {
         Event::Found(_) => {}
         Event::Retry { .. } => report("again", 0, 1),
@@ -104,7 +104,7 @@ pub async fn upload(
 /// Rejects with a sentence for the user, unless it is a board with the chip of a UNO.
 #[wasm_bindgen]
 pub async fn identify(line: Line) -> Result<String, JsError> {
-    let mut loader = Loader::new(JsBoard(line), Timeouts::default());
+    let mut loader = Loader::new(JsBoard(line));
     let kind = lizard_upload::identify(&mut loader).await?;
     Ok(match kind {
         Kind::Optiboot => "UNO",

@@ -11,7 +11,6 @@ use pollster::block_on;
 use super::*;
 use crate::board::BoardError;
 use crate::contents::robot_in;
-use crate::loader::Timeouts;
 use crate::target::Model;
 use double::BoardDouble;
 
@@ -57,7 +56,7 @@ fn run_with(board: BoardDouble, image: &Image) -> Run {
 
 /// Uploads to a board. `target` is what is known about the board before its boot loader answers.
 fn run_as(board: BoardDouble, image: &Image, target: Target) -> Run {
-    let mut loader = Loader::new(board, Timeouts::default());
+    let mut loader = Loader::new(board);
     let (mut found, mut again) = (Vec::new(), 0);
     let mut report = |event: Event<'_>| match event {
         Event::Found(what) => found.push(what.to_string()),
@@ -207,7 +206,7 @@ fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
             Ok(())
         }
     }
-    let mut loader = Loader::new(Talker, Timeouts::default());
+    let mut loader = Loader::new(Talker);
     let (image, target) = (image(), Target::default());
     let result = block_on(upload(&mut loader, &image, target, &mut |_| {}));
     assert!(matches!(result, Err(UploadError::NoLoader)));
@@ -220,7 +219,7 @@ fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
 #[test]
 fn a_board_is_identified_by_its_boot_loader_and_starts_again() {
     let identified = |board: BoardDouble| {
-        let mut loader = Loader::new(board, Timeouts::default());
+        let mut loader = Loader::new(board);
         let kind = block_on(identify(&mut loader));
         let board = loader.into_board();
         assert!(board.written.is_empty());
@@ -272,8 +271,7 @@ fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
     let old = [9; 500];
     let whole = run(BoardDouble::with(&old)).board;
     assert!(whole.received > 2000, "{} bytes", whole.received);
-    // Reading a page sends 9 bytes: steps of 7 lose each of the 9 at some page.
-    for at in (0..whole.received).step_by(7) {
+    for at in 0..whole.received {
         let mut board = BoardDouble::with(&old);
         board.lost_byte_to_board = Some(at);
         let run = run(board);
@@ -289,7 +287,7 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
     let old = [9; 500];
     let whole = run(BoardDouble::with(&old)).board;
     assert!(whole.sent > 30_000, "{} bytes", whole.sent);
-    // Each byte of the call and of the first pages, then every 101st byte.
+    // Each byte of the call and of the first pages; then steps of 101 lose each byte of a page's answer at some page.
     for at in (0..300).chain((300..whole.sent).step_by(101)) {
         let mut board = BoardDouble::with(&old);
         board.lost_byte_from_board = Some(at);

@@ -11,8 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use lizard_upload::{
-    Event, Image, Loader, Model, PAGE_BYTES, PageCounts, Step, Target, Timeouts, UploadError,
-    upload,
+    Event, Image, Loader, Model, PAGE_BYTES, PageCounts, Step, Target, UploadError, upload,
 };
 use pollster::block_on;
 use serde::Serialize;
@@ -145,7 +144,7 @@ fn write(
         false => _ = writeln!(io::stdout(), "{line}"),
     };
     let bar = progress_bar(0, "{msg} {wide_bar} {percent} %");
-    let mut loader = Loader::new(board, Timeouts::default());
+    let mut loader = Loader::new(board);
     let start = Instant::now();
     let mut report = |event: Event<'_>| match event {
         Event::Found(found_board) => bar.suspend(|| print_line(&found_board.to_string())),

@@ -71,9 +71,7 @@ impl SerialBoard {
         self.port = Some(result?);
         Ok(())
     }
-}
 
-impl SerialBoard {
     fn reset_at(&mut self, baud: u32) -> io::Result<()> {
         let was_fresh = std::mem::take(&mut self.is_fresh);
         match self.toggle_reset() {
