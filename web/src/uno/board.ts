@@ -1,5 +1,6 @@
 // A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset makes a
 // new chip with the old memories.
+import { busyWait } from '../../../tools/judge/src/busy-wait.js';
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
 import { receiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
 import { Scope } from '../../../tools/judge/src/scope.js';
@@ -129,7 +130,7 @@ export class SimulatedBoard {
   }
 
   private begin(cause: Cause, flash: Uint8Array, eeprom?: Uint8Array): void {
-    const uno = new Uno([...corrections, selfProgramming, receiveBuffer]);
+    const uno = new Uno([...corrections, selfProgramming, receiveBuffer, busyWait]);
     this.uno = uno;
     uno.flash.set(flash);
     if (eeprom) uno.memory.set(eeprom);

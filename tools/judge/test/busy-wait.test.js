@@ -1,0 +1,98 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { busyWait } from '../src/busy-wait.js';
+import { corrections } from '../src/corrections/index.js';
+import { receiveBuffer } from '../src/receive-buffer.js';
+import { uno } from './program.js';
+
+// Waits for a byte, then twice for timer 1 by other instructions, and keeps the byte and the timer's counts in SRAM from
+// X on. An interrupt comes meanwhile at changing distances.
+const PROGRAM = `
+    jmp main
+    _LOC 0x2c         ; TIMER1_COMPA
+    lds r20, 0x84     ; TCNT1L
+    st X+, r20
+    lds r22, 0x88     ; OCR1AL
+    subi r22, 0x6b
+    sts 0x89, r18     ; OCR1AH
+    sts 0x88, r22
+    ldi r21, 252      ; so long that the next often waits
+  late:
+    dec r21
+    brne late
+    reti
+    _LOC 0x68
+  main:
+    ldi r26, 0
+    ldi r27, 1
+    ldi r16, 0x10
+    sts 0xc1, r16     ; UCSR0B: RXEN
+    ldi r18, 3
+    sts 0x89, r18     ; OCR1AH
+    ldi r16, 5
+    sts 0x88, r16     ; OCR1AL
+    ldi r16, 1
+    sts 0x8b, r16     ; OCR1BH
+    sts 0x8a, r16     ; OCR1BL
+    ldi r16, 2
+    sts 0x6f, r16     ; TIMSK1
+    ldi r16, 9
+    sts 0x81, r16     ; TCCR1B: clear on match
+    ldi r17, 4        ; OCF1B
+    sei
+  byte:
+    lds r24, 0xc0     ; UCSR0A
+    sbrs r24, 7
+    rjmp byte
+    lds r24, 0xc6     ; UDR0
+    st X+, r24
+    out 0x16, r17     ; TIFR1
+  tested:
+    sbis 0x16, 2
+    rjmp tested
+    lds r24, 0x84
+    st X+, r24
+    out 0x16, r17
+  read:
+    in r24, 0x16
+    sbrs r24, 2
+    rjmp read
+    lds r24, 0x84
+    st X+, r24
+    rjmp byte`;
+
+/** Runs the program while 40 bytes come; returns the board's state and the number of its jumps back. */
+function stateAfter(extra) {
+  let jumps = 0;
+  const countJumps = (board) => {
+    const execute = board.executors.at(-1);
+    board.executors[board.executors.length - 1] = (cpu) => {
+      jumps += 1;
+      execute(cpu);
+    };
+  };
+  const board = uno([...corrections, receiveBuffer, ...extra, ...(extra.length > 0 ? [countJumps] : [])], PROGRAM);
+  for (let n = 1; n <= 40; n++) board.cpu.addClockEvent(() => board.receive(n), 3989 * n);
+  board.run(170_001);
+  return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data], jumps };
+}
+
+test('a program that waits for flags is at the same place at the same cycle, and its rounds pass in one step', () => {
+  const [slow, { jumps, ...fast }] = [stateAfter([]), stateAfter([busyWait])];
+  delete slow.jumps;
+  for (let n = 1; n <= 40; n++) assert.ok(slow.data.slice(0x100).includes(n), `byte ${n} was read`);
+  assert.deepEqual(fast, slow);
+  assert.ok(jumps > 100 && jumps < 3000, `${jumps} jumps in place of tens of thousands`);
+});
+
+test('a loop that waits for a count takes each of its rounds', () => {
+  const source = PROGRAM.replace('lds r24, 0xc0 ', 'lds r24, 0x84 ');
+  assert.notEqual(source, PROGRAM);
+  const [slow, fast] = [[], [busyWait]].map((extra) => {
+    const board = uno([...corrections, receiveBuffer, ...extra], source);
+    board.run(50_001);
+    return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data] };
+  });
+  assert.deepEqual(fast, slow);
+});
