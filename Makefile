@@ -57,7 +57,7 @@ lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
 measure-test: ## films of a robot whose path is known, and keys of robots that were changed; FILMS=200 SEED=1
 	$(call prepared,.measure-test)
-parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom, libsdformat and others
+parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom and others; ONLY=grain+large
 	$(call prepared,.parts-test)
 cli: ## build the host program, crates/target/release/lizard
 	$(call prepared,.cli)
@@ -197,7 +197,7 @@ WALKS := target/walks.log
 .parts-test:
 	@scripts/setup-parts
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
-	@scripts/parts-test $(HOST)/debug/lizard
+	@scripts/parts-test $(HOST)/debug/lizard $(patsubst %,robots/%.toml,$(subst +, ,$(ONLY)))
 	@out/put-together/bin/python scripts/models-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli

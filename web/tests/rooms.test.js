@@ -29,7 +29,8 @@ const linkTo = (page, room) => page.locator(`nav a[href="#room=${room}"]`);
 const waitForRoom = (page, room) => page.waitForFunction((room) => [...document.querySelectorAll('.room:not([hidden])')].map(({ id }) => id).join() === `room-${room}`, room);
 const boxOf = (page, selector) => page.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 
-for (const options of SIZES.flatMap((size) => THEMES.map((colorScheme) => ({ ...size, colorScheme })))) {
+// Colours move nothing, so that each size has one of the two.
+for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n % 2] }))) {
   const { width, height } = options.viewport;
   test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and stop, and axe-core finds nothing`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
