@@ -21,8 +21,8 @@ const FUNCTIONS: usize = 40;
 /// Number of functions in a group. A function calls only others of its group, so that the stack suffices.
 const GROUP: usize = 5;
 
-/// Number of programs in an ordinary run; together they have 2000 functions.
-const PROGRAMS: u64 = 50;
+/// Number of programs in an ordinary run; together they have 800 functions.
+const PROGRAMS: u64 = 20;
 
 /// Types of arguments, and the bytes of registers that an argument of each type takes.
 const TYPES: [(&str, usize); 5] = [
