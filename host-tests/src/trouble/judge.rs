@@ -323,8 +323,9 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
 /// no trouble comes.
 fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     const ANSWER_TIME: u64 = 2_000 * MS;
-    // The time for an answer while the robot still searches for the line's baud rate, which takes up to five lines.
-    const RATE_SEARCH_TIME: u64 = 3_500 * MS;
+    // The time for an answer while the robot still searches for the line's baud rate: it leaves a rate that has
+    // carried a command after 32 wrong bytes, some eight lines, and then needs up to five more. One in ten is lost.
+    const RATE_SEARCH_TIME: u64 = 6_000 * MS;
     // An answer to an earlier `stop` may come up to this time before the `stop`.
     const EARLIER_ANSWER_TIME: u64 = 300 * MS;
     for stop in &record.stops {

@@ -107,8 +107,8 @@ impl Observer {
             self.permission.note_boot(self.now, boot);
         }
         let is_end = line.ends_with("pulses ended") || line.contains("several times in a row");
-        // An order that came while the line was being printed has overtaken it.
-        if is_end && since > self.ordered {
+        // An order that came while the line waited or was being printed has overtaken it.
+        if is_end && since - self.ordered > self.limits.queued {
             self.permission.end(self.now);
         }
     }

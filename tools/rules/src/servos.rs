@@ -149,9 +149,8 @@ impl Servo {
         }
     }
 
-    /// Drops the rules that a hang or a reset sets for the next pulse, since an order to rest replaces them.
+    /// Drops the rule that a reset sets for the next pulse, since an order to rest replaces it.
     pub(crate) fn forget_pulse(&mut self) {
-        self.is_hung = false;
         if self.since == Since::Reset {
             self.since = Since::Unknown;
         }
@@ -255,10 +254,14 @@ impl Observer {
         if !self.permission.may {
             self.fail(Rule::Begins, format!("{name} begins"));
         }
+        // The frame that has begun is completed even if an order to rest comes in it.
+        let is_rest_over =
+            self.sent_to_rest > servo.whole_at && now - self.sent_to_rest > UNTIL_REST;
         let is_after_hang = servo.is_hung
             && !servo.is_lost
             && servo.whole_at > NEVER
-            && now - servo.whole_at < 1_000 * MS;
+            && now - servo.whole_at < 1_000 * MS
+            && !is_rest_over;
         let is_unordered = self.ordered < servo.whole_at;
         let leap = pulse.width.abs_diff(servo.width);
         if is_after_hang && is_unordered && !pulse.is_cut && leap > self.limits.leap[pulse.servo] {
@@ -270,7 +273,8 @@ impl Observer {
         }
         let (last_servo, last_time, was_after_hang) = self.last_begin;
         let is_soon = now - last_time < MIN_WAKE_GAP;
-        if is_soon && pulse.servo == last_servo {
+        let has_missed = servo.held_up > servo.at && now - servo.at <= 2 * MAX_PULSE_GAP;
+        if is_soon && pulse.servo == last_servo || has_missed {
             // A late pulse has cost the servo a frame or two; this is no new wake-up.
             return;
         }
