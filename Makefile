@@ -149,7 +149,7 @@ clean: ## remove everything that was built
 	@scripts/setup-web --test
 	@scripts/setup-book
 	@scripts/build-web
-	@cd crates && cargo build $(ALL) --bin lizard --quiet && cargo build -p lizard-film --example studio --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --quiet && cargo build -p lizard-studio --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=$(if $(ONLY),1,2) --test-timeout=900000 $(or $(patsubst %,web/tests/%.test.js,$(subst +, ,$(ONLY))),$(filter-out $(patsubst %,web/tests/%.test.js,$(subst +, ,$(EXCEPT))),$(wildcard web/tests/*.test.js)))
 
 # The second line puts the program at the path that the documentation names.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 20] = [
+const CRATES: [&str; 22] = [
     "crates/contact",
     "crates/core",
     "crates/film",
@@ -16,7 +16,9 @@ const CRATES: [&str; 20] = [
     "crates/identify",
     "crates/kinematics",
     "crates/measure",
+    "crates/paper",
     "crates/parts",
+    "crates/proof",
     "crates/pulses",
     "crates/python",
     "crates/robot",

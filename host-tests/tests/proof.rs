@@ -3,8 +3,8 @@
 
 use std::path::PathBuf;
 
-use lizard_host::prove::{PairSample, Proof};
 use lizard_host_tests::seed;
+use lizard_proof::{PairSample, Proof};
 use lizard_robot::Robot;
 
 const ONE_IN: u32 = 256;

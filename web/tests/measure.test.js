@@ -18,7 +18,7 @@ const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 /** Films with a width and number of cycles, and with hidden tags. */
 function renderFilm(name, ...args) {
   const path = join(folder, name);
-  execFileSync(join(dirname(LIZARD), 'examples/studio'), [path, ...args.map(String)]);
+  execFileSync(join(dirname(LIZARD), 'studio'), [path, ...args.map(String)]);
   return path;
 }
 

@@ -19,13 +19,9 @@ pub use shared::pose_args::PoseArgs;
 pub use shared::robot_file::RobotFile;
 
 // Modules that tests and other crates use.
-#[cfg(feature = "paper")]
-pub use change::prove;
 #[cfg(feature = "console")]
 pub use drive::{console::session, flash};
 pub use make::draw;
-#[cfg(feature = "paper")]
-pub use paper::errata;
 #[cfg(any(feature = "simulator", feature = "console"))]
 pub use shared::firmware;
 #[cfg(feature = "simulator")]

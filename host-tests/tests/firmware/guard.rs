@@ -5,10 +5,10 @@ use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::part::{End, Side};
 use lizard_core::numbers::pose::Pose as Sweeps;
 use lizard_core::numbers::units::Sweep;
-use lizard_host::prove::{STEPS_BAND, margin_band};
 use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::robot;
 use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
+use lizard_proof::{STEPS_BAND, margin_band};
 use simulated_uno::Fidelity;
 
 use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each, neutral_widths};

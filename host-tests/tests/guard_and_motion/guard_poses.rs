@@ -7,8 +7,8 @@ use lizard_core::numbers::part::Side;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::root::root;
 use lizard_core::numbers::units::Sweep;
-use lizard_host::prove::STEPS_BAND;
 use lizard_host_tests::{Named, rng, robots};
+use lizard_proof::STEPS_BAND;
 use lizard_robot::Robot;
 
 use crate::truth::{

@@ -10,8 +10,8 @@ use lizard_core::numbers::calibration::Calibration;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep};
-use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
+use lizard_proof::STEPS_BAND;
 use lizard_robot::{CoreRobot, Robot};
 
 /// Largest error of a margin, a sine, from the guard's arithmetic. The rounding of lengths adds to this

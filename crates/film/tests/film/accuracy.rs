@@ -3,9 +3,9 @@
 use fastrand::Rng;
 use lizard_film::{Film, Gait, Mean, Measured, Sight, read};
 
-use crate::render::{Studio, normal};
 use crate::studio::{TRUE_SIZE, film, small};
-use crate::walk::{Variation, Walk, gait, truth};
+use lizard_studio::render::{Studio, normal};
+use lizard_studio::walk::{Variation, Walk, gait, truth};
 
 /// Films some cycles with a random camera and measures them.
 fn measure_film(

@@ -4,9 +4,9 @@ use fastrand::Rng;
 use lizard_film::Film;
 
 use crate::accuracy::number;
-use crate::render::{Studio, normal};
 use crate::studio::{TRUE_SIZE, film_of};
-use crate::walk::{Variation, Walk, gait, truth};
+use lizard_studio::render::{Studio, normal};
+use lizard_studio::walk::{Variation, Walk, gait, truth};
 
 /// Cycles in a film.
 const CYCLES: usize = 6;

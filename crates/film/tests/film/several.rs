@@ -3,9 +3,9 @@
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Gait, Likeness, Measured, Trouble, rest};
 
-use crate::render::Studio;
 use crate::studio::{TRUE_SIZE, film_of, small};
-use crate::walk::{Show, Variation, gait, truth};
+use lizard_studio::render::Studio;
+use lizard_studio::walk::{Show, Variation, gait, truth};
 
 /// Pictures per second.
 const RATE: f64 = 8.0;

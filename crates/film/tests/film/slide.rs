@@ -3,8 +3,8 @@
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
 
-use crate::board::{BOARD, Board, studio};
-use crate::render::{Studio, normal};
+use lizard_studio::board::{BOARD, Board, studio};
+use lizard_studio::render::{Studio, normal};
 
 const SETUP: Setup = Setup {
     scale: 1.0,

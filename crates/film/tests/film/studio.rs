@@ -3,8 +3,8 @@
 use fastrand::Rng;
 use lizard_film::{Film, Setup};
 
-use crate::render::{Spot, Studio};
-use crate::walk::Walk;
+use lizard_studio::render::{Spot, Studio};
+use lizard_studio::walk::Walk;
 
 /// The setup of a sheet that is printed in true size.
 pub const TRUE_SIZE: Setup = Setup {

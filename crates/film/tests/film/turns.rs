@@ -4,8 +4,8 @@ use fastrand::Rng;
 use lizard_contact::Place;
 use lizard_film::{Figure, Film, Jig, PathPoint, Setup, Turns, TurnsTrouble};
 
-use crate::render::{Studio, normal};
-use crate::servo::{FRICTION, FULL, Servo};
+use lizard_studio::render::{Studio, normal};
+use lizard_studio::servo::{FRICTION, FULL, Servo};
 
 /// The jig for steps in the counter-clockwise direction.
 const JIG: Jig = Jig {

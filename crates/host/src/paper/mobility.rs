@@ -1,323 +1,60 @@
 //! `lizard pose --show freedoms`: degrees of freedom, counted and measured.
-//!
-//! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of the
-//! constraints at a pose does not assume it. Here every moving link has three velocities (vx,
-//! vy of its point at the origin, and omega), every joint gives two rows, and the degrees of
-//! freedom are the columns less the rank.
-//!
-//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one
-//! of them. So the rank is computed again with the driven cranks locked, which adds a row for
-//! each crank. A link that can still move then is loose.
 
-use lizard_kinematics::{Lizard, Side, Solution, Vector};
-use nalgebra::{DMatrix, DVector, SVD};
-use serde::Serialize;
+use lizard_kinematics::{Lizard, Solution};
+use lizard_paper::mobility::{Mobility, measure};
 
 use crate::Failure;
 use crate::shared::json;
-
-/// Singular values below this share of the largest count as zero, so that a singular
-/// pose typed with seven digits is found.
-const RANK_TOLERANCE: f64 = 1e-7;
-
-/// Links slower than this share of the fastest count as standing still.
-const MAX_STILL_SPEED: f64 = 1e-3;
-
-/// The unit of length, mm, that makes rows in mm and in radians comparable.
-const LENGTH_UNIT_MM: f64 = 50.0;
-
-/// A mechanism: joints that connect links. Link 0 is fixed.
-struct Mechanism {
-    name: &'static str,
-    links: usize,
-    joints: Vec<Joint>,
-    /// The numbers of the links that a servo drives.
-    driven: Vec<usize>,
-    /// Groups of links, each with the message if one moves while the driven links are locked.
-    parts: &'static [(&'static [usize], &'static str)],
-}
-
-/// A joint between two links.
-struct Joint {
-    links: [usize; 2],
-    kind: Kind,
-}
-
-/// The kind of a joint and its place, in the pose that is examined.
-enum Kind {
-    /// A pin at a point, mm.
-    Revolute(Vector),
-    /// A prismatic joint through a point along a direction of length one.
-    Prismatic(Vector, Vector),
-}
-
-/// The degrees of freedom of a mechanism, with the field names of `--json`.
-#[derive(Serialize)]
-struct Report {
-    mechanism: &'static str,
-    links: usize,
-    joints: usize,
-    /// Gruebler's count, 3 (N - 1 - j) + sum f: N links, j joints with f freedoms each.
-    gruebler: i64,
-    /// Rows of the constraint Jacobian.
-    constraints: usize,
-    /// Columns of the constraint Jacobian.
-    velocities: usize,
-    rank: usize,
-    /// Columns minus rank.
-    freedoms: usize,
-    /// Degrees of freedom with the driven cranks locked; 0 if no link can move then.
-    locked_freedoms: usize,
-    /// Messages for the parts that move while the cranks are locked.
-    loose: Vec<&'static str>,
-    /// Smallest singular value divided by the largest, for the Jacobian with the driven cranks locked; it approaches
-    /// 0 at a singularity.
-    conditioning: f64,
-}
 
 /// Prints the degrees of freedom of the body and of each leg.
 ///
 /// # Errors
 /// Fails if the output cannot be written.
 pub fn print(lizard: &Lizard, solution: &Solution, is_json: bool) -> Result<(), Failure> {
-    let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let mut mechanisms = vec![body_mechanism(lizard, solution)];
-    mechanisms.extend((0..4).map(|i| leg_mechanism(lizard, solution, i, legs[i])));
-    let reports: Vec<Report> = mechanisms.iter().map(measure).collect();
-    json::print_json_or(is_json, &reports, || text(&reports))
+    let mobilities = measure(lizard, solution);
+    json::print_json_or(is_json, &mobilities, || text(&mobilities))
 }
 
-fn text(reports: &[Report]) -> String {
+fn text(mobilities: &[Mobility]) -> String {
     let mut page =
         "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  locked  conditioning\n"
             .to_owned();
-    for report in reports {
+    for mobility in mobilities {
         page += &format!(
             "{:16} {:6} {:7} {:9}   {:>5}x{:<2} {:5} {:9} {:7}  {:12.1e}\n",
-            report.mechanism,
-            report.links,
-            report.joints,
-            report.gruebler,
-            report.constraints,
-            report.velocities,
-            report.rank,
-            report.freedoms,
-            report.locked_freedoms,
-            report.conditioning
+            mobility.mechanism,
+            mobility.links,
+            mobility.joints,
+            mobility.gruebler,
+            mobility.constraints,
+            mobility.velocities,
+            mobility.rank,
+            mobility.freedoms,
+            mobility.locked_freedoms,
+            mobility.conditioning
         );
     }
     page +=
         "locked: freedoms left with the driven cranks locked; conditioning: of that Jacobian\n\n";
-    let is_singular =
-        |report: &&Report| report.freedoms as i64 != report.gruebler || report.locked_freedoms > 0;
-    if !reports.iter().any(|report| is_singular(&report)) {
+    let is_singular = |mobility: &&Mobility| {
+        mobility.freedoms as i64 != mobility.gruebler || mobility.locked_freedoms > 0
+    };
+    if !mobilities.iter().any(|mobility| is_singular(&mobility)) {
         page += "Count and rank agree: four servos hold the body, one spring each leg.\n";
     }
-    for report in reports.iter().filter(is_singular) {
+    for mobility in mobilities.iter().filter(is_singular) {
         page += &format!(
             "{} is singular here: the rank leaves {} freedoms",
-            report.mechanism, report.freedoms
+            mobility.mechanism, mobility.freedoms
         );
-        page += &match report.loose.as_slice() {
+        page += &match mobility.loose.as_slice() {
             [] => ".\n".to_owned(),
             loose_parts => format!(
                 ", and {} with the driven cranks locked: {}.\n",
-                report.locked_freedoms,
+                mobility.locked_freedoms,
                 loose_parts.join(", ")
             ),
         };
     }
     page
-}
-
-/// The 13 links of the body: chassis, four cranks with their side arms, four
-/// couplers, four slider halves.
-fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
-    const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
-    let tips = solution.crank_tips();
-    let shafts = lizard.shafts();
-    let pin_joint = |first: usize, second: usize, point: Vector| Joint {
-        links: [first, second],
-        kind: Kind::Revolute(point),
-    };
-    let mut joints: Vec<Joint> = (0..4)
-        .map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]))
-        .collect();
-    // Head couplers 5, 6; tail couplers 7 (left), 8 (right).
-    joints.push(pin_joint(CRANK_LINKS[0], 5, tips[0]));
-    joints.push(pin_joint(CRANK_LINKS[1], 6, tips[1]));
-    joints.push(pin_joint(5, 6, solution.head_point()));
-    joints.push(pin_joint(CRANK_LINKS[3], 7, tips[3]));
-    joints.push(pin_joint(CRANK_LINKS[2], 8, tips[2]));
-    joints.push(pin_joint(7, 8, solution.tail_point()));
-    // Slider halves: left rear 9, front 10; right rear 11, front 12.
-    for (side, halves) in Side::ALL.into_iter().zip([[9, 10], [11, 12]]) {
-        let ([front, rear], slider) = (side.servos(), solution.side(side));
-        let rear_tip = shafts[rear] + slider.rear_tip;
-        joints.push(pin_joint(CRANK_LINKS[rear], halves[0], rear_tip));
-        joints.push(pin_joint(
-            CRANK_LINKS[front],
-            halves[1],
-            shafts[rear] + slider.front_tip,
-        ));
-        joints.push(Joint {
-            links: halves,
-            kind: Kind::Prismatic(rear_tip, slider.span * (1.0 / slider.d)),
-        });
-    }
-    Mechanism {
-        name: "body",
-        links: 13,
-        joints,
-        driven: CRANK_LINKS.to_vec(),
-        parts: &[
-            (&[5, 6], "the head's end point is loose (type 2)"),
-            (&[7, 8], "the tail's end point is loose (type 2)"),
-            (&[9, 10], "the left slider is loose"),
-            (&[11, 12], "the right slider is loose"),
-        ],
-    }
-}
-
-/// A leg's four-bar in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
-/// spring to the body imposes no rigid constraint, so it is not a link.
-fn leg_mechanism(
-    lizard: &Lizard,
-    solution: &Solution,
-    servo: usize,
-    name: &'static str,
-) -> Mechanism {
-    let crank = solution.legs[servo].direction * lizard.leg.crank;
-    let ground_vector = Vector::new(lizard.leg.ground, 0.0);
-    let points = [
-        ([0, 1], Vector::default()),
-        ([1, 2], crank),
-        ([2, 3], ground_vector + crank),
-        ([3, 0], ground_vector),
-    ];
-    let joints = points.map(|(links, point)| Joint {
-        links,
-        kind: Kind::Revolute(point),
-    });
-    Mechanism {
-        name,
-        links: 4,
-        joints: joints.into(),
-        driven: vec![1],
-        parts: &[(
-            &[2, 3],
-            "coupler and follower may go either way (change point)",
-        )],
-    }
-}
-
-/// The body's degrees of freedom at a pose, by rank.
-pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    freedoms(&body_mechanism(lizard, solution))
-}
-
-/// The front left leg's degrees of freedom at a pose, by rank.
-pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
-}
-
-/// A mechanism's degrees of freedom with unlocked servos, by rank.
-fn freedoms(mechanism: &Mechanism) -> usize {
-    let free_jacobian = jacobian(mechanism, &[]);
-    free_jacobian.ncols() - rank(&free_jacobian.singular_values())
-}
-
-fn measure(mechanism: &Mechanism) -> Report {
-    let joints = mechanism.joints.len();
-    let free_jacobian = jacobian(mechanism, &[]);
-    let (constraints, velocities) = free_jacobian.shape();
-    let rank = rank(&free_jacobian.singular_values());
-    let locked_svd = SVD::new(jacobian(mechanism, &mechanism.driven), false, true);
-    let values = &locked_svd.singular_values;
-    let zero_limit = RANK_TOLERANCE * values.max();
-    let mut loose_parts = Vec::new();
-    if let Some(directions) = &locked_svd.v_t {
-        for (value, direction) in values.iter().zip(directions.row_iter()) {
-            if *value <= zero_limit {
-                // Speed of each moving link in this direction.
-                let speeds: Vec<f64> = (0..mechanism.links - 1)
-                    .map(|link| direction.columns(3 * link, 3).norm())
-                    .collect();
-                let fastest = speeds.iter().copied().fold(0.0, f64::max);
-                loose_parts.extend(mechanism.parts.iter().filter_map(|(links, message)| {
-                    let is_moving = |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * fastest;
-                    links.iter().any(is_moving).then_some(*message)
-                }));
-            }
-        }
-    }
-    loose_parts.sort_unstable();
-    loose_parts.dedup();
-    Report {
-        mechanism: mechanism.name,
-        links: mechanism.links,
-        joints,
-        gruebler: 3 * (mechanism.links as i64 - 1 - joints as i64) + joints as i64,
-        constraints,
-        velocities,
-        rank,
-        freedoms: velocities - rank,
-        locked_freedoms: velocities - self::rank(values),
-        loose: loose_parts,
-        conditioning: values.min() / values.max(),
-    }
-}
-
-/// The number of singular values that are not zero.
-fn rank(values: &DVector<f64>) -> usize {
-    let zero_limit = RANK_TOLERANCE * values.max();
-    values.iter().filter(|value| **value > zero_limit).count()
-}
-
-/// The constraints on the velocities of the moving links: two rows for each
-/// joint, and one for each link that is locked against turning.
-fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
-    let joint_count = mechanism.joints.len();
-    let velocity_count = 3 * (mechanism.links - 1);
-    let mut rows = DMatrix::<f64>::zeros(2 * joint_count + locked_links.len(), velocity_count);
-    let mut add_entries = |row: usize, link: usize, entries: [f64; 3]| {
-        if link > 0 {
-            for (i, entry) in entries.into_iter().enumerate() {
-                rows[(row, 3 * (link - 1) + i)] += entry;
-            }
-        }
-    };
-    for (i, joint) in mechanism.joints.iter().enumerate() {
-        for (link, sign) in [(joint.links[0], 1.0), (joint.links[1], -1.0)] {
-            match joint.kind {
-                // Both links give the common point the same velocity, v + omega x p.
-                Kind::Revolute(point) => {
-                    add_entries(2 * i, link, [sign, 0.0, -sign * point.y / LENGTH_UNIT_MM]);
-                    add_entries(
-                        2 * i + 1,
-                        link,
-                        [0.0, sign, sign * point.x / LENGTH_UNIT_MM],
-                    );
-                }
-                // Both links have the same omega, and the same velocity across the slide.
-                Kind::Prismatic(point, direction) => {
-                    let normal = direction.rotated_left();
-                    add_entries(2 * i, link, [0.0, 0.0, sign]);
-                    add_entries(
-                        2 * i + 1,
-                        link,
-                        [
-                            sign * normal.x,
-                            sign * normal.y,
-                            sign * point.cross(normal) / LENGTH_UNIT_MM,
-                        ],
-                    );
-                }
-            }
-        }
-    }
-    for (i, &link) in locked_links.iter().enumerate() {
-        add_entries(2 * joint_count + i, link, [0.0, 0.0, 1.0]);
-    }
-    rows
 }

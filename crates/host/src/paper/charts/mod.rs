@@ -14,7 +14,6 @@ use serde::Serialize;
 
 use crate::make::draw;
 use crate::paper::design;
-use crate::shared::progress::progress_bar;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotFile};
 
@@ -85,9 +84,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Every chart that does not depend on a pose, with its name.
 pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
-    let progress = progress_bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
-    let points = design::chart(STEP, RINGS, &progress);
-    progress.finish_and_clear();
+    let points = design::compute_charts(STEP, RINGS);
     vec![
         ("workspace", workspace::workspace(robot)),
         ("workspaces", reach::reach(robot)),

@@ -1,10 +1,11 @@
 //! The performance charts over the whole design space.
 
+use lizard_paper::design::{Point, Proportions, SUM};
+
 use std::collections::HashMap;
 
 use svg::node::element::Group;
 
-use crate::paper::design::{Point, Proportions, SUM};
 use crate::shared::ink::{circle, edged, line, page, text_start, title};
 use crate::shared::plot::{Axis, Plot, Scale, VIRIDIS};
 

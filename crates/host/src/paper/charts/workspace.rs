@@ -1,10 +1,10 @@
 //! Charts of the points that the head can reach, and of the local conditioning index at them.
 
 use lizard_kinematics::{Circle, End, Vector, Workspace};
+use lizard_paper::design::{CLAIM, Performance, lci};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use crate::paper::design::{CLAIM, Performance, lci};
 use crate::shared::ink::{DARK, GREY, circle, edged, page, text_start, title};
 use crate::shared::plot::{Axis, IMPOSSIBLE, Plot, Scale, VIRIDIS, draw_entry};
 

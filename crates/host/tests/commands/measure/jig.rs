@@ -7,9 +7,9 @@ use fastrand::Rng;
 use lizard_film::Picture;
 use serde_json::Value;
 
-use super::board::{self, BOARD, Board};
-use super::servo::Servo;
 use crate::program::{read, run_in, scratch};
+use lizard_studio::board::{self, BOARD, Board};
+use lizard_studio::servo::Servo;
 
 /// Creates an empty folder.
 fn new_folder(name: &str) -> PathBuf {

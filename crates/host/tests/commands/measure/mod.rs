@@ -1,31 +1,18 @@
 //! `lizard measure` on rendered films, whose true values are known, and the printed sheet that they show.
 
-#[allow(dead_code)]
-#[path = "../../../../film/tests/film/board.rs"]
-mod board;
 mod jig;
 mod keys;
-// The renderer has more items than these tests use.
-#[allow(dead_code)]
-#[path = "../../../../film/tests/film/render.rs"]
-mod render;
-#[allow(dead_code)]
-#[path = "../../../../film/tests/film/servo.rs"]
-mod servo;
 mod sheet;
-#[allow(dead_code)]
-#[path = "../../../../film/tests/film/walk.rs"]
-mod walk;
 
 use std::fs;
 use std::path::PathBuf;
 
 use fastrand::Rng;
+use lizard_studio::render::{Spot, Studio};
+use lizard_studio::walk::{Show, Variation, Walk, gait, truth};
 use serde_json::Value;
 
 use crate::program::{lizard, run_in, scratch};
-use render::{Spot, Studio};
-use walk::{Show, Variation, Walk, gait, truth};
 
 /// Pictures per second of the films.
 const RATE: f64 = 8.0;

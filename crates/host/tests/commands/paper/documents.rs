@@ -1,12 +1,12 @@
 //! The pages in docs/ are up to date with the program's output.
 
-use lizard_host::errata::{SAMPLES, markdown, measure};
+use lizard_paper::errata::{SAMPLES, markdown, measure};
 
 use crate::program::{lizard, paper, read, root};
 
 #[test]
 fn the_errata_are_what_is_measured_and_every_correction_holds() {
-    let entries = measure(SAMPLES);
+    let entries = measure(SAMPLES, &|| {});
     assert!(entries.iter().all(|entry| entry.is_settled()));
     // Each printed form has one entry, so no erratum is counted twice.
     let json_entries = lizard("errata --samples 1 --json", "").json();

@@ -1,13 +1,12 @@
 //! `lizard design`: the paper's dimensional synthesis (performance-chart-based
 //! design methodology), and a search beyond it.
 
-mod chart;
-mod performance;
-mod proportions;
-mod search;
-
 use std::io::{self, BufWriter, Write};
 
+use lizard_paper::design::{
+    CLAIM, Conditioning, Demands, Design, Performance, Point, Proportions, SUM, Search, chart,
+    design, merge_ranked, triangle,
+};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 
@@ -16,11 +15,6 @@ use crate::shared::json;
 use crate::shared::pose_args::Quantity;
 use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
-
-pub use chart::{Point, chart};
-pub use performance::{CLAIM, Conditioning, Performance, lci};
-pub use proportions::{Proportions, SUM, triangle};
-pub use search::{Demands, Design, Search, design, merge_ranked};
 
 /// Number of rings at which the inscribed circle of a single design is sampled.
 const FINE_RINGS: usize = 128;
@@ -253,10 +247,20 @@ fn verdict(lci: &Conditioning, r_mic: f64) -> String {
     )
 }
 
+/// Computes the performance charts on a grid of this step, with a progress bar.
+pub fn compute_charts(step: f64, rings: usize) -> Vec<Point> {
+    let points = triangle(step);
+    let bar = progress_bar(
+        points.len(),
+        "performance charts {bar:40} {pos}/{len} {eta}",
+    );
+    let points = chart(points, rings, &|| bar.inc(1));
+    bar.finish_and_clear();
+    points
+}
+
 fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
-    let progress = progress_bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
-    let points = chart(args.step, COARSE_RINGS, &progress);
-    progress.finish_and_clear();
+    let points = compute_charts(args.step, COARSE_RINGS);
     if args.json {
         return Ok(json::write_line(out, &points)?);
     }
@@ -311,11 +315,10 @@ fn print_ranking(
         shortest: args.shortest,
         sweep: args.sweep,
     };
-    let progress = progress_bar(0, "designs {bar:40} {pos}/{len} {eta}");
-    let search = Search::new(args.step, demands, &progress, |count| {
-        args.spread.own(count)
-    });
-    let search_piece = |index| search.compute_piece(index);
+    let search = Search::new(args.step, demands);
+    let point_count = search.point_count(args.spread.own(search.piece_count()));
+    let progress = progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
+    let search_piece = |index| search.compute_piece(index, &|| progress.inc(1));
     let pieces = args
         .spread
         .all_pieces(args, search.piece_count(), search_piece)?;

@@ -6,13 +6,13 @@ use std::sync::OnceLock;
 use lizard_kinematics::{End, Side};
 use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 
-use super::end_walk::{EndComparison, bands};
-use super::positions::Positions;
-use super::rows::{CUTS, PairSample};
-use super::side_walk::{SideComparison, compare_leg};
-use super::tally::{Finding, MARGIN_BAND, Tally};
+use crate::end_walk::{EndComparison, bands};
+use crate::positions::Positions;
+use crate::rows::{CUTS, PairSample};
+use crate::side_walk::{SideComparison, compare_leg};
+use crate::tally::{Finding, MARGIN_BAND, Tally};
 
-/// Number of pieces of the whole check: [`CUTS`] for each end and each side.
+/// Number of pieces of the whole check: 64 for each end and each side.
 pub const PIECES: usize = 4 * CUTS;
 
 /// The check of a robot's guard over pairs of servo positions; holds the values that all pieces share.

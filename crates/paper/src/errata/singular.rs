@@ -355,5 +355,5 @@ fn determinant_sine([a, b, c, d]: &[f64; 4], lengths: f64) -> f64 {
 
 /// The degrees of freedom of a leg, which equal the number of its drives.
 fn mobility_of_leg(sample: &Sample) -> f64 {
-    crate::paper::mobility::leg_freedoms(&sample.lizard, &sample.s) as f64
+    crate::mobility::leg_freedoms(&sample.lizard, &sample.s) as f64
 }

@@ -6,8 +6,8 @@ use lizard_kinematics::{End, Vector, Workspace};
 
 use super::equation::Equation;
 use super::sample::{Sample, TABLE, cis};
-use crate::paper::design::{CLAIM, Proportions, SUM, lci};
-use crate::paper::mobility;
+use crate::design::{CLAIM, Proportions, SUM, lci};
+use crate::mobility;
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[

@@ -4,7 +4,7 @@ use fastrand::Rng;
 use lizard_film::Picture;
 use lizard_film::orders::{Order, PAUSE, orders};
 
-use super::render::Studio;
+use crate::render::Studio;
 
 /// Duration of a frame of the firmware, s.
 const FRAME: f64 = 0.02;
@@ -67,7 +67,7 @@ impl Servo {
         self.begin + PAUSE * orders(1.0).len() as f64
     }
 
-    /// Simulates the card's angles, deg, at every [`STEP`] from time 0. The orders are counter-clockwise from
+    /// Simulates the card's angles, deg, at `STEP` from time 0. The orders are counter-clockwise from
     /// neutral if `side` is 1, clockwise if it is -1.
     pub fn turns(&self, side: f64) -> Turning {
         let orders = orders(side);

@@ -1,20 +1,9 @@
 //! `lizard prove`: compares the integer guard with floating point at every pair of positions that two servos can
 //! take.
-//!
-//! Every condition of a safe pose depends on one servo (a leg), on the two servos of an end or on the two of a side.
-//! So trying every pair of each end and of each side, in the steps in which the firmware counts angles, decides every
-//! possible pose: 1.8e18 for servos with a travel of half a turn. Nothing is sampled.
-
-mod end_walk;
-mod positions;
-mod rows;
-mod side_walk;
-mod tally;
-mod walk;
 
 use std::io::{self, Write};
 
-use lizard_robot::{CoreRobot, Robot};
+use lizard_proof::{PIECES, PairSample, Proof, STEPS_BAND, Tally, Walk};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
@@ -22,9 +11,6 @@ use crate::shared::json;
 use crate::shared::number::grouped;
 use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
-
-pub use rows::PairSample;
-pub use tally::{Finding, MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 
 /// Compare the firmware's guard with floating point at every possible pose.
 ///
@@ -64,63 +50,6 @@ impl Spreads for Args {
     }
 }
 
-/// The comparison of guard and geometry for one robot.
-#[derive(Clone, Debug, Serialize)]
-pub struct Proof {
-    /// The findings for ends, sides and legs.
-    pub findings: Vec<Finding>,
-    /// Hash that identifies the robot's numbers.
-    pub hash: u32,
-    /// Distance from a margin's limit within which the decisions may differ, a sine.
-    pub margin_band: f64,
-}
-
-impl Proof {
-    /// Compares a share of the pairs of a robot with a guard, normally the robot's own. `progress` is called with the
-    /// number of rows completed since its last call; [`Proof::rows`] returns their total.
-    pub fn of(
-        robot: &Robot,
-        guard: &CoreRobot,
-        sample: PairSample,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Self {
-        let walk = walk::Walk::new(robot, guard, sample);
-        let check_piece = |index| walk.piece(index, progress);
-        Self::from_tallies(robot, guard, (0..walk::PIECES).map(check_piece).collect())
-    }
-
-    /// Makes the proof from the tallies of all pieces.
-    fn from_tallies(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
-        Self {
-            findings: walk::findings(robot, guard, pieces),
-            hash: guard.hash(),
-            margin_band: walk::widest_band(robot),
-        }
-    }
-
-    /// The number of rows that [`Proof::of`] walks.
-    pub fn rows(guard: &CoreRobot) -> u64 {
-        walk::rows(guard)
-    }
-
-    /// The number of pairs in cells of the robot's maps, whose poses the firmware does not measure.
-    pub fn certified(&self) -> u64 {
-        self.findings
-            .iter()
-            .map(|finding| finding.tally.certified)
-            .sum()
-    }
-
-    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard refuses.
-    /// If it is 0, guard and cells are proved correct.
-    pub fn wrong(&self) -> u64 {
-        self.findings
-            .iter()
-            .map(|finding| finding.tally.wrong)
-            .sum()
-    }
-}
-
 /// Compares the guard with floating point and prints the result.
 ///
 /// # Errors
@@ -132,14 +61,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let rows = Proof::rows(guard) * args.spread.own(walk::PIECES) as u64 / walk::PIECES as u64;
+    let rows = Proof::rows(guard) * args.spread.own(PIECES) as u64 / PIECES as u64;
     let bar = progress_bar(
         rows as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
     );
-    let walk = walk::Walk::new(&robot, guard, sample);
+    let walk = Walk::new(&robot, guard, sample);
     let check_piece = |index| walk.piece(index, &|rows| bar.inc(rows));
-    let pieces = args.spread.all_pieces(&args, walk::PIECES, check_piece)?;
+    let pieces = args.spread.all_pieces(&args, PIECES, check_piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());

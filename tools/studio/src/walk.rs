@@ -6,14 +6,14 @@ use lizard_film::Gait;
 use lizard_robot::{Place, Robot, Travel};
 use lizard_twin::{ServoModel, Twin};
 
-use super::render::{Spot, normal};
+use crate::render::{Spot, normal};
 
 /// Time before the start and after the stop, s.
 pub const REST: f64 = 0.5;
 
 /// A gait of the paper's robot as the twin walks it: the second cycle, from its start.
 pub fn gait(name: &str) -> Gait {
-    let robot = Robot::parse(include_str!("../../../../robots/paper.toml")).expect("a robot");
+    let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("a robot");
     let gait = robot.gait(name).expect("a gait");
     let mut twin = Twin::new(&robot, ServoModel::of(&robot));
     let frames = gait.frames().count() - 1;
@@ -51,16 +51,19 @@ pub struct Walk {
     extras: Vec<[[f64; 3]; PARTS + 1]>,
 }
 
-/// Deviations of a walk: of each cycle (mm, mm, rad), of the clock, and of what a user measures: of a height in
-/// mm and of a sheet in thousandths.
+/// Standard deviations of a walk and of its measures.
 #[derive(Clone, Copy, Default)]
 pub struct Variation {
+    /// Deviation of each cycle from the gait: mm, mm, rad.
     pub cycle: [f64; 3],
+    /// Deviation of the robot's clock, a share.
     pub clock: f64,
+    /// Deviation of a height that a user measures, mm, and of the sheet, thousandths.
     pub ruler: f64,
 }
 
 impl Walk {
+    /// Makes a walk of some cycles of a gait, from a place.
     pub fn new(
         gait: &Gait,
         start: Spot,
@@ -164,6 +167,7 @@ impl Show {
         show
     }
 
+    /// The duration from the first rest to the end of the last one, s.
     pub fn seconds(&self) -> f64 {
         self.seconds
     }

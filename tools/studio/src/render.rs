@@ -34,6 +34,7 @@ const RUN_LENGTH: usize = 64;
 /// The scene: the floor, the sheet and the camera.
 #[derive(Clone)]
 pub struct Studio {
+    /// Width and height of the picture, pixels.
     pub size: [usize; 2],
     /// Focal length as a share of the picture's width.
     pub focal: f64,
@@ -49,7 +50,7 @@ pub struct Studio {
     pub roll: f64,
     /// The point of the floor on the camera's axis, mm.
     pub aim: [f64; 2],
-    /// Tilt of the board with strips and robot about its edge at x = [`TILT_EDGE`], deg.
+    /// Tilt of the board with strips and robot about its edge at x = `TILT_EDGE`, deg.
     pub board: f64,
     /// Places of the strips' middles.
     pub strips: [Spot; 2],

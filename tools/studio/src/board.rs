@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use fastrand::Rng;
 use lizard_film::Picture;
 
-use super::render::Studio;
+use crate::render::Studio;
 
 /// Acceleration of free fall, mm/s^2.
 const GRAVITY: f64 = 9806.65;
@@ -35,6 +35,7 @@ pub struct Board {
     pub aside: f64,
 }
 
+/// A board that is lifted evenly, with a robot that faces downhill and slides straight down.
 pub const BOARD: Board = Board {
     resting: 0.75,
     sliding: 0.68,

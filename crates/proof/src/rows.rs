@@ -4,8 +4,8 @@ use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
 use rayon::prelude::*;
 
-use super::positions::Positions;
-use super::tally::Tally;
+use crate::positions::Positions;
+use crate::tally::Tally;
 
 /// Columns that floating point computes at once.
 pub const LANES: usize = 8;

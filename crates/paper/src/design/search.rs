@@ -5,7 +5,6 @@
 //! largest sweep within all margins and the servos' travel. All four servos may be at any angle of the sweep at the
 //! same time, so any gait of that amplitude is safe.
 
-use indicatif::ProgressBar;
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -59,30 +58,18 @@ pub struct Design {
 const PIECE_SIZE: usize = 64;
 
 /// The search, in pieces that do not depend on each other.
-pub struct Search<'a> {
+pub struct Search {
     points: Vec<Proportions>,
     demands: Demands,
-    progress: &'a ProgressBar,
 }
 
-impl<'a> Search<'a> {
-    /// Prepares the search of all points of the triangle. `count_own` returns how many of all pieces are computed here,
-    /// which sets the length of the progress bar.
-    pub fn new(
-        step: f64,
-        demands: Demands,
-        progress: &'a ProgressBar,
-        count_own: impl Fn(usize) -> usize,
-    ) -> Self {
-        let points = triangle(step);
-        let search = Self {
-            points,
+impl Search {
+    /// Prepares the search of all points of the triangle on a grid of this step.
+    pub fn new(step: f64, demands: Demands) -> Self {
+        Self {
+            points: triangle(step),
             demands,
-            progress,
-        };
-        let point_count = PIECE_SIZE * count_own(search.piece_count());
-        progress.set_length(point_count.min(search.points.len()) as u64);
-        search
+        }
     }
 
     /// The number of all pieces.
@@ -90,16 +77,22 @@ impl<'a> Search<'a> {
         self.points.len().div_ceil(PIECE_SIZE)
     }
 
-    /// The designs of one piece that meet the demands.
-    pub fn compute_piece(&self, index: usize) -> Vec<Design> {
+    /// The number of points in this many pieces.
+    pub fn point_count(&self, pieces: usize) -> usize {
+        self.points.len().min(pieces * PIECE_SIZE)
+    }
+
+    /// The designs of one piece that meet the demands. `progress` is called after each point.
+    pub fn compute_piece(&self, index: usize, progress: &(dyn Fn() + Sync)) -> Vec<Design> {
         let points = self
             .points
             .chunks(PIECE_SIZE)
             .nth(index)
             .unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
-            self.progress.inc(1);
-            design(*point, &self.demands)
+            let found = design(*point, &self.demands);
+            progress();
+            found
         });
         designs.collect()
     }

@@ -6,9 +6,9 @@ use lizard_core::numbers::part;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
-use super::positions::Positions;
-use super::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
-use super::tally::{STEPS_BAND, Tally, margin_band};
+use crate::positions::Positions;
+use crate::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
+use crate::tally::{STEPS_BAND, Tally, margin_band};
 
 /// The comparison of guard and floating point over all pairs of an end.
 pub struct EndComparison<'a> {

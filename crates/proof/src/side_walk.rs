@@ -7,9 +7,9 @@ use lizard_core::numbers::part;
 use lizard_kinematics::{End, Lanes, Side, Slider};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
-use super::positions::Positions;
-use super::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
-use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
+use crate::positions::Positions;
+use crate::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
+use crate::tally::{MARGIN_BAND, STEPS_BAND, Tally};
 
 /// Compares the guard with geometry at the pairs of one side.
 pub struct SideComparison<'a> {

@@ -4,12 +4,6 @@
 //!
 //! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: the given number of cycles of the paper's `walk`, with a rest before
 //! and after.
-#![allow(dead_code, missing_docs)] // The tests use more of these modules.
-
-#[path = "../tests/film/render.rs"]
-mod render;
-#[path = "../tests/film/walk.rs"]
-mod walk;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -17,9 +11,8 @@ use std::{env, fs};
 
 use fastrand::Rng;
 use jpeg_encoder::{ColorType, Encoder};
-
-use render::Studio;
-use walk::{Variation, Walk, gait, truth};
+use lizard_studio::render::Studio;
+use lizard_studio::walk::{Variation, Walk, gait, truth};
 
 /// Pictures per second. Chromium keeps a late picture in step if the delay is shorter than the time of one picture,
 /// so a low rate stays in step on a busy machine.

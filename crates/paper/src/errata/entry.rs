@@ -1,0 +1,89 @@
+//! The result for one printed equation, and its words.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+/// An equation with its measured errors.
+#[derive(Serialize)]
+pub struct Entry {
+    /// The equation's place in the paper.
+    pub place: &'static str,
+    /// The equation as printed.
+    pub printed: &'static str,
+    /// True if the printed form holds at every sample.
+    pub holds: bool,
+    /// The largest error, in `unit`.
+    pub worst: f64,
+    /// Share of the samples at which the printed form has no real value.
+    pub unreal: f64,
+    /// The unit of every error of this equation.
+    pub unit: &'static str,
+    /// The largest error of the printed form in a special case, in `unit`, and the name of that case; null without
+    /// one.
+    pub aside: Option<(f64, &'static str)>,
+    /// True if the printed form holds with right-hand angles measured clockwise from -x; null if
+    /// the drawings do not suggest that reading.
+    pub holds_clockwise: Option<bool>,
+    /// The corrected form; null if the paper needs none.
+    pub corrected: Option<&'static str>,
+    /// The largest error of the corrected form, in `unit`.
+    pub corrected_worst: Option<f64>,
+    /// True if the corrected form holds at every sample.
+    pub corrected_holds: Option<bool>,
+}
+
+impl Entry {
+    /// The verdict in words.
+    pub fn verdict(&self) -> &'static str {
+        match (self.holds, self.holds_clockwise) {
+            (true, Some(false)) => "holds, but not clockwise",
+            (true, _) => "holds",
+            (false, Some(true)) => "fails; holds clockwise",
+            (false, _) => "fails",
+        }
+    }
+
+    /// The largest error in words, or `rounding` if the equation holds, followed by the error of the special case.
+    pub fn format_error(&self) -> String {
+        let mut text = self.plain_miss();
+        if let Some((worst_error, place)) = self.aside {
+            let unit = self.unit;
+            let _ = write!(
+                text,
+                "; {} {unit} at {place}",
+                format_three_digits(worst_error)
+            );
+        }
+        text
+    }
+
+    /// The largest error in words, or `rounding` if the equation holds, without the special case.
+    fn plain_miss(&self) -> String {
+        if self.holds {
+            return "rounding".to_string();
+        }
+        let mut text = format!("{} {}", format_three_digits(self.worst), self.unit);
+        if self.unreal >= 0.999_95 {
+            text = "no real value".to_string();
+        } else if self.unreal > 0.0 {
+            let _ = write!(
+                text,
+                ", no real value at {:.0} % of poses",
+                100.0 * self.unreal
+            );
+        }
+        text
+    }
+
+    /// True if the printed or the corrected form holds.
+    pub fn is_settled(&self) -> bool {
+        self.holds || self.corrected_holds == Some(true)
+    }
+}
+
+/// Formats a value with three significant digits, without an exponent.
+fn format_three_digits(value: f64) -> String {
+    let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
+    format!("{value:.0$}", digits as usize)
+}

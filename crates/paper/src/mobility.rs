@@ -1,0 +1,283 @@
+//! Degrees of freedom of the body and of the legs, counted and measured.
+//!
+//! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of the
+//! constraints at a pose does not assume it. Here every moving link has three velocities (vx,
+//! vy of its point at the origin, and omega), every joint gives two rows, and the degrees of
+//! freedom are the columns less the rank.
+//!
+//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one
+//! of them. So the rank is computed again with the driven cranks locked, which adds a row for
+//! each crank. A link that can still move then is loose.
+
+use lizard_kinematics::{Lizard, Side, Solution, Vector};
+use nalgebra::{DMatrix, DVector, SVD};
+use serde::Serialize;
+
+/// Singular values below this share of the largest count as zero, so that a singular
+/// pose typed with seven digits is found.
+const RANK_TOLERANCE: f64 = 1e-7;
+
+/// Links slower than this share of the fastest count as standing still.
+const MAX_STILL_SPEED: f64 = 1e-3;
+
+/// The unit of length, mm, that makes rows in mm and in radians comparable.
+const LENGTH_UNIT_MM: f64 = 50.0;
+
+/// A mechanism: joints that connect links. Link 0 is fixed.
+struct Mechanism {
+    name: &'static str,
+    links: usize,
+    joints: Vec<Joint>,
+    /// The numbers of the links that a servo drives.
+    driven: Vec<usize>,
+    /// Groups of links, each with the message if one moves while the driven links are locked.
+    parts: &'static [(&'static [usize], &'static str)],
+}
+
+/// A joint between two links.
+struct Joint {
+    links: [usize; 2],
+    kind: Kind,
+}
+
+/// The kind of a joint and its place, in the pose that is examined.
+enum Kind {
+    /// A pin at a point, mm.
+    Revolute(Vector),
+    /// A prismatic joint through a point along a direction of length one.
+    Prismatic(Vector, Vector),
+}
+
+/// The degrees of freedom of a mechanism.
+#[derive(Serialize)]
+pub struct Mobility {
+    /// `body`, or the leg and its servo.
+    pub mechanism: &'static str,
+    /// Number of links, the fixed one among them.
+    pub links: usize,
+    /// Number of joints.
+    pub joints: usize,
+    /// Gruebler's count, 3 (N - 1 - j) + sum f: N links, j joints with f freedoms each.
+    pub gruebler: i64,
+    /// Rows of the constraint Jacobian.
+    pub constraints: usize,
+    /// Columns of the constraint Jacobian.
+    pub velocities: usize,
+    /// Rank of the constraint Jacobian.
+    pub rank: usize,
+    /// Columns minus rank.
+    pub freedoms: usize,
+    /// Degrees of freedom with the driven cranks locked; 0 if no link can move then.
+    pub locked_freedoms: usize,
+    /// Messages for the parts that move while the cranks are locked.
+    pub loose: Vec<&'static str>,
+    /// Smallest singular value divided by the largest, for the Jacobian with the driven cranks locked; it approaches
+    /// 0 at a singularity.
+    pub conditioning: f64,
+}
+
+/// Measures the degrees of freedom of the body and of each leg at a pose.
+pub fn measure(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
+    let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
+    let body = body_mechanism(lizard, solution);
+    let legs = (0..4).map(|i| leg_mechanism(lizard, solution, i, legs[i]));
+    std::iter::once(body)
+        .chain(legs)
+        .map(|mechanism| Mobility::of(&mechanism))
+        .collect()
+}
+
+/// The 13 links of the body: chassis, four cranks with their side arms, four
+/// couplers, four slider halves.
+fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
+    const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
+    let tips = solution.crank_tips();
+    let shafts = lizard.shafts();
+    let pin_joint = |first: usize, second: usize, point: Vector| Joint {
+        links: [first, second],
+        kind: Kind::Revolute(point),
+    };
+    let mut joints: Vec<Joint> = (0..4)
+        .map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]))
+        .collect();
+    // Head couplers 5, 6; tail couplers 7 (left), 8 (right).
+    joints.push(pin_joint(CRANK_LINKS[0], 5, tips[0]));
+    joints.push(pin_joint(CRANK_LINKS[1], 6, tips[1]));
+    joints.push(pin_joint(5, 6, solution.head_point()));
+    joints.push(pin_joint(CRANK_LINKS[3], 7, tips[3]));
+    joints.push(pin_joint(CRANK_LINKS[2], 8, tips[2]));
+    joints.push(pin_joint(7, 8, solution.tail_point()));
+    // Slider halves: left rear 9, front 10; right rear 11, front 12.
+    for (side, halves) in Side::ALL.into_iter().zip([[9, 10], [11, 12]]) {
+        let ([front, rear], slider) = (side.servos(), solution.side(side));
+        let rear_tip = shafts[rear] + slider.rear_tip;
+        joints.push(pin_joint(CRANK_LINKS[rear], halves[0], rear_tip));
+        joints.push(pin_joint(
+            CRANK_LINKS[front],
+            halves[1],
+            shafts[rear] + slider.front_tip,
+        ));
+        joints.push(Joint {
+            links: halves,
+            kind: Kind::Prismatic(rear_tip, slider.span * (1.0 / slider.d)),
+        });
+    }
+    Mechanism {
+        name: "body",
+        links: 13,
+        joints,
+        driven: CRANK_LINKS.to_vec(),
+        parts: &[
+            (&[5, 6], "the head's end point is loose (type 2)"),
+            (&[7, 8], "the tail's end point is loose (type 2)"),
+            (&[9, 10], "the left slider is loose"),
+            (&[11, 12], "the right slider is loose"),
+        ],
+    }
+}
+
+/// A leg's four-bar in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
+/// spring to the body imposes no rigid constraint, so it is not a link.
+fn leg_mechanism(
+    lizard: &Lizard,
+    solution: &Solution,
+    servo: usize,
+    name: &'static str,
+) -> Mechanism {
+    let crank = solution.legs[servo].direction * lizard.leg.crank;
+    let ground_vector = Vector::new(lizard.leg.ground, 0.0);
+    let points = [
+        ([0, 1], Vector::default()),
+        ([1, 2], crank),
+        ([2, 3], ground_vector + crank),
+        ([3, 0], ground_vector),
+    ];
+    let joints = points.map(|(links, point)| Joint {
+        links,
+        kind: Kind::Revolute(point),
+    });
+    Mechanism {
+        name,
+        links: 4,
+        joints: joints.into(),
+        driven: vec![1],
+        parts: &[(
+            &[2, 3],
+            "coupler and follower may go either way (change point)",
+        )],
+    }
+}
+
+/// The body's degrees of freedom at a pose, by rank.
+pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+    freedoms(&body_mechanism(lizard, solution))
+}
+
+/// The front left leg's degrees of freedom at a pose, by rank.
+pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+    freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
+}
+
+/// A mechanism's degrees of freedom with unlocked servos, by rank.
+fn freedoms(mechanism: &Mechanism) -> usize {
+    let free_jacobian = jacobian(mechanism, &[]);
+    free_jacobian.ncols() - rank_of(&free_jacobian.singular_values())
+}
+
+impl Mobility {
+    /// Counts and measures one mechanism.
+    fn of(mechanism: &Mechanism) -> Self {
+        let joints = mechanism.joints.len();
+        let free_jacobian = jacobian(mechanism, &[]);
+        let (constraints, velocities) = free_jacobian.shape();
+        let rank = rank_of(&free_jacobian.singular_values());
+        let locked_svd = SVD::new(jacobian(mechanism, &mechanism.driven), false, true);
+        let values = &locked_svd.singular_values;
+        let zero_limit = RANK_TOLERANCE * values.max();
+        let mut loose_parts = Vec::new();
+        if let Some(directions) = &locked_svd.v_t {
+            for (value, direction) in values.iter().zip(directions.row_iter()) {
+                if *value <= zero_limit {
+                    // Speed of each moving link in this direction.
+                    let speeds: Vec<f64> = (0..mechanism.links - 1)
+                        .map(|link| direction.columns(3 * link, 3).norm())
+                        .collect();
+                    let fastest = speeds.iter().copied().fold(0.0, f64::max);
+                    loose_parts.extend(mechanism.parts.iter().filter_map(|(links, message)| {
+                        let is_moving = |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * fastest;
+                        links.iter().any(is_moving).then_some(*message)
+                    }));
+                }
+            }
+        }
+        loose_parts.sort_unstable();
+        loose_parts.dedup();
+        Self {
+            mechanism: mechanism.name,
+            links: mechanism.links,
+            joints,
+            gruebler: 3 * (mechanism.links as i64 - 1 - joints as i64) + joints as i64,
+            constraints,
+            velocities,
+            rank,
+            freedoms: velocities - rank,
+            locked_freedoms: velocities - rank_of(values),
+            loose: loose_parts,
+            conditioning: values.min() / values.max(),
+        }
+    }
+}
+
+/// The number of singular values that are not zero.
+fn rank_of(values: &DVector<f64>) -> usize {
+    let zero_limit = RANK_TOLERANCE * values.max();
+    values.iter().filter(|value| **value > zero_limit).count()
+}
+
+/// The constraints on the velocities of the moving links: two rows for each
+/// joint, and one for each link that is locked against turning.
+fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
+    let joint_count = mechanism.joints.len();
+    let velocity_count = 3 * (mechanism.links - 1);
+    let mut rows = DMatrix::<f64>::zeros(2 * joint_count + locked_links.len(), velocity_count);
+    let mut add_entries = |row: usize, link: usize, entries: [f64; 3]| {
+        if link > 0 {
+            for (i, entry) in entries.into_iter().enumerate() {
+                rows[(row, 3 * (link - 1) + i)] += entry;
+            }
+        }
+    };
+    for (i, joint) in mechanism.joints.iter().enumerate() {
+        for (link, sign) in [(joint.links[0], 1.0), (joint.links[1], -1.0)] {
+            match joint.kind {
+                // Both links give the common point the same velocity, v + omega x p.
+                Kind::Revolute(point) => {
+                    add_entries(2 * i, link, [sign, 0.0, -sign * point.y / LENGTH_UNIT_MM]);
+                    add_entries(
+                        2 * i + 1,
+                        link,
+                        [0.0, sign, sign * point.x / LENGTH_UNIT_MM],
+                    );
+                }
+                // Both links have the same omega, and the same velocity across the slide.
+                Kind::Prismatic(point, direction) => {
+                    let normal = direction.rotated_left();
+                    add_entries(2 * i, link, [0.0, 0.0, sign]);
+                    add_entries(
+                        2 * i + 1,
+                        link,
+                        [
+                            sign * normal.x,
+                            sign * normal.y,
+                            sign * point.cross(normal) / LENGTH_UNIT_MM,
+                        ],
+                    );
+                }
+            }
+        }
+    }
+    for (i, &link) in locked_links.iter().enumerate() {
+        add_entries(2 * joint_count + i, link, [0.0, 0.0, 1.0]);
+    }
+    rows
+}
