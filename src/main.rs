@@ -26,7 +26,7 @@ fn main() -> ! {
     let main_pointer = &raw mut MAIN;
     // SAFETY: this function is entered once, and nobody else names `MAIN`.
     let main = unsafe { &mut *main_pointer };
-    main.begin(Region::EMPTY, &mut uno);
+    main.begin(Region::INITIAL, &mut uno);
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {
             sleep::until_tick_or_byte(ticks);

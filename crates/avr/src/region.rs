@@ -34,8 +34,8 @@ pub struct Region<'a> {
 
 #[cfg(not(target_arch = "avr"))]
 impl<'a> Region<'a> {
-    /// A region of no bytes.
-    pub const EMPTY: Self = Self { bytes: &[] };
+    /// The region with which a program begins: no bytes.
+    pub const INITIAL: Self = Self { bytes: &[] };
 
     /// A region of these bytes.
     pub const fn new(bytes: &'a [u8]) -> Self {
@@ -89,8 +89,8 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region of flash that holds the robot's section; it is not empty on the AVR, in spite of its name.
-    pub const EMPTY: Self = Self {
+    /// The region with which a program begins: on the AVR the only one, that of the robot's section.
+    pub const INITIAL: Self = Self {
         lifetime: core::marker::PhantomData,
     };
 

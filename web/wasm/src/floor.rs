@@ -77,7 +77,7 @@ impl Floor {
 
     /// Replaces every value that is out of range by the robot's own.
     #[must_use]
-    pub fn within(self, robot: &Robot) -> Self {
+    pub fn with_valid_values(self, robot: &Robot) -> Self {
         let own_floor = Self::of(robot);
         let positive_or_own = |value: f64, own_value: f64| match value > 0.0 && value.is_finite() {
             true => value,
@@ -106,8 +106,8 @@ impl Floor {
 
     /// Returns the robot's ground with these values.
     #[must_use]
-    pub fn over(self, robot: &Robot) -> Ground {
-        let (floor, ground) = (self.within(robot), robot.ground());
+    pub fn ground_for(self, robot: &Robot) -> Ground {
+        let (floor, ground) = (self.with_valid_values(robot), robot.ground());
         Ground {
             friction: floor.friction,
             ratio: floor.ratio,
@@ -157,7 +157,7 @@ mod tests {
                 twist: f64::INFINITY,
                 ..Floor::of(&robot)
             };
-            assert_eq!(invalid_floor.over(&robot), *robot.ground());
+            assert_eq!(invalid_floor.ground_for(&robot), *robot.ground());
         }
     }
 
@@ -170,7 +170,7 @@ mod tests {
         ] {
             let robot = robot_with(extra_toml);
             assert_eq!(
-                Floor::of(&robot).over(&robot),
+                Floor::of(&robot).ground_for(&robot),
                 *robot.ground(),
                 "{extra_toml}"
             );

@@ -117,7 +117,7 @@ impl Page {
         let robot = Robot::parse(text)?;
         let own_floor = Floor::of(&robot);
         // Values out of range are replaced by the robot's own.
-        let new_floor = floor.within(&robot);
+        let new_floor = floor.with_valid_values(&robot);
         let mut text = text.to_string();
         let kind = new_floor.kind.word();
         if new_floor.kind != own_floor.kind {
@@ -204,7 +204,7 @@ impl Page {
     /// Sets the floor, the mass, the feet and the leg drive from the next frame on.
     pub fn set_floor(&mut self, floor: Floor) {
         if let Some(twin) = &mut self.twin {
-            twin.set_ground(floor.over(twin.robot()));
+            twin.set_ground(floor.ground_for(twin.robot()));
         }
     }
 

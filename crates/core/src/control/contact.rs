@@ -32,7 +32,7 @@ impl Contact {
     };
 
     /// A contact that must be open first, and then close.
-    pub const fn await_closing(input: Input) -> Self {
+    pub const fn waiting_to_close(input: Input) -> Self {
         Self {
             input,
             history: LEVELS,
@@ -40,7 +40,7 @@ impl Contact {
     }
 
     /// A contact that must be closed, even if it has been closed from the start.
-    pub const fn await_closed(input: Input) -> Self {
+    pub const fn waiting_while_open(input: Input) -> Self {
         Self { input, history: 0 }
     }
 
@@ -72,7 +72,10 @@ mod tests {
     #[test]
     fn a_contact_closes_in_the_third_frame_in_a_row() {
         let input = Input::button(15);
-        for contact in [Contact::await_closing(input), Contact::await_closed(input)] {
+        for contact in [
+            Contact::waiting_to_close(input),
+            Contact::waiting_while_open(input),
+        ] {
             assert_eq!(closing_frames_of(contact, "....###"), [6]);
             assert_eq!(closing_frames_of(contact, "....##.##.#.#.##.###."), [19]);
             assert!(closing_frames_of(contact, "...##..##..#..##.##.#").is_empty());
@@ -82,14 +85,17 @@ mod tests {
     #[test]
     fn a_contact_closed_from_the_start_ends_a_walk_but_no_wait_until_it_was_open() {
         let input = Input::nose(16);
-        assert_eq!(closing_frames_of(Contact::await_closed(input), "###"), [2]);
-        let stuck_levels: String = "#".repeat(1000);
-        assert!(closing_frames_of(Contact::await_closing(input), &stuck_levels).is_empty());
         assert_eq!(
-            closing_frames_of(Contact::await_closing(input), "####...###"),
+            closing_frames_of(Contact::waiting_while_open(input), "###"),
+            [2]
+        );
+        let stuck_levels: String = "#".repeat(1000);
+        assert!(closing_frames_of(Contact::waiting_to_close(input), &stuck_levels).is_empty());
+        assert_eq!(
+            closing_frames_of(Contact::waiting_to_close(input), "####...###"),
             [9]
         );
         // Too short to have been open.
-        assert!(closing_frames_of(Contact::await_closing(input), "####..####.##").is_empty());
+        assert!(closing_frames_of(Contact::waiting_to_close(input), "####..####.##").is_empty());
     }
 }

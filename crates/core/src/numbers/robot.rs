@@ -41,7 +41,7 @@ impl fmt::Debug for Robot<'_> {
 impl<'a> Robot<'a> {
     /// No robot: it has no gait and may not be moved.
     pub const NONE: Self = Self {
-        section: Region::EMPTY,
+        section: Region::INITIAL,
         is_present: false,
     };
 

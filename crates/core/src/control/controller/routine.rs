@@ -110,9 +110,9 @@ impl Control {
         self.routine.step = number as u8 + 1;
         self.routine.frames_left = if kind == Step::CYCLES { 0 } else { count };
         self.contact = if kind == Step::WAIT {
-            Contact::await_closing(input)
+            Contact::waiting_to_close(input)
         } else {
-            Contact::await_closed(input)
+            Contact::waiting_while_open(input)
         };
         match kind {
             Step::REST => self.motion.rest(),
