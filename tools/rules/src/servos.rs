@@ -255,8 +255,8 @@ impl Observer {
             self.fail(Rule::Begins, format!("{name} begins"));
         }
         // The frame that has begun is completed even if an order to rest comes in it.
-        let is_rest_over =
-            self.sent_to_rest > servo.whole_at && now - self.sent_to_rest > UNTIL_REST;
+        let hung_until = self.start.max(servo.whole_at);
+        let is_rest_over = self.sent_to_rest > hung_until && now - self.sent_to_rest > UNTIL_REST;
         let is_after_hang = servo.is_hung
             && !servo.is_lost
             && servo.whole_at > NEVER
