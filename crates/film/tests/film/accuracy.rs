@@ -2,10 +2,10 @@
 
 use fastrand::Rng;
 use lizard_film::{Film, Gait, Mean, Measured, Sight, read};
-
-use crate::studio::{TRUE_SIZE, film, small};
 use lizard_studio::render::{Studio, normal};
 use lizard_studio::walk::{Variation, Walk, gait, truth};
+
+use crate::studio::{TRUE_SIZE, film, small};
 
 /// Films some cycles with a random camera and measures them.
 fn measure_film(

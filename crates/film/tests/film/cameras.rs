@@ -2,11 +2,11 @@
 
 use fastrand::Rng;
 use lizard_film::Film;
+use lizard_studio::render::{Studio, normal};
+use lizard_studio::walk::{Variation, Walk, gait, truth};
 
 use crate::accuracy::number;
 use crate::studio::{TRUE_SIZE, film_of};
-use lizard_studio::render::{Studio, normal};
-use lizard_studio::walk::{Variation, Walk, gait, truth};
 
 /// Cycles in a film.
 const CYCLES: usize = 6;

@@ -2,10 +2,10 @@
 
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Gait, Likeness, Measured, Trouble, rest};
-
-use crate::studio::{TRUE_SIZE, film_of, small};
 use lizard_studio::render::Studio;
 use lizard_studio::walk::{Show, Variation, gait, truth};
+
+use crate::studio::{TRUE_SIZE, film_of, small};
 
 /// Pictures per second.
 const RATE: f64 = 8.0;

@@ -2,7 +2,6 @@
 
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
-
 use lizard_studio::board::{BOARD, Board, studio};
 use lizard_studio::render::{Studio, normal};
 

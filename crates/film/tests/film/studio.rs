@@ -2,7 +2,6 @@
 
 use fastrand::Rng;
 use lizard_film::{Film, Setup};
-
 use lizard_studio::render::{Spot, Studio};
 use lizard_studio::walk::Walk;
 

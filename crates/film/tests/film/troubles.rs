@@ -2,10 +2,10 @@
 
 use fastrand::Rng;
 use lizard_film::{Film, Gait, Measured, Picture, Setup, Trouble};
-
-use crate::studio::{TRUE_SIZE, film_of, small};
 use lizard_studio::render::{Spot, Studio};
 use lizard_studio::walk::{Variation, Walk, gait, truth};
+
+use crate::studio::{TRUE_SIZE, film_of, small};
 
 /// Pictures per second: few suffice, since the tests check only the reason.
 const RATE: f64 = 8.0;

@@ -3,7 +3,6 @@
 use fastrand::Rng;
 use lizard_contact::Place;
 use lizard_film::{Figure, Film, Jig, PathPoint, Setup, Turns, TurnsTrouble};
-
 use lizard_studio::render::{Studio, normal};
 use lizard_studio::servo::{FRICTION, FULL, Servo};
 

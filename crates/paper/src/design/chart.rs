@@ -17,8 +17,8 @@ pub struct Point {
     pub performance: Performance,
 }
 
-/// Computes the charts at the points of [`triangle`](super::triangle), on all cores. The numbers and their order are the same in every
-/// run. `progress` is called after each point.
+/// Computes the charts at the points of [`triangle`](super::triangle), on all cores. The numbers and their order are
+/// the same in every run. `progress` is called after each point.
 pub fn chart(points: Vec<Proportions>, rings: usize, progress: &(dyn Fn() + Sync)) -> Vec<Point> {
     let compute = |proportions: Proportions| {
         let performance = Performance::of(&proportions.at_scale(1.0), rings);

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use fastrand::Rng;
 use lizard_film::Picture;
+use lizard_studio::board::{self, BOARD, Board};
+use lizard_studio::servo::Servo;
 use serde_json::Value;
 
 use crate::program::{read, run_in, scratch};
-use lizard_studio::board::{self, BOARD, Board};
-use lizard_studio::servo::Servo;
 
 /// Creates an empty folder.
 fn new_folder(name: &str) -> PathBuf {
