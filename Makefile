@@ -264,6 +264,8 @@ WALKS := target/walks.log
 # Uncommitted changes are packaged, too, so that they can be tried before a commit.
 .package:
 	@rm -f crates/target/package/*.crate
+# Cargo unpacks a package that another needs once per path and version: an older text of it would stay.
+	@rm -rf "$${CARGO_HOME:-$$HOME/.cargo}"/registry/src/-*/lizard-*
 	@cd crates && cargo package --allow-dirty --quiet -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
 	@scripts/try-packages
 	@cd crates && for package in target/package/*.crate; do echo "$$package"; done
