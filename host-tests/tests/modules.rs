@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 22] = [
+const CRATES: [&str; 23] = [
+    "crates/calibrate",
     "crates/contact",
     "crates/core",
     "crates/film",
@@ -28,9 +29,9 @@ const CRATES: [&str; 22] = [
     "crates/upload",
     "tools/linker",
     "web/wasm",
+    "web/wasm-board",
     "web/wasm-measure",
     "web/wasm-parts",
-    "web/wasm-upload",
 ];
 
 /// The rooms of the core, which are its top-level modules, the top room first. A room may use the rooms below it.

@@ -30,8 +30,8 @@ export const files = {
   tune: (): Promise<WebAssembly.Module> => compileWasm('files/tune.wasm'),
   /** The module of the robot's parts; loaded when their panel is opened. */
   parts: (): Promise<WebAssembly.Module> => compileWasm('files/parts.wasm'),
-  /** The module that writes to boards; loaded when something is written, or a board without this firmware is identified. */
-  upload: (): Promise<WebAssembly.Module> => compileWasm('files/upload.wasm'),
+  /** The module that writes to boards and calibrates them; loaded for that, or to identify a board without this firmware. */
+  board: (): Promise<WebAssembly.Module> => compileWasm('files/board.wasm'),
   /** The module that measures films; loaded when a camera, a film or the sheet of tags is asked for. */
   measure: (): Promise<WebAssembly.Module> => compileWasm('files/measure.wasm'),
 };

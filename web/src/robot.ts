@@ -2,7 +2,7 @@
 // wasm/src.
 import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type NoTrial, type Refused, Robot } from '../generated/lizard';
 
-export { calibrationText, isSameCalibration, parseCalibration, readCalibration, reversedServo, Robot, scaledServo, Transfer } from '../generated/lizard';
+export { calibrationText, parseCalibration, Robot } from '../generated/lizard';
 export type {
   Bars, Calibration, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, NoTrial, Place, ReachArea, Refused, RoundPath, Routine, Scene, ServoSettings, Trial,
 } from '../generated/lizard';

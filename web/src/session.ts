@@ -1,8 +1,9 @@
 // The session: the robot that the page shows, and the board at the other end of the serial line. Views only read the
 // session and call its methods.
+import { loadBoard } from './board';
 import { files } from './files';
 import { type SavedChanges, kept } from './kept';
-import { BootLine, loadUpload } from './link/boot-line';
+import { BootLine } from './link/boot-line';
 import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
@@ -576,13 +577,13 @@ export class Session {
   }
 
   /** Gives the line to the boot loader until `act` has ended. Throws an error for the user. */
-  private async withBootLoader<T>(link: Link, act: (upload: Awaited<ReturnType<typeof loadUpload>>, line: BootLine) => Promise<T>): Promise<T> {
-    const upload = await loadUpload();
+  private async withBootLoader<T>(link: Link, act: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
+    const board = await loadBoard();
     if (this.link !== link) throw new Error(`the ${link.name} is not connected any more`);
     this.dialogue.end();
     const line = new BootLine(link);
     try {
-      return await act(upload, line);
+      return await act(board, line);
     } finally {
       await line.end();
       if (this.link === link) {

@@ -90,16 +90,16 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await pressAndWait(page, '↺ 0.1°', /^The trim of A3 is -0\.40°/);
 
   await goToStep(page, 'Scale');
-  await pressAndWait(page, 'Turn A1 by 20°', /^A1 was told to turn 20°/);
-  assertNear(await pulsesOf(page), [1700, 1500, 1496, 1500], 0.6, 'twenty degrees of one servo');
-  await dialogOf(page).getByLabel('It turned by, degrees').fill('18.5');
+  await pressAndWait(page, 'Turn A1', /^A1 was told to turn 30°/);
+  assertNear(await pulsesOf(page), [1200, 1500, 1496, 1500], 0.6, 'thirty degrees of one servo, the way that is safe');
+  await dialogOf(page).getByLabel('It turned by, degrees').fill('27.75');
   await dialogOf(page).getByLabel('It turned by, degrees').press('Enter');
-  // 10 us per degree, times 20, divided by 18.5.
+  // 10 us per degree, times 30, divided by 27.75.
   await waitForMessage(page, /^The scale of A1 is 10\.81 µs per degree/);
   // Another scale leaves the horn where it is: the trim has other degrees then.
   await press(page, 'A3 back right');
-  await pressAndWait(page, 'Turn A3 by 20°', /^A3 was told to turn 20°/);
-  await dialogOf(page).getByLabel('It turned by, degrees').fill('18.5');
+  await pressAndWait(page, 'Turn A3', /^A3 was told to turn 30°/);
+  await dialogOf(page).getByLabel('It turned by, degrees').fill('27.75');
   await dialogOf(page).getByLabel('It turned by, degrees').press('Enter');
   await waitForMessage(page, /^The scale of A3 is 10\.81 µs per degree/);
   await until(page, 'it stands', async () => (await text(page, '#doing')) === 'stand');
@@ -297,6 +297,33 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
   await page.locator('#setup-open').click();
   await goToStep(page, 'First walk');
   await dialogOf(page).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
+});
+
+test('leaving takes back a setting whose answer was lost, and saving stores what the step shows', async () => {
+  const page = await openWithBoard('robot', 4500);
+  const previousCalibration = await readCalibration(page);
+  const loseAnswer = async () => {
+    await goToStep(page, 'Trims');
+    await page.clock.runFor(1500);
+    await page.evaluate(() => {
+      window.answer = window.otherBoard.onByte;
+      window.otherBoard.onByte = () => {};
+    });
+    await pressAndWait(page, '↺ 0.5°', /^The robot has not answered "trim 1 0\.50"\.$/);
+    await page.evaluate(() => (window.otherBoard.onByte = window.answer));
+  };
+  await loseAnswer();
+  assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /, 'the robot has taken it');
+  await press(page, 'Leave');
+  await until(page, 'it is left', async () => !(await dialogOf(page).isVisible()));
+  assert.deepEqual(await readCalibration(page), previousCalibration);
+
+  await page.locator('#setup-open').click();
+  await loseAnswer();
+  await goToStep(page, 'Keep');
+  await pressAndWait(page, 'Save in the board', /^Saved: the board begins with it/);
+  await dialogOf(page).getByRole('row', { name: /^A1, front left \+ 0\.50°/ }).waitFor();
+  assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /);
 });
 
 test('a refusal by the robot is shown in its words, and changes nothing', async () => {

@@ -31,6 +31,7 @@ mod keys;
 mod measures;
 mod reports;
 mod robot;
+mod status;
 mod tables;
 #[cfg(test)]
 mod testing;
@@ -57,5 +58,6 @@ pub use reports::{
     SpringCost, UNDECIDED, WITHOUT_CONTACTS, plausible_range,
 };
 pub use robot::Robot;
+pub use status::{Status, parse_angles};
 pub use tables::{CellMaps, CoreRobot, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

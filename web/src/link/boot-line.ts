@@ -1,24 +1,8 @@
-// The serial line to a board's boot loader. The conversation with it is Rust, in a WebAssembly module of its own.
-import type * as Upload from '../../generated/upload';
-import { files } from '../files';
+// The serial line to a board's boot loader. The conversation with it is Rust, in the module of boards.
+import type { Line } from '../../generated/board';
 import { BAUD, type Link } from './link';
 
-let loading: Promise<typeof Upload> | null = null;
-
-/** Loads the module that writes to boards. Throws an error for the user. */
-export function loadUpload(): Promise<typeof Upload> {
-  const load = async () => {
-    const [upload, module] = await Promise.all([import('../../generated/upload'), files.upload()]);
-    upload.initSync({ module });
-    return upload;
-  };
-  return (loading ??= load().catch((error: unknown) => {
-    loading = null;
-    throw error;
-  }));
-}
-
-export class BootLine implements Upload.Line {
+export class BootLine implements Line {
   private received: number[] = [];
   private arrived: () => void = () => {};
   private baud = BAUD;

@@ -1,7 +1,9 @@
 // The panel of the servos' calibration: read by `cal`, set while a slider moves, stored by `save`.
+import { loadBoard } from '../board';
+import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
+import { messageOf } from '../trouble';
 import { WORDS } from '../words';
-import { readCalibration, type ServoSettings } from '../robot';
 import { element } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
@@ -34,7 +36,8 @@ export class Calibrate {
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session().ask(WORDS.cal, true);
-    const settings = answer && readCalibration(answer.notes);
+    const board = await loadBoard().catch((error: unknown) => (this.message.textContent = messageOf(error)));
+    const settings = answer && typeof board === 'object' && board.readCalibration(answer.notes);
     if (!settings) return;
     this.isUnsure = false;
     if (this.rows.length === 0) this.build();

@@ -1,5 +1,5 @@
 // The panel that writes firmware and robot through the board's boot loader.
-import { loadUpload } from '../link/boot-line';
+import { loadBoard } from '../board';
 import { BY_CABLE, type Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
@@ -61,9 +61,9 @@ export class FlashView {
     this.message.textContent = '';
     let isLizard: boolean;
     try {
-      const upload = await loadUpload();
-      this.chosen = upload.imageOf(await file.text());
-      isLizard = upload.isLizard(this.chosen);
+      const board = await loadBoard();
+      this.chosen = board.imageOf(await file.text());
+      isLizard = board.isLizard(this.chosen);
     } catch (error) {
       this.message.textContent = `not written: ${messageOf(error)}`;
       return;

@@ -1,9 +1,10 @@
 // The dialog of the first connection: its steps, the current step and its view. Every step can be left and entered
 // again.
+import type { Guide } from '../../generated/board';
 import type { Link } from '../link/link';
 import { parseCalibration } from '../robot';
 import type { Session } from '../session';
-import { Guide } from '../setup/guide';
+import { BoardGuide } from '../setup/guide';
 import { messageOf } from '../trouble';
 import { GAITS, NOTHING_SAVED } from '../words';
 import { element } from './canvas';
@@ -28,7 +29,7 @@ const NO_ROBOT = 'No robot with this firmware answers: connect the board and wri
 
 /** The dialog. Steps call its methods as plain functions, so these methods are arrow functions. */
 export class Setup implements Tools {
-  guide: Guide | null = null;
+  guide: BoardGuide | null = null;
   servo = 0;
   private step: Step = board;
   private readonly finished = new Set<string>();
@@ -166,7 +167,7 @@ export class Setup implements Tools {
     const { guide } = this;
     if (guide?.isCurrent) {
       try {
-        if (await guide.restore()) message = 'The first connection was left: the robot has the calibration that it had before.';
+        if (await guide.run((board) => board.restore())) message = 'The first connection was left: the robot has the calibration that it had before.';
       } catch (error) {
         message = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
       }
@@ -207,20 +208,20 @@ export class Setup implements Tools {
     this.act(async () => {
       const calibration = parseCalibration(text, name);
       const guide = await this.requireGuide();
-      await guide.setCalibration(calibration);
+      await guide.run((board) => board.replace(calibration));
       return `The robot has the calibration of ${name}. It is not saved yet.`;
     });
   };
 
   readonly run = (work: (guide: Guide) => Promise<string>): void => {
-    this.act(async () => work(await this.requireGuide()));
+    this.act(async () => (await this.requireGuide()).run(work));
   };
 
   /** Returns the guide of the connected robot; reads the robot's calibration first if needed. */
-  private async requireGuide(): Promise<Guide> {
+  private async requireGuide(): Promise<BoardGuide> {
     if (this.isLost) throw new Error(LOST);
     if (!this.session.answers) throw new Error(NO_ROBOT);
-    this.guide ??= await Guide.begin(this.session);
+    this.guide ??= await BoardGuide.begin(this.session);
     return this.guide;
   }
 
@@ -279,7 +280,7 @@ export class Setup implements Tools {
     // Servos that a step has turned return to neutral before the next step.
     const { guide } = this;
     if (!guide) this.act(async () => this.requireGuide().then(() => ''), true);
-    else if (this.session.gait !== GAITS.stand) this.act(async () => guide.stand().then(() => ''), true);
+    else if (this.session.gait !== GAITS.stand) this.act(async () => guide.run((board) => board.stand()).then(() => ''), true);
   }
 
   readonly show = (): void => {

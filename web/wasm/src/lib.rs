@@ -31,7 +31,6 @@ mod round;
 mod scene;
 mod trial;
 
-pub use calibration::Transfer;
 pub use core_run::{CoreFrame, CoreRun};
 pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, ServoEntry};
 pub use drawn::DrawnGait;

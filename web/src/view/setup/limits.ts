@@ -1,5 +1,4 @@
 // The step Limits: limits each servo's travel where printed parts would touch each other.
-import { angle } from '../../setup/guide';
 import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';
@@ -54,9 +53,9 @@ export class Limits implements Step {
 
   private turn({ servo, run }: Tools, degrees: number): void {
     run(async (guide) => {
-      await guide.point(servo, degrees);
+      const angle = await guide.point(servo, degrees);
       this.at = { servo, degrees };
-      return `A${servo + 1} points to ${angle(degrees).toFixed(2)}°.`;
+      return `A${servo + 1} points to ${angle.toFixed(2)}°.`;
     });
   }
 
@@ -72,7 +71,8 @@ export class Limits implements Step {
     run(async (guide) => {
       await guide.limit(servo, from, to);
       done(this.name);
-      return `A${servo + 1} goes from ${angle(from).toFixed(2)}° to ${angle(to).toFixed(2)}°.`;
+      const [min, max] = guide.calibration.servos[servo].limit;
+      return `A${servo + 1} goes from ${min.toFixed(2)}° to ${max.toFixed(2)}°.`;
     });
   }
 }

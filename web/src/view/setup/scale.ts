@@ -16,7 +16,7 @@ export class Scale implements Step {
   }
 
   drawing({ servo }: Tools): SelectedServo {
-    return { servo, by: this.turned?.servo === servo ? this.turned.by : 20 };
+    return { servo, by: this.turned?.servo === servo ? this.turned.by : null };
   }
 
   parts(tools: Tools): Node[] {
@@ -25,7 +25,7 @@ export class Scale implements Step {
     const isTurned = this.turned?.servo === servo;
     return [
       words(`Mark where the crank of ${nameOf(servo)} points, turn it, and measure how far it went.`),
-      row(button(`Turn A${servo + 1} by 20°`, () => this.turn(tools), !isTurned)),
+      row(button(`Turn A${servo + 1}`, () => this.turn(tools), !isTurned)),
       ...(isTurned ? [row(number('It turned by, degrees', null, '0.1', (degrees) => this.setMeasuredTurn(tools, degrees)))] : []),
       words(`Scale: ${currentScale === undefined ? '–' : `${currentScale.toFixed(2)} µs per degree`}`),
       note('Most servos are near 10. Without a protractor, leave this step out.'),
@@ -34,7 +34,7 @@ export class Scale implements Step {
 
   private turn({ servo, run }: Tools): void {
     run(async (guide) => {
-      const turn = await guide.span(servo);
+      const turn = await guide.turnForScale(servo);
       this.turned = { servo, by: turn };
       return `A${servo + 1} was told to turn ${Math.abs(turn)}°. Measure it.`;
     });
@@ -45,7 +45,7 @@ export class Scale implements Step {
       if (!this.turned || degrees <= 0) return 'Give how far it turned, in degrees, more than 0.';
       const askedTurn = this.turned.by;
       this.forget();
-      const scale = await guide.scale(servo, askedTurn, degrees);
+      const scale = await guide.scaleByTurn(servo, askedTurn, degrees);
       done(this.name);
       return `The scale of A${servo + 1} is ${scale.toFixed(2)} µs per degree.`;
     });

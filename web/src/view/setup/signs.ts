@@ -65,7 +65,7 @@ export class Signs implements Step {
   private turn(tools: Tools): void {
     const { servo } = tools;
     tools.run(async (guide) => {
-      const turn = await guide.prove(servo);
+      const turn = await guide.turnForSign(servo);
       this.observed = null;
       this.moved = { servo, by: turn };
       return `A${servo + 1} was told to turn ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;

@@ -1,5 +1,6 @@
 // The interface of a step of the first connection, and the tools that a step may use.
-import type { Guide } from '../../setup/guide';
+import type { Guide } from '../../../generated/board';
+import type { BoardGuide } from '../../setup/guide';
 import type { Session } from '../../session';
 import type { WriteContent, Writer } from '../writer';
 import type { SelectedServo } from './drawing';
@@ -8,7 +9,7 @@ export interface Tools {
   readonly session: Session;
   readonly writer: Writer;
   /** The guide; null until the robot has sent its calibration. */
-  readonly guide: Guide | null;
+  readonly guide: BoardGuide | null;
   /** The servo that a step is about, 0 to 3. */
   servo: number;
   /** Connects or disconnects a board on USB. */

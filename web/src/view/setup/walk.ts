@@ -14,6 +14,7 @@ export const walk: Step = {
     const begin = () =>
       run(async (guide) => {
         const gait = await guide.walk();
+        if (gait === undefined) return 'This robot has no gait.';
         done('First walk');
         return `The robot does "${gait}".`;
       });

@@ -3,9 +3,10 @@
 use std::io::{Read, Write};
 use std::path::PathBuf;
 
+use lizard_calibrate::{SendError, command, read, replace, send};
 use lizard_robot::Calibration;
+use pollster::block_on;
 
-use super::calibration;
 use super::connect::Connect;
 use super::link::{Link, LinkError};
 use crate::Failure;
@@ -42,7 +43,8 @@ pub struct RestoreArgs {
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
-    let calibration = calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
+    let calibration =
+        block_on(read(&mut board.link)).map_err(|error| board.failure(&error.into()))?;
     files::write(&args.file, calibration.text().as_bytes())?;
     println!(
         "the calibration of {} is in {}",
@@ -72,20 +74,6 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The reason why the robot did not accept a calibration.
-#[derive(Debug, thiserror::Error)]
-pub enum SendError {
-    /// The robot refused a value.
-    #[error("{0}; nothing was saved, and the robot keeps its old settings")]
-    Refused(LinkError),
-    /// Neither the new nor the old calibration is in effect as a whole.
-    #[error("{0}; nothing was saved; send `load` or `factory`, or press the board's reset button")]
-    MixedSettings(LinkError),
-    /// The calibration that the robot reports differs from the one that was sent.
-    #[error("the robot did not accept all of it; nothing was saved, and it keeps its old settings")]
-    Differs,
-}
-
 /// Sends a calibration to a robot, reads it back and saves it; if that fails, sends the robot its old settings.
 ///
 /// # Errors
@@ -93,26 +81,19 @@ pub enum SendError {
 pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
-) -> Result<(), SendError> {
-    let calibration_before = calibration::ask(link).map_err(SendError::Refused)?;
-    let result = calibration::apply(calibration, link)
-        .and_then(|()| calibration::ask(link))
-        .map(|active| active.is_same(calibration));
-    let error = match result {
-        Ok(true) => match link.command("save") {
-            Ok(_) => return Ok(()),
-            Err(error) => SendError::Refused(error),
-        },
-        Ok(false) => SendError::Differs,
-        Err(error) => SendError::Refused(error),
-    };
-    calibration::apply(&calibration_before, link).map_err(SendError::MixedSettings)?;
-    Err(error)
+) -> Result<(), SendError<LinkError>> {
+    let before = block_on(read(link)).map_err(SendError::Refused)?;
+    block_on(replace(link, &before, calibration))?;
+    if let Err(error) = block_on(command(link, "save")) {
+        block_on(send(link, &before)).map_err(SendError::Mixed)?;
+        return Err(SendError::Refused(error));
+    }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::connect_paper_robot;
+    use super::super::double::{calibration_of, connect_paper_robot};
     use super::*;
 
     #[test]
@@ -120,24 +101,20 @@ mod tests {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
-        let saved = calibration::ask(&mut link).expect("it answers");
+        let saved = calibration_of(&mut link);
         let saved = Calibration::parse(&saved.text(), "a.toml").expect("it is a calibration");
         link.command("factory").expect("it is accepted");
         send_calibration(&saved, &mut link).expect("it is taken and saved");
         link.command("factory").expect("it is accepted");
         link.command("load").expect("something was saved");
-        assert!(
-            calibration::ask(&mut link)
-                .expect("it answers")
-                .is_same(&saved)
-        );
+        assert!(calibration_of(&mut link).is_same(&saved));
     }
 
     #[test]
     fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
-        let before = calibration::ask(&mut link).expect("it answers");
+        let before = calibration_of(&mut link);
         let mut calibration = before.clone();
         calibration.servos[0].trim = 5.0;
         calibration.servos[2].scale = 99.0;
@@ -147,11 +124,7 @@ mod tests {
             "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \
              robot keeps its old settings"
         );
-        assert!(
-            calibration::ask(&mut link)
-                .expect("it answers")
-                .is_same(&before)
-        );
+        assert!(calibration_of(&mut link).is_same(&before));
         let load = link.ask("load").expect("it answers").answer;
         assert!(load.starts_with("err 9"), "{load}");
     }

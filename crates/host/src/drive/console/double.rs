@@ -6,7 +6,8 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
 use lizard_core::virtual_board::RunningRobot;
-use lizard_robot::Robot;
+use lizard_robot::{Calibration, Robot};
+use pollster::block_on;
 
 use super::link::{Link, Timeouts};
 
@@ -32,6 +33,11 @@ pub fn connect_robot(text: &str) -> Link<ConsoleDouble> {
     let mut link = Link::new(ConsoleDouble::of(&robot), Timeouts::default());
     link.greet().expect("it has a banner");
     link
+}
+
+/// The settings of a connected robot.
+pub fn calibration_of(link: &mut Link<ConsoleDouble>) -> Calibration {
+    block_on(lizard_calibrate::read(link)).expect("it answers")
 }
 
 impl ConsoleDouble {

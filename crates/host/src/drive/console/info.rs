@@ -5,14 +5,14 @@ use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::time::Duration;
 
+use lizard_calibrate::{ConsoleError, read};
 use lizard_robot::servo::NAMES;
-use lizard_robot::{Calibration, ServoSettings};
+use lizard_robot::{Calibration, ServoSettings, Status};
+use pollster::block_on;
 use serde::Serialize;
 
-use super::calibration;
 use super::connect::Connect;
 use super::link::{Link, LinkError};
-use super::status::Status;
 use crate::Failure;
 use crate::shared::json;
 
@@ -99,10 +99,10 @@ impl Board {
         link: &mut Link<P>,
     ) -> Result<Self, LinkError> {
         let status = wait_for_voltages(link)?;
-        let calibration = match calibration::ask(link) {
+        let calibration = match block_on(read(link)) {
             Ok(calibration) => Some(calibration.into()),
-            Err(LinkError::Refused { .. }) => None,
-            Err(error) => return Err(error),
+            Err(ConsoleError::Refused { .. }) => None,
+            Err(error) => return Err(error.into()),
         };
         let (firmware, robot) = banner.map_or((None, None), parse_banner);
         Ok(Self {
@@ -206,14 +206,14 @@ pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<Robo
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{PAPER, connect_paper_robot};
+    use super::super::double::{PAPER, calibration_of, connect_paper_robot};
     use super::*;
 
     #[test]
     fn a_board_says_what_it_has_and_keeps_all_of_it() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
-        let before = calibration::ask(&mut link).expect("it answers");
+        let before = calibration_of(&mut link);
         let paper = lizard_robot::Robot::parse(PAPER).expect("it is right");
         let hash = format!("{:08x}", paper.firmware().hash());
         let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
@@ -229,7 +229,7 @@ mod tests {
         ] {
             assert!(text.contains(&line), "{line:?} in {text}");
         }
-        let after = calibration::ask(&mut link).expect("it answers");
+        let after = calibration_of(&mut link);
         assert!(after.is_same(&before), "nothing was changed");
     }
 

@@ -217,10 +217,7 @@ impl Dialogue {
                     break;
                 }
             }
-            let status = self
-                .session
-                .status()
-                .map(super::status::Status::status_line);
+            let status = self.session.status().map(lizard_robot::Status::status_line);
             let status = status.unwrap_or_default();
             screen.draw(&format!("{}{status}", self.status_prefix), &prompt)?;
         }
@@ -232,7 +229,7 @@ impl Dialogue {
         if self
             .session
             .status()
-            .is_some_and(super::status::Status::is_moving)
+            .is_some_and(lizard_robot::Status::is_moving)
             && board.is_some()
             && !finder.is_simulated()
         {

@@ -8,6 +8,9 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
+use lizard_calibrate::{Console, ConsoleError, Reply};
+use pollster::block_on;
+
 use crate::drive::clock::Deadline;
 
 /// The beginning of the robot's first line after a reset.
@@ -81,19 +84,20 @@ pub enum LinkError {
     Io(io::Error),
 }
 
+impl From<ConsoleError<LinkError>> for LinkError {
+    fn from(error: ConsoleError<LinkError>) -> Self {
+        match error {
+            ConsoleError::Refused { line, reason } => Self::Refused { line, reason },
+            ConsoleError::Unclear { line, answer } => Self::Unclear { line, answer },
+            ConsoleError::Link(error) => error,
+        }
+    }
+}
+
 impl From<LinkError> for crate::Failure {
     fn from(error: LinkError) -> Self {
         Self::Impossible(error.to_string())
     }
-}
-
-/// The robot's reply to a line.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Reply {
-    /// The `#` lines before the answer.
-    pub notes: Vec<String>,
-    /// `ok ...` or `err ...`.
-    pub answer: String,
 }
 
 /// A connection to a robot. Reading from `port` must end within some milliseconds, with [`ErrorKind::TimedOut`] if
@@ -179,17 +183,7 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails like [`Link::ask`], or if the robot refuses the line.
     pub fn command(&mut self, line: &str) -> Result<Reply, LinkError> {
-        let reply = self.ask(line)?;
-        let line = line.to_owned();
-        if let Some(reason) = reply.answer.strip_prefix("err ") {
-            let reason = reason.to_owned();
-            return Err(LinkError::Refused { line, reason });
-        }
-        if !reply.answer.starts_with("ok ") {
-            let answer = reply.answer;
-            return Err(LinkError::Unclear { line, answer });
-        }
-        Ok(reply)
+        block_on(lizard_calibrate::command(self, line)).map_err(LinkError::from)
     }
 
     /// Waits for the next line, for at most `wait`.
@@ -258,6 +252,18 @@ impl<P: Read + Write> Link<P> {
             self.lines
                 .push_back(text.chars().map(replace_control).collect());
         }
+    }
+}
+
+impl<P: Read + Write> Console for Link<P> {
+    type Error = LinkError;
+
+    async fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
+        Self::ask(self, line)
+    }
+
+    async fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
+        Self::pause(self, time)
     }
 }
 

@@ -6,7 +6,6 @@
 
 pub mod backup;
 pub mod calibrate;
-pub mod calibration;
 pub mod connect;
 mod deadman;
 #[cfg(test)]
@@ -23,6 +22,5 @@ pub mod recorder;
 pub mod replay;
 mod screen;
 pub mod session;
-pub mod status;
 mod terminal;
 mod turn_error;

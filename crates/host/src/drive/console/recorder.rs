@@ -7,11 +7,11 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::status::parse_angles;
 use crate::Failure;
 #[cfg(feature = "simulator")]
 use crate::shared::plain::escape_controls;
 use crate::shared::{files, json};
+use lizard_robot::parse_angles;
 
 /// The value of `format` in the first line. The number rises when a key changes its meaning.
 pub const FORMAT: &str = "lizard record 1";

@@ -16,8 +16,8 @@ use lizard_core::console::text::Text;
 use super::deadman::{self, Deadman};
 use super::link::BANNER;
 use super::recorder::Event;
-use super::status::Status;
 use crate::Failure;
+use lizard_robot::Status;
 
 /// Interval between two `status` lines while no person drives the robot.
 const STATUS_INTERVAL: Duration = Duration::from_millis(500);

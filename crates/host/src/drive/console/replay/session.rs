@@ -4,10 +4,10 @@ use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
 
 use super::super::recorder::{Entry, Event, FORMAT};
-use super::super::status::Status;
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::spans::{self, Span};
+use lizard_robot::Status;
 
 /// Length of a frame, ms.
 const FRAME_MS: u64 = 20;

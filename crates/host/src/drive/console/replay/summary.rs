@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use super::super::link::BANNER;
 use super::super::recorder::Event;
-use super::super::status::Status;
 use super::session::Session;
+use lizard_robot::Status;
 
 /// Prints the session's length, commands, smallest margin, supply voltages and problems.
 pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {

@@ -1,7 +1,7 @@
 use super::*;
-use crate::drive::console::calibration;
-use crate::drive::console::double::{PAPER, connect_paper_robot};
+use crate::drive::console::double::{PAPER, calibration_of, connect_paper_robot};
 use lizard_core::virtual_board::RunningRobot;
+use lizard_robot::STILL_FRAMES;
 
 fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     let mut is_done = false;
@@ -16,7 +16,7 @@ const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
 #[test]
 fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     let mut link = connect_paper_robot();
-    let [min, max] = calibration::ask(&mut link).expect("it answers").servos[0].limit;
+    let [min, max] = calibration_of(&mut link).servos[0].limit;
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next]);
     press(&mut guide, &CONFIRM_SIGN_KEYS);
@@ -61,11 +61,11 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     assert!(guide.is_saved(), "{:?}", guide.view());
     press(&mut guide, &[Key::Back]);
     assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
-    let after_leaving = calibration::ask(&mut link).expect("it answers");
+    let after_leaving = calibration_of(&mut link);
     assert_eq!(after_leaving.servos[0].trim, 0.9);
     link.command("factory").expect("it is accepted");
     link.command("load").expect("it was saved");
-    let loaded = calibration::ask(&mut link).expect("it answers");
+    let loaded = calibration_of(&mut link);
     assert_eq!(loaded.servos[0].trim, 0.9);
     assert_eq!(loaded.servos[1].trim, -0.5);
     assert_eq!(loaded.servos[1].dir, '-');
@@ -92,11 +92,11 @@ fn cancelling_at_any_step_restores_everything() {
         let mut link = connect_paper_robot();
         link.command("trim 1 2.50").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
-        let before = calibration::ask(&mut link).expect("it answers");
+        let before = calibration_of(&mut link);
         let mut guide = Guide::new(&mut link).expect("it answers");
         press(&mut guide, &keys[..length]);
         assert!(press(&mut guide, &[Key::Leave]), "after {length} keys");
-        let after = calibration::ask(&mut link).expect("it answers");
+        let after = calibration_of(&mut link);
         assert_eq!(after, before, "after {length} keys");
         let status = link.ask("status").expect("it answers").answer;
         assert!(status.starts_with("ok gait=stand"), "{status}");
@@ -111,8 +111,8 @@ fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
     link.command("trim 1 3").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
-    assert_eq!(guide.active_calibration.servos[0].trim, -3.0);
-    let current = calibration::ask(&mut link).expect("it answers");
+    assert_eq!(guide.robot.calibration().servos[0].trim, -3.0);
+    let current = calibration_of(&mut link);
     assert_eq!((current.servos[0].trim, current.servos[0].dir), (-3.0, '-'));
 }
 
@@ -213,7 +213,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     // Four corrections by half a degree of a turn of `moved_degrees` degrees.
     press(&mut guide, &[Key::Turn(0.5); 4]);
     let expected = 10.0 * (1.0 + 0.5 / moved_degrees).powi(4);
-    let current = calibration::ask(&mut link).expect("it answers").servos[0];
+    let current = calibration_of(&mut link).servos[0];
     assert!((current.scale - expected).abs() < 0.03, "{current:?}");
     // The neutral pulse is unchanged: its offset is trim times scale.
     assert!(
@@ -225,7 +225,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
 #[test]
 fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     let mut link = connect_paper_robot();
-    let before = calibration::ask(&mut link).expect("it answers").servos[0];
+    let before = calibration_of(&mut link).servos[0];
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &keys_to_scales());
     press(&mut guide, &[Key::Next; 4]);
@@ -233,7 +233,7 @@ fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     assert!(title.contains("how far may A1, front left turn"), "{title}");
     press(&mut guide, &[Key::Turn(0.5); 3]);
     press(&mut guide, &[Key::Turn(-0.1); 2]);
-    let current = guide.active_calibration.servos[0];
+    let current = guide.robot.calibration().servos[0];
     assert_eq!(
         current.limit,
         [before.limit[0] + 3.0, before.limit[1] - 2.0]
@@ -241,7 +241,7 @@ fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
     press(&mut guide, &[Key::Turn(-0.1); 90]);
     let view = guide.view();
     assert!(view.message.contains("refuses `limit 1"), "{view:?}");
-    let current = calibration::ask(&mut link).expect("it answers").servos[0];
+    let current = calibration_of(&mut link).servos[0];
     let shown = format!(
         "    limits {:.2} to {:.2} deg",
         current.limit[0], current.limit[1]

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use crate::shared::ink::PLACES;
 
 use super::step::{STEPS, Step};
-use super::{Guide, SCALE_ANGLES, SIGN_ANGLES};
+use super::{Guide, SCALE_TURNS, SIGN_TURNS};
 
 /// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 ("fit the horns".to_owned(), text, next_keys)
             }
             Step::Sign(index) => {
-                let ordered = self.moved_degrees.unwrap_or(SIGN_ANGLES[0]);
+                let ordered = self.moved_degrees.unwrap_or(SIGN_TURNS[0]);
                 let direction = if ordered < 0.0 {
                     "clockwise"
                 } else {
@@ -80,7 +80,7 @@ impl<P: Read + Write> Guide<'_, P> {
                      trim {:+.2} deg",
                     index + 1,
                     self.neutral[index],
-                    self.active_calibration.servos[index].trim
+                    self.robot.calibration().servos[index].trim
                 );
                 (
                     format!("straighten {}", servo_name(index)),
@@ -97,7 +97,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
             Step::Scale(index) => {
-                let ordered = self.moved_degrees.unwrap_or(SCALE_ANGLES[0]);
+                let ordered = self.moved_degrees.unwrap_or(SCALE_TURNS[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\
@@ -106,7 +106,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     index + 1,
                     ordered.abs(),
                     (self.neutral[index] + ordered).rem_euclid(360.0),
-                    self.active_calibration.servos[index].scale
+                    self.robot.calibration().servos[index].scale
                 );
                 (
                     format!("how far does {} turn?", servo_name(index)),
@@ -115,7 +115,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 )
             }
             Step::Limit(index) => {
-                let [min, max] = self.active_calibration.servos[index].limit;
+                let [min, max] = self.robot.calibration().servos[index].limit;
                 let text = format!(
                     "The crank of A{} never turns beyond its limits. Where a part would\n\
                      touch another, end its travel before that angle. Left and right move the\n\
@@ -142,7 +142,7 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::Save => {
                 let mut text = "This will be kept in the board:\n\n".to_owned();
-                for (index, settings) in self.active_calibration.servos.iter().enumerate() {
+                for (index, settings) in self.robot.calibration().servos.iter().enumerate() {
                     let [min, max] = settings.limit;
                     text += &format!(
                         "    {:<15} sign {}  trim {:+.2}  limits {min:.2} to {max:.2}  scale {:.2}\n",

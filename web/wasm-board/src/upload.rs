@@ -1,24 +1,11 @@
 //! Firmware and robot to a board of the page: the order of pages and the words of `lizard flash`, in a browser.
-//!
-//! The page has the serial line, by Web Serial or to its simulated UNO, and its time; [`Line`] is what this module sees
-//! of it. This crate is a WebAssembly module of its own, which the page loads when it writes to a board or identifies
-//! one.
-//!
-//! # When not to use it
-//! The interface is made for this page and changes with it. A program in Rust uses `lizard-upload`.
-#![deny(unsafe_code)]
-#![deny(missing_docs)]
-#![warn(clippy::missing_errors_doc)]
-
-mod line;
 
 use js_sys::Function;
 use lizard_core::numbers::mark::Mark;
 use lizard_upload::{Event, Image, Kind, Loader, Model, Step, Target};
 use wasm_bindgen::prelude::*;
 
-use line::JsBoard;
-pub use line::Line;
+use crate::line::{JsBoard, Line};
 
 /// Reads an image in Intel HEX; returns its bytes from address 0 on.
 ///

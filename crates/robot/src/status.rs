@@ -1,10 +1,10 @@
-//! The answer to `status`, read and shortened to what fits in a line of a terminal.
+//! The answer to `status`, read, and shortened to a line.
 
 /// The fault of a board without a usable robot in its flash.
 const NO_ROBOT: &str = "robot";
 
 /// The state that a robot reports.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// The name of a gait, with hyphens for spaces, or `pose`, `stop` or `rest`.
     pub gait: String,
@@ -31,6 +31,7 @@ pub struct Status {
 impl Status {
     /// Reads `ok gait=...`; `None` for any other line. Keys that this program does
     /// not know are skipped.
+    #[must_use]
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
         let value_of = |key: &str| {
@@ -66,11 +67,13 @@ impl Status {
     }
 
     /// True while a gait or a routine runs, which continues by itself.
+    #[must_use]
     pub fn is_moving(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
 
-    /// The line at the bottom of the console.
+    /// The state in a line of a terminal.
+    #[must_use]
     pub fn status_line(&self) -> String {
         let mut line = self.gait.clone();
         if let Some([a1, a2, a3, a4]) = self.pose {
@@ -100,6 +103,7 @@ impl Status {
 }
 
 /// Parses four angles, separated by commas; `None` for any other text.
+#[must_use]
 pub fn parse_angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
     angles?.try_into().ok()

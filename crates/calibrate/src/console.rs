@@ -1,0 +1,88 @@
+//! The robot's console, line by line.
+
+use std::time::Duration;
+
+/// The robot's reply to a line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reply {
+    /// The `#` lines before the answer.
+    pub notes: Vec<String>,
+    /// `ok ...` or `err ...`.
+    pub answer: String,
+}
+
+/// A connection to a robot's console. Times are those of the robot: a simulated one may run slower or faster than this
+/// machine.
+pub trait Console {
+    /// The reason for a missing reply.
+    type Error;
+
+    /// Sends a line and waits for the reply.
+    ///
+    /// # Errors
+    /// Fails if the robot does not answer, or the connection is gone.
+    fn ask(&mut self, line: &str) -> impl Future<Output = Result<Reply, Self::Error>>;
+
+    /// Waits.
+    ///
+    /// # Errors
+    /// Fails if the connection is gone.
+    fn pause(&mut self, time: Duration) -> impl Future<Output = Result<(), Self::Error>>;
+}
+
+impl<C: Console> Console for &mut C {
+    type Error = C::Error;
+
+    async fn ask(&mut self, line: &str) -> Result<Reply, Self::Error> {
+        C::ask(self, line).await
+    }
+
+    async fn pause(&mut self, time: Duration) -> Result<(), Self::Error> {
+        C::pause(self, time).await
+    }
+}
+
+/// The reason why a line had no effect.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ConsoleError<E> {
+    /// The robot refuses a line.
+    #[error("the robot refuses `{line}`: {reason}")]
+    Refused {
+        /// The line that was sent.
+        line: String,
+        /// The code and the reason.
+        reason: String,
+    },
+    /// The answer has an unknown format.
+    #[error("the robot's answer to `{line}` is not understood: `{answer}`")]
+    Unclear {
+        /// The line that was sent.
+        line: String,
+        /// The answer that was received.
+        answer: String,
+    },
+    /// There is no reply.
+    #[error("{0}")]
+    Link(E),
+}
+
+/// Sends a line that must be accepted.
+///
+/// # Errors
+/// Fails if the robot refuses the line, or does not answer as this firmware does.
+pub async fn command<C: Console>(
+    console: &mut C,
+    line: &str,
+) -> Result<Reply, ConsoleError<C::Error>> {
+    let reply = console.ask(line).await.map_err(ConsoleError::Link)?;
+    let line = line.to_owned();
+    if let Some(reason) = reply.answer.strip_prefix("err ") {
+        let reason = reason.to_owned();
+        return Err(ConsoleError::Refused { line, reason });
+    }
+    if !reply.answer.starts_with("ok ") {
+        let answer = reply.answer;
+        return Err(ConsoleError::Unclear { line, answer });
+    }
+    Ok(reply)
+}
