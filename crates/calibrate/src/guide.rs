@@ -253,8 +253,8 @@ impl<C: Console> Guide<C> {
             send(&mut self.console, &self.saved).await?;
             self.active = self.saved.clone();
             self.is_unsure = false;
-            self.unanswered_save = None;
         }
+        self.unanswered_save = None;
         Ok(is_changed)
     }
 

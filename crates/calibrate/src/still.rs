@@ -46,3 +46,59 @@ async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), Consol
         answer: reply.answer,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+    use crate::console::Reply;
+
+    /// A robot whose `status` shows these frames and these angles of A1, and then the last ones for ever.
+    struct Script(Vec<(u64, f64)>);
+
+    impl Console for Script {
+        type Error = Infallible;
+
+        async fn ask(&mut self, _: &str) -> Result<Reply, Infallible> {
+            let (frames, a1) = self.0[0];
+            if self.0.len() > 1 {
+                self.0.remove(0);
+            }
+            let answer = format!("ok gait=pose pose={a1:.2},0,0,0 margin=0.5 frames={frames}");
+            let notes = Vec::new();
+            Ok(Reply { notes, answer })
+        }
+
+        async fn pause(&mut self, _: Duration) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_robot_stands_once_its_pose_has_not_changed_for_a_while_also_after_a_restart() {
+        for (script, expected) in [
+            (vec![(100, 1.0), (112, 1.0), (200, 2.0)], 1.0),
+            (
+                vec![(100, 1.0), (111, 1.0), (114, 2.0), (127, 2.0), (300, 3.0)],
+                2.0,
+            ),
+            (
+                vec![
+                    (900, 1.0),
+                    (3, 1.0),
+                    (14, 1.0),
+                    (14, 2.0),
+                    (26, 2.0),
+                    (90, 3.0),
+                ],
+                2.0,
+            ),
+            // It never stands still long enough: no more frames are shown.
+            (vec![(100, 1.0), (105, 1.0)], 1.0),
+        ] {
+            let pose = pollster::block_on(wait_until_still(&mut Script(script)));
+            assert_eq!(pose.map(|[a1, ..]| a1), Ok(expected));
+        }
+    }
+}

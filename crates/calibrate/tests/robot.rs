@@ -159,6 +159,17 @@ fn a_scale_is_measured_by_a_turn_as_large_as_the_robot_accepts() {
 }
 
 #[test]
+fn angles_are_those_of_the_console_and_the_first_refusal_is_the_one_that_is_told() {
+    let mut guide = block_on(Guide::begin(Direct::of(PAPER))).expect("it answers");
+    let angle = block_on(guide.point(0, 140.004 - 360.0)).expect("it is accepted");
+    assert_eq!(angle, 140.0);
+    block_on(guide.limit(0, [-300.0, 580.0])).expect("it is accepted");
+    assert_eq!(guide.calibration().servos[0].limit, [60.0, 220.0]);
+    let refusal = block_on(guide.turn(0, &[170.0, 180.0])).expect_err("too far");
+    assert!(refusal.to_string().contains("`pose 308.59 "), "{refusal}");
+}
+
+#[test]
 fn the_test_walk_is_walk_or_the_first_gait_that_the_robot_has() {
     let others = [
         "walk",
@@ -194,7 +205,7 @@ enum Lost {
 /// A connection that loses one line, counted from the beginning, or its answer.
 struct Cut {
     robot: Direct,
-    lines: usize,
+    lines: Vec<String>,
     cut: Option<(usize, Lost)>,
 }
 
@@ -202,8 +213,8 @@ impl Console for Cut {
     type Error = &'static str;
 
     async fn ask(&mut self, line: &str) -> Result<Reply, &'static str> {
-        let index = self.lines;
-        self.lines += 1;
+        let index = self.lines.len();
+        self.lines.push(line.to_owned());
         match self.cut {
             Some((cut, Lost::Line)) if cut == index => Err("the line was lost"),
             Some((cut, Lost::Answer)) if cut == index => {
@@ -236,7 +247,7 @@ fn cut(cut: (usize, Lost)) -> (Guide<Cut>, bool) {
     let robot = Direct::of(PAPER);
     let connection = Cut {
         robot,
-        lines: 0,
+        lines: Vec::new(),
         cut: Some(cut),
     };
     let mut guide = match block_on(Guide::begin(connection)) {
@@ -268,6 +279,8 @@ fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_what_the_robot_has(
                 return;
             }
             cuts += 1;
+            let is_question = guide.console().lines[index] == "status";
+            assert!(is_question || guide.is_changed(), "{index}, {lost:?}");
             // Leaving restores what is stored, so a reset changes nothing.
             block_on(guide.restore()).expect("it answers again");
             let active = guide.console().robot.calibration();
@@ -290,4 +303,78 @@ fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_what_the_robot_has(
             assert!(shown.is_same(&stored(&mut guide)), "{index}, {lost:?}");
         }
     }
+}
+
+#[test]
+fn one_servo_turns_on_without_a_return_to_neutral() {
+    let mut connection = Cut {
+        robot: Direct::of(PAPER),
+        lines: Vec::new(),
+        cut: None,
+    };
+    let mut guide = block_on(Guide::begin(&mut connection)).expect("it answers");
+    for degrees in [140.0, 141.0] {
+        block_on(guide.point(0, degrees)).expect("it is accepted");
+    }
+    let stands = connection.lines.iter().filter(|line| *line == "stand");
+    assert_eq!(stands.count(), 1);
+}
+
+#[test]
+fn settings_that_were_not_saved_before_come_back_also_after_a_lost_save() {
+    for lost in [Lost::Line, Lost::Answer] {
+        let mut robot = Direct::of(PAPER);
+        for line in ["trim 1 5", "save", "trim 1 2"] {
+            block_on(robot.ask(line)).expect("it answers");
+        }
+        let before = robot.calibration();
+        let connection = Cut {
+            robot,
+            lines: Vec::new(),
+            cut: Some((2, lost)),
+        };
+        let mut guide = block_on(Guide::begin(connection)).expect("it answers");
+        block_on(guide.trim(0, 1.0)).expect("it is accepted");
+        block_on(guide.save()).expect_err("it is lost");
+        // What was saved stays saved.
+        let is_saved = lost == Lost::Answer;
+        for _ in 0..2 {
+            block_on(guide.restore()).expect("it answers again");
+            let trim = guide.console().robot.calibration().servos[0].trim;
+            assert_eq!(trim, if is_saved { 3.0 } else { before.servos[0].trim });
+        }
+    }
+}
+
+/// A robot that accepts any trim of A2 and does nothing.
+struct Stubborn(Direct);
+
+impl Console for Stubborn {
+    type Error = Infallible;
+
+    async fn ask(&mut self, line: &str) -> Result<Reply, Infallible> {
+        match line.starts_with("trim 2") {
+            true => Ok(Reply {
+                notes: Vec::new(),
+                answer: format!("ok {line}"),
+            }),
+            false => self.0.ask(line).await,
+        }
+    }
+
+    async fn pause(&mut self, time: Duration) -> Result<(), Infallible> {
+        self.0.pause(time).await
+    }
+}
+
+#[test]
+fn settings_that_are_read_back_differently_are_not_accepted() {
+    let mut guide = block_on(Guide::begin(Stubborn(Direct::of(PAPER)))).expect("it answers");
+    let mut calibration = factory_settings();
+    calibration.servos[0].trim = 1.0;
+    calibration.servos[1].trim = 1.0;
+    let error = block_on(guide.replace(&calibration)).expect_err("one is missing");
+    assert_eq!(error, SendError::Differs);
+    let active = guide.console().0.calibration();
+    assert!(active.is_same(&factory_settings()), "{active:?}");
 }
