@@ -13,7 +13,16 @@ const getText = async (path: string): Promise<string> => (await getFile(path)).t
 
 const getJson = async <T>(path: string): Promise<T> => (await getFile(path)).json() as Promise<T>;
 
-const compileWasm = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await getFile(path)).arrayBuffer());
+/** Modules by their paths: workers share what the browser has compiled. */
+const modules = new Map<string, Promise<WebAssembly.Module>>();
+
+function compileWasm(path: string): Promise<WebAssembly.Module> {
+  const compile = async () => WebAssembly.compile(await (await getFile(path)).arrayBuffer());
+  const module = modules.get(path) ?? compile();
+  modules.set(path, module);
+  module.catch(() => modules.delete(path));
+  return module;
+}
 
 export const files = {
   /** The names of the robots' files, without extension: of all robots, and of those that are meant for tests. */

@@ -16,10 +16,11 @@ const STEP_MM = 0.5;
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
 
-/** Work that ends with the next change: proofs in workers. */
+/** Work that ends with the next change: checks in workers. */
 interface Work {
   isOver: boolean;
-  stop: () => void;
+  /** The functions that end its workers. */
+  stops: Set<() => void>;
 }
 
 /** A length whose printable values are wanted, within a range. */
@@ -37,7 +38,7 @@ export class FitView {
   private fitting: Lengths = new Map();
   private wish: Wish | null = null;
   private timer = 0;
-  private work: Work = { isOver: true, stop: () => {} };
+  private work: Work = { isOver: true, stops: new Set() };
 
   constructor(
     private readonly session: () => Session,
@@ -90,12 +91,12 @@ export class FitView {
   private begin(): void {
     clearTimeout(this.timer);
     this.work.isOver = true;
-    this.work.stop();
+    for (const stop of this.work.stops) stop();
     this.say('', null);
   }
 
   private schedule(act: (work: Work) => Promise<void>): void {
-    const work: Work = { isOver: false, stop: () => {} };
+    const work: Work = { isOver: false, stops: new Set() };
     this.work = work;
     const run = () => act(work).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`, null));
     this.timer = setTimeout(() => void run(), QUIET_MS);
@@ -119,11 +120,13 @@ export class FitView {
     const { fit, Unfit } = await import('../parts/workshop');
     if (work.isOver) return null;
     const { answer, stop } = fit(toml);
-    work.stop = stop;
-    return answer.catch((error: unknown) => {
-      if (error instanceof Unfit) return error;
-      throw error;
-    });
+    work.stops.add(stop);
+    return answer
+      .catch((error: unknown) => {
+        if (error instanceof Unfit) return error;
+        throw error;
+      })
+      .finally(() => work.stops.delete(stop));
   }
 
   private async check(robotLengths: Lengths, changedLengths: Lengths, work: Work): Promise<void> {
@@ -151,13 +154,12 @@ export class FitView {
     if (!wish) return;
     const { keys, range, show } = wish;
     show(null, 'Looking for the shortest and the longest that can be printed…');
-    const limits: number[] = [];
-    for (const wantedValue of range) {
+    const findLimit = async (wantedValue: number) => {
       const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, wantedValue])), work, true);
-      if (work.isOver) return;
-      limits.push(lengths.get(keys[0] ?? '') ?? wantedValue);
-    }
-    const [shortest = 0, longest = 0] = limits;
+      return lengths.get(keys[0] ?? '') ?? wantedValue;
+    };
+    const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
+    if (work.isOver) return;
     const { unit } = this.session().description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
     show([shortest, longest], `Can be printed from ${shortest} to ${longest} ${unit}.`);
   }
