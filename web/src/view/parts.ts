@@ -220,11 +220,12 @@ export class PartsView {
     this.say('files-said', 'Loading…');
     this.listFiles([]);
     let isStopped = false;
+    let isOver = false;
     try {
       const workshop = await import('../parts/workshop');
       const { answer, stop } = workshop.make(toml, selection === 'all' ? null : original, ({ doing, done, all }: Progress) => {
-        // Reports may still arrive after the worker was terminated.
-        if (isStopped) return;
+        // Reports have a channel of their own: some arrive after the answer, or after the worker was terminated.
+        if (isOver) return;
         bar.max = all;
         bar.value = done;
         this.say('files-said', `${activityTexts[doing]}: ${done} of ${all}.`);
@@ -236,7 +237,7 @@ export class PartsView {
           resolve(null);
         };
       });
-      const files = await Promise.race([answer, stopPromise]);
+      const files = await Promise.race([answer, stopPromise]).finally(() => (isOver = true));
       if (!files) return;
       if (files.paths.length > 0) save(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [files.zip], 'application/zip');
       this.say('files-said', this.savedText(files, selection));
