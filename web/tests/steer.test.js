@@ -176,6 +176,9 @@ test('the page opens with the robot walking slowly, unless reduced motion is pre
   await waitForGait(movingPage, 'walk');
   await movingPage.waitForFunction(() => document.querySelector('#speed').value === '50');
   const stillPage = await openReady();
+  await waitForGait(stillPage, 'stand');
+  // The robot that walks has begun within this time.
+  await advance(stillPage, 6000);
   assert.equal(await stillPage.locator('#doing').textContent(), 'stand');
 });
 
