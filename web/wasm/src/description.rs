@@ -6,7 +6,7 @@ use lizard_core::numbers::section::START;
 use lizard_kinematics::Check;
 use lizard_robot::edit::HIPS;
 use lizard_robot::servo::{LEGS, NAMES};
-use lizard_robot::{Plate, Robot, STILL_FRAMES, ServoType, healthy_rail_mv};
+use lizard_robot::{Plate, Robot, ServoType, healthy_rail_mv};
 use lizard_twin::ServoModel;
 use serde::Serialize;
 use tsify::Tsify;
@@ -196,8 +196,6 @@ pub struct Description {
     pub floor: Floor,
     /// The servo models that the page offers.
     pub models: Vec<ModelEntry>,
-    /// Frames without motion after which the robot counts as standing.
-    pub still: u64,
     /// Reserved words of the console, the same for every robot.
     pub words: Vec<&'static str>,
 }
@@ -262,7 +260,6 @@ impl Description {
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot),
             models: ModelEntry::all(robot),
-            still: STILL_FRAMES,
             words: reserved_words(),
         }
     }
