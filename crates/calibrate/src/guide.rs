@@ -180,6 +180,7 @@ impl<C: Console> Guide<C> {
         measured: f64,
     ) -> Result<f64, C> {
         self.stand().await?;
+        self.make_sure().await?;
         let scale = self.active.servos[servo].scale * (told / measured).abs();
         self.scale(servo, scale).await?;
         Ok(self.active.servos[servo].scale)
@@ -243,13 +244,16 @@ impl<C: Console> Guide<C> {
             Ok(_) | Err(ConsoleError::Refused { .. }) => {}
             Err(error) => return Err(error),
         }
-        if let Some(unanswered) = &self.unanswered_save
-            && has_saved(&mut self.console, unanswered).await?
-        {
-            self.saved = unanswered.clone();
+        if let Some(unanswered) = &self.unanswered_save {
+            // The robot loads what it has saved.
+            self.is_unsure = true;
+            if has_saved(&mut self.console, unanswered).await? {
+                self.saved = unanswered.clone();
+            }
         }
         let is_changed = !self.active.is_same(&self.saved);
         if is_changed || self.is_unsure {
+            self.is_unsure = true;
             send(&mut self.console, &self.saved).await?;
             self.active = self.saved.clone();
             self.is_unsure = false;
@@ -267,9 +271,14 @@ impl<C: Console> Guide<C> {
         &mut self,
         calibration: &Calibration,
     ) -> std::result::Result<(), SendError<C::Error>> {
-        replace(&mut self.console, &self.active, calibration).await?;
-        self.active = calibration.clone();
-        Ok(())
+        self.make_sure().await.map_err(SendError::Refused)?;
+        let result = replace(&mut self.console, &self.active, calibration).await;
+        match &result {
+            Ok(()) => self.active = calibration.clone(),
+            Err(SendError::Mixed(_)) => self.is_unsure = true,
+            Err(_) => {}
+        }
+        result
     }
 
     /// Sends a servo's new sign or scale by its `line`, and the trim that goes with it; if the trim is refused, sends

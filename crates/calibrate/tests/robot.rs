@@ -8,6 +8,8 @@ use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::edit::without_gait;
 use lizard_robot::{Calibration, Robot};
 use pollster::block_on;
+use proptest::collection::vec;
+use proptest::prelude::*;
 
 /// The robot.toml of the paper's robot.
 const PAPER: &str = include_str!("../../../robots/paper.toml");
@@ -322,28 +324,56 @@ fn one_servo_turns_on_without_a_return_to_neutral() {
 
 #[test]
 fn settings_that_were_not_saved_before_come_back_also_after_a_lost_save() {
-    for lost in [Lost::Line, Lost::Answer] {
-        let mut robot = Direct::of(PAPER);
-        for line in ["trim 1 5", "save", "trim 1 2"] {
-            block_on(robot.ask(line)).expect("it answers");
-        }
-        let before = robot.calibration();
-        let connection = Cut {
-            robot,
-            lines: Vec::new(),
-            cut: Some((2, lost)),
-        };
-        let mut guide = block_on(Guide::begin(connection)).expect("it answers");
+    // What was saved stays saved.
+    for (lost, trim) in [(Lost::Line, 2.0), (Lost::Answer, 3.0)] {
+        let mut guide = guide_after(&["trim 1 5", "save", "trim 1 2"], 2, lost);
         block_on(guide.trim(0, 1.0)).expect("it is accepted");
         block_on(guide.save()).expect_err("it is lost");
-        // What was saved stays saved.
-        let is_saved = lost == Lost::Answer;
         for _ in 0..2 {
             block_on(guide.restore()).expect("it answers again");
-            let trim = guide.console().robot.calibration().servos[0].trim;
-            assert_eq!(trim, if is_saved { 3.0 } else { before.servos[0].trim });
+            let active = guide.console().robot.calibration();
+            assert_eq!(active.servos[0].trim, trim);
         }
     }
+}
+
+/// A guide of the paper's robot, after some lines, whose line of this index has its answer lost.
+fn guide_after(lines: &[&str], index: usize, lost: Lost) -> Guide<Cut> {
+    let mut robot = Direct::of(PAPER);
+    for line in lines {
+        block_on(robot.ask(line)).expect("it answers");
+    }
+    let connection = Cut {
+        robot,
+        lines: Vec::new(),
+        cut: Some((index, lost)),
+    };
+    block_on(Guide::begin(connection)).expect("it answers")
+}
+
+#[test]
+fn what_was_saved_long_before_does_not_come_back_with_a_lost_save() {
+    let mut guide = guide_after(&["trim 1 5", "save", "trim 1 2"], 2, Lost::Line);
+    block_on(guide.trim(0, 1.0)).expect("it is accepted");
+    block_on(guide.save()).expect_err("it is lost");
+    block_on(guide.trim(0, -1.0)).expect("it is accepted");
+    block_on(guide.restore()).expect("it answers again");
+    assert_eq!(guide.console().robot.calibration().servos[0].trim, 2.0);
+}
+
+#[test]
+fn a_setting_whose_answer_was_lost_is_the_old_one_for_what_follows() {
+    let mut guide = guide_after(&[], 1, Lost::Answer);
+    block_on(guide.scale(0, 11.0)).expect_err("it is lost");
+    let scale = block_on(guide.scale_by_turn(0, 30.0, 30.0)).expect("it is accepted");
+    assert_eq!(scale, 11.0);
+
+    let mut guide = guide_after(&[], 1, Lost::Answer);
+    block_on(guide.trim(0, 1.5)).expect_err("it is lost");
+    let mut calibration = factory_settings();
+    calibration.servos[1].limit = [40.0, 43.0];
+    block_on(guide.replace(&calibration)).expect_err("too narrow");
+    assert_eq!(guide.console().robot.calibration().servos[0].trim, 1.5);
 }
 
 /// A robot that accepts any trim of A2 and does nothing.
@@ -377,4 +407,101 @@ fn settings_that_are_read_back_differently_are_not_accepted() {
     assert_eq!(error, SendError::Differs);
     let active = guide.console().0.calibration();
     assert!(active.is_same(&factory_settings()), "{active:?}");
+}
+
+/// A connection that loses some lines, or their answers, and remembers what the robot has saved.
+struct Lossy {
+    robot: Direct,
+    lines: usize,
+    losses: Vec<(usize, Lost)>,
+    saved: Calibration,
+}
+
+impl Console for Lossy {
+    type Error = &'static str;
+
+    async fn ask(&mut self, line: &str) -> Result<Reply, &'static str> {
+        let index = self.lines;
+        self.lines += 1;
+        let loss = self.losses.iter().find(|(lost, _)| *lost == index);
+        if let Some((_, Lost::Line)) = loss {
+            return Err("the line was lost");
+        }
+        let reply = self.robot.ask(line).await.expect("it answers");
+        if line == "save" && reply.answer.starts_with("ok") {
+            self.saved = self.robot.calibration();
+        }
+        match loss {
+            None => Ok(reply),
+            Some(_) => Err("the answer was lost"),
+        }
+    }
+
+    async fn pause(&mut self, time: Duration) -> Result<(), &'static str> {
+        self.robot.pause(time).await.expect("it waits");
+        Ok(())
+    }
+}
+
+/// Does one of the things that a person may do; a failure is shown to the person, who goes on.
+async fn act(guide: &mut Guide<Lossy>, action: usize, servo: usize, amount: f64) {
+    let neutral = [138.59, 41.41, 318.59, 221.41][servo];
+    let _ = match action {
+        0 => guide.trim(servo, amount).await,
+        1 => guide.reverse(servo).await,
+        2 => guide.scale(servo, 10.0 + amount / 4.0).await,
+        3 => {
+            let told = guide.turn(servo, &SCALE_TURNS).await.unwrap_or(30.0);
+            guide
+                .scale_by_turn(servo, told, told + amount)
+                .await
+                .map(drop)
+        }
+        4 => {
+            guide
+                .limit(servo, [neutral - 80.0 + amount, neutral + 85.0])
+                .await
+        }
+        5 | 6 => guide.save().await,
+        7 => guide.restore().await.map(drop),
+        _ => {
+            let mut calibration = factory_settings();
+            calibration.servos[servo].trim = amount.round();
+            let _ = guide.replace(&calibration).await;
+            Ok(())
+        }
+    };
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn whatever_is_done_and_lost_the_robot_has_at_the_end_what_it_saved_last(
+        actions in vec((0..9_usize, 0..4_usize, -5.0..5.0), 1..12),
+        losses in vec((1..150_usize, prop_oneof![Just(Lost::Line), Just(Lost::Answer)]), 0..12),
+        saves in any::<bool>(),
+    ) {
+        let mut robot = Direct::of(PAPER);
+        for line in ["trim 1 5", "save", "trim 1 2"] {
+            block_on(robot.ask(line)).expect("it answers");
+        }
+        let saved = robot.calibration();
+        let connection = Lossy { robot, lines: 0, losses, saved };
+        let mut guide = block_on(Guide::begin(connection)).expect("its first line arrives");
+        for (action, servo, amount) in actions {
+            block_on(act(&mut guide, action, servo, amount));
+        }
+        guide.console().losses.clear();
+        match saves {
+            true => block_on(guide.save()).expect("it answers again"),
+            false => block_on(guide.restore()).map(drop).expect("it answers again"),
+        }
+        prop_assert!(!guide.is_changed());
+        let shown = guide.calibration().clone();
+        let Lossy { robot, saved, .. } = guide.console();
+        let active = robot.calibration();
+        prop_assert!(active.is_same(&shown), "{active:?}, shown {shown:?}");
+        prop_assert!(active.is_same(saved), "{active:?}, saved {saved:?}");
+    }
 }
