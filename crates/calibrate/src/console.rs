@@ -42,9 +42,9 @@ impl<C: Console> Console for &mut C {
     }
 }
 
-/// The reason why a line had no effect.
+/// A reply that is not `ok`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ConsoleError<E> {
+pub enum BadReply {
     /// The robot refuses a line.
     #[error("the robot refuses `{line}`: {reason}")]
     Refused {
@@ -61,9 +61,24 @@ pub enum ConsoleError<E> {
         /// The answer that was received.
         answer: String,
     },
+}
+
+/// The reason why a line had no effect.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ConsoleError<E> {
+    /// The reply is not `ok`.
+    #[error(transparent)]
+    Reply(#[from] BadReply),
     /// There is no reply.
     #[error("{0}")]
     Link(E),
+}
+
+impl<E> ConsoleError<E> {
+    /// True if the robot refuses the line.
+    pub fn is_refusal(&self) -> bool {
+        matches!(self, Self::Reply(BadReply::Refused { .. }))
+    }
 }
 
 /// Sends a line that must be accepted.
@@ -78,11 +93,11 @@ pub async fn command<C: Console>(
     let line = line.to_owned();
     if let Some(reason) = reply.answer.strip_prefix("err ") {
         let reason = reason.to_owned();
-        return Err(ConsoleError::Refused { line, reason });
+        return Err(BadReply::Refused { line, reason }.into());
     }
     if !reply.answer.starts_with("ok ") {
         let answer = reply.answer;
-        return Err(ConsoleError::Unclear { line, answer });
+        return Err(BadReply::Unclear { line, answer }.into());
     }
     Ok(reply)
 }

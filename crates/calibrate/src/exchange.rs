@@ -2,7 +2,7 @@
 
 use lizard_robot::{Calibration, Transfer};
 
-use crate::console::{Console, ConsoleError, command};
+use crate::console::{BadReply, Console, ConsoleError, command};
 
 /// Reads a robot's settings.
 ///
@@ -10,9 +10,9 @@ use crate::console::{Console, ConsoleError, command};
 /// Fails if there is no answer, or one that is not understood.
 pub async fn read<C: Console>(console: &mut C) -> Result<Calibration, ConsoleError<C::Error>> {
     let reply = command(console, "cal").await?;
-    Calibration::from_lines(&reply.notes).ok_or_else(|| ConsoleError::Unclear {
-        line: "cal".to_owned(),
-        answer: reply.notes.join(" / "),
+    Calibration::from_lines(&reply.notes).ok_or_else(|| {
+        let (line, answer) = ("cal".to_owned(), reply.notes.join(" / "));
+        BadReply::Unclear { line, answer }.into()
     })
 }
 
@@ -30,7 +30,7 @@ pub async fn send<C: Console>(
     while let Some(line) = transfer.next_line() {
         match command(console, &line).await {
             Ok(_) => {}
-            Err(error @ ConsoleError::Refused { .. }) => {
+            Err(error) if error.is_refusal() => {
                 if transfer.refuse() {
                     refusal = Some(error);
                 }

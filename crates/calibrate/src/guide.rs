@@ -104,7 +104,7 @@ impl<C: Console> Guide<C> {
         for turn in turns {
             match self.point(servo, neutral[servo] + turn).await {
                 Ok(_) => return Ok(*turn),
-                Err(error @ ConsoleError::Refused { .. }) => refusal = refusal.or(Some(error)),
+                Err(error) if error.is_refusal() => refusal = refusal.or(Some(error)),
                 Err(error) => return Err(error),
             }
         }
@@ -241,8 +241,8 @@ impl<C: Console> Guide<C> {
     /// Fails if the robot refuses a setting. If it cannot stand, for example at a low supply, it is restored anyway.
     pub async fn restore(&mut self) -> Result<bool, C> {
         match self.stand().await {
-            Ok(_) | Err(ConsoleError::Refused { .. }) => {}
-            Err(error) => return Err(error),
+            Err(error) if !error.is_refusal() => return Err(error),
+            _ => {}
         }
         if let Some(unanswered) = &self.unanswered_save {
             // The robot loads what it has saved.
@@ -294,7 +294,7 @@ impl<C: Console> Guide<C> {
         if new.trim != old.trim
             && let Err(error) = self.command(&trim_line(servo, new)).await
         {
-            if matches!(error, ConsoleError::Refused { .. }) {
+            if error.is_refusal() {
                 self.command(&line(servo, old)).await?;
             }
             return Err(error);
@@ -305,10 +305,7 @@ impl<C: Console> Guide<C> {
 
     async fn command(&mut self, line: &str) -> Result<Reply, C> {
         let result = command(&mut self.console, line).await;
-        self.is_unsure |= matches!(
-            result,
-            Err(ConsoleError::Link(_) | ConsoleError::Unclear { .. })
-        );
+        self.is_unsure |= matches!(&result, Err(error) if !error.is_refusal());
         result
     }
 
@@ -326,7 +323,7 @@ impl<C: Console> Guide<C> {
 async fn has_saved<C: Console>(console: &mut C, calibration: &Calibration) -> Result<bool, C> {
     match command(console, "load").await {
         Ok(_) => Ok(read(console).await?.is_same(calibration)),
-        Err(ConsoleError::Refused { .. }) => Ok(false),
+        Err(error) if error.is_refusal() => Ok(false),
         Err(error) => Err(error),
     }
 }

@@ -18,6 +18,6 @@ mod exchange;
 mod guide;
 mod still;
 
-pub use console::{Console, ConsoleError, Reply, command};
+pub use console::{BadReply, Console, ConsoleError, Reply, command};
 pub use exchange::{SendError, read, replace, send};
 pub use guide::{Guide, SCALE_TURNS, SIGN_TURNS};

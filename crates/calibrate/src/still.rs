@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use lizard_robot::{STILL_FRAMES, Status};
 
-use crate::console::{Console, ConsoleError, command};
+use crate::console::{BadReply, Console, ConsoleError, command};
 
 /// Interval between two `status` commands.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -41,9 +41,9 @@ async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), Consol
     let reply = command(console, "status").await?;
     let status = Status::parse(&reply.answer);
     let state = status.and_then(|status| Some((status.frames, status.pose?)));
-    state.ok_or(ConsoleError::Unclear {
-        line: "status".to_owned(),
-        answer: reply.answer,
+    state.ok_or_else(|| {
+        let (line, answer) = ("status".to_owned(), reply.answer);
+        BadReply::Unclear { line, answer }.into()
     })
 }
 

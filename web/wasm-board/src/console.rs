@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use js_sys::{Array, JsString, Reflect};
-use lizard_calibrate::{ConsoleError, Reply};
+use lizard_calibrate::{BadReply, ConsoleError, Reply};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
 
@@ -61,12 +61,12 @@ fn text(value: JsValue) -> String {
 /// The error that the page gets: its own, or a sentence.
 pub(crate) fn thrown(error: ConsoleError<JsValue>) -> JsValue {
     match error {
-        ConsoleError::Refused { line, reason } => {
+        ConsoleError::Reply(BadReply::Refused { line, reason }) => {
             // The code is for programs.
             let reason = reason.trim_start_matches(|c: char| c.is_ascii_digit());
             sentence(&format!("The robot refuses \"{line}\":{reason}."))
         }
-        ConsoleError::Unclear { .. } => {
+        ConsoleError::Reply(BadReply::Unclear { .. }) => {
             sentence("The robot does not answer as this page knows it: write this firmware first.")
         }
         ConsoleError::Link(error) => error,

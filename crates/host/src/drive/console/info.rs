@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{ConsoleError, read};
+use lizard_calibrate::{BadReply, read};
 use lizard_robot::servo::NAMES;
 use lizard_robot::{Calibration, ServoSettings, Status};
 use pollster::block_on;
@@ -101,7 +101,7 @@ impl Board {
         let status = wait_for_voltages(link)?;
         let calibration = match block_on(read(link)) {
             Ok(calibration) => Some(calibration.into()),
-            Err(ConsoleError::Refused { .. }) => None,
+            Err(error) if error.is_refusal() => None,
             Err(error) => return Err(error.into()),
         };
         let (firmware, robot) = banner.map_or((None, None), parse_banner);
@@ -184,9 +184,9 @@ fn wait_for_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, Link
 
 fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     let answer = link.command("status")?.answer;
-    Status::parse(&answer).ok_or_else(|| LinkError::Unclear {
-        line: "status".to_owned(),
-        answer,
+    Status::parse(&answer).ok_or_else(|| {
+        let line = "status".to_owned();
+        BadReply::Unclear { line, answer }.into()
     })
 }
 

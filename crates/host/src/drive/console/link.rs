@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{Console, ConsoleError, Reply};
+use lizard_calibrate::{BadReply, Console, ConsoleError, Reply};
 use pollster::block_on;
 
 use crate::drive::clock::Deadline;
@@ -63,22 +63,9 @@ pub enum LinkError {
          the board been flashed (lizard flash)?"
     )]
     Mute,
-    /// The robot refuses a line.
-    #[error("the robot refuses `{line}`: {reason}")]
-    Refused {
-        /// The line that was sent.
-        line: String,
-        /// The code and the reason.
-        reason: String,
-    },
-    /// The answer has an unknown format.
-    #[error("the robot's answer to `{line}` is not understood: `{answer}`")]
-    Unclear {
-        /// The line that was sent.
-        line: String,
-        /// The answer that was received.
-        answer: String,
-    },
+    /// The robot refuses a line, or its answer is not understood.
+    #[error(transparent)]
+    Reply(#[from] BadReply),
     /// An error of the operating system.
     #[error("{0}")]
     Io(io::Error),
@@ -87,8 +74,7 @@ pub enum LinkError {
 impl From<ConsoleError<LinkError>> for LinkError {
     fn from(error: ConsoleError<LinkError>) -> Self {
         match error {
-            ConsoleError::Refused { line, reason } => Self::Refused { line, reason },
-            ConsoleError::Unclear { line, answer } => Self::Unclear { line, answer },
+            ConsoleError::Reply(reply) => reply.into(),
             ConsoleError::Link(error) => error,
         }
     }

@@ -6,7 +6,7 @@
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{ConsoleError, SCALE_TURNS, SIGN_TURNS};
+use lizard_calibrate::{BadReply, ConsoleError, SCALE_TURNS, SIGN_TURNS};
 use lizard_robot::Status;
 use pollster::block_on;
 
@@ -124,7 +124,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             _ => Ok(false),
         };
         match result {
-            Err(ConsoleError::Refused { line, reason }) if key != Key::Leave => {
+            Err(ConsoleError::Reply(BadReply::Refused { line, reason })) if key != Key::Leave => {
                 self.message = format!("The robot refuses `{line}`: {reason}.");
                 Ok(false)
             }
