@@ -6,32 +6,35 @@ use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::{env, fs};
 
-use lizard_core::numbers::section::{SPACE, START};
+use lizard_core::numbers::section::{SPACE_BYTES, START_ADDRESS};
 use lizard_robot::{Report, Robot};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
-    // The linker of the image: this script does not use it, but a change of it needs a
-    // new image.
+    // This script does not use the image's linker, but if the linker changes, the image
+    // must be built again.
     println!("cargo::rerun-if-changed=tools/linker/src");
     println!("cargo::rerun-if-env-changed=LIZARD_PLAIN_LINK");
     let configured_path = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    let file = configured_path.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
-    println!("cargo::rerun-if-changed={}", file.display());
-    let robot = Robot::load(&file).unwrap_or_else(|error| stop(&error.to_string()));
+    let robot_path = configured_path.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
+    println!("cargo::rerun-if-changed={}", robot_path.display());
+    let robot = Robot::load(&robot_path).unwrap_or_else(|error| stop(&error.to_string()));
     // Cargo sets OUT_DIR for every build script.
     let out_dir = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out_dir = PathBuf::from(out_dir);
     write(&out_dir.join("robot.bin"), &robot.section());
     // The linker script lays out the flash. The address of the robot's section comes from
-    // lizard_core::numbers::section::START.
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
-    println!("cargo::rerun-if-changed={}", script.display());
-    println!("cargo::rustc-link-arg-bins=-Wl,-T,{}", script.display());
-    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START:#x}");
-    let end = START + SPACE;
-    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end:#x}");
+    // lizard_core::numbers::section::START_ADDRESS.
+    let linker_script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
+    println!("cargo::rerun-if-changed={}", linker_script.display());
+    println!(
+        "cargo::rustc-link-arg-bins=-Wl,-T,{}",
+        linker_script.display()
+    );
+    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START_ADDRESS:#x}");
+    let end_address = START_ADDRESS + SPACE_BYTES;
+    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end_address:#x}");
     // No instruction refers to the robot's section, to the mark that identifies the firmware (src/mark.rs) or to the
     // note for the simulator simavr, so the linker is told to keep them.
     for name in ["ROBOT", "MARK", "SIMAVR"] {
@@ -52,7 +55,7 @@ fn write(path: &Path, bytes: &[u8]) {
     }
 }
 
-/// Ends the build. `cargo::error` puts the message first, before the script's other output.
+/// Ends the build with a message. Cargo prints a `cargo::error` before the script's other output.
 fn stop(message: &str) -> ! {
     println!("cargo::error={message}");
     exit(1)

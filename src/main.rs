@@ -1,4 +1,4 @@
-//! The firmware: the core on an Arduino UNO.
+//! The firmware: the robot's core on an Arduino UNO.
 
 #![no_std]
 #![no_main]
@@ -24,7 +24,7 @@ static mut MAIN: Main = Main::new();
 fn main() -> ! {
     let mut uno = Uno::start();
     let main_pointer = &raw mut MAIN;
-    // SAFETY: this function is entered once, and nobody else names `MAIN`.
+    // SAFETY: this function is entered once, and no other code uses `MAIN`.
     let main = unsafe { &mut *main_pointer };
     main.begin(Region::INITIAL, &mut uno);
     loop {

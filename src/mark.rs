@@ -2,9 +2,9 @@
 
 use lizard_core::numbers::mark::{LENGTH, Mark};
 
-/// Read by no code of the firmware. The linker places this section first after the interrupt vectors, at
+/// The mark. No code of the firmware reads it. The linker places it directly after the interrupt vectors, at
 /// [`lizard_core::numbers::mark::ADDRESS`], and a test looks for it there.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".progmem.gcc.mark")]
-static MARK: [u8; LENGTH] = Mark::OWN.bytes();
+static MARK: [u8; LENGTH] = Mark::THIS_FIRMWARE.bytes();

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The version of libsimavr that the shim corrects. With another version, tests of the data sheet fail or hang.
+/// The version of libsimavr that the shim corrects. With another version, the tests in tests/data_sheet fail or hang.
 const TESTED_VERSION: &str = "1.6";
 
 fn main() {
@@ -15,8 +15,8 @@ fn main() {
     }
     check_version();
     println!("cargo:rerun-if-changed=shim");
-    let files = std::fs::read_dir("shim").expect("the folder shim/ is part of the package");
-    let files = files.map(|file| file.expect("a file of shim/").path());
+    let files = std::fs::read_dir("shim").expect("the folder shim/ is readable");
+    let files = files.map(|file| file.expect("the folder shim/ is readable").path());
     let mut sources: Vec<PathBuf> = files
         .filter(|file| file.extension().is_some_and(|extension| extension == "c"))
         .collect();
@@ -36,7 +36,7 @@ fn main() {
              sudo apt-get install libsimavr-dev libelf-dev\n{error}"
         );
     }
-    // A program that links the C library statically cannot load a shared library. Without `static:`, the linker may
+    // A program that links the C library statically cannot load shared libraries, and without `static:` the linker may
     // choose libelf.so.
     let features = std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if features.split(',').any(|feature| feature == "crt-static") {

@@ -5,7 +5,7 @@ use std::fs;
 
 use simulated_uno::Image;
 use simulated_uno::avr_gcc::run;
-pub use simulated_uno::avr_gcc::{assembler, c};
+pub use simulated_uno::avr_gcc::{assemble, compile_c};
 
 const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"];
 

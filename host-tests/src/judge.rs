@@ -62,7 +62,7 @@ impl Outputs {
         let mut pulses = Vec::new();
         for edge in edges {
             let rise = &mut rises[usize::from(edge.pin.number())];
-            if edge.high {
+            if edge.is_rising {
                 *rise = Some(edge.cycle);
             } else if let Some(rise) = rise.take() {
                 pulses.push(PinPulse {
@@ -110,7 +110,7 @@ pub fn run_on_avr8js(
     objcopy.args(["-I", "binary", "-O", "ihex"]);
     run_program(objcopy.args([&flash, &hex]), "binutils-avr", "")?;
     let mut script = String::new();
-    if let Some((pin, mv)) = supplies::rail_pin(robot) {
+    if let Some((pin, mv)) = supplies::healthy_rail(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());
     }
     for SerialByte { cycle, byte } in received {

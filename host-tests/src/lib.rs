@@ -10,7 +10,7 @@ mod robots;
 
 pub use bench::{FirmwareBench, bench_of};
 pub use extent::{minutes, scaled};
-pub use lizard_host::sim::frame::{FRAME, Frame};
+pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{Named, paper, patrol_of, patrolling, rng, robot, robots, root, seed};
 pub mod trouble;

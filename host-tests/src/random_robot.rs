@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 use fastrand::Rng;
 use lizard_core::numbers::gaits::{Gait, Wave};
-use lizard_core::numbers::section::SPACE;
+use lizard_core::numbers::section::SPACE_BYTES;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 
@@ -45,7 +45,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
                 append_line(&mut text, &random_rail(rng, &body.pins));
             }
             let robot = Robot::parse(&text).ok()?;
-            let has_moving_gait = robot.gaits().iter().any(|gait| gait.moves());
+            let has_moving_gait = robot.gaits().iter().any(|gait| gait.has_movement());
             has_moving_gait.then_some((text, robot))
         })
         .expect("one draft in a few is a valid robot")
@@ -58,11 +58,11 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 /// If the robot has no gait that moves, or is not valid.
 pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
-    let gait = robot.gaits().iter().find(|gait| gait.moves());
+    let gait = robot.gaits().iter().find(|gait| gait.has_movement());
     let gait_name = gait.expect("a gait that moves").name();
     // Leaves room for one waveform more, in case the additional gaits need their own.
-    let taken_bytes = robot.content().section().len() + size_of::<Wave>();
-    let room_bytes = usize::from(SPACE).saturating_sub(taken_bytes);
+    let taken_bytes = robot.content().section_bytes().len() + size_of::<Wave>();
+    let room_bytes = usize::from(SPACE_BYTES).saturating_sub(taken_bytes);
     let gaits = (0..room_bytes / (size_of::<Gait>() + length)).map(|number| {
         let name = format!("{:n<1$}{number:02}", "on-and-o", length - 2);
         format!("[gait.{name}]\nlike = \"{gait_name}\"\n")

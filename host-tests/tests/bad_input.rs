@@ -12,8 +12,8 @@ use lizard_core::virtual_board::Eeprom;
 use lizard_fuzz::Board;
 use lizard_host_tests::{robot, scaled};
 
-#[path = "firmware/lines.rs"]
-mod lines;
+#[path = "firmware/random_lines.rs"]
+mod random_lines;
 
 /// The number of bytes, the number of lines, and a thousand times the number of EEPROM contents.
 const COUNT: u64 = 2_000_000;
@@ -69,7 +69,7 @@ fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
         let mut board = Board::new(robot(), Eeprom::blank());
         let mut accepted = 0u64;
         for n in 0..count {
-            for byte in lines::nearly_valid_line(rng) {
+            for byte in random_lines::nearly_valid_line(rng) {
                 board.send_byte(byte);
             }
             board.send_byte(b'\n');

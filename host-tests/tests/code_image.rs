@@ -6,7 +6,7 @@
 use std::io::Write as _;
 use std::process::Command;
 
-use lizard_core::numbers::section::START;
+use lizard_core::numbers::section::START_ADDRESS;
 use lizard_host::firmware::CODE;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -22,14 +22,14 @@ const RENEW: &str =
 /// Returns the code of an image, from address 0 to the robot's section; 0xff in unused bytes.
 fn code_of(image: &Image) -> Vec<u8> {
     let mut flash = image.flash();
-    flash.resize(START.into(), 0xff);
+    flash.resize(START_ADDRESS.into(), 0xff);
     flash
 }
 
 /// Returns the image inside the program `lizard`, with the section of the robot under test added.
 fn embedded_image() -> Image {
     let mut image = Image::parse_hex(CODE).expect("it is Intel HEX");
-    let space = u32::from(START)..0x7e00;
+    let space = u32::from(START_ADDRESS)..0x7e00;
     image
         .replace(space, &robot().section())
         .expect("the section fits");
@@ -84,14 +84,14 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
     let inside_code = code_of(&Image::parse_hex(CODE).expect("it is Intel HEX"));
     let mut built_image = FirmwareBench::image();
     built_image
-        .replace(u32::from(START)..0x7e00, &[])
+        .replace(u32::from(START_ADDRESS)..0x7e00, &[])
         .expect("the robot is taken out");
     let built_code = code_of(&built_image);
     let recorded_tools = std::fs::read_to_string(root().join("firmware/tools.txt"));
     let recorded_tools = recorded_tools.expect("firmware/tools.txt");
     if recorded_tools == installed_tools() {
         let first_difference =
-            (0..START.into()).find(|&index| inside_code[index] != built_code[index]);
+            (0..START_ADDRESS.into()).find(|&index| inside_code[index] != built_code[index]);
         assert_eq!(
             first_difference, None,
             "{RENEW} (the first byte that differs)"
@@ -139,7 +139,7 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
 fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_after_it() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("a banner");
-    let robot_label = lizard_host::firmware::label(robot().firmware());
+    let robot_label = lizard_host::firmware::robot_label(robot().firmware());
     assert!(
         banner.contains(&format!(" robot {robot_label}")),
         "{banner}"
@@ -147,7 +147,7 @@ fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_after_it() {
     assert!(recording.frames.widths.len() > 2700);
     let code = Image::parse_hex(CODE).expect("it is Intel HEX").flash();
     assert!(
-        (20_000..=usize::from(START)).contains(&code.len()),
+        (20_000..=usize::from(START_ADDRESS)).contains(&code.len()),
         "{} bytes",
         code.len()
     );

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use lizard_core::numbers::curve::Table;
 use lizard_core::numbers::gaits::{Gait, Wave};
-use lizard_core::numbers::section::{Header, Numbers, SPACE, START};
+use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS};
 use lizard_host_tests::root;
 
 #[test]
@@ -71,16 +71,16 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
         size_of::<Header>(),
         [
             ends,
-            sides,
-            neutral,
+            sliders,
+            neutral_angles,
             calibration,
-            reach,
+            needed_travel,
             limits,
             slew,
             supplies,
             curves,
             parts,
-            rail,
+            rail_pin,
             slow_pace,
             pins,
             maps
@@ -95,9 +95,9 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
         row_of_part("waveforms", size_of::<Wave>()),
     ];
     let flash = [
-        format!("{START:#x}"),
-        format!("{:#x}", START + SPACE),
-        format!("{SPACE} bytes"),
+        format!("{START_ADDRESS:#x}"),
+        format!("{:#x}", START_ADDRESS + SPACE_BYTES),
+        format!("{SPACE_BYTES} bytes"),
     ];
     let page = fs::read_to_string(root().join("docs/firmware.md")).expect("the page");
     let missing: Vec<String> = [&header[..], &numbers[..], &parts[..], &flash[..]]

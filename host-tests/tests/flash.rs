@@ -8,7 +8,7 @@ mod shell;
 
 use desk::{BOOT_LOADER_START, Desk};
 use lizard_host::sim::frame::{group_frames, servo_pins};
-use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot};
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, Frame, robot};
 use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Uno};
@@ -22,7 +22,7 @@ fn make_flash(desk: &Desk) -> Shell {
 
 /// Runs the board for a number of frames.
 fn run_frames(desk: &mut Desk, count: u64) {
-    let end = desk.uno.cycle() + count * FRAME;
+    let end = desk.uno.cycle() + count * FRAME_CYCLES;
     let has_passed = desk.run_until(|uno| uno.cycle() > end);
     assert!(has_passed, "waited {LIMIT} for {count} frames");
 }
@@ -51,7 +51,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let first_edge = desk
         .edges
         .iter()
-        .find(|edge| edge.high && edge.pin == pins[0]);
+        .find(|edge| edge.is_rising && edge.pin == pins[0]);
     let start = first_edge.expect("A1 has a pulse").cycle;
     let walked_widths: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start, 100)
         .iter()

@@ -2,7 +2,7 @@
 //! during a flood of serial bytes.
 
 use lizard_host_tests::{FirmwareBench, root};
-use servo_pulses::{MIN_WIDTH, frame_cycles, max_width};
+use servo_pulses::{MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
 /// The example's pins, in its order.
@@ -144,6 +144,6 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
 
 #[test]
 fn the_limits_of_a_width_are_far_beyond_a_servos_travel() {
-    assert!(u32::from(MIN_WIDTH) <= 16 * 400);
-    assert!((1..=8).all(|servos| u32::from(max_width(servos)) >= 16 * 2_400));
+    assert!(u32::from(MIN_WIDTH_CYCLES) <= 16 * 400);
+    assert!((1..=8).all(|servos| u32::from(max_width_cycles(servos)) >= 16 * 2_400));
 }

@@ -2,7 +2,7 @@
 //! and with measured depths.
 
 use lizard_host::bench::{StackDepth, StackError};
-use lizard_host_tests::avr_gcc::{assembler, c};
+use lizard_host_tests::avr_gcc::{assemble, compile_c};
 use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
 
@@ -29,7 +29,7 @@ fn measure_depth(image: &Image) -> u16 {
 #[test]
 fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
     // start calls one (2), which pushes 3 and calls two (2), which pushes 1.
-    let image = assembler(&format!(
+    let image = assemble(&format!(
         "{BEGIN}
         rcall one
         call two
@@ -46,7 +46,7 @@ fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
     over: pop r17
         ret"
     ));
-    assert_eq!(depth_of(&image).worst(), 2 + 3 + 2 + 1);
+    assert_eq!(depth_of(&image).max_depth(), 2 + 3 + 2 + 1);
     assert_eq!(measure_depth(&image), 8);
     // There is no static data, so all of SRAM except these bytes is left.
     assert_eq!(depth_of(&image).margin(), 2048 - 8);
@@ -64,7 +64,7 @@ fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
             _ => format!("subi r28, lo8(-{bytes}) $ sbci r29, hi8(-{bytes})"),
         };
         let set_pointer = "in r0, SREG $ cli $ out SPH, r29 $ out SREG, r0 $ out SPL, r28";
-        let image = assembler(&format!(
+        let image = assemble(&format!(
             "{BEGIN}
             call framed
         end: rjmp end
@@ -78,14 +78,14 @@ fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
         last: push r16 $ pop r16
         leaf: ret"
         ));
-        assert_eq!(depth_of(&image).worst(), 2 + 2 + bytes + 2, "{bytes}");
+        assert_eq!(depth_of(&image).max_depth(), 2 + 2 + bytes + 2, "{bytes}");
         assert_eq!(measure_depth(&image), 2 + 2 + bytes + 2, "{bytes}");
     }
 }
 
 #[test]
 fn the_deepest_interrupt_counts_once() {
-    let image = assembler(&format!(
+    let image = assemble(&format!(
         "jmp start
         .org 0x2c
         jmp shallow
@@ -104,7 +104,8 @@ fn the_deepest_interrupt_counts_once() {
 
 #[test]
 fn compiled_c_is_followed_and_no_run_gets_deeper() {
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/interrupt.h>
         static volatile unsigned char out;
         ISR(TIMER1_COMPA_vect) { out += TCNT1L; }
@@ -122,8 +123,9 @@ fn compiled_c_is_followed_and_no_run_gets_deeper() {
             OCR1A = 999; TIMSK1 = 2; TCCR1B = 9;
             sei();
             for (;;) out = fill(out);
-        }");
-    let (worst_depth, measured_depth) = (depth_of(&image).worst(), measure_depth(&image));
+        }",
+    );
+    let (worst_depth, measured_depth) = (depth_of(&image).max_depth(), measure_depth(&image));
     assert!(
         measured_depth > 100 && measured_depth <= worst_depth,
         "{measured_depth} of {worst_depth}"
@@ -136,13 +138,15 @@ fn compiled_c_is_followed_and_no_run_gets_deeper() {
 
 #[test]
 fn a_function_that_calls_itself_is_refused_by_name() {
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         __attribute__((noinline)) void deeper(unsigned char n) {
             GPIOR0 = n;
             if (n) deeper(n - 1);
             GPIOR1 = n;
         }
-        int main(void) { for (;;) deeper(PINB); }");
+        int main(void) { for (;;) deeper(PINB); }",
+    );
     let error = refusal_of(&image).to_string();
     assert!(
         error.contains("deeper") && error.contains("calls itself"),
@@ -152,19 +156,21 @@ fn a_function_that_calls_itself_is_refused_by_name() {
 
 #[test]
 fn a_call_of_a_computed_address_is_refused_by_name() {
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         static void one(void) { GPIOR0 = 1; }
         static void two(void) { GPIOR0 = 2; }
         static void (*volatile which)(void);
         __attribute__((noinline)) void choose(void) { which(); GPIOR1 = 1; }
-        int main(void) { which = PINB ? one : two; for (;;) choose(); }");
+        int main(void) { which = PINB ? one : two; for (;;) choose(); }",
+    );
     let error = refusal_of(&image).to_string();
     assert!(
         error.contains("choose") && error.contains("computes"),
         "{error}"
     );
     for jump in ["ijmp", "icall"] {
-        let image = assembler(&format!("{BEGIN}\n{jump}\nend: rjmp end"));
+        let image = assemble(&format!("{BEGIN}\n{jump}\nend: rjmp end"));
         assert!(
             refusal_of(&image).to_string().contains("computes"),
             "{jump}"
@@ -189,10 +195,10 @@ fn code_without_a_bound_is_refused() {
         ("nop", "runs out"),
     ];
     for (program, reason) in programs {
-        let error = refusal_of(&assembler(&format!("{BEGIN}\n{program}"))).to_string();
+        let error = refusal_of(&assemble(&format!("{BEGIN}\n{program}"))).to_string();
         assert!(error.contains(reason), "{program}: {error}");
     }
-    let image = assembler(
+    let image = assemble(
         "jmp start
         .org 0x2c
         jmp handler
@@ -206,7 +212,7 @@ fn code_without_a_bound_is_refused() {
 
 #[test]
 fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
-    let image = assembler(
+    let image = assemble(
         "jmp start
         .org 0x2c
         jmp handler
@@ -220,16 +226,16 @@ fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
     );
     let depth = depth_of(&image);
     assert_eq!(
-        (depth.main, depth.handler, depth.final_handler),
+        (depth.main, depth.handler, depth.nonreturning_handler),
         (0, 2 + 3, 2 + 1)
     );
-    assert_eq!(depth.worst(), 8);
+    assert_eq!(depth.max_depth(), 8);
 }
 
 #[test]
 fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
     for (first_register, saved_bytes, room_bytes) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
-        let image = assembler(&format!(
+        let image = assemble(&format!(
             "{BEGIN}
             call framed
         end: rjmp end
@@ -243,7 +249,7 @@ fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
         // On the stack are the return address of `framed`, the saved registers, the room, and below the room the
         // return address of `leaf`.
         assert_eq!(
-            depth_of(&image).worst(),
+            depth_of(&image).max_depth(),
             2 + saved_bytes + room_bytes + 2,
             "{first_register}"
         );
@@ -258,7 +264,7 @@ fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
 #[test]
 fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
     for (first_register, room_bytes) in [(16, 5), (14, 6)] {
-        let image = assembler(&format!(
+        let image = assemble(&format!(
             "{BEGIN}
             call framed
         end: rjmp end
@@ -269,6 +275,6 @@ fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
         ));
         let error = refusal_of(&image);
         assert_eq!(error.function, "framed");
-        assert_eq!(error.what, "restores other registers than it saved");
+        assert_eq!(error.reason, "restores other registers than it saved");
     }
 }

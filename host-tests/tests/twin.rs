@@ -15,7 +15,7 @@ use simulated_uno::{Fidelity, Uno};
 fn walk_all(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();
-    for gait in robot().gaits().iter().filter(|gait| gait.moves()) {
+    for gait in robot().gaits().iter().filter(|gait| gait.has_movement()) {
         let command = gait.name().replace('-', " ");
         steps.push(Step { ms, command });
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
@@ -42,7 +42,11 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         .iter()
         .filter_map(|row| Some((row, row.cycle.as_ref()?)))
         .collect();
-    let moving_count = robot().gaits().iter().filter(|gait| gait.moves()).count();
+    let moving_count = robot()
+        .gaits()
+        .iter()
+        .filter(|gait| gait.has_movement())
+        .count();
     assert_eq!(cycles.len(), moving_count, "one for each gait");
     let mut compared_count = 0;
     for (row, cycle) in cycles {
@@ -63,7 +67,7 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         compare("ahead", cycle.way.forward, cycle.predicted.forward, 0.5);
         compare("turn", cycle.way.turn, cycle.predicted.turn, 0.3);
         assert!(
-            row.servo_rate <= robot().pace().gait_slew + 5.0,
+            row.servo_rate <= robot().speed_limits().gait_slew + 5.0,
             "{}",
             row.command
         );

@@ -10,9 +10,11 @@ use avr_device::atmega328p::EEPROM;
 use avr_device::interrupt;
 use lizard_core::memory::record::Memory;
 
-/// I/O address of EECR for `sbi`, and two of its bits.
+/// The I/O address of EECR, for `sbi`.
 const EECR: u8 = 0x1f;
+/// The number of the bit of EECR that permits a write within four cycles.
 const EEMPE: u8 = 2;
+/// The number of the bit of EECR that begins a write.
 const EEPE: u8 = 1;
 
 /// The chip's EEPROM.
@@ -22,7 +24,7 @@ pub struct Eeprom {
 
 impl Eeprom {
     /// Takes the EEPROM's registers. First waits, at most 3.4 ms, for the end of a write that was in progress
-    /// at a reset, since nothing can be read before.
+    /// at a reset, since nothing can be read during a write.
     pub fn new(registers: EEPROM) -> Self {
         while registers.eecr.read().eepe().bit_is_set() {}
         // Selects erase and write in one operation, and no interrupt. The boot loader may have
@@ -47,7 +49,7 @@ impl Memory for Eeprom {
         self.registers.eear.write(|w| w.bits(address));
         self.registers.eedr.write(|w| w.bits(byte));
         interrupt::free(|_| {
-            // SAFETY: sets two bits of EECR, which nobody else touches; the second
+            // SAFETY: sets two bits of EECR, which no other code uses. The second is set
             // two cycles after the first.
             unsafe {
                 asm!(

@@ -9,19 +9,19 @@ use servo_pulses::Pin;
 /// The distance from a port's PORT register down to its PIN register (data sheet, 14.4).
 const PIN_BELOW_PORT: u8 = 2;
 
-/// True while the contact at this pin, by its Arduino number, is closed. Switches the pull-up on.
+/// True while the contact at the pin with this Arduino number is closed. Switches the pin's pull-up on.
 pub fn is_closed(number: u8) -> bool {
     let Some(pin) = Pin::arduino(number) else {
         return false;
     };
-    let port = usize::from(pin.port()) as *const u8;
-    let levels = usize::from(pin.port() - PIN_BELOW_PORT) as *mut u8;
+    let port_register = usize::from(pin.port()) as *const u8;
+    let pin_register = usize::from(pin.port() - PIN_BELOW_PORT) as *mut u8;
     // SAFETY: both are registers of the chip. Nothing else drives this pin
-    // ([`lizard_core::control::Control::input`]), and no other bit of the port changes.
+    // ([`lizard_core::control::Control::awaited_input`]), and no other bit of the port changes.
     unsafe {
-        if port.read_volatile() & pin.mask() == 0 {
-            levels.write_volatile(pin.mask());
+        if port_register.read_volatile() & pin.mask() == 0 {
+            pin_register.write_volatile(pin.mask());
         }
-        levels.read_volatile() & pin.mask() == 0
+        pin_register.read_volatile() & pin.mask() == 0
     }
 }

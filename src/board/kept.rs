@@ -1,12 +1,12 @@
 //! The bytes of RAM that survive a reset, since the start-up code does not clear them.
-//! [`lizard_core::memory::kept`] defines their contents.
+//! [`lizard_core::memory::retained_ram`] defines their contents.
 
 use core::arch::global_asm;
 
 use avr_device::atmega328p::CPU;
-use lizard_core::memory::kept::{self, CELLS, Cells};
 use lizard_core::memory::restart::{Cause, Restart, Stance};
-use lizard_core::numbers::rate::Rate;
+use lizard_core::memory::retained_ram::{self, CELL_COUNT, Cells};
+use lizard_core::numbers::rate::BaudRate;
 
 use servo_pulses::cells::Byte;
 
@@ -17,16 +17,16 @@ global_asm!(
     ".global lizard_kept",
     "lizard_kept: .skip {size}",
     ".popsection",
-    size = const CELLS,
+    size = const CELL_COUNT,
 );
 
 unsafe extern "C" {
     #[link_name = "lizard_kept"]
     #[allow(improper_ctypes, reason = "no other language sees it")]
-    static KEPT: [Byte; CELLS];
+    static KEPT: [Byte; CELL_COUNT];
 }
 
-/// The bytes of [`KEPT`].
+/// Access to the bytes of [`KEPT`].
 struct Ram;
 
 impl Cells for Ram {
@@ -41,45 +41,46 @@ impl Cells for Ram {
     }
 }
 
+/// The byte of [`KEPT`] at an index below `CELL_COUNT`.
 #[inline(always)]
 fn cell(index: usize) -> &'static Byte {
     // SAFETY: a `Byte` may have any value, so whatever the RAM holds is valid; the core checks it before use, and
-    // uses only indices below `CELLS`.
+    // uses only indices below `CELL_COUNT`.
     unsafe { &*(&raw const KEPT).cast::<Byte>().add(index) }
 }
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
 /// running. Call it once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
-    let register = cpu.mcusr.read();
+    let flags = cpu.mcusr.read();
     // Several flags may be set; no flag is set if a boot loader has cleared them.
-    let reported = if register.porf().bit_is_set() {
+    let reported_cause = if flags.porf().bit_is_set() {
         Some(Cause::Power)
-    } else if register.wdrf().bit_is_set() {
+    } else if flags.wdrf().bit_is_set() {
         Some(Cause::Watchdog)
-    } else if register.borf().bit_is_set() {
+    } else if flags.borf().bit_is_set() {
         Some(Cause::BrownOut)
-    } else if register.extrf().bit_is_set() {
+    } else if flags.extrf().bit_is_set() {
         Some(Cause::External)
     } else {
         None
     };
     // The watchdog cannot be changed while WDRF is set.
     cpu.mcusr.reset();
-    kept::begin(&Ram, reported)
+    retained_ram::begin(&Ram, reported_cause)
 }
 
 /// Stores the servos' state.
 pub fn store_stance(stance: &Stance, brown_outs: u8) {
-    kept::store_stance(&Ram, stance, brown_outs);
+    retained_ram::store_stance(&Ram, stance, brown_outs);
 }
 
-/// Stores the rate of the serial line.
-pub fn store_rate(rate: Rate) {
-    kept::store_rate(&Ram, rate);
+/// Stores the baud rate of the serial line.
+pub fn store_rate(rate: BaudRate) {
+    retained_ram::store_rate(&Ram, rate);
 }
 
 /// Marks the program as hung; called by the watchdog's interrupt.
 pub fn mark_hung() {
-    kept::mark_hung(&Ram);
+    retained_ram::mark_hung(&Ram);
 }

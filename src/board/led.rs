@@ -6,9 +6,11 @@
 
 use core::arch::asm;
 
-/// I/O addresses of PORTB and DDRB for `sbi`, and the bit of D13.
+/// The I/O address of PORTB, for `sbi` and `cbi`.
 const PORTB: u8 = 0x05;
+/// The I/O address of DDRB, for `sbi`.
 const DDRB: u8 = 0x04;
+/// The number of D13's bit in both registers.
 const BIT: u8 = 5;
 
 /// Makes D13 an output.
@@ -21,7 +23,7 @@ pub fn start() {
 
 /// Switches the LED on or off.
 pub fn set(is_on: bool) {
-    // SAFETY: either changes one bit of PORTB, D13's, in one instruction.
+    // SAFETY: either instruction changes only one bit of PORTB, D13's.
     unsafe {
         if is_on {
             asm!("sbi {port}, {bit}", port = const PORTB, bit = const BIT, options(nostack, preserves_flags))

@@ -9,17 +9,17 @@
 //! - [`serial`] owns the USART and its two rings.
 //! - [`led`] owns D13.
 //! - [`input`] reads the contacts that routines wait for.
-//! - [`eeprom`] owns the EEPROM, [`supply`] the analogue converter.
+//! - [`eeprom`] owns the EEPROM; [`supply`] owns the analogue-to-digital converter.
 //! - [`watchdog`] restarts the program when it hangs; [`kept`] carries the servos' state from
 //!   the previous run to the next; [`stack`] protects the data from the stack.
-//! - [`sleep`] stops the processor until a tick or a byte.
+//! - [`sleep`] stops the processor until a tick, a received byte or an empty send buffer.
 //!
 //! Main never switches interrupts off for more than the few cycles that `sleep`, a 16-bit
 //! load and the beginning of an EEPROM write take. It shares only single bytes with an
 //! interrupt, and each byte has one writer. Interrupts do not nest. Of the interrupts in
 //! use, Timer1's come first in the vector table. INT0, INT1, PCINT, TIMER2 and
 //! TIMER1_CAPT would come before them, so do not use them. WDT fires only if the program
-//! hangs, and does not return to it.
+//! hangs, and its handler does not return.
 
 pub mod eeprom;
 mod input;
@@ -37,10 +37,10 @@ use lizard_core::console::answer::Counters;
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::{Restart, Stance};
 use lizard_core::numbers::pose::Pulses;
-use lizard_core::numbers::rate::Rate;
+use lizard_core::numbers::rate::BaudRate;
 use lizard_core::step::Board;
 
-/// The started board of an Arduino UNO.
+/// An Arduino UNO whose peripherals have been started.
 pub struct Uno {
     writer: serial::Writer,
     eeprom: eeprom::Eeprom,
@@ -92,7 +92,7 @@ impl Board for Uno {
     type Writer = serial::Writer;
     type Memory = eeprom::Eeprom;
 
-    const WRITER_CAPACITY: u8 = serial::ROOM;
+    const WRITER_CAPACITY: u8 = serial::SEND_CAPACITY;
     const CYCLES_PER_US: u16 = servo_pulses::CYCLES_PER_US;
 
     #[inline(always)]
@@ -117,7 +117,7 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn feed(&mut self) {
+    fn feed_watchdog(&mut self) {
         watchdog::feed();
     }
 
@@ -127,13 +127,13 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn restart(&self) -> &Restart {
+    fn last_restart(&self) -> &Restart {
         &self.restart
     }
 
     #[inline(always)]
-    fn supply(&mut self) -> Reading {
-        self.converter.next()
+    fn read_supply(&mut self) -> Reading {
+        self.converter.advance()
     }
 
     #[inline(always)]
@@ -142,7 +142,7 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn is_closed(&mut self, pin: u8) -> bool {
+    fn is_contact_closed(&mut self, pin: u8) -> bool {
         input::is_closed(pin)
     }
 
@@ -172,7 +172,7 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn set_rate(&mut self, rate: Rate) {
+    fn set_rate(&mut self, rate: BaudRate) {
         serial::set_rate(rate);
         kept::store_rate(rate);
     }
@@ -180,8 +180,8 @@ impl Board for Uno {
     #[inline(always)]
     fn counters(&self) -> Counters {
         Counters {
-            late_edges: pulses::late(),
-            rx_lost: serial::lost(),
+            late_edges: pulses::late_edges(),
+            rx_lost: serial::lost_count(),
         }
     }
 }

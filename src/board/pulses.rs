@@ -9,8 +9,8 @@ use servo_pulses::Pin;
 
 servo_pulses::engine!(later: 4);
 
-/// Connects the servos A1 to A4 to the pins with these Arduino numbers. A robot with other numbers is refused
-/// ([`lizard_core::numbers::robot::Robot::open`]).
+/// Connects the servos A1 to A4 to the pins with these Arduino numbers. All four exist: a robot with any other number
+/// is refused ([`lizard_core::numbers::robot::Robot::open`]).
 #[inline(always)]
 pub fn connect_numbers(numbers: [u8; 4]) {
     if let [Some(a1), Some(a2), Some(a3), Some(a4)] = numbers.map(Pin::arduino) {

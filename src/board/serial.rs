@@ -3,32 +3,33 @@
 //! At 115200 baud a byte takes 1389 cycles on the line and the receiver holds two bytes, while main may be
 //! busy with a frame for 12 000 cycles. So each direction has a ring buffer between main and an interrupt
 //! handler. One of the two moves only the head, the other only the tail; head and tail are single bytes, so
-//! neither has to lock the other out. The handlers are short, because an edge of a servo may have to wait for
-//! one of them.
+//! neither has to lock the other out. The handlers are short, because an edge of a servo's pulse may have to
+//! wait for one of them.
 
 use core::convert::Infallible;
 
 use avr_device::atmega328p::USART0;
 use avr_device::atmega328p::usart0::RegisterBlock;
-use lizard_core::console::line::GARBLED;
-use lizard_core::numbers::rate::Rate;
+use lizard_core::console::line::GARBLED_BYTE;
+use lizard_core::numbers::rate::BaudRate;
 use ufmt::uWrite;
 
 use servo_pulses::cells::{Byte, Counter};
 
-/// Size of the receive ring, which holds a complete line: main may be busy for the time of 64 bytes, 89 000
-/// cycles, seven times the limit of a frame.
+/// Size of the receive ring in bytes. It holds a complete line: main may be busy for the time of 64 bytes, which
+/// is 89 000 cycles or seven times the limit of a frame.
 const RECEIVE_RING_SIZE: usize = 64;
 
-/// Size of the send ring: the longest line of the console fits, and arithmetic modulo 256 is the cheapest.
+/// Size of the send ring in bytes. The longest line of the console fits, and arithmetic modulo 256 is the cheapest.
 const SEND_RING_SIZE: usize = 256;
 
 /// Number of bytes that the send ring holds.
-pub const ROOM: u8 = Ring::<SEND_RING_SIZE>::CAPACITY;
+pub const SEND_CAPACITY: u8 = Ring::<SEND_RING_SIZE>::CAPACITY;
 
-/// Returns the value of UBRR0 for the nearest possible rate: 16 MHz / 8 / (16 + 1) = 117 647 baud,
-/// 2.1 % fast, which the boot loader uses too; 57 143, 0.8 % slow; 38 462 and 9615, 0.2 % fast.
-const fn divisor(rate: Rate) -> u16 {
+/// Returns the value of UBRR0 for the nearest possible rate. For 115 200 baud that rate is
+/// 16 MHz / 8 / (16 + 1) = 117 647 baud, 2.1 % fast, which the boot loader uses, too. The others are 57 143 baud,
+/// 0.8 % slow, and 38 462 and 9615 baud, 0.2 % fast.
+const fn divisor(rate: BaudRate) -> u16 {
     let (clock_by_8, baud) = (16_000_000 / 8, rate.baud());
     ((clock_by_8 + baud / 2) / baud - 1) as u16
 }
@@ -75,6 +76,7 @@ impl<const N: usize> Ring<N> {
         self.head.set(head.wrapping_add(1));
     }
 
+    /// Removes and returns the oldest byte, if any.
     fn take(&self) -> Option<u8> {
         if self.is_empty() {
             return None;
@@ -92,7 +94,7 @@ static TO_SEND: Ring<SEND_RING_SIZE> = Ring::new();
 static LOST: Counter = Counter::new();
 
 /// Sets up the port. Call it once, with interrupts off.
-pub fn start(usart: USART0, rate: Rate) {
+pub fn start(usart: USART0, rate: BaudRate) {
     // Double speed is set before the divisor, because stock simavr computes the
     // baud rate when the divisor is written.
     usart.ucsr0a.write(|w| w.u2x0().set_bit());
@@ -110,20 +112,20 @@ pub fn start(usart: USART0, rate: Rate) {
     enable_interrupts(&usart, false);
 }
 
-/// Changes the rate. Bytes that are on the line in either direction arrive garbled.
-pub fn set_rate(rate: Rate) {
+/// Changes the baud rate. Bytes that are on the line in either direction arrive garbled.
+pub fn set_rate(rate: BaudRate) {
     let divisor = match rate {
-        Rate::Fastest => const { divisor(Rate::Fastest) },
-        Rate::Half => const { divisor(Rate::Half) },
-        Rate::Third => const { divisor(Rate::Third) },
-        Rate::Slowest => const { divisor(Rate::Slowest) },
+        BaudRate::Fastest => const { divisor(BaudRate::Fastest) },
+        BaudRate::Half => const { divisor(BaudRate::Half) },
+        BaudRate::Third => const { divisor(BaudRate::Third) },
+        BaudRate::Slowest => const { divisor(BaudRate::Slowest) },
     };
     // SAFETY: main alone writes UBRR0, and no handler uses it.
     let usart = unsafe { &*USART0::ptr() };
     usart.ubrr0.write(|w| w.bits(divisor));
 }
 
-/// Returns the next byte received, if any; [`GARBLED`] in place of a byte without its stop bit.
+/// Returns the next byte received, if any; [`GARBLED_BYTE`] in place of a byte without its stop bit.
 pub fn read() -> Option<u8> {
     RECEIVED.take()
 }
@@ -145,7 +147,7 @@ pub fn room() -> u8 {
 
 /// Returns the number of received bytes that were garbled, or lost because the ring was full or the
 /// receiver overran. An overrun counts once, even if it lost more than one byte. The count stops at 65535.
-pub fn lost() -> u16 {
+pub fn lost_count() -> u16 {
     LOST.read()
 }
 
@@ -174,9 +176,9 @@ impl uWrite for Writer {
 fn send(byte: u8) {
     while room() == 0 {}
     TO_SEND.put(byte);
-    // SAFETY: main writes all of UCSR0B, to a value that is right whenever there is
-    // something to send, as there was a moment ago. If the handler has sent the byte
-    // meanwhile, it runs once more without effect.
+    // SAFETY: one store writes all of UCSR0B, with the value that is right while there is
+    // something to send. If the handler has sent the byte meanwhile, it runs once more and
+    // only switches its interrupt off again.
     enable_interrupts(unsafe { &*USART0::ptr() }, true);
 }
 
@@ -206,7 +208,7 @@ fn USART_RX() {
     let status = usart.ucsr0a.read();
     let mut byte = usart.udr0.read().bits();
     if status.fe0().bit_is_set() {
-        byte = GARBLED;
+        byte = GARBLED_BYTE;
         LOST.count();
     }
     if RECEIVED.room() != 0 {
@@ -222,7 +224,7 @@ fn USART_RX() {
 // The transmitter is ready for a byte.
 #[avr_device::interrupt(atmega328p)]
 fn USART_UDRE() {
-    // SAFETY: UDR0 is written here alone; for UCSR0B see `Writer`.
+    // SAFETY: only this handler writes UDR0; for UCSR0B see `send`.
     let usart = unsafe { &*USART0::ptr() };
     match TO_SEND.take() {
         Some(byte) => usart.udr0.write(|w| w.bits(byte)),

@@ -25,8 +25,8 @@ pub fn until_tick_or_byte(tick: u8) {
         if pulses::ticks() != tick || serial::has_input() || was_sending && !serial::is_sending() {
             break;
         }
-        // The `nop` is for stock simavr, which accepts an interrupt one instruction
-        // later than the chip: without the `nop`, the `cli` that follows would block all interrupts for good.
+        // The `nop` is for stock simavr, which accepts an interrupt one instruction later than the chip: there, the
+        // `cli` that follows would otherwise block all interrupts for good.
         // SAFETY: interrupts were on before `disable`, above, and every enabled one
         // has a handler.
         unsafe { asm!("sei", "sleep", "nop", options(nostack, preserves_flags)) };

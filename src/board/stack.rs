@@ -1,4 +1,4 @@
-//! The stack's guard: a word at the end of the data that the stack must not reach.
+//! The stack's guard: a word at the end of the data, which the stack must not reach.
 //!
 //! The stack grows down from the end of RAM towards the data, and nothing in the chip
 //! stops it there. `make bench` computes how deep it can get. The guard word between stack and
@@ -8,7 +8,7 @@ use core::arch::global_asm;
 
 use servo_pulses::cells::Byte;
 
-/// The guard word, a pattern that the stack rarely contains by accident.
+/// The pattern in the guard word, which the stack rarely contains by accident.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
 // This section is placed after all others, at the end of the data. The start-up code
@@ -26,16 +26,15 @@ unsafe extern "C" {
     static GUARD_WORD: [Byte; 4];
 }
 
-fn word() -> &'static [Byte; 4] {
-    // SAFETY: every byte of RAM has some value, and each is one that a `Byte` may
-    // have.
+fn guard_word() -> &'static [Byte; 4] {
+    // SAFETY: a byte of RAM may have any value, and so may a `Byte`.
     unsafe { &GUARD_WORD }
 }
 
 /// Writes the guard word. Call it once.
 pub fn start() {
     // Written byte by byte, since a loop over both arrays takes four times as much flash.
-    let [a, b, c, d] = word();
+    let [a, b, c, d] = guard_word();
     a.set(GUARD[0]);
     b.set(GUARD[1]);
     c.set(GUARD[2]);
@@ -44,6 +43,6 @@ pub fn start() {
 
 /// True while the stack has not grown into the data.
 pub fn is_intact() -> bool {
-    let [a, b, c, d] = word();
+    let [a, b, c, d] = guard_word();
     a.get() == GUARD[0] && b.get() == GUARD[1] && c.get() == GUARD[2] && d.get() == GUARD[3]
 }

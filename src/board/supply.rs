@@ -1,4 +1,4 @@
-//! The supply voltages, measured by the analogue converter.
+//! The supply voltages, measured by the analogue-to-digital converter.
 //!
 //! The converter compares a voltage with its own supply, AVcc. So its reading of the
 //! chip's 1.1 V reference gives AVcc, without any external part. A conversion takes 104
@@ -13,62 +13,64 @@ use lizard_core::control::supply::Reading;
 const AVCC: u8 = 0x40;
 
 /// The channel that measures the chip's 1.1 V reference.
-const REFERENCE: u8 = 0x0e;
+const REFERENCE_CHANNEL: u8 = 0x0e;
 
 /// The Arduino number of the first analogue pin, A0.
 const A0: u8 = 14;
 
-/// ADCSRA value that switches the converter on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
+/// The value of ADCSRA that switches the converter on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
 const CONVERTER_ON: u8 = 0x87;
-const START: u8 = 0x40;
+/// The bit of ADCSRA that starts a conversion.
+const START_CONVERSION: u8 = 0x40;
 
 /// The converter, and its readings.
 pub struct Converter {
     registers: ADC,
     reading: Reading,
     /// The channel of the servos' rail, if it is measured.
-    channel: Option<u8>,
+    rail_channel: Option<u8>,
     /// True while the rail is being measured, false while the reference is.
     is_measuring_rail: bool,
-    /// True if the channel is selected and its conversion has not been started yet.
-    is_selected: bool,
+    /// True if a channel is selected and its conversion has not been started yet.
+    is_conversion_due: bool,
     /// True once every voltage has been measured.
     is_complete: bool,
 }
 
 impl Converter {
+    /// Takes the converter's registers, switches it on, and selects the reference.
     pub fn new(registers: ADC) -> Self {
-        select_channel(&registers, REFERENCE);
+        select_channel(&registers, REFERENCE_CHANNEL);
         // SAFETY: any value of ADCSRA is sound; this one switches the converter on.
         registers.adcsra.write(|w| unsafe { w.bits(CONVERTER_ON) });
         Self {
             registers,
             reading: Reading::default(),
-            channel: None,
+            rail_channel: None,
             is_measuring_rail: false,
-            is_selected: true,
+            is_conversion_due: true,
             is_complete: false,
         }
     }
 
     /// Measures the rail at this pin, by its Arduino number, from now on; with `None`, measures no rail.
     pub fn connect(&mut self, pin: Option<u8>) {
-        self.channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
+        self.rail_channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
     /// Begins the next part of a measurement, and returns the latest values, or an empty reading
     /// until every voltage has been measured. Call it once per frame.
-    pub fn next(&mut self) -> Reading {
-        if self.is_selected {
-            self.is_selected = false;
+    pub fn advance(&mut self) -> Reading {
+        if self.is_conversion_due {
+            self.is_conversion_due = false;
             // SAFETY: as above; this value also starts a conversion.
             self.registers
                 .adcsra
-                .write(|w| unsafe { w.bits(CONVERTER_ON | START) });
+                .write(|w| unsafe { w.bits(CONVERTER_ON | START_CONVERSION) });
         } else {
             let value = self.registers.adc.read().bits();
             self.store_value(value);
-            self.is_selected = true;
+            self.is_conversion_due = true;
         }
         if self.is_complete {
             self.reading
@@ -77,8 +79,9 @@ impl Converter {
         }
     }
 
+    /// Stores the result of a conversion, and selects the channel of the next one.
     fn store_value(&mut self, value: u16) {
-        match self.channel {
+        match self.rail_channel {
             None => {
                 self.reading.reference = value;
                 self.is_complete = true;
@@ -87,7 +90,7 @@ impl Converter {
                 if self.is_measuring_rail {
                     self.reading.rail = value;
                     self.is_complete = true;
-                    select_channel(&self.registers, REFERENCE);
+                    select_channel(&self.registers, REFERENCE_CHANNEL);
                 } else {
                     self.reading.reference = value;
                     select_channel(&self.registers, channel);
@@ -99,6 +102,6 @@ impl Converter {
 }
 
 fn select_channel(registers: &ADC, channel: u8) {
-    // SAFETY: AVcc as the reference is how the UNO is wired, and `channel` exists.
+    // SAFETY: on a UNO, AVcc may be selected as the reference, and `channel` exists.
     registers.admux.write(|w| unsafe { w.bits(AVCC | channel) });
 }

@@ -4,8 +4,8 @@
 //! program; after 125 ms more it resets the chip (data sheet, section 11.8). The
 //! interrupt handler marks in RAM that the program hung, lets no further pulse begin, and
 //! never returns: a program that has hung is not trusted again, even if it could
-//! continue. Meanwhile the interrupts of the pulses run on, so the reset does not cut a pulse
-//! short. The mark tells the restarted program the cause.
+//! continue. Until the reset, the interrupts of the pulses keep running, so the reset does not
+//! cut a pulse short. The mark tells the restarted program the cause of the reset.
 //!
 //! The watchdog is fed only if the pulse handlers have taken over the previous frame: then main,
 //! the clock that woke it and both pulse handlers are alive.
@@ -14,16 +14,16 @@ use core::arch::asm;
 
 use super::{kept, pulses};
 
-/// Address of WDTCSR, and two values for it: `CHANGE` permits a change within four cycles;
-/// `GUARD` selects an interrupt after 125 ms and a reset after 125 ms more.
+/// The address of WDTCSR.
 const WDTCSR: u8 = 0x60;
+/// The value of WDTCSR that permits a change within four cycles.
 const CHANGE: u8 = 0x18;
+/// The value of WDTCSR that selects an interrupt after 125 ms and a reset after 125 ms more.
 const GUARD: u8 = 0x4b;
 
 /// Starts the watchdog. Call it once, with interrupts off and WDRF cleared.
 pub fn start() {
-    // SAFETY: only the watchdog is changed; the second store comes two cycles after
-    // the first.
+    // SAFETY: changes only the watchdog. The second store comes two cycles after the first.
     unsafe {
         asm!(
             "wdr",

@@ -1,8 +1,8 @@
-// What the page does with a board, in a WebAssembly module of its own: writes to it, and calibrates its servos.
+// The WebAssembly module for boards, which writes to a board and calibrates its servos.
 import type * as Board from '../generated/board';
 import { files } from './files';
 
-let loading: Promise<typeof Board> | null = null;
+let boardPromise: Promise<typeof Board> | null = null;
 
 /** Loads the module. Throws an error for the user. */
 export function loadBoard(): Promise<typeof Board> {
@@ -11,8 +11,8 @@ export function loadBoard(): Promise<typeof Board> {
     board.initSync({ module });
     return board;
   };
-  return (loading ??= load().catch((error: unknown) => {
-    loading = null;
+  return (boardPromise ??= load().catch((error: unknown) => {
+    boardPromise = null;
     throw error;
   }));
 }

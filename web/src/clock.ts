@@ -5,28 +5,31 @@ const MAX_CATCH_UP_MS = 100;
 /** Slice of simulated time, ms; promises are settled between two slices. */
 const SLICE_MS = 4;
 /** CPU time that the simulation may take for a picture, ms; if it needs more, it falls behind real time. */
-const BUDGET_MS = 30;
+const PICTURE_BUDGET_MS = 30;
 
-export function run(advance: (ms: number) => void, draw: () => void): void {
+/**
+ * Calls `advance` with the time since the last picture, in slices, and then `draw`, for each picture of the browser.
+ */
+export function runInRealTime(advance: (ms: number) => void, draw: () => void): void {
   let lastTime: number | null = null;
   let hasFailed = false;
-  const frame = async (now: number) => {
-    let leftMs = lastTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - lastTime));
+  const handleFrame = async (now: number) => {
+    let remainingMs = lastTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - lastTime));
     lastTime = now;
     const start = performance.now();
     try {
-      while (leftMs > 0 && !hasFailed && performance.now() - start < BUDGET_MS) {
-        advance(Math.min(SLICE_MS, leftMs));
-        leftMs -= SLICE_MS;
+      while (remainingMs > 0 && !hasFailed && performance.now() - start < PICTURE_BUDGET_MS) {
+        advance(Math.min(SLICE_MS, remainingMs));
+        remainingMs -= SLICE_MS;
         await Promise.resolve();
       }
     } catch (error) {
-      // The stop is reported once; the page continues.
+      // The failure is reported once; the page continues without the simulation.
       hasFailed = true;
       console.error(error);
     }
     draw();
-    requestAnimationFrame((time) => void frame(time));
+    requestAnimationFrame((time) => void handleFrame(time));
   };
-  requestAnimationFrame((time) => void frame(time));
+  requestAnimationFrame((time) => void handleFrame(time));
 }

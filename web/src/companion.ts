@@ -5,8 +5,10 @@ import { isRefused, type Floor, type Frame, Robot } from './robot';
 const WAKE_FRAMES = 200;
 
 export class Companion {
+  /** The last frame; null before the first. */
   frame: Frame | null = null;
-  private line = '';
+  /** The lines that the robot receives with the next frame. */
+  private pendingLines = '';
 
   private constructor(
     private readonly robot: Robot,
@@ -38,13 +40,13 @@ export class Companion {
 
   /** Queues a line, which the robot receives with the next frame. */
   send(line: string): void {
-    this.line += `${line}\n`;
+    this.pendingLines += `${line}\n`;
   }
 
   /** Advances by one frame of 20 ms. */
   step(): void {
-    const output = this.robot.coreFrame(this.line, this.volts);
-    this.line = '';
+    const output = this.robot.coreFrame(this.pendingLines, this.volts);
+    this.pendingLines = '';
     if (output) this.frame = this.robot.pulses(output.widths) ?? this.frame;
   }
 }

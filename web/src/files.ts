@@ -27,6 +27,7 @@ function compileWasm(path: string): Promise<WebAssembly.Module> {
 export const files = {
   /** The names of the robots' files, without extension: of all robots, and of those that are meant for tests. */
   robots: (): Promise<{ all: string[]; tests: string[] }> => getJson('files/robots.json'),
+  /** The robot.toml of a robot, by the name of its file. */
   toml: (name: string): Promise<string> => getText(`files/${name}.toml`),
   /** The predictions of a robot's gaits; null if the file is missing, since the page can compute them, too. */
   predictions: (name: string): Promise<Predictions | null> => getJson<Predictions>(`files/${name}.predictions.json`).catch(() => null),
@@ -34,6 +35,7 @@ export const files = {
   code: (): Promise<Uint8Array> => getBytes('files/code.bin'),
   /** The boot loader of a UNO, from its start on. */
   bootLoader: (): Promise<Uint8Array> => getBytes('files/optiboot.bin'),
+  /** The module of the robot itself. */
   wasm: (): Promise<WebAssembly.Module> => compileWasm('files/lizard.wasm'),
   /** The module of the robot with the search for a faster gait; loaded on demand. */
   tune: (): Promise<WebAssembly.Module> => compileWasm('files/tune.wasm'),

@@ -5,15 +5,15 @@ import { type Remote, wrap } from 'comlink';
 export class Helper<Functions> {
   private readonly functions: Remote<Functions>;
   /** The reason why the worker cannot be loaded; null while no failure is known. */
-  private trouble: Error | null = null;
+  private loadError: Error | null = null;
   /** The reject functions of the calls that wait for an answer. */
-  private readonly waiting = new Set<(error: Error) => void>();
+  private readonly pendingRejects = new Set<(error: Error) => void>();
 
   constructor(private readonly worker: Worker) {
     this.functions = wrap<Functions>(worker);
     worker.addEventListener('error', ({ message }) => {
-      this.trouble = new Error(message || 'the worker could not be loaded');
-      for (const reject of this.waiting) reject(this.trouble);
+      this.loadError = new Error(message || 'the worker could not be loaded');
+      for (const reject of this.pendingRejects) reject(this.loadError);
     });
   }
 
@@ -22,15 +22,15 @@ export class Helper<Functions> {
    * loaded.
    */
   async ask<Answer>(call: (functions: Remote<Functions>) => Promise<Answer>): Promise<Answer> {
-    if (this.trouble) throw this.trouble;
+    if (this.loadError) throw this.loadError;
     let rejectCall: (error: Error) => void = () => {};
     try {
       return await new Promise<Answer>((resolve, reject) => {
-        this.waiting.add((rejectCall = reject));
+        this.pendingRejects.add((rejectCall = reject));
         call(this.functions).then(resolve, reject);
       });
     } finally {
-      this.waiting.delete(rejectCall);
+      this.pendingRejects.delete(rejectCall);
     }
   }
 

@@ -21,7 +21,7 @@ const ASIDE_KEY = `${KEY} aside`;
 const GAIT_KEY = `${KEY} gait`;
 
 /** Largest number of robots that are put aside; older ones are dropped. */
-const MAX_ASIDE = 8;
+const MAX_PUT_ASIDE = 8;
 
 function store(key: string, value: unknown): void {
   try {
@@ -32,7 +32,7 @@ function store(key: string, value: unknown): void {
 }
 
 /** Returns the stored robots that this version of the page can use; none if the text is damaged. */
-function loadStates(key: string): SavedChanges[] {
+function loadSavedChanges(key: string): SavedChanges[] {
   try {
     const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
     return states.flatMap((state) => {
@@ -53,20 +53,20 @@ function isGait(value: unknown): value is Bars {
   return typeof name === 'string' && typeof held === 'boolean' && numbers.length === 11 && numbers.every(Number.isFinite);
 }
 
-export const kept = {
-  /** Stores a state; without storage in the browser it is lost at a reload. */
-  put: (state: SavedChanges) => store(KEY, state),
+export const browserStorage = {
+  /** Stores the changes; without storage in the browser they are lost at a reload. */
+  putChanges: (state: SavedChanges) => store(KEY, state),
 
-  /** The stored state; null if there is none that can be used. */
-  get: (): SavedChanges | null => loadStates(KEY)[0] ?? null,
+  /** Returns the stored changes; null if there are none that can be used. */
+  getChanges: (): SavedChanges | null => loadSavedChanges(KEY)[0] ?? null,
 
-  /** The robots that were put aside, the latest first. */
-  aside: () => loadStates(ASIDE_KEY),
+  /** Returns the robots that were put aside, the latest first. */
+  getPutAside: () => loadSavedChanges(ASIDE_KEY),
 
-  setAside: (robots: SavedChanges[]) => store(ASIDE_KEY, robots.slice(0, MAX_ASIDE)),
+  putRobotsAside: (robots: SavedChanges[]) => store(ASIDE_KEY, robots.slice(0, MAX_PUT_ASIDE)),
 
-  /** The gait that is being made; null if there is none that can be used. */
-  gait: (): Bars | null => {
+  /** Returns the gait that is being made; null if there is none that can be used. */
+  getGait: (): Bars | null => {
     try {
       const gait: unknown = JSON.parse(localStorage.getItem(GAIT_KEY) ?? 'null');
       return isGait(gait) ? gait : null;

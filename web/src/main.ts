@@ -1,11 +1,11 @@
 // The page: a session, and the views that show it.
-import { Address, OWN, partsOf } from './address';
-import { run } from './clock';
+import { Address, PAGE_ENTRY, addressParts } from './address';
+import { runInRealTime } from './clock';
 import { files } from './files';
-import { kept } from './kept';
-import { BluetoothLink, bluetoothProblem, ON_IPHONE } from './link/bluetooth-link';
+import { browserStorage } from './kept';
+import { BluetoothLink, bluetoothProblem, IPHONE_ADVICE } from './link/bluetooth-link';
 import type { Link } from './link/link';
-import { hasSerial, NO_SERIAL, PortLink } from './link/port-link';
+import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
 import { keepOffline } from './offline';
 import { Predictor } from './predictor';
 import { lags, load } from './robot';
@@ -15,15 +15,15 @@ import { Alarm } from './view/alarm';
 import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
-import { Choice } from './view/choice';
-import { download } from './view/download';
+import { RobotChoice } from './view/choice';
+import { downloadRobot } from './view/download';
 import { Drive, formatDisplacement } from './view/drive';
 import { FitView } from './view/fit';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
 import { GaitsView } from './view/gaits';
 import { Health } from './view/health';
-import { Keep } from './view/keep';
+import { RecordView } from './view/keep';
 import { Lengths } from './view/lengths';
 import { Log } from './view/log';
 import { MapsView } from './view/maps';
@@ -35,10 +35,10 @@ import { PartsView } from './view/parts';
 import { PathView } from './view/path';
 import { Remote } from './view/remote';
 import { RobotText } from './view/robot-text';
-import { OPENED, openRoom } from './view/rooms';
+import { ROOM_OPENED, openRoom } from './view/rooms';
 import { RoutinesView } from './view/routines';
 import { ScopeView } from './view/scope';
-import { Steer, gaitFor } from './view/steer';
+import { Steering, gaitFor } from './view/steer';
 import { Setup } from './view/setup';
 import { Sketch } from './view/sketch';
 import { Troubles } from './view/troubles';
@@ -47,8 +47,8 @@ import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
 
 /** Number of updates of the shown numbers per second. */
-const TEXT_UPDATES_PER_SECOND = 10;
-/** Number of pictures per drawing of scope, margins and maps, since painting costs most. */
+const NUMBER_UPDATES_PER_SECOND = 10;
+/** Scope, margins and maps are drawn once per this number of pictures, since painting costs most. */
 const PICTURES_PER_DRAWING = 3;
 
 declare global {
@@ -63,9 +63,9 @@ const troubles = new Troubles();
 async function start(): Promise<void> {
   const module = await files.wasm();
   const robot = load(module);
-  const choice = await Choice.load();
+  const choice = await RobotChoice.load();
   const getSession = () => session;
-  const address = new Address(getSession, choice.robot);
+  const address = new Address(getSession, choice.chosenFile);
 
   const connectButton = element<HTMLButtonElement>('connect');
   const radioButton = element<HTMLButtonElement>('radio');
@@ -74,55 +74,55 @@ async function start(): Promise<void> {
   const maps = new MapsView();
   const log = new Log((line) => void session.ask(line));
   const floor = new Floor(() => {
-    session.home();
-    floor.clear();
+    session.returnToStart();
+    floor.clearTracks();
   });
-  const isBarred = () => setup.isOpen;
+  const isSetupOpen = () => setup.isOpen;
   const drive = new Drive((line) => session.ask(line));
-  const steer = new Steer(
-    () => drive.choices(),
+  const steer = new Steering(
+    () => drive.predictedGaits(),
     (line) => void drive.ask(line),
-    isBarred,
+    isSetupOpen,
     () => pace.percent,
   );
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, prediction) => {
-    drive.predicted(gait, prediction);
-    measure?.predicted();
-    updateTexts();
-    beginWalk();
+    drive.showPrediction(gait, prediction);
+    measure?.tickMovingGaits();
+    updateNumbers();
+    beginIntroWalk();
   });
-  const predict = () => {
-    const { toml, floor, servos, description, predicted } = session;
-    predicted?.forEach((prediction, gait) => prediction && drive.predicted(gait, prediction));
-    measure?.predicted();
+  const predictGaits = () => {
+    const { toml, floor, servos, description, filePredictions } = session;
+    filePredictions?.forEach((prediction, gait) => prediction && drive.showPrediction(gait, prediction));
+    measure?.tickMovingGaits();
     const firstIndex = description.gaits.findIndex(({ command }) => command === session.gait);
-    predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, firstIndex) });
+    predictor.ask({ toml, floor, servos, gaits: filePredictions ? 0 : description.gaits.length, first: Math.max(0, firstIndex) });
     routines.predict();
   };
   // When the page opens, the robot walks slowly until the user acts, unless the system asks for reduced motion.
   let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  const beginWalk = () => {
-    const gait = gaitFor({ ahead: 1, left: 0 }, drive.choices());
-    if (isIntroOver || !gait || isBarred() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+  const beginIntroWalk = () => {
+    const gait = gaitFor({ ahead: 1, left: 0 }, drive.predictedGaits());
+    if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
     isIntroOver = true;
     void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
   };
   // The user has taken over.
   for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
-  const world = new World(getSession, predict);
+  const world = new World(getSession, predictGaits);
   const health = new Health(getSession);
-  const lengths: Lengths = new Lengths(getSession, (edits) => sketch.offer(edits));
+  const lengths: Lengths = new Lengths(getSession, (edits) => sketch.offerValidLengths(edits));
   const parts = new PartsView(getSession);
   const fit = new FitView(getSession, parts);
   const sketch = new Sketch(module, getSession, fit);
-  const keep = new Keep(getSession, floor, (line) => drive.ask(line), () => pace.percent);
+  const recordView = new RecordView(getSession, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(getSession);
   let isWriting = false;
   const writer = new Writer(getSession, (isBusy) => {
     isWriting = health.isPaused = isBusy;
     // The boot loader uses the line, so nothing else may take it.
-    choice.enabled = !isBusy;
+    choice.isEnabled = !isBusy;
     connectButton.disabled = isBusy || !hasSerial();
     radioButton.disabled = isBusy;
     flash.update();
@@ -135,7 +135,7 @@ async function start(): Promise<void> {
   const gaits = new GaitsView(module, getSession, (line) => drive.ask(line), writer, (ownGait, foundGait, output) => {
     // The second robot is drawn from above alone.
     parts.set3d(false);
-    return keep.compare(ownGait, foundGait, output);
+    return recordView.compare(ownGait, foundGait, output);
   });
   const path = new PathView(module, getSession, (line) => drive.ask(line), writer);
   const flash = new FlashView(getSession, writer);
@@ -145,118 +145,118 @@ async function start(): Promise<void> {
     if (element('room-measure').hidden || measure) return;
     const { MeasureView } = await import('./view/measure');
     if (measure) return;
-    measure = new MeasureView(getSession, () => drive.choices(), isBarred);
+    measure = new MeasureView(getSession, () => drive.predictedGaits(), isSetupOpen);
     measure.showRobot(session.description);
-    measure.link(session.isReal);
+    measure.changeLink(session.isReal);
   };
-  document.addEventListener(OPENED, () => void openMeasure());
+  document.addEventListener(ROOM_OPENED, () => void openMeasure());
   const setup: Setup = new Setup(getSession, writer, () => connectBoard());
 
   const boardRobot = new BoardRobot(getSession, troubles, ({ file, toml }) => {
-    choice.show(file);
-    void replace(async () => {
-      await choose();
+    choice.select(file);
+    void replaceRobot(async () => {
+      await loadChosenFile();
       if (session.toml !== toml) await session.change(toml);
     });
   });
 
   const session: Session = new Session(robot, {
-    robot(description) {
+    onRobot(description) {
       scope.setRobot(description);
       margins.setRobot(description);
       maps.setRobot(robot);
       drive.showRobot(description);
       // A board that stays connected continues its gait.
-      drive.doing(session.gait);
-      const strangeWords = unknownWords([...drive.words], description.words);
+      drive.showActivity(session.gait);
+      const strangeWords = unknownWords([...drive.commands], description.words);
       if (strangeWords.length > 0) troubles.say('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
       lengths.showRobot(description.lengths);
       fit.showRobot(description.lengths);
       sketch.showRobot();
       setup.update();
-      floor.clear();
+      floor.clearTracks();
       world.showRobot();
       gaits.showRobot();
       path.showRobot();
-      address.follow();
+      address.scheduleUpdate();
       routines.showRobot();
       text.showRobot();
-      keep.showRobot(description);
+      recordView.showRobot(description);
       measure?.showRobot(description);
       void openMeasure();
-      predict();
-      void boardRobot.follow();
+      predictGaits();
+      void boardRobot.update();
     },
-    frame(frame, widths, seconds) {
+    onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
-      keep.frame(frame, widths, seconds);
-      if (frame.scene) maps.add(frame.scene);
-      if (widths) scope.frame(widths);
+      recordView.addFrame(frame, widths, seconds);
+      if (frame.scene) maps.addPosition(frame.scene);
+      if (widths) scope.setWidths(widths);
     },
-    pulse: (pin, rise, width) => {
+    onPulse: (pin, rise, width) => {
       latestCycle = rise + width;
-      scope.pulse(pin, rise, width);
+      scope.addPulse(pin, rise, width);
     },
-    sent(line) {
-      log.sent(line);
-      measure?.sent(line);
+    onSent(line) {
+      log.showSent(line);
+      measure?.noteSent(line);
     },
-    received(line) {
-      log.received(line);
-      setup.received(line);
-      measure?.received(line);
+    onReceived(line) {
+      log.showReceived(line);
+      setup.noteReceived(line);
+      measure?.noteReceived(line);
       if (line.startsWith('# fault')) remote.buzz();
     },
-    isUno: () =>
+    confirmUno: () =>
       confirm(
         'Is this board an Arduino UNO? By its USB chip it may also be a Nano, and this robot reaches into the boot section of a Nano. ' +
           'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
       ),
-    doing(gait) {
-      drive.doing(gait);
-      keep.doing(gait);
-      measure?.did(gait);
-      routines.doing(gait);
-      updateTexts();
+    onActivity(gait) {
+      drive.showActivity(gait);
+      recordView.followGait(gait);
+      measure?.noteActivity(gait);
+      routines.setActivity(gait);
+      updateNumbers();
     },
-    found(banner) {
-      element('where').textContent = whereOf(session.link.name, banner, session.description.hash);
+    onBanner(banner) {
+      element('where').textContent = boardText(session.link.name, banner, session.description.hash);
       setup.update();
-      void boardRobot.follow();
+      void boardRobot.update();
       // On a slow machine the predictions come before the robot's banner.
-      beginWalk();
+      beginIntroWalk();
     },
     speed(percent) {
       pace.show(percent);
-      drive.speed(percent);
-      routines.speed(percent);
+      drive.setPace(percent);
+      routines.setPace(percent);
     },
-    state({ phase }) {
-      routines.phase(phase);
+    onStatus({ phase }) {
+      routines.setPhase(phase);
       calibrate.refresh();
     },
-    silent(isSilent) {
-      alarm.silent(isSilent);
+    onSilent(isSilent) {
+      alarm.setSilent(isSilent);
       if (isSilent) measure?.stop('the robot is silent');
     },
-    stopping: (isStopping) => alarm.stopping(isStopping),
-    link(link) {
+    onStopping: (isStopping) => alarm.setStopping(isStopping),
+    onLink(link) {
       latestCycle = 0;
       element('heard').hidden = !session.isReal;
-      scope.link(session.isReal);
+      scope.changeLink(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
       // Reserves the row's height for the line that most likely follows.
       const { version, name, hash } = session.description;
-      element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
+      element('where').parentElement!.dataset.room = boardText(link.name, { version, robot: { name, hash } }, hash);
       connectButton.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
       connectButton.disabled = !session.isReal && !hasSerial();
       radioButton.hidden = session.isReal || bluetoothProblem() !== null;
       element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
       flash.update();
-      measure?.link(session.isReal);
-      setup.link();
+      measure?.changeLink(session.isReal);
+      setup.followLink();
     },
-    trouble(cause, message) {
+    onTrouble(cause, message) {
       if (cause === 'fault' && message !== null) remote.buzz();
       // Offers this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
@@ -265,59 +265,59 @@ async function start(): Promise<void> {
   });
   let latestCycle = 0;
 
-  function updateTexts(): void {
+  function updateNumbers(): void {
     const { last, gait } = session;
-    const put = (id: string, text: string) => {
+    const setText = (id: string, text: string) => {
       const box = element(id);
       if (box.textContent !== text) box.textContent = text;
     };
-    alarm.write();
-    put('doing', gait || '–');
-    put('age', `${session.secondsSinceLine.toFixed(1)} s ago`);
+    alarm.update();
+    setText('doing', gait || '–');
+    setText('age', `${session.secondsSinceLine.toFixed(1)} s ago`);
     if (last) {
       const { x, y, heading } = last.place;
       // Avoids -0.
       const round = (value: number, digits: number) => (Number(value.toFixed(digits)) + 0).toFixed(digits);
-      put('ahead', `${round(y, 0)} mm`);
-      put('sideways', `${round(x, 0)} mm`);
-      put('heading', `${round(heading, 1)}°`);
+      setText('ahead', `${round(y, 0)} mm`);
+      setText('sideways', `${round(x, 0)} mm`);
+      setText('heading', `${round(heading, 1)}°`);
     }
-    const [measured, prediction] = [session.measured(), drive.prediction(gait)];
-    put('cycle', formatDisplacement(measured) || '–');
-    put('predicted', formatDisplacement(prediction) || '–');
+    const [measured, prediction] = [session.measured(), drive.predictionOf(gait)];
+    setText('cycle', formatDisplacement(measured) || '–');
+    setText('predicted', formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
-    const isSprung = lags(session.floor);
-    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isSprung;
-    put('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
-    put('share', prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
+    const isLagging = lags(session.floor);
+    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isLagging;
+    setText('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
+    setText('share', prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
     const refusal = last?.fault ?? last?.scene?.refusal ?? null;
     element('refusal').hidden = refusal === null;
-    put('refusal', refusal ?? '');
+    setText('refusal', refusal ?? '');
   }
 
-  const choose = async () => {
+  const loadChosenFile = async () => {
     try {
-      await session.choose(choice.robot);
+      await session.choose(choice.chosenFile);
       troubles.say('robot', null);
     } catch (error) {
-      choice.show(session.file);
+      choice.select(session.file);
       if (!session.link) element('where').textContent = 'No robot could be read.';
       troubles.say('robot', messageOf(error));
     }
   };
-  const ownRobot = new OwnRobot(getSession, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
+  const ownRobot = new OwnRobot(getSession, troubles, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
   /** Loads another robot; the user's changed one is put aside instead of being erased. */
-  const replace = async (load: () => Promise<unknown>) => {
-    const saved = kept.get();
+  const replaceRobot = async (load: () => Promise<unknown>) => {
+    const saved = browserStorage.getChanges();
     await load();
     ownRobot.putAside(saved);
   };
-  choice.onChange(() => void (choice.chosenOwn === null ? replace(choose) : ownRobot.restore(choice.chosenOwn)));
+  choice.onChange(() => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobot.restore(choice.chosenOwnIndex)));
 
   element('reset').addEventListener('click', () => void session.reset());
 
   if (!hasSerial()) {
-    element('no-serial').textContent = ON_IPHONE ?? NO_SERIAL;
+    element('no-serial').textContent = IPHONE_ADVICE ?? NO_SERIAL_MESSAGE;
     element('no-serial').hidden = false;
   }
   async function connectBoard(open: () => Promise<Link | null> = () => PortLink.open()): Promise<void> {
@@ -334,56 +334,56 @@ async function start(): Promise<void> {
   // A board would walk on when its page is closed: it is stopped, and the browser asks. The browser also asks while an
   // image is being written.
   addEventListener('beforeunload', (event) => {
-    if (session.walksAlone) void session.stop();
+    if (session.isBoardWalking) void session.stop();
     else if (!(isWriting && session.isReal)) return;
     event.preventDefault();
   });
 
-  const saved = kept.get();
-  const askedFile = partsOf(location.hash).get('file');
-  const wantedFile = askedFile ?? saved?.file;
-  const isKnownFile = wantedFile === undefined || choice.show(wantedFile);
-  await choose();
+  const saved = browserStorage.getChanges();
+  const addressFile = addressParts(location.hash).get('file');
+  const wantedFile = addressFile ?? saved?.file;
+  const isKnownFile = wantedFile === undefined || choice.select(wantedFile);
+  await loadChosenFile();
   const reportMissing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
-  if (askedFile !== null && !isKnownFile) reportMissing(askedFile);
-  // The robot in the address wins over a stored one.
-  const isAsked = askedFile !== null || partsOf(location.hash).has('robot');
-  if (saved && session.file === saved.file && !(await session.recall(saved)) && !isAsked) {
-    const remedy = { label: 'Download what was changed', act: () => void download(saved.toml, saved.floor) };
+  if (addressFile !== null && !isKnownFile) reportMissing(addressFile);
+  // The robot in the address takes precedence over a stored one.
+  const isRobotInAddress = addressFile !== null || addressParts(location.hash).has('robot');
+  if (saved && session.file === saved.file && !(await session.restoreSaved(saved)) && !isRobotInAddress) {
+    const remedy = { label: 'Download what was changed', act: () => void downloadRobot(saved.toml, saved.floor) };
     const message = `${saved.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
     troubles.say('robot', message, remedy);
   }
-  if (await text.fromAddress()) address.begin();
-  if (isAsked) ownRobot.putAside(saved);
+  if (await text.loadFromAddress()) address.begin();
+  if (isRobotInAddress) ownRobot.putAside(saved);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);
     // Back and forward change the room, and the robot stays.
-    if (state === OWN) return address.follow();
-    const file = partsOf(hash).get('file');
-    if (file === null) return void replace(async () => (await text.fromAddress(hash)) && address.begin());
-    if (choice.show(file)) void replace(choose);
+    if (state === PAGE_ENTRY) return address.scheduleUpdate();
+    const file = addressParts(hash).get('file');
+    if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.begin());
+    if (choice.select(file)) void replaceRobot(loadChosenFile);
     else reportMissing(file);
   });
   window.lizard = session;
-  // Only after everything for the first step is loaded.
-  void keepOffline((take) => {
+  // Only after everything that the page needs at first is loaded.
+  void keepOffline((loadNewer) => {
     element('fresh').hidden = false;
-    element('fresh-take').onclick = take;
+    element('fresh-take').onclick = loadNewer;
   });
-  let msSinceTexts = 0;
+  let msSinceNumbers = 0;
   let pictureCount = 0;
-  run(
+  runInRealTime(
     (ms) => {
-      msSinceTexts += ms;
+      msSinceNumbers += ms;
       session.advance(ms);
     },
     () => {
       steer.readGamepads();
       // Without a robot there is nothing to draw.
       if (!session.description) return;
-      if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
-      keep.drawn();
+      if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, recordView.frameToDraw(session.last), recordView.companionFrame);
+      recordView.afterDrawing();
       parts.draw(session.last);
       pictureCount += 1;
       if (pictureCount % PICTURES_PER_DRAWING === 0) {
@@ -391,20 +391,20 @@ async function start(): Promise<void> {
         margins.draw(session.last?.scene ?? null);
         maps.draw();
       }
-      if (msSinceTexts >= 1000 / TEXT_UPDATES_PER_SECOND) {
-        msSinceTexts = 0;
-        updateTexts();
-        keep.write();
-        measure?.write();
-        scope.write(session.last?.scene ?? null);
-        margins.write(session.last?.scene ?? null);
+      if (msSinceNumbers >= 1000 / NUMBER_UPDATES_PER_SECOND) {
+        msSinceNumbers = 0;
+        updateNumbers();
+        recordView.updateNumbers();
+        measure?.updateNumbers();
+        scope.updateNumbers(session.last?.scene ?? null);
+        margins.updateNumbers(session.last?.scene ?? null);
       }
     },
   );
 }
 
 /** Returns the message that names the board and its robot. */
-function whereOf(name: string, banner: BoardBanner, hash: string): string {
+function boardText(name: string, banner: BoardBanner, hash: string): string {
   if (banner === null) return `on a ${name} without this firmware`;
   if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
   const { robot } = banner;

@@ -4,26 +4,26 @@
 import { messageOf } from './trouble';
 
 /**
- * Stores the page on this machine. Calls `onFresh` when a newer page is ready, with a function that loads the newer
+ * Stores the page on this machine. Calls `onUpdate` when a newer page is ready, with a function that loads the newer
  * page.
  */
-export async function keepOffline(onFresh: (load: () => void) => void): Promise<void> {
+export async function keepOffline(onUpdate: (load: () => void) => void): Promise<void> {
   // Only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;
-  const isFirst = serviceWorker.controller === null;
+  const isFirstVisit = serviceWorker.controller === null;
   try {
     const registration = await serviceWorker.register(new URL('service-worker.js', document.baseURI), { updateViaCache: 'none' });
-    const offer = () => {
+    const offerUpdate = () => {
       const { waiting } = registration;
-      if (!waiting || isFirst) return;
-      onFresh(() => {
+      if (!waiting || isFirstVisit) return;
+      onUpdate(() => {
         serviceWorker.addEventListener('controllerchange', () => location.reload(), { once: true });
         waiting.postMessage('take over');
       });
     };
-    offer();
-    registration.addEventListener('updatefound', () => registration.installing?.addEventListener('statechange', offer));
+    offerUpdate();
+    registration.addEventListener('updatefound', () => registration.installing?.addEventListener('statechange', offerUpdate));
   } catch (error) {
     console.info(`The page is not kept for use without a network: ${messageOf(error)}`);
   }

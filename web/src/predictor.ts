@@ -7,7 +7,7 @@ import type { RobotFunctions } from './robot-worker';
 
 export class Predictor {
   private helper: Helper<RobotFunctions> | null = null;
-  private questions = 0;
+  private questionCount = 0;
 
   constructor(
     private readonly module: WebAssembly.Module,
@@ -15,13 +15,13 @@ export class Predictor {
   ) {}
 
   /** Predicts every gait of a robot, beginning with the gait `first`; a newer call ends it. */
-  async ask({ gaits, first, ...robotOnFloor }: OnFloor & { gaits: number; first: number }): Promise<void> {
-    const question = ++this.questions;
-    for (let n = 0; n < gaits; n++) {
-      const gait = (first + n) % gaits;
+  async ask({ gaits: gaitCount, first: firstGait, ...robotOnFloor }: OnFloor & { gaits: number; first: number }): Promise<void> {
+    const questionNumber = ++this.questionCount;
+    for (let n = 0; n < gaitCount; n++) {
+      const gait = (firstGait + n) % gaitCount;
       this.helper ??= robotHelper(this.module);
       const prediction = await this.helper.ask((robot) => robot.predict({ ...robotOnFloor, gait }));
-      if (question !== this.questions) return;
+      if (questionNumber !== this.questionCount) return;
       if (prediction) this.onPrediction(gait, prediction);
     }
   }

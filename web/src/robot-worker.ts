@@ -27,16 +27,18 @@ function neutralScene(toml: string): Scene | null {
 }
 
 const functions = {
+  /** Loads the WebAssembly module; must be called first. */
   load(module: WebAssembly.Module): void {
     robot = load(module);
   },
 
+  /** Predicts a gait; null for a refused robot. */
   predict: (request: OnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
 
   /** Tries an edited gait; null for a refused robot or a drawn line without length. */
-  trial: (request: OnFloor & { made: EditedGait }) => (loadRobot(request) ? robot.trial(request.made) : null),
+  trial: (request: OnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.trial(request.gait) : null),
 
-  /** The path of one round of a routine; null if the robot is refused or has no such routine. */
+  /** Returns the path of one round of a routine; null if the robot is refused or has no such routine. */
   round: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.round(request.routine) : null),
 
   /**

@@ -35,5 +35,5 @@ export function isRefused(answer: object): answer is Refused {
   return 'refused' in answer;
 }
 
-/** Returns true if a leg can deviate from its servo. */
+/** True if a leg can deviate from its servo. */
 export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;

@@ -2,11 +2,11 @@
 // session and call its methods.
 import { loadBoard } from './board';
 import { files } from './files';
-import { type SavedChanges, kept } from './kept';
+import { type SavedChanges, browserStorage } from './kept';
 import { BootLine } from './link/boot-line';
 import { Deadman } from './link/deadman';
-import { type Answer, Dialogue, DroppedQuestion, GREETING } from './link/dialogue';
-import type { Link, Simulated } from './link/link';
+import { type Answer, Dialogue, DroppedQuestion, BANNER_PREFIX } from './link/dialogue';
+import type { Link, SimulatedLink } from './link/link';
 import { UnoLink } from './link/uno-link';
 import {
   type Description,
@@ -18,21 +18,22 @@ import {
   type Refused,
   type Robot,
 } from './robot';
-import { type Banner, parseBanner, type Status, parseStatus, reportedPose } from './status';
+import { type Banner, parseBanner, type Status, parseStatus, parseReportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
-import { type Measured, WalkedPath } from './walked';
-import { DONE, GAITS, WORDS } from './words';
+import { type CycleDisplacement, WalkedPath } from './walked';
+import { DONE_LINE, GAITS, WORDS } from './words';
 
 /** Number of frames of 20 ms from one reported pose of a board to the next; a radio at 9600 baud carries no more. */
 const WATCH_FRAMES = { usb: 2, radio: 10, simulated: 1 };
 /** Time from a reset within which this firmware sends its banner, ms. */
 const BANNER_TIMEOUT_MS = 2500;
-/**
- * Time within which a board that was not reset answers, ms, and how often it is asked: the board finds the port's
- * baud rate after at most five lines, and a radio may lose some.
- */
+/** Time within which a board that was not reset answers, ms. */
 const ANSWER_TIMEOUT_MS = 500;
+/**
+ * Number of times that a board that was not reset is asked: its autobaud needs up to five lines, and a radio may lose
+ * some.
+ */
 const MAX_ATTEMPTS = { usb: 5, radio: 12, simulated: 1 };
 /** Time that the answer to `status` may take before `status` is sent again, ms. */
 const STATUS_TIMEOUT_MS = 1000;
@@ -46,40 +47,43 @@ const FRAME_SECONDS = 0.02;
 /** Longest simulated time between two updates of `clock`, ms. */
 const CLOCK_STEP_MS = 5;
 
-/** The fault of a robot that has received nothing for the time of `deadman`. */
+/** The fault of a robot that has received nothing for the `deadman` time. */
 const LINK_FAULT = 'link';
 /** The reason why nothing is written by radio. */
-export const BY_CABLE = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
+export const NO_WRITING_BY_RADIO = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
 
 /** A board's banner; `unknown` if this firmware answers but sent no banner, null if it does not answer. */
 export type BoardBanner = Banner | 'unknown' | null;
 
-export interface Listener {
+export interface SessionListener {
   /** Called for another robot, or for the same robot with other values. */
-  robot(description: Description): void;
+  onRobot(description: Description): void;
   /** Called for each frame and its duration in seconds. */
-  frame(frame: Frame, widths: Four<number> | null, seconds: number): void;
-  pulse(pin: number, rise: number, width: number): void;
-  sent(line: string): void;
-  received(line: string): void;
+  onFrame(frame: Frame, widths: Four<number> | null, seconds: number): void;
+  /** Called for each pulse: its pin by the Arduino number, the cycle at which it rose, and its width in cycles. */
+  onPulse(pin: number, rise: number, width: number): void;
+  /** Called with each line that is sent and is to be shown. */
+  onSent(line: string): void;
+  /** Called with each line that is received and is to be shown. */
+  onReceived(line: string): void;
   /** Called when the robot's activity changes: a gait or a command. */
-  doing(gait: string): void;
+  onActivity(gait: string): void;
   /** Called when the board's firmware and robot are known. */
-  found(banner: BoardBanner): void;
+  onBanner(banner: BoardBanner): void;
   /** Called with the robot's pace, percent. */
   speed(percent: number): void;
   /** Called with each answer to `status`. */
-  state(status: Status): void;
+  onStatus(status: Status): void;
   /** Called when another board is connected. */
-  link(link: Link): void;
+  onLink(link: Link): void;
   /** Asks the user whether the board is a UNO: on a Nano, writing would overwrite the boot loader. */
-  isUno(): boolean;
+  confirmUno(): boolean;
   /** Called when the robot leaves a line unanswered, and when it answers again. */
-  silent(isSilent: boolean): void;
+  onSilent(isSilent: boolean): void;
   /** Called when `stop` begins to be sent, and when the robot has answered it. */
-  stopping(isStopping: boolean): void;
+  onStopping(isStopping: boolean): void;
   /** Called with the current problem, or null once it is solved. */
-  trouble(cause: Cause, message: string | null): void;
+  onTrouble(cause: Cause, message: string | null): void;
 }
 
 /** Called with the progress of a write: the finished pages of a step, and all of them. */
@@ -98,14 +102,17 @@ export class Session {
   /** The predictions of the gaits in `original`, which come with the page; null if they are missing. */
   private predictions: Predictions | null = null;
   /** The robot's section of flash. */
-  section: Uint8Array = new Uint8Array();
+  robotSection: Uint8Array = new Uint8Array();
+  /** The last frame. */
   last: Frame | null = null;
+  /** The robot's activity: a gait or a command; empty if unknown. */
   gait = '';
   /** The robot's pace, percent. */
   private pace = FULL_PACE;
+  /** Voltage of the simulated board's supply, V. */
   volts = 5;
   /** The names of the inputs whose contacts are closed in the simulation. */
-  readonly closed = new Set<string>();
+  readonly closedInputs = new Set<string>();
   /** The servo model, by its name in the description. */
   servos = 'own';
   /** True if the page may send lines of its own. */
@@ -113,36 +120,37 @@ export class Session {
   link!: Link;
   dialogue!: Dialogue;
   private deadman!: Deadman;
-  /** Unanswered lines that make the robot walk. */
-  private drives = 0;
-  /** Number of stops so far. */
-  private stops = 0;
+  /** Number of unanswered lines that make the robot walk. */
+  private pendingDrives = 0;
+  /** Number of times that `stop` was asked for so far. */
+  private stopCount = 0;
   /** The time at which the robot's last line arrived, on the page's clock, ms. */
   private lastLineAt = performance.now();
   /** Number of banners received: a board that restarts has lost its unsaved settings. */
-  banners = 0;
+  bannerCount = 0;
   /** The firmware, which is the same for every robot. */
-  private code: Uint8Array | null = null;
+  private firmware: Uint8Array | null = null;
   private floorSetting: Floor | null = null;
   private bootLoader: Uint8Array | null = null;
-  private readonly path = new WalkedPath();
+  private readonly walkedPath = new WalkedPath();
   /**
-   * Time for which the robot was followed so far, s: simulated time, or the frames of a real board's reported poses.
+   * Time for which the robot has been followed, s: simulated time, or the frames of a real board's reported poses.
    */
   clock = 0;
-  private onBanner: () => void = () => {};
+  /** Resolves the promise of `waitForBanner`. */
+  private resolveBanner: () => void = () => {};
   /** The board's firmware and robot; undefined until known. */
   private boardBanner: BoardBanner | undefined;
   /** True if a board without this firmware has the boot loader of a UNO. */
-  hasLoader = false;
+  hasBootLoader = false;
   /** True while a board on USB sends its poses. */
   private isWatching = false;
   /** Number of calls of `choose` so far: a file that arrives after a later call is dropped. */
-  private choices = 0;
+  private choiceCount = 0;
 
   constructor(
     readonly robot: Robot,
-    private readonly listener: Listener,
+    private readonly listener: SessionListener,
   ) {}
 
   /**
@@ -150,21 +158,21 @@ export class Session {
    * error for the user, and then the previous robot stays.
    */
   async choose(name: string): Promise<void> {
-    const choice = ++this.choices;
+    const choiceNumber = ++this.choiceCount;
     const previousFile = this.file;
     this.file = '';
     try {
-      const [toml, predictions, code] = await Promise.all([files.toml(name), files.predictions(name), this.code ?? files.code()]);
-      if (choice !== this.choices) return;
-      this.code = code;
+      const [toml, predictions, firmware] = await Promise.all([files.toml(name), files.predictions(name), this.firmware ?? files.code()]);
+      if (choiceNumber !== this.choiceCount) return;
+      this.firmware = firmware;
       const refusal = this.loadToml(toml, null, [toml, predictions]);
       if (refusal) throw new Error(`${name}.toml: ${refusal.refused}`);
-      await this.begin(false);
+      await this.restartBoard(false);
       this.file = name;
-      this.keep();
+      this.storeChanges();
     } catch (error) {
       // A later choice has replaced this one.
-      if (choice !== this.choices) return;
+      if (choiceNumber !== this.choiceCount) return;
       this.file = previousFile;
       throw error;
     }
@@ -174,25 +182,25 @@ export class Session {
   async change(toml: string): Promise<Refused | null> {
     const refusal = this.loadToml(toml);
     if (refusal) return refusal;
-    await this.begin(true);
-    this.keep();
+    await this.restartBoard(true);
+    this.storeChanges();
     return null;
   }
 
   /** Restores saved changes if the robot's file is still the same; returns true if they were restored. */
-  async recall({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
+  async restoreSaved({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
     this.setSupply(volts);
     if (this.loadToml(toml, floor)) return false;
-    await this.begin(true);
-    this.keep();
+    await this.restartBoard(true);
+    this.storeChanges();
     return true;
   }
 
-  private keep(): void {
+  private storeChanges(): void {
     const { file, original, toml, floorSetting: floor, servos, volts } = this;
-    if (file !== '') kept.put({ file, original, toml, floor, servos, volts });
+    if (file !== '') browserStorage.putChanges({ file, original, toml, floor, servos, volts });
   }
 
   /** Restores the unchanged robot of the file. */
@@ -206,35 +214,35 @@ export class Session {
     [this.toml, this.floorSetting] = [toml, floorSetting];
     [this.original, this.predictions] = originalFile;
     this.description = answer;
-    this.section = this.robot.section();
+    this.robotSection = this.robot.section();
     this.robot.setFloor(this.floor);
-    this.path.clear();
+    this.walkedPath.clear();
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
-    this.listener.robot(answer);
+    this.listener.onRobot(answer);
     return null;
   }
 
   /** Restarts a simulated board with the page's robot; a real board keeps its own robot. */
-  private async begin(keepsSaved: boolean): Promise<void> {
-    if (!this.isReal) await this.simulate(keepsSaved && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
+  private async restartBoard(keepsEeprom: boolean): Promise<void> {
+    if (!this.isReal) await this.simulate(keepsEeprom && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
     else {
-      this.listener.link(this.link);
-      if (this.boardBanner !== undefined) this.listener.found(this.boardBanner);
+      this.listener.onLink(this.link);
+      if (this.boardBanner !== undefined) this.listener.onBanner(this.boardBanner);
     }
   }
 
   /** Firmware and robot as one image of flash. */
   get image(): Uint8Array {
-    const { code, section, description } = this;
-    if (!code) throw new Error('the firmware has not come yet');
-    const image = new Uint8Array(description.start + section.length).fill(0xff);
-    image.set(code);
-    image.set(section, description.start);
+    const { firmware, robotSection, description } = this;
+    if (!firmware) throw new Error('the firmware has not come yet');
+    const image = new Uint8Array(description.start + robotSection.length).fill(0xff);
+    image.set(firmware);
+    image.set(robotSection, description.start);
     return image;
   }
 
   /** True if this firmware answers. */
-  get answers(): boolean {
+  get isFirmwareAnswering(): boolean {
     return this.boardBanner !== undefined && this.boardBanner !== null;
   }
 
@@ -258,6 +266,7 @@ export class Session {
     return (performance.now() - this.lastLineAt) / 1000;
   }
 
+  /** True if the link leads to a real board. */
   get isReal(): boolean {
     // Without a robot there is no link yet.
     return this.link !== undefined && this.link.kind !== 'simulated';
@@ -268,10 +277,10 @@ export class Session {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
-    for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closed.has(name));
+    for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
     const events = {
-      frame: (widths: Four<number>) => this.handleWidths(widths),
-      pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
+      onFrame: (widths: Four<number>) => this.handleWidths(widths),
+      onPulse: (pin: number, rise: number, width: number) => this.listener.onPulse(pin, rise, width),
     };
     await this.attach(new UnoLink(board, pins, events));
     this.simulated?.setSupply(this.volts);
@@ -284,27 +293,27 @@ export class Session {
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
     link.onGone = (reason) => {
-      void this.simulate().then(() => this.listener.trouble('port', `The board is gone: ${reason} The simulation goes on.`));
+      void this.simulate().then(() => this.listener.onTrouble('port', `The board is gone: ${reason} The simulation goes on.`));
     };
     link.onReach = (isInReach) => void this.handleReach(link, isInReach);
     await this.attach(link);
-    this.listener.trouble('port', null);
+    this.listener.onTrouble('port', null);
     // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
-    const hasGreeted = !isRadio && (await this.greeting());
-    for (let n = 0; !hasGreeted && this.boardBanner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
-      if (this.link === link && (await this.isAnswering())) this.setBoardBanner('unknown');
+    const hasSentBanner = !isRadio && (await this.waitForBanner());
+    for (let n = 0; !hasSentBanner && this.boardBanner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
+      if (this.link === link && (await this.checkAnswer())) this.setBoardBanner('unknown');
     }
     if (this.link !== link) return false;
     if (this.boardBanner) await this.watch();
-    else if (isRadio) this.silentModule(link);
+    else if (isRadio) this.reportSilentModule(link);
     else await this.identify(link);
     return this.link === link;
   }
 
-  private silentModule(link: Link): void {
+  private reportSilentModule(link: Link): void {
     this.setBoardBanner(null);
-    this.listener.trouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
+    this.listener.onTrouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
   }
 
   /**
@@ -314,44 +323,44 @@ export class Session {
   private async handleReach(link: Link, isInReach: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.letGo();
-    this.listener.silent(!isInReach);
+    this.listener.onSilent(!isInReach);
     const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
-    this.listener.trouble('port', isInReach ? null : message);
+    this.listener.onTrouble('port', isInReach ? null : message);
     if (!isInReach) return;
     for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
       if (!this.boardBanner) this.setBoardBanner('unknown');
-      this.listener.trouble('board', null);
+      this.listener.onTrouble('board', null);
       return this.watch();
     }
   }
 
   /** Waits for the banner of a restarted board; returns true if it came in time. */
-  async greeting(): Promise<boolean> {
-    const bannerArrival = new Promise<boolean>((resolve) => (this.onBanner = () => resolve(true)));
+  async waitForBanner(): Promise<boolean> {
+    const bannerArrival = new Promise<boolean>((resolve) => (this.resolveBanner = () => resolve(true)));
     return Promise.race([bannerArrival, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
   }
 
-  /** Returns true if this firmware answers `status`: not every port resets its board, so there may be no banner. */
-  private async isAnswering(): Promise<boolean> {
+  /** Resolves to true if this firmware answers `status`: not every port resets its board, so there may be no banner. */
+  private async checkAnswer(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWER_TIMEOUT_MS).catch(() => null);
     return answer?.ok ?? false;
   }
 
   /** Identifies a board without this firmware by its boot loader. */
   private async identify(link: Link): Promise<void> {
-    this.hasLoader = false;
+    this.hasBootLoader = false;
     let message: string;
     try {
       const model = await this.withBootLoader(link, async ({ identify }, line) => identify(line));
       message = `The board is an Arduino ${model}, an ATmega328P by its boot loader, and this firmware is not on it.`;
-      this.hasLoader = true;
+      this.hasBootLoader = true;
     } catch (error) {
       message = `The board does not speak as this firmware does: ${messageOf(error)}.`;
     }
     if (this.link !== link) return;
     this.setBoardBanner(null);
-    this.listener.trouble('board', message);
+    this.listener.onTrouble('board', message);
   }
 
   /** Makes a board send its poses. */
@@ -365,22 +374,22 @@ export class Session {
     const hasStopped = await this.stop();
     await this.simulate();
     if (!hasStopped) {
-      this.listener.trouble('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
+      this.listener.onTrouble('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
     }
   }
 
   /** True if a real board is walking. */
-  get walksAlone(): boolean {
-    return this.isReal && this.walks(this.gait);
+  get isBoardWalking(): boolean {
+    return this.isReal && this.makesWalk(this.gait);
   }
 
-  /** True while a routine is under way; a board may have routines that this robot does not have. */
-  private get isRoutine(): boolean {
-    return this.walks(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
+  /** True while a routine is under way; a board may have routines that the page's robot does not have. */
+  private get isRoutineRunning(): boolean {
+    return this.makesWalk(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
   }
 
   /** True if a line makes the robot walk. */
-  private walks(line: string): boolean {
+  private makesWalk(line: string): boolean {
     const [word] = line.split(' ');
     // A board with another robot may have gaits that this robot lacks. A count may follow the gait's name.
     const knownGait = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
@@ -389,12 +398,12 @@ export class Session {
 
   /** Restores the robot's own `deadman` if the robot neither walks nor is about to walk. */
   private restoreDeadmanIfIdle(): void {
-    if (this.drives === 0 && !this.walksAlone) this.deadman.end();
+    if (this.pendingDrives === 0 && !this.isBoardWalking) this.deadman.end();
   }
 
   /** Stops a robot that may be out of sight; if `stop` does not arrive, `deadman` stops it. */
   letGo(): void {
-    if (!this.walksAlone) return;
+    if (!this.isBoardWalking) return;
     this.deadman.letGo();
     void this.ask(WORDS.stop);
   }
@@ -417,34 +426,34 @@ export class Session {
     this.boardBanner = undefined;
     this.isWatching = false;
     this.mayAsk = false;
-    this.listen();
+    this.startDialogue();
     this.setGait('');
-    for (const cause of ['line', 'board', 'fault'] as const) this.listener.trouble(cause, null);
-    this.listener.link(link);
+    for (const cause of ['line', 'board', 'fault'] as const) this.listener.onTrouble(cause, null);
+    this.listener.onLink(link);
   }
 
-  private listen(): void {
+  private startDialogue(): void {
     this.dialogue = new Dialogue(this.link, {
-      sent: (line) => this.listener.sent(line),
-      received: (line) => this.handleLine(line),
-      arrived: (line) => {
+      onSent: (line) => this.listener.onSent(line),
+      onShownLine: (line) => this.handleLine(line),
+      onAnyLine: (line) => {
         this.lastLineAt = performance.now();
         const status = parseStatus(line);
         if (status) this.handleStatus(status);
       },
-      silent: (isSilent) => this.listener.silent(isSilent),
-      stopping: (isStopping) => this.listener.stopping(isStopping),
+      onSilent: (isSilent) => this.listener.onSilent(isSilent),
+      onStopping: (isStopping) => this.listener.onStopping(isStopping),
     });
     this.deadman = new Deadman(this.dialogue);
   }
 
   private handleLine(line: string): void {
-    const angles = reportedPose(line);
+    const angles = parseReportedPose(line);
     if (angles && this.isReal) {
       this.handlePose(angles);
       return;
     }
-    this.listener.received(line);
+    this.listener.onReceived(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
     const activities = [...this.description.gaits.map(({ command }) => command), ...this.description.routines, stop, rest, center];
@@ -454,25 +463,25 @@ export class Session {
     else if (word.startsWith(`${pose} `)) this.setGait(pose);
     else if (word.startsWith(`${speed} `)) this.setPace(Number(word.slice(speed.length)));
     else if (line.startsWith('# boot: ')) this.setGait(line.slice('# boot: '.length).replaceAll('-', ' '));
-    else if (line.startsWith(GREETING)) this.handleBanner(line);
-    else if (line.startsWith('# fault') || line === DONE) this.setGait(stop);
+    else if (line.startsWith(BANNER_PREFIX)) this.handleBanner(line);
+    else if (line.startsWith('# fault') || line === DONE_LINE) this.setGait(stop);
   }
 
   private handleBanner(line: string): void {
     const { dialogue } = this;
-    const bannerNumber = ++this.banners;
+    const bannerNumber = ++this.bannerCount;
     this.setGait('stand');
     this.setPace(FULL_PACE);
     this.isWatching = false;
     this.deadman.forget();
-    this.listener.trouble('board', null);
+    this.listener.onTrouble('board', null);
     this.setBoardBanner(parseBanner(line) ?? 'unknown');
-    this.onBanner();
+    this.resolveBanner();
     // A byte would cancel `boot`.
     this.mayAsk = false;
     void this.link.wait(BOOT_TIMEOUT_MS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
-      if (this.banners !== bannerNumber || dialogue.isClosed) return;
+      if (this.bannerCount !== bannerNumber || dialogue.isClosed) return;
       this.mayAsk = true;
       if (this.isReal && !this.isWatching) void this.watch();
     });
@@ -480,12 +489,12 @@ export class Session {
 
   private setBoardBanner(banner: BoardBanner): void {
     this.boardBanner = banner;
-    this.listener.found(banner);
+    this.listener.onBanner(banner);
   }
 
   private setPace(percent: number): void {
     // A cycle whose pace changes is not measured.
-    if (percent !== this.pace) this.path.clear();
+    if (percent !== this.pace) this.walkedPath.clear();
     this.pace = percent;
     this.listener.speed(percent);
   }
@@ -493,8 +502,8 @@ export class Session {
   private setGait(gait: string): void {
     this.gait = gait;
     this.restoreDeadmanIfIdle();
-    this.path.clear();
-    this.listener.doing(gait);
+    this.walkedPath.clear();
+    this.listener.onActivity(gait);
   }
 
   /** Sends a line and returns its answer. Shows an error, unless the line is quiet, and returns null. */
@@ -502,73 +511,74 @@ export class Session {
     if (!isQuiet) this.mayAsk = true;
     const { deadman } = this;
     const command = line.trim().toLowerCase();
-    if (command === WORDS.stop) this.stops += 1;
-    const isDrive = this.isReal && this.walks(command);
-    if (isDrive) this.drives += 1;
+    if (command === WORDS.stop) this.stopCount += 1;
+    const isDrive = this.isReal && this.makesWalk(command);
+    if (isDrive) this.pendingDrives += 1;
     try {
       if (isDrive) {
-        const { stops } = this;
-        const isSure = await deadman.begin();
+        const { stopCount } = this;
+        const isConfirmed = await deadman.begin();
         // The robot was stopped meanwhile.
-        if (stops !== this.stops) return null;
-        if (!isSure) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
+        if (stopCount !== this.stopCount) return null;
+        if (!isConfirmed) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
       }
       // `cal` must print and `save` must store the robot's own setting, not the page's.
       const needsOwnDeadman = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
       if (needsOwnDeadman) deadman.end();
       const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
-      if (needsOwnDeadman && this.walksAlone) void deadman.begin();
+      if (needsOwnDeadman && this.isBoardWalking) void deadman.begin();
       const answer = await pendingAnswer;
-      if (!isQuiet) this.listener.trouble('line', null);
-      deadman.follow(command, answer.ok);
+      if (!isQuiet) this.listener.onTrouble('line', null);
+      deadman.noteLine(command, answer.ok);
       return answer;
     } catch (error) {
       // A quiet line is sent again; until then the page shows that the robot is silent.
-      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${messageOf(error)}.`);
+      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onTrouble('line', `${messageOf(error)}.`);
       return null;
     } finally {
       if (isDrive) {
-        this.drives -= 1;
+        this.pendingDrives -= 1;
         this.restoreDeadmanIfIdle();
       }
     }
   }
 
+  /** Asks for the robot's state; null without an answer. */
   async status(): Promise<Status | null> {
     const answer = await this.ask(WORDS.status, true, STATUS_TIMEOUT_MS);
     return answer && parseStatus(answer.text);
   }
 
-  /** Takes the robot's state as soon as its line is read: taken later, it could overwrite a newer one. */
+  /** Handles the robot's state as soon as its line is read: later it could overwrite a newer state. */
   private handleStatus(status: Status): void {
     if (status.speed !== null) this.setPace(status.speed);
-    this.listener.trouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
+    this.listener.onTrouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = status.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
-    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutine && status.fault === 'none');
+    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === 'none');
     // The page has missed the start of this activity, for example because its link was cut.
     if (gait !== this.gait && !isKnown) this.setGait(gait);
-    this.listener.state(status);
+    this.listener.onStatus(status);
   }
 
   /** Presses the reset button of the board. */
   async reset(): Promise<void> {
-    this.dialogue.forget();
+    this.dialogue.dropQuestions();
     this.deadman.forget();
     this.setGait('');
     await this.link.reset();
   }
 
   /**
-   * Writes firmware and robot, or the robot alone after the firmware that the board has, and starts it. Throws an error
-   * for the user, which says what the board has then.
+   * Writes firmware and robot, or only the robot behind the board's firmware, and starts the board. Throws an error for
+   * the user that says what the board contains then.
    */
   async flash(bytes: Uint8Array, isRobotAlone: boolean, progress: Progress): Promise<void> {
     const { link } = this;
-    if (link.kind === 'radio') throw new Error(BY_CABLE);
+    if (link.kind === 'radio') throw new Error(NO_WRITING_BY_RADIO);
     const endAddress = bytes.length + (isRobotAlone ? this.description.start : 0);
     await this.withBootLoader(link, async ({ Board, needsUno, upload }, line) => {
-      const board = !link.mayBeNano || !needsUno(endAddress) ? Board.Unknown : this.listener.isUno() ? Board.Uno : Board.Nano;
+      const board = !link.mayBeNano || !needsUno(endAddress) ? Board.Unknown : this.listener.confirmUno() ? Board.Uno : Board.Nano;
       this.boardBanner = undefined;
       this.isWatching = false;
       this.mayAsk = false;
@@ -587,7 +597,7 @@ export class Session {
     } finally {
       await line.end();
       if (this.link === link) {
-        this.listen();
+        this.startDialogue();
         this.setGait('');
       }
     }
@@ -597,21 +607,21 @@ export class Session {
    * Waits for the banner of a board that was just written; `hash` is the expected robot's, or null. Returns what is
    * wrong, or null.
    */
-  async waitForBanner(hash: string | null): Promise<string | null> {
+  async checkWrittenBoard(hash: string | null): Promise<string | null> {
     const { link } = this;
-    const hasGreeted = await this.greeting();
+    const hasSentBanner = await this.waitForBanner();
     if (this.link !== link) return null;
-    if (!hasGreeted) {
+    if (!hasSentBanner) {
       this.setBoardBanner(null);
-      this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
+      this.listener.onTrouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
       return 'it sends no banner of this firmware';
     }
     const boardHash = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
     return hash !== null && boardHash !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
-  private get simulated(): Simulated | null {
-    return this.link && 'advance' in this.link ? (this.link as Simulated) : null;
+  private get simulated(): SimulatedLink | null {
+    return this.link && 'advance' in this.link ? (this.link as SimulatedLink) : null;
   }
 
   /** Runs the simulation. */
@@ -625,7 +635,7 @@ export class Session {
         simulated?.advance(stepMs);
       }
     } catch (error) {
-      this.listener.trouble('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
+      this.listener.onTrouble('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
       throw error;
     }
   }
@@ -644,29 +654,29 @@ export class Session {
 
   private handleFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
     this.last = frame;
-    this.path.add(frame, seconds);
-    this.listener.frame(frame, widths, seconds);
+    this.walkedPath.add(frame, seconds);
+    this.listener.onFrame(frame, widths, seconds);
   }
 
   /**
    * Returns the displacement in the last complete cycle of the gait; null without a moving gait or a complete cycle.
    */
-  measured(): Measured | null {
+  measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    return gait?.moves ? this.path.measured((gait.period * FULL_PACE) / this.pace) : null;
+    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;
   }
 
   /**
    * The predictions that came with the page; null unless the robot, its floor and its servos are those of the file.
    */
-  get predicted(): Predictions | null {
+  get filePredictions(): Predictions | null {
     return this.toml === this.original && this.floorSetting === null && this.servos === 'own' ? this.predictions : null;
   }
 
   /** Puts the robot back to its start on the floor. */
-  home(): void {
+  returnToStart(): void {
     this.robot.restart();
-    this.path.clear();
+    this.walkedPath.clear();
   }
 
   /** Floor, mass, feet and leg drive: as set in the page, else as in robot.toml. */
@@ -678,19 +688,19 @@ export class Session {
   setFloor(floor: Floor | null): void {
     this.floorSetting = floor;
     this.robot.setFloor(this.floor);
-    this.keep();
+    this.storeChanges();
   }
 
   setServos(name: string): void {
     this.servos = name;
     this.robot.setServos(name);
-    this.keep();
+    this.storeChanges();
   }
 
   /** Closes or opens the contact of an input in the simulation. */
   setContact(name: string, isClosed: boolean): void {
-    if (isClosed) this.closed.add(name);
-    else this.closed.delete(name);
+    if (isClosed) this.closedInputs.add(name);
+    else this.closedInputs.delete(name);
     const input = this.description.inputs.find(([inputName]) => inputName === name);
     if (input) this.simulated?.setContact(input[1], isClosed);
   }
@@ -698,6 +708,6 @@ export class Session {
   setSupply(volts: number): void {
     this.volts = volts;
     this.simulated?.setSupply(volts);
-    this.keep();
+    this.storeChanges();
   }
 }

@@ -17,6 +17,7 @@ export function parseBanner(line: string): Banner | null {
 
 /** The answer to `status`. */
 export interface Status {
+  /** The robot's activity: a gait or a command, with hyphens for spaces. */
   gait: string;
   /** Pose, deg; null without a robot in the flash. */
   pose: Four<number> | null;
@@ -30,15 +31,16 @@ export interface Status {
   guard: string;
   fault: string;
   /** Number of late edges of pulses. */
-  late: number;
+  lateEdges: number;
   /** Number of lost bytes. */
-  lost: number;
+  lostBytes: number;
   /** Cause of the last start. */
-  reset: string;
+  resetCause: string;
   /** Number of resets since power-on. */
-  resets: number;
+  resetCount: number;
   /** Voltage of the board, V; null until it is measured. */
   vcc: number | null;
+  /** Pace, percent; null for a firmware that does not report it. */
   speed: number | null;
 }
 
@@ -62,17 +64,17 @@ export function parseStatus(line: string): Status | null {
     margin: numberOf('margin'),
     guard: pairs.get('guard') ?? '',
     fault: pairs.get('fault') ?? 'none',
-    late: numberOf('late') ?? 0,
-    lost: numberOf('rx_lost') ?? 0,
-    reset: pairs.get('reset') ?? '',
-    resets: numberOf('resets') ?? 0,
+    lateEdges: numberOf('late') ?? 0,
+    lostBytes: numberOf('rx_lost') ?? 0,
+    resetCause: pairs.get('reset') ?? '',
+    resetCount: numberOf('resets') ?? 0,
     vcc: numberOf('vcc'),
     speed: numberOf('speed'),
   };
 }
 
 /** Reads the pose of a line `# t=<frame> pose=...`. */
-export function reportedPose(line: string): Four<number> | null {
+export function parseReportedPose(line: string): Four<number> | null {
   const match = /^# t=\d+ pose=(\S+)/.exec(line);
   return match ? parseFourNumbers(match[1]) : null;
 }

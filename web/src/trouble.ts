@@ -7,7 +7,7 @@
  */
 export type Cause = 'robot' | 'own' | 'line' | 'port' | 'board' | 'other' | 'fault' | 'simulation' | 'page';
 
-/** The message of anything thrown. */
+/** Returns the message of anything that was thrown. */
 export function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }

@@ -1,15 +1,16 @@
-// The robot's path in the last seconds, from which the page measures the displacement of a cycle.
+// The robot's path in the last seconds, from which the page computes the displacement of a cycle.
 import { type Frame, Robot } from './robot';
 
-/** Seconds of path that are kept: enough for a cycle of 3 s at a tenth of its pace. */
+/** Duration of the path that is kept: enough for a cycle of 3 s at a tenth of its pace. */
 const KEPT_SECONDS = 31;
+/** Duration of a frame until the first one is added. */
 const FRAME_SECONDS = 0.02;
 
 /**
- * The displacement in the last cycle: mm forward and left in the frame of the cycle's start, turn in deg; and the
- * largest lag, deg.
+ * The displacement in the last cycle, in the frame of the cycle's start: `forward` and `left` in mm, `turn` in deg;
+ * and the largest lag of a servo in deg.
  */
-export interface Measured {
+export interface CycleDisplacement {
   forward: number;
   left: number;
   turn: number;
@@ -17,31 +18,31 @@ export interface Measured {
 }
 
 export class WalkedPath {
-  private places: { time: number; frame: Frame }[] = [];
+  private frames: { time: number; frame: Frame }[] = [];
   private time = 0;
-  private step = FRAME_SECONDS;
+  private frameSeconds = FRAME_SECONDS;
 
   /** Forgets the path, since the following frames belong to another gait, pace or robot. */
   clear(): void {
-    this.places = [];
+    this.frames = [];
   }
 
   /** Adds a frame that lasts `seconds`. */
   add(frame: Frame, seconds: number): void {
     this.time += seconds;
-    this.step = seconds;
-    this.places.push({ time: this.time, frame });
-    while (this.places[0].time < this.time - KEPT_SECONDS) this.places.shift();
+    this.frameSeconds = seconds;
+    this.frames.push({ time: this.time, frame });
+    while (this.frames[0].time < this.time - KEPT_SECONDS) this.frames.shift();
   }
 
   /** Returns the displacement in the last `cycleSeconds` seconds; null if the path is shorter. */
-  measured(cycleSeconds: number): Measured | null {
-    const lastPlace = this.places.at(-1);
-    if (!lastPlace) return null;
-    // The nearest known frame: a real board does not report every frame.
-    const startIndex = this.places.findLastIndex(({ time }) => time <= lastPlace.time - cycleSeconds + this.step / 2);
+  displacementIn(cycleSeconds: number): CycleDisplacement | null {
+    const lastFrame = this.frames.at(-1);
+    if (!lastFrame) return null;
+    // The cycle starts at the nearest known frame, since a real board does not report every frame.
+    const startIndex = this.frames.findLastIndex(({ time }) => time <= lastFrame.time - cycleSeconds + this.frameSeconds / 2);
     if (startIndex < 0) return null;
-    const lags = this.places.slice(startIndex + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    return { ...Robot.between(this.places[startIndex].frame.place, lastPlace.frame.place), lag: Math.max(0, ...lags) };
+    const lags = this.frames.slice(startIndex + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
+    return { ...Robot.between(this.frames[startIndex].frame.place, lastFrame.frame.place), lag: Math.max(0, ...lags) };
   }
 }

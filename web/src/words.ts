@@ -1,5 +1,5 @@
 // The console's words that the page sends or waits for. They must be in the core's list,
-// crates/core/src/console/word.rs: a page with a word that is not in the list reports it when it begins.
+// crates/core/src/console/word.rs: when the page starts, it reports each of its words that is not in that list.
 
 export const WORDS = {
   stop: 'stop',
@@ -22,16 +22,16 @@ export const WORDS = {
   deadman: 'deadman',
 } as const;
 
-/** Gaits that the page starts by name: every robot has `stand`, and `walk` is preferred. */
+/** Gaits that the page starts by name: every robot has `stand`, and the page prefers `walk` to other gaits. */
 export const GAITS = { stand: 'stand', walk: 'walk' } as const;
 
 /** The line at the end of a gait with a count, and of a routine. */
-export const DONE = '# done';
+export const DONE_LINE = '# done';
 
-/** The firmware's line after a reset if nothing was ever saved. */
-export const NOTHING_SAVED = '# calibration: none is saved';
+/** The firmware's line after a reset if no calibration was ever saved. */
+export const NOTHING_SAVED_LINE = '# calibration: none is saved';
 
-/** Returns the words of the page and of its buttons that are not among the core's words. */
-export function unknownWords(buttons: string[], core: string[]): string[] {
-  return [...new Set([...Object.values(WORDS), ...buttons])].filter((word) => !core.includes(word));
+/** Returns the words of the page and of its buttons that are missing in the core's list. */
+export function unknownWords(buttons: string[], coreWords: string[]): string[] {
+  return [...new Set([...Object.values(WORDS), ...buttons])].filter((word) => !coreWords.includes(word));
 }

@@ -166,7 +166,7 @@ test('a hidden tag is named while the camera is on, and no figure is computed', 
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(1000);
   await page.getByRole('button', { name: 'Done' }).click();
-  await waitForMessage(page, 'said', /tag 2 of the floor is not seen whole/);
+  await waitForMessage(page, 'said', /tag 2 of the floor is not completely visible/);
   assert.ok(!(await page.locator('#measure-results').isVisible()));
 });
 

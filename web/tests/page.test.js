@@ -54,11 +54,11 @@ test('a gait started while a status is pending is not reverted', async () => {
   await page.evaluate(() => {
     const { lizard } = window;
     const { listener } = lizard;
-    const originalDoing = listener.doing.bind(listener);
+    const originalOnActivity = listener.onActivity.bind(listener);
     window.done = [];
-    listener.doing = (gait) => {
+    listener.onActivity = (gait) => {
       window.done.push(gait);
-      originalDoing(gait);
+      originalOnActivity(gait);
     };
     void lizard.status();
     void lizard.ask('walk');

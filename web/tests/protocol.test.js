@@ -58,7 +58,7 @@ class World {
       ask: (line) => this.ask(line),
       now: () => this.seconds,
       wait: (seconds) => this.wait(seconds),
-      ways: () => WAYS,
+      predictions: () => WAYS,
       putBack: () => this.putBack(),
       say: () => {},
     });
@@ -70,13 +70,13 @@ class World {
 
   get back() {
     const { x, y, heading } = this.place;
-    const [ahead, aside] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
-    return { ahead, aside, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
+    const [ahead, left] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
+    return { ahead, left, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
   }
 
   /** The robot acts at once, and its answer comes later. */
   async ask(line) {
-    this.protocol.sent(line);
+    this.protocol.noteSent(line);
     if (this.isCut) this.late.push(line);
     else this.lines.push(line);
     const [, gait = line, count] = /^(.+?) (\d+)$/.exec(line) ?? [];
@@ -116,7 +116,7 @@ class World {
     if (this.phase < this.left - 1e-9) return;
     this.activity = 'stop';
     if (this.isCut) return;
-    this.protocol.received('# done');
+    this.protocol.noteReceived('# done');
     this.protocol.setActivity('stop');
   }
 

@@ -72,8 +72,8 @@ test('a joint at an invalid place is refused during the drag, and goes to the ne
   await drag(page, 'point of the head', [0, -40]);
   await waitForMessage(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
   await page.mouse.up();
-  await waitForMessage(page, /(the nearest that does|It stays as it was)\.$/);
-  const expectedMm = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await readMessage(page))[1]);
+  await waitForMessage(page, /(the nearest valid value|It stays as it was)\.$/);
+  const expectedMm = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest valid value\.$/.exec(await readMessage(page))[1]);
   await page.waitForFunction((expectedMm) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === expectedMm, expectedMm);
 });
 

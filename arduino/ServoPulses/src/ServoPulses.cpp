@@ -122,8 +122,8 @@ Servo::Servo() {
 uint8_t Servo::attach(int pin, int low, int high) {
   if (number == INVALID_SERVO || pin < 0 || pin >= NUM_DIGITAL_PINS) return INVALID_SERVO;
   detach();
-  min = constrain(low, 63, int(LONGEST / 16));
-  max = constrain(high, 63, int(LONGEST / 16));
+  minUs = constrain(low, 63, int(LONGEST / 16));
+  maxUs = constrain(high, 63, int(LONGEST / 16));
   volatile uint8_t *pinPort = portOutputRegister(digitalPinToPort(pin));
   uint8_t pinMask = digitalPinToBitMask(pin);
   bool hasPulse;
@@ -131,11 +131,11 @@ uint8_t Servo::attach(int pin, int low, int high) {
   // A pulse that was under way at `detach` keeps its width.
   if (!hasPulse) digitalWrite(pin, LOW);
   pinMode(pin, OUTPUT);
-  writeCycles(cycles);
+  writeCycles(widthCycles);
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     ports[number] = pinPort;
     masks[number] = pinMask;
-    widths[number] = cycles;
+    widths[number] = widthCycles;
     start();
   }
   return number;
@@ -148,21 +148,21 @@ void Servo::detach() {
 bool Servo::attached() const { return number != INVALID_SERVO && widths[number]; }
 
 void Servo::write(int value) {
-  if (value < MIN_PULSE_WIDTH) value = map(constrain(value, 0, 180), 0, 180, min, max);
+  if (value < MIN_PULSE_WIDTH) value = map(constrain(value, 0, 180), 0, 180, minUs, maxUs);
   writeMicroseconds(value);
 }
 
-void Servo::writeMicroseconds(int us) { writeCycles(16u * constrain(us, (int)min, (int)max)); }
+void Servo::writeMicroseconds(int us) { writeCycles(16u * constrain(us, (int)minUs, (int)maxUs)); }
 
 void Servo::writeCycles(uint16_t value) {
-  cycles = constrain(value, 16 * min, 16 * max);
-  if (attached()) setWidth(number, cycles);
+  widthCycles = constrain(value, 16 * minUs, 16 * maxUs);
+  if (attached()) setWidth(number, widthCycles);
 }
 
-int Servo::readMicroseconds() const { return cycles / 16; }
+int Servo::readMicroseconds() const { return widthCycles / 16; }
 
 // One more, since `write` rounds down.
-int Servo::read() const { return map(readMicroseconds() + 1, min, max, 0, 180); }
+int Servo::read() const { return map(readMicroseconds() + 1, minUs, maxUs, 0, 180); }
 
 uint8_t Servo::frames() { return framesSoFar; }
 

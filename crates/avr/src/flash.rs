@@ -7,9 +7,9 @@
 //! machine it is an ordinary reference, so the same code runs there, even with tables
 //! made at run time.
 //!
-//! Reads are total: an index past the end reads the last element, so that there is no
-//! panic path. (The crate avr-progmem does the same job, but it needs a nightly compiler
-//! on the host, too, and panics on a bad index.)
+//! A read never fails: an index past the end reads the last element, so the program needs
+//! no code for a panic. (The crate avr-progmem also keeps constants in flash, but it needs
+//! a nightly compiler on the host, too, and panics on a bad index.)
 
 use core::marker::PhantomData;
 #[cfg(target_arch = "avr")]
@@ -18,7 +18,7 @@ use core::ptr::NonNull;
 
 /// The address of a constant in flash; on any other machine, an ordinary reference.
 pub struct Flash<'a, T: ?Sized> {
-    at: NonNull<T>,
+    address: NonNull<T>,
     lifetime: PhantomData<&'a T>,
 }
 
@@ -30,7 +30,7 @@ impl<T: ?Sized> Clone for Flash<'_, T> {
 
 impl<T: ?Sized> Copy for Flash<'_, T> {}
 
-// SAFETY: what `at` points to is never written while a `Flash` of it exists, so
+// SAFETY: what `address` points to is never written while a `Flash` of it exists, so
 // any number of readers on any number of threads see the same value.
 unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 // SAFETY: as above.
@@ -47,7 +47,7 @@ impl<T: ?Sized> Flash<'_, T> {
         Self {
             // SAFETY: there is a value at `address`, and none is at address 0: in flash that
             // is where the interrupt vectors are.
-            at: unsafe { NonNull::new_unchecked(address.cast_mut()) },
+            address: unsafe { NonNull::new_unchecked(address.cast_mut()) },
             lifetime: PhantomData,
         }
     }
@@ -68,8 +68,8 @@ impl<T: Copy> Flash<'_, T> {
     #[cfg(not(target_arch = "avr"))]
     #[inline]
     pub fn load(self) -> T {
-        // SAFETY: `new` vouches for a value at `self.at`, and it is `Copy`.
-        unsafe { self.at.as_ptr().read_unaligned() }
+        // SAFETY: `new` vouches for a value at `self.address`, and it is `Copy`.
+        unsafe { self.address.as_ptr().read_unaligned() }
     }
 
     /// Reads the constant from flash.
@@ -78,20 +78,20 @@ impl<T: Copy> Flash<'_, T> {
     pub fn load(self) -> T {
         // One and two bytes go through registers, the rest through memory.
         if size_of::<T>() == 1 {
-            // SAFETY: `new` vouches for the byte at `self.at`; any copy of a
+            // SAFETY: `new` vouches for the byte at `self.address`; any copy of a
             // `Copy` value of that size is such a value.
-            return unsafe { transmute_copy(&fetch_byte(self.at.as_ptr().cast())) };
+            return unsafe { transmute_copy(&fetch_byte(self.address.as_ptr().cast())) };
         }
         if size_of::<T>() == 2 {
             // SAFETY: as above, with two bytes.
-            return unsafe { transmute_copy(&fetch_word(self.at.as_ptr().cast())) };
+            return unsafe { transmute_copy(&fetch_word(self.address.as_ptr().cast())) };
         }
         let mut copy = MaybeUninit::<T>::uninit();
         // SAFETY: `new` vouches for `size_of::<T>()` readable bytes, `copy`
         // has room for as many, and a bitwise copy of a `Copy` value is a valid value.
         unsafe {
-            fetch(
-                self.at.as_ptr().cast(),
+            fetch_bytes(
+                self.address.as_ptr().cast(),
                 copy.as_mut_ptr().cast(),
                 size_of::<T>(),
             );
@@ -105,7 +105,7 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
     #[inline]
     pub const fn as_slice(self) -> Flash<'a, [T]> {
         // SAFETY: the same elements, of the same lifetime.
-        unsafe { Flash::new(self.at.as_ptr() as *const [T]) }
+        unsafe { Flash::new(self.address.as_ptr() as *const [T]) }
     }
 
     /// The element at `index`, still in flash; past the end, the last one.
@@ -113,8 +113,8 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
     pub const fn at(self, index: usize) -> Flash<'a, T> {
         const { assert!(N > 0) };
         let index = if index < N { index } else { N - 1 };
-        // SAFETY: `index` is below the length of the array at `self.at`.
-        unsafe { Flash::new(self.at.as_ptr().cast::<T>().add(index)) }
+        // SAFETY: `index` is below the length of the array at `self.address`.
+        unsafe { Flash::new(self.address.as_ptr().cast::<T>().add(index)) }
     }
 }
 
@@ -122,7 +122,7 @@ impl<'a, T> Flash<'a, [T]> {
     /// The number of elements.
     #[inline]
     pub const fn len(self) -> usize {
-        self.at.len()
+        self.address.len()
     }
 
     /// True if the slice is empty.
@@ -144,38 +144,38 @@ impl<'a, T> Flash<'a, [T]> {
         } else {
             last_index
         };
-        // SAFETY: `index` is below the length of the slice at `self.at`.
-        Some(unsafe { Flash::new(self.at.as_ptr().cast::<T>().add(index)) })
+        // SAFETY: `index` is below the length of the slice at `self.address`.
+        Some(unsafe { Flash::new(self.address.as_ptr().cast::<T>().add(index)) })
     }
 }
 
 impl<'a, T> Flash<'a, [T]> {
     /// A slice without elements.
     pub const EMPTY: Self = Self {
-        at: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
+        address: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
         lifetime: PhantomData,
     };
 
-    /// The `length` elements from `start` on; `None` if there are fewer.
+    /// The `length` elements from index `start` on; `None` if there are fewer.
     #[inline]
-    pub const fn part(self, start: usize, length: usize) -> Option<Flash<'a, [T]>> {
+    pub const fn subslice(self, start: usize, length: usize) -> Option<Flash<'a, [T]>> {
         if start > self.len() || length > self.len() - start {
             return None;
         }
-        // SAFETY: the elements are among those of the slice at `self.at`.
-        let first = unsafe { self.at.as_ptr().cast::<T>().add(start) };
+        // SAFETY: `start` is within the slice at `self.address`, or at its end.
+        let first = unsafe { self.address.as_ptr().cast::<T>().add(start) };
         let elements = core::ptr::slice_from_raw_parts(first, length);
-        // SAFETY: as above, of the same lifetime.
+        // SAFETY: the elements are among those of the slice, and of the same lifetime.
         Some(unsafe { Flash::new(elements) })
     }
 }
 
 impl<'a> Flash<'a, [u8]> {
-    /// Reinterprets the bytes as values of a [`Plain`] type; drops an incomplete value at the end.
+    /// Reinterprets the bytes as values of a [`Plain`] type; omits an incomplete value at the end.
     #[inline]
     pub const fn cast<T: Plain>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(
-            self.at.as_ptr().cast_const().cast::<T>(),
+            self.address.as_ptr().cast_const().cast::<T>(),
             self.len() / const { require_nonzero(size_of::<T>()) },
         );
         // SAFETY: this many values fit in the bytes, any bytes are a value of a `Plain`
@@ -183,14 +183,14 @@ impl<'a> Flash<'a, [u8]> {
         unsafe { Flash::new(values) }
     }
 
-    /// Reads the value whose bytes begin at `offset`; all zeros if it is not completely inside.
+    /// Reads the value whose bytes begin at `offset`; a value of zeros if it is not completely within the slice.
     #[inline]
     pub fn read<T: Plain>(self, offset: usize) -> T {
-        match self.part(offset, size_of::<T>()) {
+        match self.subslice(offset, size_of::<T>()) {
             Some(bytes) => {
-                // SAFETY: the part has as many bytes as a value, and any bytes are a
+                // SAFETY: there are as many bytes as a value has, and any bytes are a
                 // value.
-                unsafe { Flash::new(bytes.at.as_ptr().cast_const().cast::<T>()) }.load()
+                unsafe { Flash::new(bytes.address.as_ptr().cast_const().cast::<T>()) }.load()
             }
             // SAFETY: zeros are a value, too.
             None => unsafe { core::mem::zeroed() },
@@ -216,7 +216,7 @@ pub unsafe trait Plain: Copy {
         unsafe { core::slice::from_raw_parts((&raw const *self).cast(), size_of::<Self>()) }
     }
 }
-// SAFETY: integers.
+// SAFETY: any bytes are a valid integer, and an integer has no padding.
 unsafe impl Plain for u8 {}
 // SAFETY: as above.
 unsafe impl Plain for i8 {}
@@ -242,9 +242,9 @@ const _: () = assert!(cfg!(target_endian = "little"));
 ///     /// A point.
 ///     #[derive(Debug, PartialEq)]
 ///     pub struct Point {
-///         /// To the right.
+///         /// To the right, mm.
 ///         pub x: i16,
-///         /// Ahead.
+///         /// Ahead, mm.
 ///         pub y: i16,
 ///     }
 /// }
@@ -273,10 +273,10 @@ macro_rules! plain {
         #[allow(unsafe_code)]
         unsafe impl $crate::Plain for $name {}
         const _: () = {
-            const fn plain<T: $crate::Plain>() -> usize {
+            const fn plain_size<T: $crate::Plain>() -> usize {
                 size_of::<T>()
             }
-            assert!(size_of::<$name>() == 0 $(+ plain::<$type>())*, "padding");
+            assert!(size_of::<$name>() == 0 $(+ plain_size::<$type>())*, "the struct has padding");
         };
     };
 }
@@ -322,7 +322,7 @@ unsafe fn fetch_word(source: *const u8) -> u16 {
 
 #[cfg(target_arch = "avr")]
 #[inline(never)]
-unsafe fn fetch(source: *const u8, destination: *mut u8, count: usize) {
+unsafe fn fetch_bytes(source: *const u8, destination: *mut u8, count: usize) {
     let mut source = source;
     for index in 0..count {
         // SAFETY: the caller vouches for `count` bytes of flash at `source` and
@@ -339,9 +339,9 @@ unsafe fn fetch(source: *const u8, destination: *mut u8, count: usize) {
 /// ```
 /// lizard_avr::flash! {
 ///     /// Powers of two.
-///     pub const POWERS: [u16; 4] = [1, 2, 4, 8];
+///     pub const POWERS_OF_TWO: [u16; 4] = [1, 2, 4, 8];
 /// }
-/// assert_eq!(POWERS.at(2).load(), 4);
+/// assert_eq!(POWERS_OF_TWO.at(2).load(), 4);
 /// ```
 #[macro_export]
 macro_rules! flash {

@@ -1,4 +1,4 @@
-//! AVR features that Rust does not reach by itself.
+//! Access to AVR features that plain Rust does not offer.
 //!
 //! The firmware's core is plain Rust without `unsafe`, so that it runs and is tested on
 //! any machine. Two features of this processor need more than that: its second address
@@ -21,4 +21,4 @@ mod region;
 
 pub use flash::{Flash, Plain};
 pub use multiply::{mul, mul_unsigned};
-pub use region::{Region, SPACE, START};
+pub use region::{Region, SPACE_BYTES, START_ADDRESS};

@@ -1,23 +1,23 @@
-//! Products of 16-bit factors, in full.
+//! Full 32-bit products of 16-bit factors.
 
-/// `a * b` of unsigned factors, without losing the upper half.
+/// Returns the full product of two unsigned factors.
 #[cfg(not(target_arch = "avr"))]
 pub const fn mul_unsigned(a: u16, b: u16) -> u32 {
     a as u32 * b as u32
 }
 
-/// `a * b` of signed factors, without losing the upper half.
+/// Returns the full product of two signed factors.
 #[cfg(not(target_arch = "avr"))]
 pub const fn mul(a: i16, b: i16) -> i32 {
     a as i32 * b as i32
 }
 
-/// Multiplies two 16-bit factors, read as unsigned, into a 32-bit product. Adds four products of bytes, each shifted
-/// to its position; then the `$more` instructions may correct the halves `low` and `high`. Takes half the cycles of
-/// the compiler's call to a 32 by 32 bit multiplication.
+/// Computes the 32-bit product of two 16-bit factors, read as unsigned: adds four products of bytes, each shifted to
+/// its position. The instructions `$correction`, if any, then correct the halves `low` and `high`. Takes half the
+/// cycles of the library routine that the compiler calls, which multiplies 32 by 32 bits.
 #[cfg(target_arch = "avr")]
 macro_rules! product {
-    ($a:expr, $b:expr $(, $more:literal)*) => {{
+    ($a:expr, $b:expr $(, $correction:literal)*) => {{
         let low: u16;
         let high: u16;
         // SAFETY: arithmetic on registers only; r1 is zero again at the end, as the calling convention
@@ -38,7 +38,7 @@ macro_rules! product {
                 "adc {high:l}, r1",
                 "adc {high:h}, {zero}",
                 "clr r1",
-                $($more,)*
+                $($correction,)*
                 a = in(reg_pair) $a,
                 b = in(reg_pair) $b,
                 low = out(reg_pair) low,
@@ -51,15 +51,15 @@ macro_rules! product {
     }};
 }
 
-/// `a * b` of unsigned factors, without losing the upper half.
+/// Returns the full product of two unsigned factors.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul_unsigned(a: u16, b: u16) -> u32 {
     product!(a, b)
 }
 
-/// `a * b` of signed factors, without losing the upper half. A negative factor read as unsigned is 2^16 too
-/// large, so the other factor is subtracted from the upper half.
+/// Returns the full product of two signed factors. A negative factor read as unsigned is 2^16 too large, so the other
+/// factor is subtracted from the upper half.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul(a: i16, b: i16) -> i32 {

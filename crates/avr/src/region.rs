@@ -7,21 +7,21 @@
 
 use crate::{Flash, Plain};
 
-/// True if avr-gcc links the program without tools/linker, which makes the code shorter: without it the region begins
-/// later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
-const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
+/// True if avr-gcc links the program without tools/linker. That linker makes the code shorter, so without it the region
+/// begins later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
+const IS_PLAIN_LINK: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(value) => matches!(value.as_bytes(), b"1"),
     None => false,
 };
 
-/// The region's first address: before it there is room for 27.5 KiB of code, in a plain build for 29.9 KiB.
-pub const START: u16 = if IS_PLAIN { 0x7780 } else { 0x6e00 };
+/// The region's first address. Before it there is room for 27.5 KiB of code, or for 29.9 KiB if avr-gcc links.
+pub const START_ADDRESS: u16 = if IS_PLAIN_LINK { 0x7780 } else { 0x6e00 };
 
 /// The address after the region: where the boot loader of an Arduino UNO begins, or the flash ends.
-const END: u16 = if IS_PLAIN { 0x8000 } else { 0x7e00 };
+const END_ADDRESS: u16 = if IS_PLAIN_LINK { 0x8000 } else { 0x7e00 };
 
 /// The size of the region in bytes.
-pub const SPACE: u16 = END - START;
+pub const SPACE_BYTES: u16 = END_ADDRESS - START_ADDRESS;
 
 /// The region of flash that holds the robot's section.
 #[derive(Clone, Copy, Debug)]
@@ -47,34 +47,34 @@ impl<'a> Region<'a> {
         self.bytes
     }
 
-    /// The region's size in bytes, at most [`SPACE`].
+    /// The region's size in bytes, at most [`SPACE_BYTES`].
     pub const fn size(self) -> u16 {
-        let len = self.bytes.len();
-        if len > SPACE as usize {
-            SPACE
+        let length = self.bytes.len();
+        if length > SPACE_BYTES as usize {
+            SPACE_BYTES
         } else {
-            len as u16
+            length as u16
         }
     }
 
     /// The region's first `length` bytes; all of its bytes if it has fewer.
-    pub fn first(self, length: u16) -> Self {
+    pub fn prefix(self, length: u16) -> Self {
         Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
     }
 
-    /// Reads the value whose bytes begin at `offset`; zeros if it is not completely inside. Debug
-    /// builds panic in that case, unless the region is empty.
+    /// Reads the value whose bytes begin at `offset`; a value of zeros if it is not completely within the region.
+    /// Debug builds panic in that case, unless the region is empty.
     pub fn read<T: Plain>(self, offset: u16) -> T {
         self.assert_has(offset, size_of::<T>());
         Flash::from(self.bytes).read(offset.into())
     }
 
-    /// Returns `count` values whose bytes begin at `offset`; empty if they are not completely inside. Debug builds
-    /// panic in that case, unless the region is empty.
+    /// Returns `count` values whose bytes begin at `offset`; an empty slice if they are not completely within the
+    /// region. Debug builds panic in that case, unless the region is empty.
     pub fn values<T: Plain>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
         self.assert_has(offset, length);
-        let bytes = Flash::from(self.bytes).part(offset.into(), length);
+        let bytes = Flash::from(self.bytes).subslice(offset.into(), length);
         bytes.map_or(Flash::EMPTY, Flash::cast)
     }
 
@@ -89,7 +89,7 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region with which a program begins: on the AVR the only one, that of the robot's section.
+    /// The region with which a program begins: on the AVR the only region, that of the robot's section.
     pub const INITIAL: Self = Self {
         lifetime: core::marker::PhantomData,
     };
@@ -97,20 +97,21 @@ impl<'a> Region<'a> {
     /// The region's size in bytes.
     #[inline(always)]
     pub const fn size(self) -> u16 {
-        SPACE
+        SPACE_BYTES
     }
 
     /// The region's first `length` bytes. The length is not stored, since all offsets into a
     /// section have been checked.
     #[inline(always)]
-    pub const fn first(self, _length: u16) -> Self {
+    pub const fn prefix(self, _length: u16) -> Self {
         self
     }
 
     /// Reads the value whose bytes begin at `offset`, without a check of the bounds.
     #[inline(always)]
     pub fn read<T: Plain>(self, offset: u16) -> T {
-        let pointer = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(offset)));
+        let pointer =
+            core::ptr::with_exposed_provenance(usize::from(START_ADDRESS.wrapping_add(offset)));
         // SAFETY: every address of flash can be read, and any bytes are a value; the
         // program does not write its flash.
         unsafe { Flash::new(pointer) }.load()
@@ -119,7 +120,8 @@ impl<'a> Region<'a> {
     /// Returns `count` values whose bytes begin at `offset`, without a check of the bounds.
     #[inline(always)]
     pub fn values<T: Plain>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
-        let pointer = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(offset)));
+        let pointer =
+            core::ptr::with_exposed_provenance(usize::from(START_ADDRESS.wrapping_add(offset)));
         // SAFETY: every address of flash can be read, and any bytes are values; the
         // program does not write its flash.
         unsafe { Flash::new(core::ptr::slice_from_raw_parts(pointer, usize::from(count))) }

@@ -10,7 +10,7 @@ use crate::console::{BadReply, Console, ConsoleError, command};
 /// Fails if there is no answer, or one that is not understood.
 pub async fn read<C: Console>(console: &mut C) -> Result<Calibration, ConsoleError<C::Error>> {
     let reply = command(console, "cal").await?;
-    Calibration::from_lines(&reply.notes).ok_or_else(|| {
+    Calibration::from_cal_answer(&reply.notes).ok_or_else(|| {
         let (line, answer) = ("cal".to_owned(), reply.notes.join(" / "));
         BadReply::Unclear { line, answer }.into()
     })
@@ -31,7 +31,7 @@ pub async fn send<C: Console>(
         match command(console, &line).await {
             Ok(_) => {}
             Err(error) if error.is_refusal() => {
-                if transfer.refuse() {
+                if transfer.record_refusal() {
                     refusal = Some(error);
                 }
             }
@@ -80,5 +80,5 @@ async fn exchange<C: Console>(
     calibration: &Calibration,
 ) -> Result<bool, ConsoleError<C::Error>> {
     send(console, calibration).await?;
-    Ok(read(console).await?.is_same(calibration))
+    Ok(read(console).await?.is_equivalent_to(calibration))
 }

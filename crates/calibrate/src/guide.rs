@@ -62,7 +62,7 @@ impl<C: Console> Guide<C> {
 
     /// True if the active settings are not saved, or may not be.
     pub fn is_changed(&self) -> bool {
-        self.is_unsure || !self.active.is_same(&self.saved)
+        self.is_unsure || !self.active.is_equivalent_to(&self.saved)
     }
 
     /// Makes the robot stand; returns its neutral angles.
@@ -251,7 +251,7 @@ impl<C: Console> Guide<C> {
                 self.saved = unanswered.clone();
             }
         }
-        let is_changed = !self.active.is_same(&self.saved);
+        let is_changed = !self.active.is_equivalent_to(&self.saved);
         if is_changed || self.is_unsure {
             self.is_unsure = true;
             send(&mut self.console, &self.saved).await?;
@@ -322,7 +322,7 @@ impl<C: Console> Guide<C> {
 /// Makes a robot load the settings that it has saved; returns true if they are these.
 async fn has_saved<C: Console>(console: &mut C, calibration: &Calibration) -> Result<bool, C> {
     match command(console, "load").await {
-        Ok(_) => Ok(read(console).await?.is_same(calibration)),
+        Ok(_) => Ok(read(console).await?.is_equivalent_to(calibration)),
         Err(error) if error.is_refusal() => Ok(false),
         Err(error) => Err(error),
     }

@@ -84,8 +84,8 @@ fn settings_that_were_sent_are_read_back() {
     calibration.deadman = 1500;
     block_on(send(&mut robot, &calibration)).expect("it takes them");
     let read_back = robot.calibration();
-    assert!(calibration.is_same(&read_back), "{read_back:?}");
-    assert!(!calibration.is_same(&factory_settings()));
+    assert!(calibration.is_equivalent_to(&read_back), "{read_back:?}");
+    assert!(!calibration.is_equivalent_to(&factory_settings()));
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
     for calibration in [&trimmed, &scaled, &trimmed] {
         block_on(send(&mut robot, calibration)).expect("it takes them");
         let read_back = robot.calibration();
-        assert!(calibration.is_same(&read_back), "{read_back:?}");
+        assert!(calibration.is_equivalent_to(&read_back), "{read_back:?}");
     }
 }
 
@@ -121,8 +121,8 @@ fn settings_that_do_not_suit_the_gaits_are_refused_and_the_old_ones_come_back() 
     );
     let mut expected = factory_settings();
     expected.servos[2].trim = 1.5;
-    assert!(guide.console().calibration().is_same(&expected));
-    assert!(guide.calibration().is_same(&expected));
+    assert!(guide.console().calibration().is_equivalent_to(&expected));
+    assert!(guide.calibration().is_equivalent_to(&expected));
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn a_sign_or_a_scale_whose_trim_is_refused_is_taken_back() {
 fn a_scale_is_measured_by_a_turn_as_large_as_the_robot_accepts() {
     let mut guide = block_on(Guide::begin(Direct::of(PAPER))).expect("it answers");
     let told = block_on(guide.turn(0, &SCALE_TURNS)).expect("one is accepted");
-    let pose = guide.console().0.status("pose");
+    let pose = guide.console().0.status_value("pose");
     let a1: f64 = pose
         .split(',')
         .next()
@@ -192,7 +192,7 @@ fn the_test_walk_is_walk_or_the_first_gait_that_the_robot_has() {
         let mut guide = block_on(Guide::begin(Direct::of(&text))).expect("it answers");
         let gait = block_on(guide.walk()).expect("it is accepted");
         assert_eq!(gait.as_deref(), expected);
-        let gait = guide.console().0.status("gait");
+        let gait = guide.console().0.status_value("gait");
         assert_eq!(gait, expected.unwrap_or("stand"));
     }
 }
@@ -286,11 +286,14 @@ fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_what_the_robot_has(
             // Leaving restores what is stored, so a reset changes nothing.
             block_on(guide.restore()).expect("it answers again");
             let active = guide.console().robot.calibration();
-            assert!(active.is_same(guide.calibration()), "{index}, {lost:?}");
+            assert!(
+                active.is_equivalent_to(guide.calibration()),
+                "{index}, {lost:?}"
+            );
             assert!(!guide.is_changed(), "{index}, {lost:?}");
             let stored_settings = stored(&mut guide);
             assert!(
-                stored_settings.is_same(&active),
+                stored_settings.is_equivalent_to(&active),
                 "{index}, {lost:?}: {stored_settings:?}, {active:?}"
             );
 
@@ -299,10 +302,13 @@ fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_what_the_robot_has(
             block_on(guide.save()).expect("it answers again");
             let shown = guide.calibration().clone();
             assert!(
-                shown.is_same(&guide.console().robot.calibration()),
+                shown.is_equivalent_to(&guide.console().robot.calibration()),
                 "{index}, {lost:?}"
             );
-            assert!(shown.is_same(&stored(&mut guide)), "{index}, {lost:?}");
+            assert!(
+                shown.is_equivalent_to(&stored(&mut guide)),
+                "{index}, {lost:?}"
+            );
         }
     }
 }
@@ -406,7 +412,7 @@ fn settings_that_are_read_back_differently_are_not_accepted() {
     let error = block_on(guide.replace(&calibration)).expect_err("one is missing");
     assert_eq!(error, SendError::Differs);
     let active = guide.console().0.calibration();
-    assert!(active.is_same(&factory_settings()), "{active:?}");
+    assert!(active.is_equivalent_to(&factory_settings()), "{active:?}");
 }
 
 /// A connection that loses some lines, or their answers, and remembers what the robot has saved.
@@ -501,7 +507,7 @@ proptest! {
         let shown = guide.calibration().clone();
         let Lossy { robot, saved, .. } = guide.console();
         let active = robot.calibration();
-        prop_assert!(active.is_same(&shown), "{active:?}, shown {shown:?}");
-        prop_assert!(active.is_same(saved), "{active:?}, saved {saved:?}");
+        prop_assert!(active.is_equivalent_to(&shown), "{active:?}, shown {shown:?}");
+        prop_assert!(active.is_equivalent_to(saved), "{active:?}, saved {saved:?}");
     }
 }

@@ -1,14 +1,13 @@
-//! The drive of a leg from its servo's link: `[leg.drive]` in robot.toml.
+//! The drive of a leg by its servo, through a strut: `[leg.drive]` in robot.toml.
 //!
-//! Parts, bill, contact model, twin and page all use this table. With a rigid strut, a bar with two holes, the
-//! leg moves exactly with its servo. With a strut that has a slot and a spring, the leg moves exactly with its servo
-//! while the load is below the spring's pull; under a larger load the strut yields in one direction. With either
-//! strut, pins and gears have play, within which nothing drives the leg.
+//! A rigid strut is a bar with two holes: the leg moves exactly with its servo. A strut with a slot and a spring
+//! moves the leg exactly with its servo as long as the load is below the spring's pull; under a larger load the
+//! strut yields in one direction. With either strut, pins and gears have play, within which nothing drives the leg.
 
-use crate::lag_energy::{LagEnergy, Side};
+use crate::lag_energy::{LagEnergy, Resistance};
 use crate::strut::Strut;
 
-/// The drive of the legs; all four are equal.
+/// The drive of each leg; all four are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// Kind of the connection.
@@ -28,7 +27,7 @@ pub enum DriveKind {
 
 impl DriveKind {
     /// Names of the kinds in robot.toml.
-    pub const WORDS: [&str; 2] = ["rigid", "strut"];
+    pub const NAMES: [&str; 2] = ["rigid", "strut"];
 }
 
 impl Drive {
@@ -43,7 +42,7 @@ impl Drive {
         self.kind != DriveKind::Rigid || self.play > 0.0
     }
 
-    /// The slotted strut; `None` for another kind.
+    /// The slotted strut; `None` for a rigid one.
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
             DriveKind::Strut(strut) => Some(strut),
@@ -52,14 +51,14 @@ impl Drive {
     }
 
     /// Name of the kind in robot.toml.
-    pub fn word(&self) -> &'static str {
+    pub fn kind_name(&self) -> &'static str {
         match self.kind {
-            DriveKind::Rigid => DriveKind::WORDS[0],
-            DriveKind::Strut(_) => DriveKind::WORDS[1],
+            DriveKind::Rigid => DriveKind::NAMES[0],
+            DriveKind::Strut(_) => DriveKind::NAMES[1],
         }
     }
 
-    /// Limits a lag (deg) to the range between the stops, with the servo at this sweep, deg.
+    /// Limits a lag (deg) to the range between the leg's stops, with the servo at this sweep, deg.
     pub(crate) fn limit_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
             .lag_energy_of_leg(leg, sweep, 1.0, 1.0)
@@ -68,8 +67,8 @@ impl Drive {
         lag.clamp(stops[0], stops[1])
     }
 
-    /// The energy of this leg's lag while its servo is at this sweep, deg. Forces are in units of `force_unit` N;
-    /// `max_pad_torque` bounds the torque of a pad on its leg, in those units times mm.
+    /// The energy of this leg's lag while its servo is at this sweep, deg. The unit of force is `force_unit` N;
+    /// `max_pad_torque` is an upper bound of the torque of a pad on its leg, in that unit times mm.
     pub(crate) fn lag_energy_of_leg(
         &self,
         leg: usize,
@@ -78,14 +77,14 @@ impl Drive {
         max_pad_torque: f64,
     ) -> LagEnergy {
         let [lower, upper] = match &self.kind {
-            DriveKind::Rigid => [Side::Stop; 2],
-            DriveKind::Strut(strut) => strut.sides(leg, sweep, force_unit),
+            DriveKind::Rigid => [Resistance::Stop; 2],
+            DriveKind::Strut(strut) => strut.resistances(leg, sweep, force_unit),
         };
         LagEnergy {
             play: self.play.to_radians(),
-            stop: 1.25 * max_pad_torque,
-            lower,
-            upper,
+            stop_torque: 1.25 * max_pad_torque,
+            lower_resistance: lower,
+            upper_resistance: upper,
             motor: None,
         }
     }

@@ -1,7 +1,7 @@
 //! The geometry of the feet, and the body that stands on them.
 
 use crate::friction::Point;
-use crate::legs::{FRONT, LEFT};
+use crate::legs::{FRONT_SIGN, LEFT_SIGN};
 
 /// Standard gravity, m/s^2.
 pub const GRAVITY: f64 = 9.80665;
@@ -13,20 +13,20 @@ pub struct Feet {
     pub hip_forward: f64,
     /// Distances of the front and of the hind hips from the chassis's long axis, to either side, mm.
     pub hip_side: [f64; 2],
-    /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
-    /// back.
-    pub mount: f64,
-    /// Length of a leg's crank, from the hip to the foot, mm.
+    /// Outward sweep of the legs while the servos are at neutral, deg: front legs forward, hind
+    /// legs back.
+    pub mount_angle: f64,
+    /// Length of a leg's crank, mm: the distance from the hip to the foot.
     pub reach: f64,
 }
 
 impl Feet {
-    /// The hips in servo order: (forward, left) from the chassis centre, mm.
+    /// Positions of the hips in servo order: (forward, left) from the chassis centre, mm.
     pub fn hips(&self) -> [Point; 4] {
         std::array::from_fn(|i| {
             let [front, hind] = self.hip_side;
-            let side = if FRONT[i] > 0.0 { front } else { hind };
-            [FRONT[i] * self.hip_forward, LEFT[i] * side]
+            let side = if FRONT_SIGN[i] > 0.0 { front } else { hind };
+            [FRONT_SIGN[i] * self.hip_forward, LEFT_SIGN[i] * side]
         })
     }
 
@@ -35,24 +35,27 @@ impl Feet {
     pub fn positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
-            let (sin, cos) = self.direction_sin_cos(i, sweeps[i]);
+            let (sin, cos) = self.sin_cos_of_leg(i, sweeps[i]);
             [
                 hips[i][0] + self.reach * sin,
-                hips[i][1] + LEFT[i] * self.reach * cos,
+                hips[i][1] + LEFT_SIGN[i] * self.reach * cos,
             ]
         })
     }
 
-    /// Derivative of each foot's position by its leg's sweep, mm/rad.
+    /// Derivatives of the feet's positions with respect to their legs' sweeps, mm/rad.
     pub(crate) fn sweep_derivatives(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
-            let (sin, cos) = self.direction_sin_cos(i, sweeps[i]);
-            [self.reach * cos, -LEFT[i] * self.reach * sin]
+            let (sin, cos) = self.sin_cos_of_leg(i, sweeps[i]);
+            [self.reach * cos, -LEFT_SIGN[i] * self.reach * sin]
         })
     }
 
-    fn direction_sin_cos(&self, leg: usize, sweep: f64) -> (f64, f64) {
-        (sweep + FRONT[leg] * self.mount).to_radians().sin_cos()
+    /// Sine and cosine of the leg's angle from straight sideways, forward positive.
+    fn sin_cos_of_leg(&self, leg: usize, sweep: f64) -> (f64, f64) {
+        (sweep + FRONT_SIGN[leg] * self.mount_angle)
+            .to_radians()
+            .sin_cos()
     }
 }
 
@@ -62,23 +65,23 @@ pub struct Body {
     /// Mass of the whole robot, g.
     pub mass: f64,
     /// Centre of mass: (forward, left) from the chassis centre, mm.
-    pub centre: Point,
+    pub mass_centre: Point,
 }
 
-/// Share of a robot's mass that moves with one pad. Of the paper robot's 435 g this is 15 g: the foot, its coupler,
-/// and the share of crank and follower that corresponds to the movement of their centres.
-const LEG_SHARE: f64 = 15.0 / 435.0;
+/// The share of a robot's mass that moves with one pad. In the paper's robot it is 15 g of 435 g: the foot, its
+/// coupler, and crank and follower in proportion to the movement of their centres.
+const LEG_MASS_SHARE: f64 = 15.0 / 435.0;
 
 impl Body {
-    /// The default of robot.toml: the weight of the paper's parts.
+    /// The default of robot.toml: the mass of the paper's parts, centred.
     pub const DEFAULT: Self = Self {
         mass: 435.0,
-        centre: [0.0; 2],
+        mass_centre: [0.0; 2],
     };
 
     /// The mass that moves with a pad, g.
     pub fn leg_mass(&self) -> f64 {
-        LEG_SHARE * self.mass
+        LEG_MASS_SHARE * self.mass
     }
 
     /// Mean load of a foot, N.
@@ -92,11 +95,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn feet_stand_where_the_parallelograms_put_them() {
+    fn a_foot_is_one_crank_length_from_its_hip_in_the_direction_of_the_sweep() {
         let feet = Feet {
             hip_forward: 55.0,
             hip_side: [35.0; 2],
-            mount: 0.0,
+            mount_angle: 0.0,
             reach: 45.0,
         };
         assert_eq!(
@@ -104,15 +107,15 @@ mod tests {
             [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
         );
         let forward_feet = feet.positions([90.0; 4]);
-        let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
-        for (foot, point) in forward_feet.into_iter().zip(expected) {
+        let expected_positions = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
+        for (foot, expected_point) in forward_feet.into_iter().zip(expected_positions) {
             assert!(
-                (foot[0] - point[0]).hypot(foot[1] - point[1]) < 1e-12,
+                (foot[0] - expected_point[0]).hypot(foot[1] - expected_point[1]) < 1e-12,
                 "{foot:?}"
             );
         }
         let splayed_feet = Feet {
-            mount: 90.0,
+            mount_angle: 90.0,
             ..feet
         }
         .positions([0.0; 4]);
@@ -122,11 +125,11 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_moves_along_its_circle() {
+    fn sweep_derivatives_are_the_difference_quotients_of_the_positions() {
         let feet = Feet {
             hip_forward: 55.0,
             hip_side: [35.0; 2],
-            mount: 12.0,
+            mount_angle: 12.0,
             reach: 45.0,
         };
         let sweeps = [10.0, -5.0, 20.0, -15.0];
@@ -137,9 +140,12 @@ mod tests {
         );
         for (i, derivative) in feet.sweep_derivatives(sweeps).into_iter().enumerate() {
             for axis in 0..2 {
-                let slope =
+                let difference_quotient =
                     (stepped_positions[i][axis] - positions[i][axis]) / step_deg.to_radians();
-                assert!((derivative[axis] - slope).abs() < 1e-3, "{derivative:?}");
+                assert!(
+                    (derivative[axis] - difference_quotient).abs() < 1e-3,
+                    "{derivative:?}"
+                );
             }
         }
     }

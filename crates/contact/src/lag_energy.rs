@@ -1,57 +1,57 @@
 //! The energy of a leg's lag behind its servo.
 //!
-//! In the contact model a single function describes the drive of a leg, the energy of its
-//! lag: zero within the play, beyond it the energy of the spring on that side, and beyond
-//! a stop a slope that no pad can climb. It has kinks at the lags that are most likely.
-//! They are rounded off within `eps`, like the lengths of slides in `friction.rs`.
+//! In the contact model a single function describes the drive of a leg: the energy of its lag.
+//! It is zero within the play; beyond the play it is the energy of the spring on that side; beyond
+//! a stop it rises more steeply than any pad can push. It has kinks exactly at the lags that are
+//! most likely. They are smoothed over a width `eps`, like the lengths of slides in `friction.rs`.
 
 use crate::motor_step::{Expansion, MotorStep};
 
-/// The energy of a lag, in the units of the contact problem: forces over the mean friction of a
-/// pad, mm and radians.
+/// The energy of a lag, in the units of the contact problem: the mean friction of a pad as the unit
+/// of force, mm and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LagEnergy {
     /// Free movement of the leg to either side, rad.
     pub play: f64,
-    /// Torque of a stop, larger than the largest torque of a pad. A much larger one would only make
-    /// the cost harder to minimise.
-    pub stop: f64,
-    /// Resistance to a lag below 0.
-    pub lower: Side,
-    /// Resistance to a lag above 0.
-    pub upper: Side,
+    /// Torque of a stop, slightly larger than the largest torque of a pad. A much larger one would
+    /// only make the cost harder to minimise.
+    pub stop_torque: f64,
+    /// Resistance to a negative lag.
+    pub lower_resistance: Resistance,
+    /// Resistance to a positive lag.
+    pub upper_resistance: Resistance,
     /// The servo's motor, if the servo may lag behind its pulses; lags are then those of leg and servo
     /// together.
     pub motor: Option<MotorStep>,
 }
 
-/// The resistance to a lag on one side, beyond the play.
+/// The resistance to a lag in one direction, beyond the play.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Side {
+pub(crate) enum Resistance {
     /// A rigid stop.
     Stop,
     /// A spring in a strut, and a stop at the end of its slot.
     Strut {
         /// Geometry of the strut.
-        stretch: Stretch,
+        triangle: StrutTriangle,
         /// Pull of the spring without a lag.
         force: f64,
         /// Rate of the spring, per mm.
         rate: f64,
-        /// Lag at the end of the slot, beyond the play, rad.
+        /// Lag beyond the play at which the screw is at the slot's end, rad.
         end_lag: f64,
     },
 }
 
-/// The stretching of a strut by a leg's lag. The strut is one side of a triangle; the other two are
-/// the leg's arm and the line from the leg's pivot to the strut's joint at the servo.
+/// The triangle that determines the length of a strut at a lag of its leg. Its sides are the strut,
+/// the leg's arm, and the base: the line from the leg's pivot to the strut's joint at the servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stretch {
-    /// Distance from the leg's pivot to the strut's joint at the servo, mm.
-    line: f64,
+pub(crate) struct StrutTriangle {
+    /// Length of the base, mm.
+    base: f64,
     /// Length of the leg's arm, mm.
     arm: f64,
-    /// Angle between line and arm while the leg does not lag, rad; a lag adds to it.
+    /// Angle between base and arm while the leg does not lag, rad; a lag adds to it.
     angle: f64,
     /// Sine and cosine of the magnitude of `angle`.
     sin_cos: (f64, f64),
@@ -59,13 +59,13 @@ pub(crate) struct Stretch {
     unlagged_length: f64,
 }
 
-/// The ramp `max(x, 0)` with its kink rounded off within `eps`: value, slope and curvature.
-fn rounded_ramp(x: f64, eps: f64) -> Expansion {
+/// The ramp `max(x, 0)` with its kink smoothed over a width `eps`: value, slope and curvature.
+fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
         return (0.0, 0.5, 0.0);
     }
-    // Below 0 this sum would be a difference of nearly equal numbers.
+    // For a negative x the plain sum would be a difference of nearly equal numbers.
     let sum = match x > 0.0 {
         true => x + length,
         false => eps * eps / (length - x),
@@ -74,26 +74,26 @@ fn rounded_ramp(x: f64, eps: f64) -> Expansion {
     (sum / 2.0, sum / length / 2.0, ratio * ratio / length / 2.0)
 }
 
-impl Stretch {
-    /// Makes the triangle of a line and an arm (mm) with an angle between them, rad.
-    pub fn new(line: f64, arm: f64, angle: f64) -> Self {
+impl StrutTriangle {
+    /// Makes the triangle of a base and an arm (mm) with an angle between them, rad.
+    pub fn new(base: f64, arm: f64, angle: f64) -> Self {
         let sin_cos = angle.abs().sin_cos();
         Self {
-            line,
+            base,
             arm,
             angle,
             sin_cos,
-            unlagged_length: (line * line + arm * arm - 2.0 * line * arm * sin_cos.1).sqrt(),
+            unlagged_length: (base * base + arm * arm - 2.0 * base * arm * sin_cos.1).sqrt(),
         }
     }
 
-    /// Lever of the strut's pull while the leg does not lag: the derivative of its length by the
-    /// lag, mm/rad. It is negative if a lag makes the strut shorter.
+    /// Lever of the strut's pull while the leg does not lag: the derivative of the strut's length with
+    /// respect to the lag, mm/rad. It is negative if a positive lag makes the strut shorter.
     pub fn lever(&self) -> f64 {
-        (self.line * self.arm * self.sin_cos.0 / self.unlagged_length).copysign(self.angle)
+        (self.base * self.arm * self.sin_cos.0 / self.unlagged_length).copysign(self.angle)
     }
 
-    /// Magnitude of the lever after a lag in the direction in which the strut grows.
+    /// Magnitude of the lever, mm/rad, after a lag (rad) in the direction in which the strut grows.
     pub fn lever_after(&self, lag: f64) -> f64 {
         self.growth_and_derivatives(lag).1
     }
@@ -101,22 +101,22 @@ impl Stretch {
     /// Magnitude of the lag at which the strut has grown by this length, rad; infinite if it
     /// cannot grow so far.
     pub fn lag_at_growth(&self, growth: f64) -> f64 {
-        let Self { line, arm, .. } = self;
+        let Self { base, arm, .. } = self;
         let length = self.unlagged_length + growth;
-        let cos = (line * line + arm * arm - length * length) / (2.0 * line * arm);
+        let cos = (base * base + arm * arm - length * length) / (2.0 * base * arm);
         match cos < -1.0 {
             true => f64::INFINITY,
             false => cos.acos() - self.angle.abs(),
         }
     }
 
-    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with its
-    /// first and second derivative by the lag: the lever (mm/rad) and its slope.
+    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with the
+    /// first and second derivatives with respect to the lag: the lever (mm/rad) and its slope.
     ///
-    /// Lags are often a hundred-thousandth of a radian. The difference of two lengths
-    /// would then be mostly rounding, and Newton's method would look for a minimum in it.
+    /// Lags are often as small as a hundred-thousandth of a radian. The difference of two lengths
+    /// would then consist mostly of rounding errors, which would mislead Newton's method.
     fn growth_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
-        let (product, (sin, cos)) = (self.line * self.arm, self.sin_cos);
+        let (product, (sin, cos)) = (self.base * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
         let square_growth = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
@@ -130,54 +130,58 @@ impl Stretch {
         )
     }
 
-    /// Energy of a spring that pulls the strut together with `force` and `rate`, less
-    /// `preload * lag`; `lag` is in the direction in which the strut grows.
-    fn energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
+    /// Energy of a spring that pulls the strut together with `force` and `rate`, minus
+    /// `preload * lag`. The lag is in the direction in which the strut grows.
+    fn spring_energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
         let (growth, lever, lever_slope) = self.growth_and_derivatives(lag);
         let pull = force + rate * growth;
         (
             force * growth - preload * lag + rate * growth * growth / 2.0,
             pull * lever - preload,
-            // If the lever shrinks faster than the pull grows, the curvature is negative, which Newton's method
-            // cannot use; it gets zero instead.
+            // If the lever shrinks faster than the pull grows, the curvature is negative. Newton's method needs a
+            // convex energy, so the curvature is then set to zero.
             (rate * lever * lever + pull * lever_slope).max(0.0),
         )
     }
 }
 
-impl Side {
-    /// The resistance of a strut with a spring and a slot; `slot` is the slot's length, mm.
-    pub fn strut(stretch: Stretch, force: f64, rate: f64, slot: f64) -> Self {
+impl Resistance {
+    /// The resistance of a strut with a spring and a slot; `slot_length` in mm.
+    pub fn strut(triangle: StrutTriangle, force: f64, rate: f64, slot_length: f64) -> Self {
         Self::Strut {
-            stretch,
+            triangle,
             force,
             rate,
-            end_lag: stretch.lag_at_growth(slot),
+            end_lag: triangle.lag_at_growth(slot_length),
         }
     }
 
-    /// Energy, torque and stiffness at a lag beyond the play.
-    fn expand(&self, excess_lag: f64, eps: f64, stop: f64) -> Expansion {
-        let (ramp_value, slope, curvature) = rounded_ramp(excess_lag, eps);
+    /// Energy, torque and stiffness at a lag that exceeds the play by `excess_lag`, rad.
+    fn expand(&self, excess_lag: f64, eps: f64, stop_torque: f64) -> Expansion {
+        let (ramp_value, slope, curvature) = smoothed_ramp(excess_lag, eps);
         let kink_of = |torque: f64| (torque * ramp_value, torque * slope, torque * curvature);
         let add = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         match *self {
-            Self::Stop => kink_of(stop),
+            Self::Stop => kink_of(stop_torque),
             Self::Strut {
-                stretch,
+                triangle,
                 force,
                 rate,
                 end_lag,
             } => {
                 // The preload is the torque at a kink; the spring's further torque grows from zero.
-                let preload = force * stretch.lever().abs();
+                let preload = force * triangle.lever().abs();
                 let spring_energy = match excess_lag > 0.0 {
-                    true => stretch.energy(excess_lag, force, rate, preload),
+                    true => triangle.spring_energy(excess_lag, force, rate, preload),
                     false => (0.0, 0.0, 0.0),
                 };
-                let (value, slope, curvature) = rounded_ramp(excess_lag - end_lag, eps);
+                let (value, slope, curvature) = smoothed_ramp(excess_lag - end_lag, eps);
                 let end_energy = match end_lag.is_finite() {
-                    true => (stop * value, stop * slope, stop * curvature),
+                    true => (
+                        stop_torque * value,
+                        stop_torque * slope,
+                        stop_torque * curvature,
+                    ),
                     false => (0.0, 0.0, 0.0),
                 };
                 add(add(kink_of(preload), spring_energy), end_energy)
@@ -185,22 +189,22 @@ impl Side {
         }
     }
 
-    /// Torque of the spring at a lag beyond the play.
+    /// Torque of the spring at a lag that exceeds the play by `excess_lag`, rad.
     fn spring_torque(&self, excess_lag: f64) -> f64 {
         match *self {
             _ if excess_lag <= 0.0 => 0.0,
             Self::Stop => 0.0,
             Self::Strut {
-                stretch,
+                triangle,
                 force,
                 rate,
                 ..
-            } => stretch.energy(excess_lag, force, rate, 0.0).1,
+            } => triangle.spring_energy(excess_lag, force, rate, 0.0).1,
         }
     }
 
-    /// Largest lag beyond the play.
-    fn max_lag(&self) -> f64 {
+    /// Largest lag beyond the play, rad.
+    fn max_excess_lag(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
             Self::Strut { end_lag, .. } => *end_lag,
@@ -210,7 +214,7 @@ impl Side {
 
 impl LagEnergy {
     /// Energy at a lag (rad) of leg and servo together, its slope and its curvature, with kinks
-    /// rounded off within `eps` rad.
+    /// smoothed over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let Some(motor) = &self.motor else {
             return self.expand_leg(lag, eps);
@@ -218,7 +222,7 @@ impl LagEnergy {
         if self.is_rigid() {
             return motor.expand(lag, eps);
         }
-        // Leg and servo are in series: both have the same torque.
+        // Leg and servo are in series: both bear the same torque.
         let servo_lag = self.servo_lag(lag, eps);
         let (motor_energy, torque, motor_stiffness) = motor.expand(servo_lag, eps);
         let (leg_energy, _, leg_stiffness) = self.expand_leg(lag - servo_lag, eps);
@@ -229,14 +233,14 @@ impl LagEnergy {
         )
     }
 
-    /// Angle of the servo behind its reference at a lag of leg and servo together, rad.
+    /// The servo's part of a lag of leg and servo together, rad.
     pub fn servo_lag(&self, lag: f64, eps: f64) -> f64 {
         match &self.motor {
             None => 0.0,
             Some(_) if self.is_rigid() => lag,
             Some(motor) => {
                 let kinks = [lag - self.play, lag + self.play];
-                motor.balance(kinks, self.stop, eps, |servo_lag| {
+                motor.lag_at_balance(kinks, self.stop_torque, eps, |servo_lag| {
                     let (_, torque, stiffness) = self.expand_leg(lag - servo_lag, eps);
                     (torque, stiffness)
                 })
@@ -246,15 +250,19 @@ impl LagEnergy {
 
     /// True if the leg moves exactly with its servo.
     fn is_rigid(&self) -> bool {
-        self.play == 0.0 && self.lower == Side::Stop && self.upper == Side::Stop
+        self.play == 0.0
+            && self.lower_resistance == Resistance::Stop
+            && self.upper_resistance == Resistance::Stop
     }
 
-    /// The energy of a leg's lag behind its servo.
+    /// Energy, torque and stiffness at a lag (rad) of the leg behind its servo.
     fn expand_leg(&self, lag: f64, eps: f64) -> Expansion {
         let (energy_up, slope_up, curvature_up) =
-            self.upper.expand(lag - self.play, eps, self.stop);
+            self.upper_resistance
+                .expand(lag - self.play, eps, self.stop_torque);
         let (energy_down, slope_down, curvature_down) =
-            self.lower.expand(-lag - self.play, eps, self.stop);
+            self.lower_resistance
+                .expand(-lag - self.play, eps, self.stop_torque);
         (
             energy_up + energy_down,
             slope_up - slope_down,
@@ -262,31 +270,37 @@ impl LagEnergy {
         )
     }
 
-    /// Magnitude of the torque with which the spring pulls the leg back.
+    /// Magnitude of the torque with which the spring pulls the leg back at a lag, rad.
     pub fn spring_torque(&self, lag: f64) -> f64 {
-        self.upper.spring_torque(lag - self.play) + self.lower.spring_torque(-lag - self.play)
+        self.upper_resistance.spring_torque(lag - self.play)
+            + self.lower_resistance.spring_torque(-lag - self.play)
     }
 
-    /// Least and greatest lag that the stops allow, rad.
+    /// The least and the greatest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
         [
-            -self.play - self.lower.max_lag(),
-            self.play + self.upper.max_lag(),
+            -self.play - self.lower_resistance.max_excess_lag(),
+            self.play + self.upper_resistance.max_excess_lag(),
         ]
     }
 
-    /// Largest gain of a torque on this drive: the convex conjugate of the energy, for the proof
-    /// by duality. It is infinite for a torque that no stop bears.
+    /// The convex conjugate of the energy at a torque, for the dual problem: the maximum of torque times
+    /// lag minus energy. It is infinite for a torque that exceeds that of a stop.
     #[cfg(test)]
     pub fn conjugate(&self, torque: f64) -> f64 {
-        let side = if torque > 0.0 { self.upper } else { self.lower };
+        let resistance = if torque > 0.0 {
+            self.upper_resistance
+        } else {
+            self.lower_resistance
+        };
         let torque = torque.abs();
-        let gain_beyond_play = match side {
-            Side::Stop if torque <= self.stop => 0.0,
-            // Ternary search: torque times lag minus the energy has a single maximum.
-            Side::Strut { .. } if torque <= self.stop => {
-                let gain_at = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
-                let (mut low, mut high) = (0.0, side.max_lag().min(std::f64::consts::PI));
+        let gain_beyond_play = match resistance {
+            Resistance::Stop if torque <= self.stop_torque => 0.0,
+            // Ternary search: torque times lag minus energy has a single maximum.
+            Resistance::Strut { .. } if torque <= self.stop_torque => {
+                let gain_at = |x: f64| torque * x - resistance.expand(x, 0.0, self.stop_torque).0;
+                let (mut low, mut high) =
+                    (0.0, resistance.max_excess_lag().min(std::f64::consts::PI));
                 for _ in 0..200 {
                     let third = (high - low) / 3.0;
                     match gain_at(low + third) < gain_at(high - third) {
@@ -308,99 +322,115 @@ mod tests {
 
     const STOP_TORQUE: f64 = 400.0;
 
-    /// The triangle of a strut of 30.2 mm with arms of 22 mm, at `angle_deg` deg to the strut.
-    fn stretch_at(angle_deg: f64) -> Stretch {
+    /// The triangle of a strut of 30.2 mm with arms of 22 mm, which are at `angle_deg` to the strut.
+    fn triangle_at(angle_deg: f64) -> StrutTriangle {
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
-        let line = [22.0 * cos - 30.2, 22.0 * sin];
-        let enclosed_angle = f64::to_radians(angle_deg) - f64::atan2(line[1], line[0]);
-        Stretch::new(f64::hypot(line[0], line[1]), 22.0, enclosed_angle)
+        let base = [22.0 * cos - 30.2, 22.0 * sin];
+        let enclosed_angle = f64::to_radians(angle_deg) - f64::atan2(base[1], base[0]);
+        StrutTriangle::new(f64::hypot(base[0], base[1]), 22.0, enclosed_angle)
     }
 
-    /// Compares slope and curvature of the energy with difference quotients.
-    fn assert_slopes(drive: LagEnergy, lags: impl IntoIterator<Item = f64>) {
+    /// Asserts that slope and curvature of the energy agree with its difference quotients.
+    fn assert_derivatives(lag_energy: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
-            let (_, slope, curvature) = drive.expand(lag, 1e-3);
-            let expand_at = |lag| drive.expand(lag, 1e-3);
+            let (_, slope, curvature) = lag_energy.expand(lag, 1e-3);
+            let expand_at = |lag| lag_energy.expand(lag, 1e-3);
             let step = 1e-6;
             let (lower, upper) = (expand_at(lag - step), expand_at(lag + step));
-            let measured = (upper.0 - lower.0) / (2.0 * step);
+            let energy_slope = (upper.0 - lower.0) / (2.0 * step);
             assert!(
-                (measured - slope).abs() < 1e-4 * (1.0 + slope.abs()),
-                "{lag} {measured} {slope}"
+                (energy_slope - slope).abs() < 1e-4 * (1.0 + slope.abs()),
+                "{lag} {energy_slope} {slope}"
             );
-            let measured = (upper.1 - lower.1) / (2.0 * step);
+            let torque_slope = (upper.1 - lower.1) / (2.0 * step);
             assert!(
-                (measured - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
-                "{lag} {measured} {curvature}"
+                (torque_slope - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
+                "{lag} {torque_slope} {curvature}"
             );
         }
     }
 
     #[test]
-    fn the_slope_of_the_energy_is_the_torque_and_its_slope_the_stiffness() {
+    fn torque_and_stiffness_are_the_derivatives_of_the_energy() {
         let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
         for play in [0.0, 0.02] {
-            let drive_with = |lower, upper| LagEnergy {
+            let lag_energy_with = |lower, upper| LagEnergy {
                 play,
-                stop: STOP_TORQUE,
-                lower,
-                upper,
+                stop_torque: STOP_TORQUE,
+                lower_resistance: lower,
+                upper_resistance: upper,
                 motor: None,
             };
-            let side = Side::strut(stretch_at(70.0), 8.0, 0.7, 5.0);
-            for sides in [[Side::Stop; 2], [Side::Stop, side], [side; 2]] {
-                assert_slopes(drive_with(sides[0], sides[1]), lags.clone());
+            let strut_resistance = Resistance::strut(triangle_at(70.0), 8.0, 0.7, 5.0);
+            for resistances in [
+                [Resistance::Stop; 2],
+                [Resistance::Stop, strut_resistance],
+                [strut_resistance; 2],
+            ] {
+                assert_derivatives(
+                    lag_energy_with(resistances[0], resistances[1]),
+                    lags.clone(),
+                );
             }
         }
     }
 
     #[test]
-    fn a_leg_is_free_within_its_play_and_no_further() {
-        let strut = stretch_at(70.0);
-        let drive = LagEnergy {
+    fn a_leg_is_free_within_its_play_and_held_beyond_it() {
+        let triangle = triangle_at(70.0);
+        let lag_energy = LagEnergy {
             play: 0.1,
-            stop: STOP_TORQUE,
-            lower: Side::Stop,
-            upper: Side::strut(strut, 8.0, 0.7, 5.0),
+            stop_torque: STOP_TORQUE,
+            lower_resistance: Resistance::Stop,
+            upper_resistance: Resistance::strut(triangle, 8.0, 0.7, 5.0),
             motor: None,
         };
         for lag in [-0.1, -0.05, 0.0, 0.1] {
-            assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
+            assert_eq!(lag_energy.expand(lag, 0.0).0, 0.0, "{lag}");
         }
-        let (growth, lever, _) = strut.growth_and_derivatives(0.01);
+        let (growth, lever, _) = triangle.growth_and_derivatives(0.01);
         let torque = (8.0 + 0.7 * growth) * lever;
-        assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
-        assert_eq!(drive.expand(-0.11, 0.0).1, -STOP_TORQUE);
-        assert_eq!(drive.stops(), [-0.1, 0.1 + strut.lag_at_growth(5.0)]);
-        assert!((drive.spring_torque(0.11) - torque).abs() < 1e-9);
-        assert_eq!(drive.spring_torque(-0.2), 0.0, "a stop does not pull");
+        assert!((lag_energy.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
+        assert_eq!(lag_energy.expand(-0.11, 0.0).1, -STOP_TORQUE);
+        assert_eq!(
+            lag_energy.stops(),
+            [-0.1, 0.1 + triangle.lag_at_growth(5.0)]
+        );
+        assert!((lag_energy.spring_torque(0.11) - torque).abs() < 1e-9);
+        assert_eq!(lag_energy.spring_torque(-0.2), 0.0, "a stop does not pull");
     }
 
     #[test]
     fn a_strut_is_the_third_side_of_a_triangle() {
-        let strut = stretch_at(70.0);
-        assert!((strut.unlagged_length - 30.2).abs() < 1e-9, "parallel arms");
-        // The arm's component square to the strut.
-        assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
-        let end_lag = strut.lag_at_growth(5.0);
-        let (growth, ..) = strut.growth_and_derivatives(end_lag);
+        let triangle = triangle_at(70.0);
+        assert!(
+            (triangle.unlagged_length - 30.2).abs() < 1e-9,
+            "parallel arms"
+        );
+        // The component of the arm perpendicular to the strut.
+        assert!((triangle.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
+        let end_lag = triangle.lag_at_growth(5.0);
+        let (growth, ..) = triangle.growth_and_derivatives(end_lag);
         assert!((growth - 5.0).abs() < 1e-9, "{growth}");
-        assert_eq!(strut.lag_at_growth(50.0), f64::INFINITY);
+        assert_eq!(triangle.lag_at_growth(50.0), f64::INFINITY);
     }
 
     #[test]
-    fn the_energy_of_a_tiny_lag_is_exact() {
-        let strut = stretch_at(70.0);
+    fn tiny_lags_and_ramps_far_below_their_kink_keep_their_digits() {
+        let triangle = triangle_at(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
-            // A series: the lever to first order, half its slope to second order.
-            let (growth, ..) = strut.growth_and_derivatives(lag);
-            let (_, lever, lever_slope) = strut.growth_and_derivatives(0.0);
-            let series = lever * lag + lever_slope * lag * lag / 2.0;
-            assert!((growth / series - 1.0).abs() < 1e-11, "{lag} {growth}");
+            // The Taylor series to second order.
+            let (growth, ..) = triangle.growth_and_derivatives(lag);
+            let (_, lever, lever_slope) = triangle.growth_and_derivatives(0.0);
+            let expected_growth = lever * lag + lever_slope * lag * lag / 2.0;
+            assert!(
+                (growth / expected_growth - 1.0).abs() < 1e-11,
+                "{lag} {growth}"
+            );
         }
-        // Far below a kink the rounded value is eps^2 / 4 |x|, even where that is 1e16 times less
-        // than x.
-        let (value, slope, _) = rounded_ramp(-0.5, 1e-9);
+        // Far below its kink the smoothed ramp is eps^2 / (4 |x|), even if that is many orders of
+        // magnitude less than |x|.
+        let (value, slope, _) = smoothed_ramp(-0.5, 1e-9);
         assert!((value / 5e-19 - 1.0).abs() < 1e-9, "{value}");
         assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");
     }

@@ -1,44 +1,44 @@
 //! The contact model: the movement of a body whose feet are never lifted.
 //!
-//! Four pads stand on the floor and every one of them drags. When the legs swing, not all pads can hold, and
-//! friction decides which of them slide. The body makes the movement that loses the least power to friction,
-//! which is a small convex problem: the formula is in `ground.rs`, its solution in `friction.rs`. The shares of
-//! the weight (`stance.rs`) and the lag of a leg behind its servo (`drive.rs`) are part of the same problem. A
-//! pad is a point, whatever its shape: a leg moves its pad without turning it and the body does not tilt, so
-//! even a domed pad always touches the floor at one and the same point.
+//! Four pads, one at each foot, stand on the floor. When the legs swing, not all pads can hold, and friction
+//! decides which of them slide. The body makes the movement that loses the least power to friction. Finding it
+//! is a small convex problem: `ground.rs` has the formula, `friction.rs` the solution. The loads of the feet
+//! (`stance.rs`) and the lag of each leg behind its servo (`drive.rs`) are part of the same problem. A pad
+//! counts as a point, whatever its shape: a leg moves its pad without turning it and the body does not tilt, so
+//! even a domed pad always touches the floor with the same point of its surface.
 //!
-//! [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
-//! sweeps, as far as it can be known; a [`Walker`] follows the sweeps step by step.
-//! `lizard-robot` predicts each gait of a robot.toml with it, and `lizard-twin` follows the pulses
-//! of a board. The crate reads no file and knows no gait.
+//! A [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
+//! sweeps, as far as friction determines it; a [`Walker`] follows the sweeps step by step.
+//! `lizard-robot` predicts each gait of a robot.toml with this crate, and `lizard-twin` follows the
+//! pulses of a board with it. The crate itself reads no file and knows no gait.
 //!
 //! # When not to use it
-//! Feet neither lift nor tilt, and only [`Walker::drive`] has motors and inertia: everywhere else speed changes
-//! nothing. For a robot that lifts its feet, or moves so fast that its mass decides where it goes, use a
-//! physics engine.
+//! Feet neither lift nor tilt. Only [`Walker::drive`] models motors and inertia; everything else is quasi-static,
+//! so that speed has no effect. For a robot that lifts its feet, or that is so fast that its inertia matters
+//! more than friction, use a physics engine.
 //!
 //! ```
 //! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
 //!
 //! let ground = Ground {
-//!     feet: Feet { hip_forward: 55.0, hip_side: [35.0; 2], mount: 0.0, reach: 45.0 },
+//!     feet: Feet { hip_forward: 55.0, hip_side: [35.0; 2], mount_angle: 0.0, reach: 45.0 },
 //!     body: Body::DEFAULT,
 //!     stance: Stance::LEVEL,
-//!     friction: DEFAULT_FRICTION,
-//!     ratio: 1.0,
+//!     friction_coefficient: DEFAULT_FRICTION,
+//!     friction_ratio: 1.0,
 //!     drive: Drive::RIGID,
 //! };
-//! // All four feet swing back from 20 degrees ahead to 20 degrees behind: they hold, and
-//! // the body goes ahead by their chord.
+//! // All four feet swing back from 20 degrees ahead to 20 degrees behind: the pads hold, and
+//! // the body moves ahead by the chord of the feet's arcs.
 //! let prediction = ground.predict([[20.0; 4], [-20.0; 4]]);
 //! let chord = 2.0 * 45.0 * 20f64.to_radians().sin();
 //! assert!(prediction.forward.is_some_and(|forward| (forward - chord).abs() < 1e-3));
 //! ```
 //!
 //! # Units
-//! mm, N, deg of a leg's sweep (foot forward positive), N mm of torque. Points are
-//! (forward, left), from the chassis centre or on the floor. Every array is in servo
-//! order: the legs LF, RF, RH, LH.
+//! Lengths in mm, forces in N, torques in N mm, sweeps of the legs in deg (foot forward positive).
+//! Points are (forward, left), from the chassis centre or on the floor. Every array of four is in
+//! servo order: left front, right front, right hind, left hind (LF, RF, RH, LH).
 
 mod drive;
 mod feet;
@@ -62,10 +62,10 @@ pub use feet::{Body, Feet, GRAVITY};
 pub use friction::Point;
 pub use ground::{DEFAULT_FRICTION, Ground};
 pub use joints::Joints;
-pub use legs::{FORWARD, FRONT, LEFT};
+pub use legs::{FORWARD_TURN_SIGN, FRONT_SIGN, LEFT_SIGN};
 pub use motor::{Motor, Motors};
 pub use place::Place;
 pub use stance::Stance;
-pub use strut::{SLOT, Strut};
+pub use strut::{SLOT_LENGTH, Strut};
 pub use travel::{Prediction, Travel};
 pub use walker::{Slip, Walker};

@@ -1,9 +1,9 @@
 //! The solution of three linear equations.
 
-/// Solves a symmetric 3x3 system by Gaussian elimination with pivots. The matrix may be singular: in a
-/// direction without curvature the cost is flat, and any solution is as good. So a tiny number is added
-/// to the diagonal, which selects one.
-pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
+/// Solves `a x = b` for a symmetric, positive semidefinite 3x3 matrix by Gaussian elimination with partial
+/// pivoting. The matrix may be singular, and any of the solutions will do: a tiny addition to the diagonal
+/// selects one.
+pub(crate) fn solve_symmetric(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     let max_diagonal = (0..3).fold(0.0f64, |max, i| max.max(a[i][i]));
     for (i, row) in a.iter_mut().enumerate() {
         row[i] += max_diagonal * 1e-15;

@@ -1,141 +1,158 @@
-//! A servo's motor in a short time step, as one convex energy of the servo's lag at the end of the step. The slope
-//! of that energy is the sum of the torques of the motor, its damping, its rotor's inertia and friction. So the
-//! contact problem of `friction.rs` treats a servo like a spring.
+//! A servo's motor in a short time step, as a convex energy: a function of the servo's lag at the end of the step.
+//! Its slope is the sum of all torques: of the motor, its damping, its rotor's inertia and friction. So the contact
+//! problem of `friction.rs` can treat a servo like a spring.
 
 use crate::motor::Motor;
 
-/// The motion of a servo at the beginning of a step, in rad and rad/s.
+/// The motion of a servo at the beginning of a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ServoState {
-    /// Angle that the pulse asks for.
-    pub target: f64,
-    /// Angle of the servo.
-    pub servo: f64,
-    /// Rate of the servo.
+    /// Angle that the pulse commands, rad.
+    pub target_angle: f64,
+    /// Angle of the servo, rad.
+    pub angle: f64,
+    /// Rate of the servo, rad/s.
     pub rate: f64,
 }
 
-/// The value, slope and curvature of an energy.
+/// The value, slope and curvature of an energy at some angle: energy, torque and stiffness.
 pub(crate) type Expansion = (f64, f64, f64);
 
-/// The energy of a motor in a short time step, as a function of the servo's lag. The lag is the
-/// angle, rad, by which the servo is behind a reference: the angle that it would have at an unchanged rate.
+/// The energy of a motor in a short time step, as a function of the servo's lag. The lag is the angle, rad, by
+/// which the servo is behind its reference: the angle that it would reach in the step at an unchanged rate.
+/// Torques are in the contact problem's unit of force times mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
     /// Angle of the target ahead of the reference, rad.
     target_ahead: f64,
-    /// Half the dead band: the error up to which there is no torque, rad.
-    idle: f64,
-    /// Error beyond the dead band at which the torque is full, rad.
-    full: f64,
-    /// Torque at stall.
-    stall: f64,
-    /// Stiffness that the rotor's inertia and the damping have in a step of this length.
+    /// Error up to which the motor applies no torque, rad: half the dead band.
+    half_dead_band: f64,
+    /// Error beyond the dead band at which the motor applies its full torque, rad.
+    full_torque_error: f64,
+    /// Stall torque.
+    stall_torque: f64,
+    /// Torque of the rotor's inertia and of the damping per radian of lag, in a step of this duration.
     inertial_stiffness: f64,
     /// Lag at the end of the step if only inertia and damping acted, rad.
-    unloaded: f64,
+    coasting_lag: f64,
     /// Lag of a servo that does not turn in this step, rad.
-    unmoved: f64,
-    /// Torque of dry friction.
-    drag: f64,
+    standstill_lag: f64,
+    /// Torque of the pins' dry friction.
+    pin_torque: f64,
     /// Torque of the slider on the servo.
-    slider: f64,
+    slider_torque: f64,
 }
 
 impl MotorStep {
-    /// Describes a step of `seconds`. `drag` and `slider` are the torques of dry friction and of
-    /// the slider, N mm; the unit of all forces inside is `force_unit` N.
+    /// Makes the energy of a step of `seconds`. The torques of the pins' friction and of the slider are
+    /// given in N mm; the energy uses `force_unit` N as the unit of force.
     pub fn new(
         motor: &Motor,
         state: ServoState,
         seconds: f64,
-        [drag, slider]: [f64; 2],
+        [pin_torque, slider_torque]: [f64; 2],
         force_unit: f64,
     ) -> Self {
         let inertia = motor.inertia() / (seconds * seconds);
         let inertial_stiffness = inertia + motor.damping() / seconds;
         let steady_turn = state.rate * seconds;
         Self {
-            target_ahead: state.target - state.servo - steady_turn,
-            idle: motor.half_dead_band.to_radians(),
-            full: motor.full_torque_error.to_radians(),
-            stall: motor.stall / force_unit,
+            target_ahead: state.target_angle - state.angle - steady_turn,
+            half_dead_band: motor.half_dead_band.to_radians(),
+            full_torque_error: motor.full_torque_error.to_radians(),
+            stall_torque: motor.stall_torque / force_unit,
             inertial_stiffness: inertial_stiffness / force_unit,
-            unloaded: steady_turn * (1.0 - inertia / inertial_stiffness),
-            unmoved: steady_turn,
-            drag: drag / force_unit,
-            slider: slider / force_unit,
+            coasting_lag: steady_turn * (1.0 - inertia / inertial_stiffness),
+            standstill_lag: steady_turn,
+            pin_torque: pin_torque / force_unit,
+            slider_torque: slider_torque / force_unit,
         }
     }
 
-    /// Energy at a lag, its slope and its curvature, with the kink of dry friction rounded off
-    /// within `eps` rad.
+    /// Energy at a lag (rad), its slope and its curvature, with the kink of dry friction smoothed
+    /// over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let error = self.target_ahead + lag;
-        let excess = (error.abs() - self.idle).max(0.0);
-        let gain = self.stall / self.full;
-        let (energy, torque, stiffness) = match excess < self.full {
-            true if excess > 0.0 => (gain * excess * excess / 2.0, gain * excess, gain),
+        let excess_error = (error.abs() - self.half_dead_band).max(0.0);
+        let gain = self.stall_torque / self.full_torque_error;
+        let (energy, torque, stiffness) = match excess_error < self.full_torque_error {
+            true if excess_error > 0.0 => (
+                gain * excess_error * excess_error / 2.0,
+                gain * excess_error,
+                gain,
+            ),
             true => (0.0, 0.0, 0.0),
-            false => (self.stall * (excess - self.full / 2.0), self.stall, 0.0),
+            false => (
+                self.stall_torque * (excess_error - self.full_torque_error / 2.0),
+                self.stall_torque,
+                0.0,
+            ),
         };
-        let deviation = lag - self.unloaded;
-        let turn_angle = lag - self.unmoved;
-        let length = (turn_angle * turn_angle + eps * eps).sqrt();
-        let (direction, curvature) = match length > 0.0 {
-            true => (turn_angle / length, eps * eps / (length * length * length)),
+        let deviation = lag - self.coasting_lag;
+        let turn_angle = lag - self.standstill_lag;
+        let smoothed_turn = (turn_angle * turn_angle + eps * eps).sqrt();
+        let (direction, curvature) = match smoothed_turn > 0.0 {
+            true => (
+                turn_angle / smoothed_turn,
+                eps * eps / (smoothed_turn * smoothed_turn * smoothed_turn),
+            ),
             false => (0.0, 0.0),
         };
         (
             energy
                 + self.inertial_stiffness * deviation * deviation / 2.0
-                + self.drag * length
-                + self.slider * lag,
+                + self.pin_torque * smoothed_turn
+                + self.slider_torque * lag,
             torque.copysign(error)
                 + self.inertial_stiffness * deviation
-                + self.drag * direction
-                + self.slider,
-            stiffness + self.inertial_stiffness + self.drag * curvature,
+                + self.pin_torque * direction
+                + self.slider_torque,
+            stiffness + self.inertial_stiffness + self.pin_torque * curvature,
         )
     }
 
     /// Lag of an unloaded servo at the end of the step, to first order, rad.
-    pub fn unloaded_end(&self) -> f64 {
+    pub fn unloaded_lag(&self) -> f64 {
         -self.expand(0.0, 0.0).1 / self.inertial_stiffness
     }
 
-    /// The lag at which the motor's torque equals the load's. `load_at` returns the load's torque and
-    /// stiffness at a lag; this torque is at most `max_load`, and changes fast at the `kinks`.
-    pub fn balance(
+    /// The lag (rad) at which the motor's torque equals the load's. `load_at` returns the load's torque and
+    /// stiffness at a lag; its torque is at most `max_load` and changes abruptly at the `kinks`.
+    pub fn lag_at_balance(
         &self,
         kinks: [f64; 2],
         max_load: f64,
         eps: f64,
         load_at: impl Fn(f64) -> (f64, f64),
     ) -> f64 {
-        let reach =
-            (self.stall + self.drag + self.slider.abs() + max_load) / self.inertial_stiffness;
-        let (mut low, mut high) = (self.unloaded - reach, self.unloaded + reach);
-        let guess = self.unloaded_end().max(kinks[0]).min(kinks[1]);
+        let max_deviation =
+            (self.stall_torque + self.pin_torque + self.slider_torque.abs() + max_load)
+                / self.inertial_stiffness;
+        let (mut low, mut high) = (
+            self.coasting_lag - max_deviation,
+            self.coasting_lag + max_deviation,
+        );
+        let guess = self.unloaded_lag().max(kinks[0]).min(kinks[1]);
         let mut lag = guess.max(low).min(high);
-        let mut longest_step = reach;
+        let mut longest_step = max_deviation;
         for _ in 0..MAX_ITERATIONS {
             let (_, torque, stiffness) = self.expand(lag, eps);
             let (load, load_stiffness) = load_at(lag);
-            let error = torque - load;
-            match error > 0.0 {
+            let torque_error = torque - load;
+            match torque_error > 0.0 {
                 true => high = lag,
                 false => low = lag,
             }
-            let newton = lag - error / (stiffness + load_stiffness);
-            let step_length = (newton - lag).abs();
-            if step_length <= f64::EPSILON * (reach + lag.abs()) {
-                return newton;
+            let newton_lag = lag - torque_error / (stiffness + load_stiffness);
+            let step_length = (newton_lag - lag).abs();
+            if step_length <= f64::EPSILON * (max_deviation + lag.abs()) {
+                return newton_lag;
             }
-            // Newton's steps shrink, unless a kink lies in between.
+            // The steps of Newton's method shrink unless there is a kink between lag and solution. Then a kink, or
+            // else bisection, gives the next lag.
             let is_between = |lag: &f64| low < *lag && *lag < high;
-            let next = match is_between(&newton) && step_length <= longest_step {
-                true => newton,
+            let next = match is_between(&newton_lag) && step_length <= longest_step {
+                true => newton_lag,
                 false => {
                     let kink = kinks.into_iter().find(is_between);
                     kink.unwrap_or(f64::midpoint(low, high))
@@ -148,7 +165,7 @@ impl MotorStep {
     }
 }
 
-/// The largest number of iterations of a balance: as many as bisection alone would need.
+/// The largest number of iterations in a search for a balance: as many as bisection alone would need.
 const MAX_ITERATIONS: usize = 60;
 
 #[cfg(test)]
@@ -156,17 +173,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_energy_of_a_step_has_its_torque_as_slope() {
+    fn torque_and_stiffness_are_the_derivatives_of_the_energy() {
         let motor = Motor {
-            stall: 176.5,
+            stall_torque: 176.5,
             no_load_speed: 500.0,
-            spin_up: 0.02,
+            spin_up_time: 0.02,
             full_torque_error: 3.0,
             half_dead_band: 0.0,
         };
         let state = ServoState {
-            target: 0.2,
-            servo: 0.05,
+            target_angle: 0.2,
+            angle: 0.05,
             rate: 3.0,
         };
         let motor_step = MotorStep::new(&motor, state, 0.0025, [12.0, -4.0], 0.7);
@@ -175,15 +192,15 @@ mod tests {
             let expand_at = |lag: f64| motor_step.expand(lag, 1e-3);
             let (lower, upper) = (expand_at(lag - 1e-6), expand_at(lag + 1e-6));
             let (_, torque, stiffness) = expand_at(lag);
-            let measured_torque = (upper.0 - lower.0) / 2e-6;
+            let energy_slope = (upper.0 - lower.0) / 2e-6;
             assert!(
-                (measured_torque - torque).abs() < 1e-3 * torque.abs().max(1.0),
+                (energy_slope - torque).abs() < 1e-3 * torque.abs().max(1.0),
                 "{lag}"
             );
-            let measured_stiffness = (upper.1 - lower.1) / 2e-6;
+            let torque_slope = (upper.1 - lower.1) / 2e-6;
             assert!(
-                (measured_stiffness / stiffness - 1.0).abs() < 1e-2,
-                "{lag} {measured_stiffness} {stiffness}"
+                (torque_slope / stiffness - 1.0).abs() < 1e-2,
+                "{lag} {torque_slope} {stiffness}"
             );
         }
     }

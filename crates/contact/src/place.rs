@@ -3,7 +3,7 @@
 use crate::friction::Twist;
 use crate::travel::Travel;
 
-/// Position and heading of the body on the floor, seen from its start.
+/// Position and heading of the body on the floor, in the axes of its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// Distance ahead, mm.
@@ -22,26 +22,26 @@ impl Place {
         heading: 0.0,
     };
 
-    /// The place after the body has moved with a constant twist for a unit of time. The path is an arc, so that the
-    /// opposite twist leads back exactly.
-    pub(crate) fn moved(self, [forward, left, turn]: Twist) -> Self {
-        // The ratio of the arc's chord to its length. The chord has the direction at half of the turn.
+    /// The place after the body has moved with a constant twist for a unit of time. Its path is a circular arc, so
+    /// that the opposite twist leads back exactly.
+    pub(crate) fn moved_by_twist(self, [forward, left, turn]: Twist) -> Self {
+        // The length of the chord over that of the arc. The chord's direction is the heading at half the turn.
         let half_turn = turn / 2.0;
-        let chord = if half_turn == 0.0 {
+        let chord_over_arc = if half_turn == 0.0 {
             1.0
         } else {
             half_turn.sin() / half_turn
         };
         let (sin, cos) = (self.heading + half_turn).sin_cos();
         Self {
-            forward: self.forward + chord * (forward * cos - left * sin),
-            left: self.left + chord * (forward * sin + left * cos),
+            forward: self.forward + chord_over_arc * (forward * cos - left * sin),
+            left: self.left + chord_over_arc * (forward * sin + left * cos),
             heading: self.heading + turn,
         }
     }
 
-    /// The movement from an earlier place to this one, in the body's axes at the earlier one.
-    pub fn seen_from(self, earlier: Self) -> Travel {
+    /// The travel from an earlier place to this one, in the body's axes at the earlier place.
+    pub fn travel_from(self, earlier: Self) -> Travel {
         let (sin, cos) = earlier.heading.sin_cos();
         let (x, y) = (self.forward - earlier.forward, self.left - earlier.left);
         Travel {
@@ -51,9 +51,9 @@ impl Place {
         }
     }
 
-    /// The place after a movement in the body's axes at this one: the inverse of [`Place::seen_from`].
-    pub fn after(self, movement: Travel) -> Self {
-        let [forward, left] = self.on_floor([movement.forward, movement.left]);
+    /// The place after a travel from this one: the inverse of [`Place::travel_from`].
+    pub fn moved_by_travel(self, movement: Travel) -> Self {
+        let [forward, left] = self.to_floor([movement.forward, movement.left]);
         Self {
             forward,
             left,
@@ -61,8 +61,8 @@ impl Place {
         }
     }
 
-    /// Converts a point from the body's axes to those of the floor (both forward, left, mm).
-    pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
+    /// Converts a point from the body's axes to the floor's axes; both are (forward, left), mm.
+    pub fn to_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
         [
             self.forward + forward * cos - left * sin,
@@ -70,9 +70,9 @@ impl Place {
         ]
     }
 
-    /// The movement from the start.
+    /// The travel from the start to this place.
     pub fn travel(self) -> Travel {
-        self.seen_from(Self::START)
+        self.travel_from(Self::START)
     }
 }
 
@@ -91,33 +91,58 @@ mod tests {
     }
 
     #[test]
-    fn a_body_moves_along_its_own_axes() {
-        assert_at(Place::START.moved([10.0, 0.0, 0.0]), 10.0, 0.0, 0.0);
-        assert_at(Place::START.moved([0.0, 10.0, 0.0]), 0.0, 10.0, 0.0);
-        // After a turn to the left, ahead is to the left and left is behind.
-        let turned_place = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
-        assert_at(turned_place.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
-        assert_at(turned_place.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);
+    fn a_twist_moves_the_body_along_its_own_axes() {
+        assert_at(
+            Place::START.moved_by_twist([10.0, 0.0, 0.0]),
+            10.0,
+            0.0,
+            0.0,
+        );
+        assert_at(
+            Place::START.moved_by_twist([0.0, 10.0, 0.0]),
+            0.0,
+            10.0,
+            0.0,
+        );
+        // After a quarter turn to the left, the body's forward axis points left and its left axis back.
+        let turned_place = Place::START.moved_by_twist([0.0, 0.0, FRAC_PI_2]);
+        assert_at(
+            turned_place.moved_by_twist([10.0, 0.0, 0.0]),
+            0.0,
+            10.0,
+            90.0,
+        );
+        assert_at(
+            turned_place.moved_by_twist([0.0, 10.0, 0.0]),
+            -10.0,
+            0.0,
+            90.0,
+        );
     }
 
     #[test]
     fn a_body_that_turns_as_it_moves_follows_a_circle() {
         // A quarter circle and a half circle, both to the left, of radius 10.
         assert_at(
-            Place::START.moved([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
+            Place::START.moved_by_twist([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
             10.0,
             10.0,
             90.0,
         );
-        assert_at(Place::START.moved([10.0 * PI, 0.0, PI]), 0.0, 20.0, 180.0);
+        assert_at(
+            Place::START.moved_by_twist([10.0 * PI, 0.0, PI]),
+            0.0,
+            20.0,
+            180.0,
+        );
     }
 
     #[test]
-    fn a_movement_is_seen_from_its_start() {
-        let start = Place::START.moved([3.0, 4.0, FRAC_PI_2]);
+    fn a_travel_does_not_depend_on_the_place_at_which_it_starts() {
+        let start = Place::START.moved_by_twist([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
-        let movement = start.moved(twist).seen_from(start);
-        let expected = Place::START.moved(twist).travel();
+        let movement = start.moved_by_twist(twist).travel_from(start);
+        let expected = Place::START.moved_by_twist(twist).travel();
         assert!(
             (movement.forward - expected.forward).abs() < 1e-12
                 && (movement.left - expected.left).abs() < 1e-12
@@ -125,14 +150,14 @@ mod tests {
         assert!((movement.turn - expected.turn).abs() < 1e-12);
         assert!(
             start
-                .after(movement)
-                .seen_from(start.moved(twist))
+                .moved_by_travel(movement)
+                .travel_from(start.moved_by_twist(twist))
                 .forward
                 .abs()
                 < 1e-12
         );
-        let movement_travel = start.after(movement).travel();
-        let twist_travel = start.moved(twist).travel();
+        let movement_travel = start.moved_by_travel(movement).travel();
+        let twist_travel = start.moved_by_twist(twist).travel();
         assert!(
             (movement_travel.left - twist_travel.left)
                 .hypot(movement_travel.turn - twist_travel.turn)
@@ -141,13 +166,13 @@ mod tests {
     }
 
     #[test]
-    fn a_point_of_the_body_goes_with_it() {
+    fn a_point_is_converted_from_the_axes_of_the_body_to_those_of_the_floor() {
         let place = Place {
             forward: 1.0,
             left: 2.0,
             heading: FRAC_PI_2,
         };
-        let [forward, left] = place.on_floor([10.0, 3.0]);
+        let [forward, left] = place.to_floor([10.0, 3.0]);
         assert!((forward + 2.0).abs() < 1e-12 && (left - 12.0).abs() < 1e-12);
     }
 }

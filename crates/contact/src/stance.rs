@@ -1,42 +1,42 @@
 //! The loads of four feet, which statics alone does not determine.
 //!
-//! The loads of a stiff body on three feet follow from statics. On four feet they do not:
-//! one diagonal may carry more and the other less, and all forces still balance. The
-//! lengths of the feet and their stiffness decide. If a foot is `twist` mm too long, it
-//! and the foot across from it carry more by a quarter of `twist` times the stiffness,
-//! and the other two carry less by as much. In a gait three feet hold the body while
-//! the fourth swings; that fails if two of the three hardly touch the floor.
+//! The loads of a rigid body on three feet follow from statics. On four feet they do not: the
+//! feet on one diagonal may carry more and those on the other less, and all forces still
+//! balance. The lengths of the feet and their stiffness decide. If a foot is `twist` mm too
+//! long, it and the diagonally opposite foot each carry more by a quarter of `twist` times the
+//! stiffness, and the other two carry less by as much. In a gait three feet hold the body
+//! while the fourth swings; that fails if two of the three hardly touch the floor.
 //!
-//! So a foot is modelled as a spring that only pushes: a foot that would have to pull is
+//! So a foot is modelled as a spring that can only push: a foot that would have to pull is
 //! in the air.
 
 use crate::feet::Body;
 use crate::friction::Point;
-use crate::linear::solve;
+use crate::linear::solve_symmetric;
 
 /// The stiffness and the lengths of the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stance {
-    /// Stiffness of a foot, N/mm: its leaf and its pad.
+    /// Stiffness of a foot, N/mm: that of its leaf spring together with its pad.
     pub stiffness: f64,
-    /// Excess length of the front left foot over the other three, mm; negative if it is too
-    /// short. An equal excess of the hind right foot has the same effect; an excess of one of
-    /// the other two feet has the opposite effect.
+    /// Excess length of the left front foot over the other three, mm; negative if it is too
+    /// short. The same excess of the right hind foot has the same effect; that of one of the
+    /// other two feet has the opposite effect.
     pub twist: f64,
     /// Uncertainty of `twist` after levelling, mm to either side. Only predictions for random
     /// robots use it.
-    pub level: f64,
+    pub twist_error: f64,
 }
 
-/// Largest load, as a share of the mean, that counts as zero.
-const ZERO_LOAD: f64 = 1e-9;
+/// Largest load that counts as zero, as a share of the mean.
+const MAX_ZERO_LOAD: f64 = 1e-9;
 
 impl Stance {
     /// The defaults of robot.toml.
     pub const DEFAULT: Self = Self {
         stiffness: 0.5,
         twist: 0.0,
-        level: 0.5,
+        twist_error: 0.5,
     };
 
     /// Feet of equal length.
@@ -45,47 +45,47 @@ impl Stance {
         ..Self::DEFAULT
     };
 
-    /// Extra load that `twist` puts on the front left and the hind right foot, N, if the feet
-    /// stand in a rectangle; the other two carry as much less.
-    pub fn diagonal(&self) -> f64 {
+    /// Extra load that `twist` puts on the left front and on the right hind foot, N, if the feet
+    /// stand in a rectangle; the other two feet carry less by as much.
+    pub fn diagonal_load(&self) -> f64 {
         self.stiffness * self.twist / 4.0
     }
 
-    /// Computes the load of each foot as a share of the mean, with feet at these positions
+    /// Computes the load of each foot divided by the mean load, with feet at these positions
     /// (forward, left in mm, servo order); 0 for a foot in the air.
     ///
-    /// The feet are springs and the chassis is rigid: it sinks and tilts. So a foot's load is a
-    /// part from its own length plus a part that is linear in its position. The three equations
-    /// of balance determine the linear part.
-    pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
+    /// The feet are springs, on which the rigid chassis sinks and tilts. So the load of a foot is
+    /// the sum of a part due to its own length and a part that is linear in its position. The
+    /// three equations of balance determine the linear part.
+    pub fn load_shares(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let length_loads = [
             self.stiffness * self.twist / body.mean_load(),
             0.0,
             0.0,
             0.0,
         ];
-        // All four feet stand, or all except one: in exactly one of these five cases no standing
-        // foot pulls and no lifted foot is below the floor.
-        let case_of = |lifted: Option<usize>| {
-            let is_standing = std::array::from_fn(|i| lifted != Some(i));
+        // All four feet stand, or all but one: in exactly one of these five cases no standing foot
+        // pulls and no lifted foot is below the floor.
+        let case_of = |lifted_foot: Option<usize>| {
+            let is_standing = std::array::from_fn(|i| lifted_foot != Some(i));
             (
                 is_standing,
-                compute_pressures(feet, length_loads, body.centre, is_standing),
+                compute_loads(feet, length_loads, body.mass_centre, is_standing),
             )
         };
         let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(case_of);
-        let is_consistent = |(is_standing, pressures): &&([bool; 4], [f64; 4])| {
-            let mut pairs = is_standing.iter().zip(pressures);
-            pairs.all(|(is_standing, pressure)| match is_standing {
-                true => *pressure >= -ZERO_LOAD,
-                false => *pressure <= ZERO_LOAD,
+        let is_consistent = |(is_standing, loads): &&([bool; 4], [f64; 4])| {
+            let mut pairs = is_standing.iter().zip(loads);
+            pairs.all(|(is_standing, load)| match is_standing {
+                true => *load >= -MAX_ZERO_LOAD,
+                false => *load <= MAX_ZERO_LOAD,
             })
         };
-        // A robot that falls over matches no case; it gets the loads of the first one.
-        let (is_standing, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
+        // A robot that falls over matches no case and gets the loads of the first one.
+        let (is_standing, loads) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
         std::array::from_fn(|i| {
             if is_standing[i] {
-                pressures[i].max(0.0)
+                loads[i].max(0.0)
             } else {
                 0.0
             }
@@ -93,26 +93,27 @@ impl Stance {
     }
 }
 
-/// Computes the load of each foot as a share of the mean if only the feet in `is_standing` touch the
-/// floor. A negative load means that a standing foot pulls, or that a lifted one is above the floor.
-fn compute_pressures(
+/// Computes the load of each foot divided by the mean load if only the feet marked in `is_standing`
+/// touch the floor. A negative load means that a standing foot pulls, or that a lifted foot is above
+/// the floor.
+fn compute_loads(
     feet: [Point; 4],
     length_loads: [f64; 4],
-    centre: Point,
+    mass_centre: Point,
     is_standing: [bool; 4],
 ) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
-    let mut moments = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
+    let mut right_side = [4.0, 4.0 * mass_centre[0], 4.0 * mass_centre[1]];
     for i in (0..4).filter(|&i| is_standing[i]) {
         let row = [1.0, feet[i][0], feet[i][1]];
         for j in 0..3 {
-            moments[j] -= length_loads[i] * row[j];
+            right_side[j] -= length_loads[i] * row[j];
             for k in 0..3 {
                 matrix[j][k] += row[j] * row[k];
             }
         }
     }
-    let [heave, pitch, roll] = solve(matrix, moments);
+    let [heave, pitch, roll] = solve_symmetric(matrix, right_side);
     std::array::from_fn(|i| length_loads[i] + heave + pitch * feet[i][0] + roll * feet[i][1])
 }
 
@@ -123,9 +124,9 @@ mod tests {
     const RECTANGLE: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
     const SWUNG_FEET: [Point; 4] = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
 
-    fn body_with_centre(centre: Point) -> Body {
+    fn body_with_mass_centre(mass_centre: Point) -> Body {
         Body {
-            centre,
+            mass_centre,
             ..Body::DEFAULT
         }
     }
@@ -138,8 +139,8 @@ mod tests {
         }
     }
 
-    /// Computes the loads by iteration: heave, pitch and roll follow the unbalanced force and
-    /// moments until the feet carry the body.
+    /// Computes the loads by iteration: unbalanced force and moments change heave, pitch and roll
+    /// until the feet carry the body.
     fn loads_by_iteration(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let (mut heave, mut pitch, mut roll) = (0.0, 0.0, 0.0);
         let stiffness = stance.stiffness / body.mean_load();
@@ -156,17 +157,18 @@ mod tests {
                 (0..4).map(|i| current_loads[i] * arm(i)).sum()
             };
             heave += 0.05 * (4.0 - sum_of(&|_| 1.0));
-            pitch += 1e-5 * (4.0 * body.centre[0] - sum_of(&|i| feet[i][0]));
-            roll += 1e-5 * (4.0 * body.centre[1] - sum_of(&|i| feet[i][1]));
+            pitch += 1e-5 * (4.0 * body.mass_centre[0] - sum_of(&|i| feet[i][0]));
+            roll += 1e-5 * (4.0 * body.mass_centre[1] - sum_of(&|i| feet[i][1]));
         }
         loads_at(heave, pitch, roll)
     }
 
     #[test]
-    fn the_loads_balance_the_body_and_are_those_at_which_it_settles() {
+    fn the_loads_balance_the_body_and_equal_those_found_by_iteration() {
         for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
             for twist in [0.0, 0.3, -0.6, 1.0, 3.0] {
-                let loads = stance_with_twist(twist).loads(&body_with_centre(centre), SWUNG_FEET);
+                let loads = stance_with_twist(twist)
+                    .load_shares(&body_with_mass_centre(centre), SWUNG_FEET);
                 let sum_of = |arm: fn(Point) -> f64| -> f64 {
                     let pairs = loads.iter().zip(SWUNG_FEET);
                     pairs.map(|(load, foot)| load * arm(foot)).sum()
@@ -176,7 +178,7 @@ mod tests {
                 assert!((sum_of(|foot| foot[1]) - 4.0 * centre[1]).abs() < 1e-6);
                 let settled_loads = loads_by_iteration(
                     &stance_with_twist(twist),
-                    &body_with_centre(centre),
+                    &body_with_mass_centre(centre),
                     SWUNG_FEET,
                 );
                 for (load, settled_load) in loads.into_iter().zip(settled_loads) {
@@ -190,29 +192,29 @@ mod tests {
     }
 
     #[test]
-    fn feet_in_a_rectangle_share_by_lever() {
-        // The centre is halfway to the front feet, which then carry 1.5 times the mean.
-        let loads = Stance::LEVEL.loads(&body_with_centre([27.5, 0.0]), RECTANGLE);
+    fn feet_nearer_to_the_centre_of_mass_carry_more() {
+        // The centre of mass is halfway to the front feet, so each of these carries 1.5 times the mean.
+        let loads = Stance::LEVEL.load_shares(&body_with_mass_centre([27.5, 0.0]), RECTANGLE);
         for (load, expected) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
             assert!((load - expected).abs() < 1e-9, "{loads:?}");
         }
-        for load in Stance::LEVEL.loads(&Body::DEFAULT, RECTANGLE) {
+        for load in Stance::LEVEL.load_shares(&Body::DEFAULT, RECTANGLE) {
             assert!((load - 1.0).abs() < 1e-9);
         }
     }
 
     #[test]
-    fn a_foot_that_is_too_long_loads_itself_and_the_one_across() {
-        // 2 N/mm and 0.6 mm: a quarter of 1.2 N.
+    fn a_foot_that_is_too_long_and_the_one_across_from_it_carry_more() {
+        // 2 N/mm times 0.6 mm is 1.2 N, of which each foot on the diagonal bears a quarter.
         let stance = stance_with_twist(0.6);
-        assert!((stance.diagonal() - 0.3).abs() < 1e-12);
+        assert!((stance.diagonal_load() - 0.3).abs() < 1e-12);
         let share = 0.3 / Body::DEFAULT.mean_load();
-        let loads = stance.loads(&Body::DEFAULT, RECTANGLE);
+        let loads = stance.load_shares(&Body::DEFAULT, RECTANGLE);
         for (load, sign) in loads.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
             assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
         }
         // A foot that is much too long and the foot diagonally opposite carry half the robot each.
-        let loads = stance_with_twist(10.0).loads(&Body::DEFAULT, RECTANGLE);
+        let loads = stance_with_twist(10.0).load_shares(&Body::DEFAULT, RECTANGLE);
         for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
             assert!((load - expected).abs() < 1e-6, "{loads:?}");
         }
@@ -220,13 +222,14 @@ mod tests {
 
     #[test]
     fn a_foot_never_pulls() {
-        // The centre is beyond the diagonal through feet 1 and 3, so foot 2 leaves the floor.
-        let loads = Stance::LEVEL.loads(&body_with_centre([30.0, 50.0]), RECTANGLE);
+        // The centre of mass is beyond the diagonal through feet 1 and 3, so foot 2 leaves the floor.
+        let loads = Stance::LEVEL.load_shares(&body_with_mass_centre([30.0, 50.0]), RECTANGLE);
         assert_eq!(loads[2], 0.0);
         assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
         assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
         // No foot pulls even if the robot falls over.
-        let fallen_loads = Stance::LEVEL.loads(&body_with_centre([200.0, 0.0]), RECTANGLE);
+        let fallen_loads =
+            Stance::LEVEL.load_shares(&body_with_mass_centre([200.0, 0.0]), RECTANGLE);
         assert!(
             fallen_loads.iter().all(|load| *load >= 0.0),
             "{fallen_loads:?}"

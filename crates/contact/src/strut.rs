@@ -1,20 +1,19 @@
-//! A strut with a slot and a tension spring in it, from a servo's link to its leg.
+//! A strut with a slot and a tension spring in it, which connects a servo's arm to its leg's arm.
 //!
-//! Shaft, leg's pivot and two equal, parallel arms make a parallelogram whose fourth side
-//! is the strut. The leg's screw runs in a slot of the strut, and a spring pulls the
-//! screw against the slot's end. So the strut can grow longer but not shorter: the leg
-//! can lag behind its servo in one direction only, which is forward at the front legs and
-//! back at the hind legs of the paper's robot. The torque of the spring on the leg is its
-//! pull times a lever. The lever is the arm's component square to the strut, and it
-//! changes with the pose.
+//! The two arms are equal and parallel. With the strut and the line from the servo's shaft to the
+//! leg's pivot they form a parallelogram. The leg's screw runs in a slot of the strut, and a spring
+//! pulls the screw against one end of the slot. So the strut can grow longer but not shorter: the leg
+//! can lag behind its servo in one direction only, which is forward at the front legs and back at the
+//! hind legs of the paper's robot. The torque of the spring on the leg is its pull times a lever: the
+//! component of the arm perpendicular to the strut, which changes with the pose.
 
 use lizard_kinematics::wrap;
 
-use crate::lag_energy::{Side, Stretch};
-use crate::legs::FORWARD;
+use crate::lag_energy::{Resistance, StrutTriangle};
+use crate::legs::FORWARD_TURN_SIGN;
 
 /// Distance that the leg's screw can slide in the slot of its strut, mm.
-pub const SLOT: f64 = 5.0;
+pub const SLOT_LENGTH: f64 = 5.0;
 
 /// A slotted strut and its spring; all four struts are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,56 +23,57 @@ pub struct Strut {
     /// Rate of the spring, N/mm.
     pub rate: f64,
     /// Distance that the screw can slide in the slot, mm.
-    pub slot: f64,
-    /// Distance from screw to screw while the leg does not lag, mm.
+    pub slot_length: f64,
+    /// Distance between the strut's screws while the leg does not lag, mm.
     pub length: f64,
-    /// Length of the servo's arm and of the leg's arm, mm.
-    pub radius: f64,
-    /// Angle from the strut's direction to the servo's arm at neutral, deg, for each leg in
-    /// servo order.
-    pub angles: [f64; 4],
+    /// Length of the servo's arm, and of the leg's arm, mm.
+    pub arm_length: f64,
+    /// Angles from the strut's direction to the servo's arm at neutral, deg.
+    pub arm_angles: [f64; 4],
 }
 
 impl Strut {
-    /// The geometry of stretching the strut while the servo is at this sweep (deg, foot forward
-    /// positive).
-    fn stretch(&self, leg: usize, sweep: f64) -> Stretch {
-        let arm_deg = self.angles[leg] + FORWARD[leg] * sweep;
+    /// The triangle of the strut while the servo is at this sweep (deg, foot forward positive).
+    fn triangle(&self, leg: usize, sweep: f64) -> StrutTriangle {
+        let arm_deg = self.arm_angles[leg] + FORWARD_TURN_SIGN[leg] * sweep;
         let (sin, cos) = arm_deg.to_radians().sin_cos();
-        // From the leg's pivot to the servo's end of the strut.
-        let servo_end = [self.radius * cos - self.length, self.radius * sin];
+        // Vector from the leg's pivot to the servo's end of the strut.
+        let servo_end = [self.arm_length * cos - self.length, self.arm_length * sin];
         let enclosed_deg = wrap(arm_deg - servo_end[1].atan2(servo_end[0]).to_degrees());
-        // A lag turns the leg's arm against the forward direction.
-        let angle = -FORWARD[leg] * enclosed_deg.to_radians();
-        Stretch::new(servo_end[0].hypot(servo_end[1]), self.radius, angle)
+        // A positive lag turns the leg's arm backward.
+        let angle = -FORWARD_TURN_SIGN[leg] * enclosed_deg.to_radians();
+        StrutTriangle::new(servo_end[0].hypot(servo_end[1]), self.arm_length, angle)
     }
 
-    /// Lever of the strut's pull at the leg's pivot, mm, while the leg does not lag.
+    /// Lever of the strut's pull about the leg's pivot, mm, while the leg does not lag and the servo is at
+    /// this sweep, deg.
     pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
-        self.stretch(leg, sweep).lever().abs()
+        self.triangle(leg, sweep).lever().abs()
     }
 
-    /// Lag with the screw at the end of the slot, deg, and the torque at that lag, N mm.
+    /// Lag (deg) at which the screw reaches the far end of the slot, and the spring's torque at that lag (N mm),
+    /// with the servo at this sweep, deg.
     pub fn slot_end(&self, leg: usize, sweep: f64) -> (f64, f64) {
-        let stretch = self.stretch(leg, sweep);
-        let lag = stretch.lag_at_growth(self.slot);
-        let force = self.force + self.rate * self.slot;
-        let torque = force * stretch.lever_after(lag);
+        let triangle = self.triangle(leg, sweep);
+        let lag = triangle.lag_at_growth(self.slot_length);
+        let force = self.force + self.rate * self.slot_length;
+        let torque = force * triangle.lever_after(lag);
         (lag.to_degrees(), torque)
     }
 
-    /// The resistance to a lag against the sweep's direction and along it, in units of `force_unit` N.
-    pub(crate) fn sides(&self, leg: usize, sweep: f64, force_unit: f64) -> [Side; 2] {
-        let stretch = self.stretch(leg, sweep);
-        let side = Side::strut(
-            stretch,
+    /// The resistances to a negative and to a positive lag, with `force_unit` N as the unit of force and the servo
+    /// at this sweep, deg.
+    pub(crate) fn resistances(&self, leg: usize, sweep: f64, force_unit: f64) -> [Resistance; 2] {
+        let triangle = self.triangle(leg, sweep);
+        let strut_resistance = Resistance::strut(
+            triangle,
             self.force / force_unit,
             self.rate / force_unit,
-            self.slot,
+            self.slot_length,
         );
-        match stretch.lever() > 0.0 {
-            true => [Side::Stop, side],
-            false => [side, Side::Stop],
+        match triangle.lever() > 0.0 {
+            true => [Resistance::Stop, strut_resistance],
+            false => [strut_resistance, Resistance::Stop],
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The movement of the body over the floor, and its prediction.
+//! Travels of the body over the floor, and predictions of them.
 
-/// The movement of the body, in the frame of the body at the start of the movement.
+/// A movement of the body over the floor, in the axes of the body at the start of the movement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Travel {
     /// Distance ahead, mm.
@@ -11,8 +11,8 @@ pub struct Travel {
     pub turn: f64,
 }
 
-/// A predicted movement. A component is `None` if friction does not determine it: with two feet that
-/// pull one way and two the other, the smallest difference between the pads decides.
+/// A predicted travel. A component is `None` if friction does not determine it: if two feet pull one
+/// way and two the other, the slightest difference between the pads decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// Distance ahead, mm.
@@ -29,8 +29,8 @@ impl Prediction {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
 
-    /// Returns those components of `travel` that this prediction knows.
-    pub fn keep_known(&self, travel: Travel) -> Self {
+    /// Returns a prediction with the components of `travel`, without those that this prediction leaves undecided.
+    pub fn known_components_of(&self, travel: Travel) -> Self {
         Self {
             forward: self.forward.and(Some(travel.forward)),
             left: self.left.and(Some(travel.left)),

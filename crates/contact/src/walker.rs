@@ -1,7 +1,7 @@
-//! The robot on its floor, step by step.
+//! The simulation of a robot on its floor, step by step.
 //!
 //! The body's movement in a step depends on earlier steps, because they leave each leg with a lag behind its
-//! servo. So a [`Walker`] follows a walk: it holds the servos, the lags and the place on the floor.
+//! servo. So a [`Walker`] keeps the state of a walk: the servos' sweeps, the lags and the place on the floor.
 
 use crate::feet::{Body, Feet};
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
@@ -11,38 +11,38 @@ use crate::motor::Motors;
 use crate::motor_step::{MotorStep, ServoState};
 use crate::place::Place;
 
-/// Largest sweep of a step, deg. A larger one is divided into equal steps.
-const MAX_SWEEP: f64 = 0.5;
-/// The largest number of iterations in a step. The pads' positions are those in the middle of the step, which depend
-/// on the lags after it; each iteration improves them.
+/// Largest sweep in one step, deg. A larger sweep is divided into equal steps.
+const MAX_STEP_SWEEP: f64 = 0.5;
+/// The largest number of iterations in a step. The pads' positions in the middle of the step depend on the lags after
+/// it; each iteration improves the estimate of these lags.
 const MAX_ITERATIONS: usize = 4;
-/// Change of a lag in an iteration below which the lag counts as settled, rad.
-const MAX_LAG_CHANGE: f64 = 1e-4;
-/// Rounding error allowed in a number of steps.
-const STEPS_ERROR: f64 = 1e-6;
-/// Width to which kinks are rounded off after a step, rad.
+/// Error of a lag's estimate up to which no further iteration is needed, rad.
+const LAG_TOLERANCE: f64 = 1e-4;
+/// Rounding error that a computed number of steps may have.
+const STEP_COUNT_TOLERANCE: f64 = 1e-6;
+/// Width over which kinks of the energy are smoothed when a lag is divided between servo and leg, rad.
 const KINK_WIDTH: f64 = 1e-12;
 
 /// A robot that walks on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
     ground: Ground,
-    /// Factors on the load of each pad, and on the ratio of backward to forward friction.
-    uneven: ([f64; 4], f64),
+    /// Factors on the pads' loads, and the factor on the ratio of backward to forward friction.
+    unevenness: ([f64; 4], f64),
     /// Sweeps of the servos, deg.
-    servos: [f64; 4],
+    servo_sweeps: [f64; 4],
     /// Speeds of the servos while motors turn them, deg/s.
-    rates: [f64; 4],
+    servo_rates: [f64; 4],
     /// Lags of the legs behind their servos, deg.
-    lag: [f64; 4],
-    /// Speed of the body, mm/s and rad/s, while motors drive it.
-    speed: Twist,
-    /// Speeds of the pads over the floor, mm/s, while motors drive them.
-    pad_speeds: [Point; 4],
+    lags: [f64; 4],
+    /// Velocity of the body while motors drive it, mm/s and rad/s.
+    body_velocity: Twist,
+    /// Velocities of the pads over the floor while motors drive them, mm/s.
+    pad_velocities: [Point; 4],
     place: Place,
 }
 
-/// The slides and loads of the feet from one pose to the next.
+/// The slides and the loads of the feet in a movement from one pose to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slip {
     /// Distance that each foot slid over the floor, mm.
@@ -58,7 +58,7 @@ impl Slip {
     };
 
     fn add(&mut self, pads: &Pads, displacement: &Displacement) {
-        self.loads = pads.load;
+        self.loads = pads.loads;
         for (sum, [x, y]) in self
             .slid_distances
             .iter_mut()
@@ -70,28 +70,33 @@ impl Slip {
 }
 
 impl Walker {
-    /// Makes a robot that stands with its servos at these sweeps (deg, foot forward
-    /// positive, servo order) and its springs at rest.
+    /// Makes a walker that stands with its servos at these sweeps (deg, foot forward positive,
+    /// servo order) and no lags.
     pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
-    /// Makes a robot that stands with its servos at these sweeps (deg) and its springs at rest, with
-    /// factors on the loads of the pads and on the ratio of backward to forward friction.
-    pub fn with_unevenness(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
+    /// Makes a walker that stands with its servos at these sweeps (deg) and no lags, with factors on
+    /// the loads of the pads and on the ratio of backward to forward friction.
+    pub fn with_unevenness(
+        ground: Ground,
+        sweeps: [f64; 4],
+        load_factors: [f64; 4],
+        ratio_factor: f64,
+    ) -> Self {
         Self {
             ground,
-            uneven: (load, ratio),
-            servos: sweeps,
-            rates: [0.0; 4],
-            speed: [0.0; 3],
-            pad_speeds: [[0.0; 2]; 4],
-            lag: [0.0; 4],
+            unevenness: (load_factors, ratio_factor),
+            servo_sweeps: sweeps,
+            servo_rates: [0.0; 4],
+            body_velocity: [0.0; 3],
+            pad_velocities: [[0.0; 2]; 4],
+            lags: [0.0; 4],
             place: Place::START,
         }
     }
 
-    /// Place of the body on the floor.
+    /// The place of the body on the floor.
     pub fn place(&self) -> Place {
         self.place
     }
@@ -101,104 +106,108 @@ impl Walker {
         self.place = place;
     }
 
-    /// The floor, the pads and the drive of the legs.
+    /// The robot and its floor.
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
 
-    /// Changes floor, pads or drive from the next step on. A leg that lags more than its new
-    /// drive allows moves to the stop.
+    /// Changes the robot or its floor from the next step on. A leg that lags more than its new drive
+    /// allows moves to the stop.
     pub fn set_ground(&mut self, ground: Ground) {
         self.ground = ground;
-        let (drive, servos) = (&self.ground.drive, self.servos);
-        self.lag = std::array::from_fn(|i| drive.limit_lag(i, servos[i], self.lag[i]));
+        let (drive, servo_sweeps) = (&self.ground.drive, self.servo_sweeps);
+        self.lags = std::array::from_fn(|i| drive.limit_lag(i, servo_sweeps[i], self.lags[i]));
     }
 
     /// Lag of each leg behind its servo, deg.
-    pub fn lag(&self) -> [f64; 4] {
-        self.lag
+    pub fn lags(&self) -> [f64; 4] {
+        self.lags
     }
 
     /// Sweeps of the legs, deg.
-    pub fn legs(&self) -> [f64; 4] {
-        std::array::from_fn(|i| self.servos[i] - self.lag[i])
+    pub fn leg_sweeps(&self) -> [f64; 4] {
+        std::array::from_fn(|i| self.servo_sweeps[i] - self.lags[i])
     }
 
     /// Sweeps of the servos, deg.
-    pub fn servos(&self) -> [f64; 4] {
-        self.servos
+    pub fn servo_sweeps(&self) -> [f64; 4] {
+        self.servo_sweeps
     }
 
-    /// Lets motors turn the servos towards these sweeps (deg) for some seconds. A servo without a
-    /// target does not turn, because its gears hold it.
+    /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. A servo
+    /// without a target does not turn, because the friction of its gears holds it.
     pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
         let mut slip = Slip::NONE;
-        let step_count = (seconds / motors.step() - STEPS_ERROR).ceil().max(1.0);
+        let step_count = (seconds / motors.time_step() - STEP_COUNT_TOLERANCE)
+            .ceil()
+            .max(1.0);
         for _ in 0..step_count as usize {
             let (pads, displacement) = self.drive_step(targets, seconds / step_count, motors);
-            self.place = self.place.moved(displacement.twist);
+            self.place = self.place.moved_by_twist(displacement.twist);
             slip.add(&pads, &displacement);
         }
         slip
     }
 
-    /// Finds the displacement in a short time step, and turns servos and legs.
+    /// Finds the displacement in a short time step, and updates servos, lags and velocities.
     fn drive_step(
         &mut self,
         targets: [Option<f64>; 4],
         seconds: f64,
         motors: &Motors,
     ) -> (Pads, Displacement) {
-        let (grip, joints) = (self.ground.grip(), &motors.joints);
-        let (servos, rates) = (self.servos, self.rates.map(f64::to_radians));
-        let slider = joints.torques(servos, rates, motors.fade_speed(seconds));
+        let (mean_pad_friction, joints) = (self.ground.mean_pad_friction(), &motors.joints);
+        let (start_sweeps, start_rates) =
+            (self.servo_sweeps, self.servo_rates.map(f64::to_radians));
+        let slider_torques =
+            joints.slider_torques(start_sweeps, start_rates, motors.fade_speed(seconds));
         let motor_steps: [Option<MotorStep>; 4] = std::array::from_fn(|i| {
             let state = ServoState {
-                target: targets[i]?.to_radians(),
-                servo: servos[i].to_radians(),
-                rate: rates[i],
+                target_angle: targets[i]?.to_radians(),
+                angle: start_sweeps[i].to_radians(),
+                rate: start_rates[i],
             };
-            let friction = [joints.drag, slider[i]];
+            let dry_friction_torques = [joints.pin_torque, slider_torques[i]];
             Some(MotorStep::new(
-                &motors.each[i],
+                &motors.per_servo[i],
                 state,
                 seconds,
-                friction,
-                grip,
+                dry_friction_torques,
+                mean_pad_friction,
             ))
         });
-        // The sweeps of the servos at an unchanged rate, from which their lags are counted.
-        let reference: [f64; 4] = std::array::from_fn(|i| match targets[i] {
-            Some(_) => servos[i] + self.rates[i] * seconds,
-            None => servos[i],
+        // The sweeps that the servos would reach at unchanged rates: the servos' lags are relative to them.
+        let reference_sweeps: [f64; 4] = std::array::from_fn(|i| match targets[i] {
+            Some(_) => start_sweeps[i] + self.servo_rates[i] * seconds,
+            None => start_sweeps[i],
         });
-        let start_points = self.ground.feet.positions(self.legs());
-        // A loaded motor turns nearly as far as an unloaded one, so this is a good estimate.
-        let lag_estimate = std::array::from_fn(|i| {
-            self.lag[i].to_radians()
-                + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_end())
+        let start_points = self.ground.feet.positions(self.leg_sweeps());
+        // In a short step a loaded motor turns nearly as far as an unloaded one, so this is a good estimate.
+        let lag_estimates = std::array::from_fn(|i| {
+            self.lags[i].to_radians()
+                + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_lag())
         });
         let pads = Pads {
-            body: Some(self.inertia(seconds)),
-            ..self.pads(start_points, reference, lag_estimate, motor_steps)
+            inertia: Some(self.inertia(seconds)),
+            ..self.pads(start_points, reference_sweeps, lag_estimates, motor_steps)
         };
-        let displacement = pads.minimum();
-        for (i, total_lag) in displacement.lag.into_iter().enumerate() {
+        let displacement = pads.minimise_cost();
+        for (i, total_lag) in displacement.lags.into_iter().enumerate() {
             let servo_lag = pads.compliance.map_or(0.0, |compliance| {
-                compliance.lag_energy[i].servo_lag(total_lag, KINK_WIDTH)
+                compliance.lag_energies[i].servo_lag(total_lag, KINK_WIDTH)
             });
-            self.servos[i] = reference[i] - servo_lag.to_degrees();
-            self.rates[i] = (self.servos[i] - servos[i]) / seconds;
-            self.lag[i] = (total_lag - servo_lag).to_degrees();
+            self.servo_sweeps[i] = reference_sweeps[i] - servo_lag.to_degrees();
+            self.servo_rates[i] = (self.servo_sweeps[i] - start_sweeps[i]) / seconds;
+            self.lags[i] = (total_lag - servo_lag).to_degrees();
         }
-        self.speed = displacement.twist.map(|component| component / seconds);
+        self.body_velocity = displacement.twist.map(|component| component / seconds);
         let slides = pads.slides(&displacement);
-        self.pad_speeds = slides.map(|slide| slide.map(|component| component / seconds));
+        self.pad_velocities = slides.map(|slide| slide.map(|component| component / seconds));
         (pads, displacement)
     }
 
-    /// The inertia in a time step: of the body, as if its mass stood at the hips, and of the legs, whose mass
-    /// is at the pads.
+    /// The inertia in a time step of `seconds`. The mass of the body counts as if it were at the hips, that of the
+    /// legs as if it were at the pads.
     fn inertia(&self, seconds: f64) -> Inertia {
         const KG_PER_G: f64 = 1e-3;
         const M_PER_MM: f64 = 1e-3;
@@ -209,105 +218,117 @@ impl Walker {
         } = self.ground.feet;
         let Body { mass, .. } = self.ground.body;
         let leg_mass = self.ground.body.leg_mass();
-        let stiffness_of =
-            |mass: f64| mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.grip());
+        let stiffness_of = |mass: f64| {
+            mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.mean_pad_friction())
+        };
         let stiffness = stiffness_of(mass - 4.0 * leg_mass);
         let hip_square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
         Inertia {
             stiffness: [stiffness, stiffness, stiffness * hip_square],
-            previous_twist: self.speed.map(|component| component * seconds),
+            previous_twist: self.body_velocity.map(|component| component * seconds),
             leg_stiffness: stiffness_of(leg_mass),
-            slides: self
-                .pad_speeds
-                .map(|speed| speed.map(|component| component * seconds)),
+            previous_slides: self
+                .pad_velocities
+                .map(|velocity| velocity.map(|component| component * seconds)),
         }
     }
 
-    /// Moves the servos to these sweeps, deg.
-    pub fn step(&mut self, sweeps: [f64; 4]) -> Slip {
+    /// Moves the servos to these sweeps (deg) in small steps, without inertia.
+    pub fn move_to(&mut self, sweeps: [f64; 4]) -> Slip {
         let mut slip = Slip::NONE;
         self.move_servos(sweeps, |pads, displacement| slip.add(pads, displacement));
         slip
     }
 
-    /// Moves the servos to these sweeps in small steps, without inertia, and calls `visit` after each step.
+    /// Moves the servos to these sweeps (deg) in small steps, without inertia, and calls `visit` after each step.
     pub(crate) fn move_servos(
         &mut self,
         sweeps: [f64; 4],
         mut visit: impl FnMut(&Pads, &Displacement),
     ) {
-        let servos = self.servos;
-        (self.rates, self.speed) = ([0.0; 4], [0.0; 3]);
-        self.pad_speeds = [[0.0; 2]; 4];
-        let max_turn = (0..4).fold(0.0f64, |max, i| max.max((sweeps[i] - servos[i]).abs()));
-        let step_count = (max_turn / MAX_SWEEP).ceil().max(1.0) as usize;
+        let start_sweeps = self.servo_sweeps;
+        (self.servo_rates, self.body_velocity) = ([0.0; 4], [0.0; 3]);
+        self.pad_velocities = [[0.0; 2]; 4];
+        let max_turn = (0..4).fold(0.0f64, |max, i| {
+            max.max((sweeps[i] - start_sweeps[i]).abs())
+        });
+        let step_count = (max_turn / MAX_STEP_SWEEP).ceil().max(1.0) as usize;
         for step in 1..=step_count {
-            let share = step as f64 / step_count as f64;
-            let next = std::array::from_fn(|i| servos[i] + share * (sweeps[i] - servos[i]));
-            let (pads, displacement) = self.find_step(next);
-            self.place = self.place.moved(displacement.twist);
-            self.servos = next;
-            self.lag = displacement.lag.map(f64::to_degrees);
+            let fraction = step as f64 / step_count as f64;
+            let next_sweeps =
+                std::array::from_fn(|i| start_sweeps[i] + fraction * (sweeps[i] - start_sweeps[i]));
+            let (pads, displacement) = self.find_displacement(next_sweeps);
+            self.place = self.place.moved_by_twist(displacement.twist);
+            self.servo_sweeps = next_sweeps;
+            self.lags = displacement.lags.map(f64::to_degrees);
             visit(&pads, &displacement);
         }
     }
 
-    /// Finds the displacement of a small step of the servos to these sweeps.
-    fn find_step(&self, servos: [f64; 4]) -> (Pads, Displacement) {
-        let start_points = self.ground.feet.positions(self.legs());
-        let mut lag = self.lag.map(f64::to_radians);
-        let mut pads = self.pads(start_points, servos, lag, [None; 4]);
-        let mut displacement = pads.minimum();
+    /// Finds the displacement in a small step of the servos to these sweeps, deg.
+    fn find_displacement(&self, servo_sweeps: [f64; 4]) -> (Pads, Displacement) {
+        let start_points = self.ground.feet.positions(self.leg_sweeps());
+        let mut lag_estimates = self.lags.map(f64::to_radians);
+        let mut pads = self.pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
+        let mut displacement = pads.minimise_cost();
         for _ in 1..MAX_ITERATIONS {
-            let error = (0..4).fold(0.0f64, |error, i| {
-                error.max((displacement.lag[i] - lag[i]).abs())
+            let max_error = (0..4).fold(0.0f64, |error, i| {
+                error.max((displacement.lags[i] - lag_estimates[i]).abs())
             });
-            if error < MAX_LAG_CHANGE {
+            if max_error < LAG_TOLERANCE {
                 break;
             }
-            lag = displacement.lag;
-            pads = self.pads(start_points, servos, lag, [None; 4]);
-            displacement = pads.minimum_near(Some(&displacement));
+            lag_estimates = displacement.lags;
+            pads = self.pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
+            displacement = pads.minimise_cost_from(Some(&displacement));
         }
         (pads, displacement)
     }
 
-    /// Sets up the pads of a small step, after which the legs lag about `lag` rad behind their
-    /// servos.
+    /// Sets up the pads in a small step of the servos to `servo_sweeps` (deg), after which the lags are
+    /// about `lag_estimates` (rad).
     fn pads(
         &self,
         start_points: [Point; 4],
-        servos: [f64; 4],
-        lag: [f64; 4],
+        servo_sweeps: [f64; 4],
+        lag_estimates: [f64; 4],
         motors: [Option<MotorStep>; 4],
     ) -> Pads {
         let feet = &self.ground.feet;
-        let end_sweeps: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
+        let end_sweeps: [f64; 4] =
+            std::array::from_fn(|i| servo_sweeps[i] - lag_estimates[i].to_degrees());
         let end_points = feet.positions(end_sweeps);
         let derivatives = feet.sweep_derivatives(end_sweeps);
-        // Positions in the middle of the step, so that the reverse step is its exact inverse.
+        // The positions in the middle of the step, so that the reverse step is its exact inverse.
         let positions = points_from(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
-        let lag_before = self.lag.map(f64::to_radians);
-        let (load_factors, ratio_factor) = self.uneven;
+        let previous_lags = self.lags.map(f64::to_radians);
+        let (load_factors, ratio_factor) = self.unevenness;
         let loads = self.ground.loads(positions);
-        let (drive, grip) = (&self.ground.drive, self.ground.grip());
+        let (drive, mean_pad_friction) = (&self.ground.drive, self.ground.mean_pad_friction());
         // No pad carries more than the whole robot.
-        let max_pad_torque = 4.0 * feet.reach * (self.ground.ratio * ratio_factor).max(1.0);
+        let max_pad_torque =
+            4.0 * feet.reach * (self.ground.friction_ratio * ratio_factor).max(1.0);
         Pads {
-            at: positions,
-            swing: points_from(&|i, j| {
-                end_points[i][j] - start_points[i][j] + (lag[i] - lag_before[i]) * derivatives[i][j]
+            positions,
+            swings: points_from(&|i, j| {
+                end_points[i][j] - start_points[i][j]
+                    + (lag_estimates[i] - previous_lags[i]) * derivatives[i][j]
             }),
-            ratio: self.ground.ratio * ratio_factor,
-            load: std::array::from_fn(|i| loads[i] * load_factors[i]),
-            body: None,
+            friction_ratio: self.ground.friction_ratio * ratio_factor,
+            loads: std::array::from_fn(|i| loads[i] * load_factors[i]),
+            inertia: None,
             compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| {
                 Compliance {
-                    lag_derivatives: derivatives,
-                    previous_lags: lag_before,
-                    lag_energy: std::array::from_fn(|i| LagEnergy {
+                    sweep_derivatives: derivatives,
+                    previous_lags,
+                    lag_energies: std::array::from_fn(|i| LagEnergy {
                         motor: motors[i],
-                        ..drive.lag_energy_of_leg(i, servos[i], grip, max_pad_torque)
+                        ..drive.lag_energy_of_leg(
+                            i,
+                            servo_sweeps[i],
+                            mean_pad_friction,
+                            max_pad_torque,
+                        )
                     }),
                 }
             }),
@@ -315,6 +336,7 @@ impl Walker {
     }
 }
 
+/// Four points from their components, given as a function of the pad and the axis.
 fn points_from(component: &dyn Fn(usize, usize) -> f64) -> [Point; 4] {
     std::array::from_fn(|i| std::array::from_fn(|j| component(i, j)))
 }

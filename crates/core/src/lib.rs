@@ -4,52 +4,52 @@
 //! for a gait or a pose; fifty times a second the core turns the request into four pulse widths that the servos
 //! can follow and that cannot break a linkage of the robot.
 //!
-//! Commands pass from the console to the pulses, through the types of the first row; answers return through those of
-//! the second:
+//! Commands pass from the console to the pulses through the types of the first row, and answers return through those
+//! of the second row:
 //!
 //! ```text
 //!         Console                     Control                                Board
-//! bytes -> Line -> Command -> Order -> Motion (Gait, PointToPoint) -> guard -> Pulses -> timer
+//! bytes -> Line -> Command -> Order -> Motion (Gait, PointToPointMove) -> guard -> Pulses -> timer
 //! lines <- print <- Answer <- Refusal <- Safety (supervisor's table) <- Health
 //! ```
 //!
 //! [`step::Main`] joins a [`console::Console`] and a [`control::Control`]: it is the loop
-//! that a board repeats. Below it are six modules, called rooms; each uses only those below
+//! that a board repeats. Below it are six modules, each of which uses only those below
 //! it in this table:
 //!
-//! | room | contents |
+//! | module | contents |
 //! |---|---|
 //! | [`console`] | bytes, lines, commands, messages |
 //! | [`control`] | orders, refusals, the [`control::supervisor`]'s table, faults, supplies |
 //! | [`motion`] | gaits, moves between poses, and the changes from one to the next |
-//! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose breaks |
+//! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose exceeds |
 //! | [`memory`] | settings and poses that survive power-off, and a state that survives a reset |
 //! | [`numbers`] | units, and the section of flash with the numbers of a robot |
 //!
-//! This example shows two pieces that need no robot: bytes become a line, and an angle
-//! becomes the pulse that turns a servo there. A whole robot on a simulated board is in
+//! This example shows two parts that need no robot: bytes become a line, and an angle
+//! becomes the pulse that turns a servo to it. A whole robot on a simulated board is in
 //! `virtual_board` (feature `host`).
 //!
 //! ```
 //! use lizard_core::numbers::calibration::Calibration;
 //! use lizard_core::console::line::{LineEnd, Line};
-//! use lizard_core::numbers::units::{Angle, CYCLES_PER_US, Sweep, Width};
+//! use lizard_core::numbers::units::{Angle, CYCLES_PER_US, PulseWidth, Sweep};
 //!
 //! let mut line = Line::new();
 //! let line_end = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
 //! assert_eq!((line_end, line.text()), (Some(LineEnd::Line), &b"pose 120"[..]));
 //!
 //! // A servo that holds 90 degrees at 1500 us and turns 90 degrees either way, 10 us for
-//! // each degree: 57 600 cycles for a turn of 65 536 steps, and so 0.879 for a step.
+//! // each degree: that makes 57 600 cycles for a turn of 65 536 steps, or 0.879 cycles for a step.
 //! let servo = Calibration {
-//!     neutral: Width(1500 * CYCLES_PER_US),
+//!     neutral_width: PulseWidth(1500 * CYCLES_PER_US),
 //!     gain: (57_600 << 14 >> 16) as i16,
-//!     min: Sweep(-0x4000),
-//!     max: Sweep(0x3fff),
+//!     travel_min: Sweep(-0x4000),
+//!     travel_max: Sweep(0x3fff),
 //! };
 //! let sweep = Angle::from_centideg(9_000).sweep_to(Angle::from_centideg(12_000));
 //! assert!(servo.reaches(sweep));
-//! assert_eq!(servo.width(sweep), Width(1800 * CYCLES_PER_US), "300 us longer");
+//! assert_eq!(servo.width(sweep), PulseWidth(1800 * CYCLES_PER_US), "300 us longer");
 //! ```
 //!
 //! The goals, in this order, if two of them conflict:
@@ -59,7 +59,7 @@
 //! 2. **Exact.** A pulse is right to the cycle, and a frame on the host equals the chip's
 //!    to the bit.
 //! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.
-//! 4. **Small.** Flash and RAM come last: a type that costs a few bytes stays, as long as
+//! 4. **Small.** Flash and RAM come last: a type that costs a few bytes is kept as long as
 //!    the program fits.
 //!
 //! Everything here is integer arithmetic and runs unchanged on the microcontroller and on
@@ -68,8 +68,8 @@
 //! through the trait [`step::Board`]; this crate can name neither a register nor a file.
 //!
 //! Do not use it for a robot of another build: head, tail and sides have to be five-bars on
-//! exactly four servos. To send pulses alone, take `servo-pulses`; to explore a linkage on
-//! a host, the floating-point `lizard-kinematics`.
+//! exactly four servos. To send pulses alone, use `servo-pulses`; to explore a linkage on
+//! a host, use the floating-point crate `lizard-kinematics`.
 
 #![no_std]
 

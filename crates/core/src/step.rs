@@ -1,9 +1,11 @@
 //! The step that a firmware's main loop repeats.
 //!
 //! A tick of the pulses or a received byte wakes the main loop. Each step does one thing, and a tick comes first,
-//! so a frame waits for one byte or one line at most. The loop takes no input while it writes its memory (3.4 ms a
+//! so a frame waits for one byte or one line at most. The loop takes no input while it writes the EEPROM (3.4 ms per
 //! byte), or while an answer waits for room in the transmit buffer; but frames continue even if nobody reads the
-//! answers. It computes one frame per tick. If several ticks have passed, it still computes only one: of several
+//! answers.
+//!
+//! The loop computes one frame per tick. If several ticks have passed, it still computes only one frame: of several
 //! frames only the last would be played, and the servos would jump. While the pulses run, it also skips a tick if
 //! the previous frame still waits to be played.
 
@@ -11,14 +13,14 @@ use lizard_avr::Region;
 
 use crate::console::answer::Counters;
 use crate::console::output::Output;
-use crate::console::{Console, LONGEST_LINE};
+use crate::console::{Console, MAX_OUTPUT_LINE_BYTES};
 use crate::control::Control;
 use crate::control::safety::Health;
 use crate::control::supply::Reading;
 use crate::memory::record::Memory;
 use crate::memory::restart::{Restart, Stance};
 use crate::numbers::pose::Pulses;
-use crate::numbers::rate::Rate;
+use crate::numbers::rate::BaudRate;
 use crate::numbers::units::CYCLES_PER_US;
 
 /// The hardware that the main loop needs.
@@ -29,47 +31,47 @@ pub trait Board {
     /// The memory that keeps its bytes without power, an EEPROM.
     type Memory: Memory;
 
-    /// Bytes that an idle writer takes without waiting; at least [`LONGEST_LINE`], since a
+    /// Bytes that an idle writer takes without waiting; at least [`MAX_OUTPUT_LINE_BYTES`], since a
     /// line is written only when there is room for all of it.
     const WRITER_CAPACITY: u8;
 
-    /// Steps of a pulse width in a microsecond; the core counts in 1/16 us.
+    /// Units of a pulse width in a microsecond; the core counts in 1/16 us.
     const CYCLES_PER_US: u16;
 
     /// Connects the servos A1 to A4, and the measured rail if there is one, to the pins with these Arduino numbers;
-    /// 14 to 19 are A0 to A5. Called once, before the first pulses.
+    /// 14 to 19 are the pins A0 to A5. Called once, before the first pulses.
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
 
     /// The number of ticks since the program started, modulo 256; there is one every 20 ms.
     fn ticks(&self) -> u8;
 
-    /// True if the last submitted pulses have been taken over, or none were submitted. This shows that the clock and
-    /// everything that makes pulses work.
+    /// True if the last submitted pulses have been taken over, or none were submitted. Then the clock and everything
+    /// that makes pulses are working.
     fn is_frame_taken(&self) -> bool;
 
     /// Submits the pulses of the next frame; they replace any that have not been taken over.
     fn submit(&mut self, pulses: Pulses);
 
-    /// Feeds the watchdog, which restarts the program if it hangs. Once the watchdog has ended the pulses, nothing
-    /// may delay the restart, and the main loop must not continue.
-    fn feed(&mut self);
+    /// Feeds the watchdog, which resets the program if it hangs. Once the watchdog has ended the pulses, nothing
+    /// may delay the reset, and the main loop must not continue.
+    fn feed_watchdog(&mut self);
 
     /// Stores the servos' state, and the number of consecutive resets that a weak supply may have caused, in memory
     /// that survives a reset of the processor.
     fn store_stance(&mut self, stance: &Stance, brown_outs: u8);
 
     /// The cause of the last reset, and the state stored before it.
-    fn restart(&self) -> &Restart;
+    fn last_restart(&self) -> &Restart;
 
     /// Returns the last measurement of the supplies and starts the next one.
-    fn supply(&mut self) -> Reading;
+    fn read_supply(&mut self) -> Reading;
 
     /// True unless the stack has grown into the data.
     fn is_stack_intact(&self) -> bool;
 
-    /// True while the contact between this pin, given by its Arduino number, and ground is closed. Also switches the
+    /// True while the contact between a pin, given by its Arduino number, and ground is closed. Also switches the
     /// pin's pull-up on.
-    fn is_closed(&mut self, pin: u8) -> bool;
+    fn is_contact_closed(&mut self, pin: u8) -> bool;
 
     /// The memory that keeps its bytes without power.
     fn memory(&mut self) -> &mut Self::Memory;
@@ -83,22 +85,23 @@ pub trait Board {
     /// The serial line's writer.
     fn writer(&mut self) -> &mut Self::Writer;
 
-    /// The next received byte, if any; [`crate::console::line::GARBLED`] if the byte arrived garbled.
+    /// The next received byte, if any; [`crate::console::line::GARBLED_BYTE`] if the byte arrived garbled.
     fn receive(&mut self) -> Option<u8>;
 
     /// Changes the rate of the serial line, and stores the rate in memory that survives a reset.
-    fn set_rate(&mut self, rate: Rate);
+    fn set_rate(&mut self, rate: BaudRate);
 
     /// The numbers of late pulse edges and of lost bytes since the program started.
     fn counters(&self) -> Counters;
 }
 
-/// The robot's control, its console on the serial line, and the tick of its last frame.
+/// The main loop: the robot's control, and its console on the serial line.
 #[derive(Clone, Debug)]
 pub struct Main {
     control: Control,
     console: Console,
-    ticks: u8,
+    /// The tick for which the main loop last computed or skipped a frame.
+    last_tick: u8,
 }
 
 /// The result of a step.
@@ -106,7 +109,7 @@ pub struct Main {
 pub enum Step {
     /// The step did something; there may be more to do.
     Worked,
-    /// Nothing to do until [`Board::ticks`] differs from this number or a byte is received.
+    /// There is nothing to do until [`Board::ticks`] differs from this number or a byte is received.
     Idle(u8),
 }
 
@@ -117,15 +120,15 @@ impl Default for Main {
 }
 
 impl Main {
-    /// Makes a main loop without a robot; [`Main::begin`] has to follow.
+    /// Makes a main loop without a robot; [`Main::begin`] must follow.
     ///
     /// All its bits are zero, so that a firmware's `Main` needs no initial values in flash; the linker script rejects
-    /// one that needs them.
+    /// initial values.
     pub const fn new() -> Self {
         Self {
             control: Control::new(),
             console: Console::new(),
-            ticks: 0,
+            last_tick: 0,
         }
     }
 
@@ -133,17 +136,17 @@ impl Main {
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
-            assert!(B::WRITER_CAPACITY >= LONGEST_LINE);
+            assert!(B::WRITER_CAPACITY >= MAX_OUTPUT_LINE_BYTES);
             assert!(B::CYCLES_PER_US == CYCLES_PER_US);
         }
-        let restart = *board.restart();
+        let restart = *board.last_restart();
         self.control.begin(flash, board.memory(), &restart);
-        self.console.begin(restart.rate);
+        self.console.set_initial_rate(restart.rate);
         let robot = self.control.motion().robot();
         if !robot.is_none() {
             board.connect(robot.pins(), robot.rail_pin());
         }
-        self.ticks = board.ticks();
+        self.last_tick = board.ticks();
     }
 
     /// The robot's control.
@@ -160,50 +163,50 @@ impl Main {
     #[inline(always)]
     pub fn step<B: Board>(&mut self, board: &mut B) -> Step {
         let ticks = board.ticks();
-        if ticks != self.ticks {
-            self.ticks = ticks;
+        if ticks != self.last_tick {
+            self.last_tick = ticks;
             if board.is_frame_taken() {
-                board.feed();
+                board.feed_watchdog();
             } else if !self.control.motion().is_resting() {
                 return Step::Worked;
             }
             let health = Health {
-                supply: board.supply(),
+                supply: board.read_supply(),
                 late_edges: board.counters().late_edges,
                 is_stack_intact: board.is_stack_intact(),
-                is_closed: match self.control.input().pin() {
+                is_contact_closed: match self.control.awaited_input().pin() {
                     0 => false,
-                    pin => board.is_closed(pin),
+                    pin => board.is_contact_closed(pin),
                 },
             };
-            board.submit(self.control.frame(&health));
+            board.submit(self.control.compute_frame(&health));
             self.store_stance(board);
             board.set_led(self.control.is_lit());
-            if let Some(rate) = self.console.frame(&self.control) {
+            if let Some(rate) = self.console.advance_frame(&self.control) {
                 board.set_rate(rate);
             }
         } else if self.console.has_output(&self.control) {
-            if board.room() < LONGEST_LINE {
-                return Step::Idle(self.ticks);
+            if board.room() < MAX_OUTPUT_LINE_BYTES {
+                return Step::Idle(self.last_tick);
             }
             let counters = board.counters();
             let out = board.writer();
             self.console.write_line(&mut self.control, out, counters);
         } else if self.control.waits_for_supply() {
-            return Step::Idle(self.ticks);
-        } else if self.control.is_writing() {
-            if let Some(outcome) = self.control.write_memory(board.memory()) {
+            return Step::Idle(self.last_tick);
+        } else if self.control.is_memory_in_use() {
+            if let Some(outcome) = self.control.advance_memory(board.memory()) {
                 self.console.finish_order(outcome);
             }
         } else if let Some(byte) = board.receive() {
             let was_resting = self.control.motion().is_resting();
             self.console.receive(byte, &mut self.control);
-            // Stored before the answer, because a reset may follow the answer at once.
+            // The state is stored before the answer is written, because a reset may follow the answer at once.
             if self.control.motion().is_resting() != was_resting {
                 self.store_stance(board);
             }
         } else {
-            return Step::Idle(self.ticks);
+            return Step::Idle(self.last_tick);
         }
         Step::Worked
     }

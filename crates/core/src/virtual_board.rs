@@ -1,4 +1,4 @@
-//! The virtual board, for hosts: it behaves like the UNO's registers, pins and interrupts, without a chip.
+//! The virtual board, for hosts: it behaves like the UNO with its registers, pins and interrupts, but needs no chip.
 //!
 //! Every program that runs the core on a host (tests, the fuzzer, the page in a browser, the comparison with the
 //! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats.
@@ -6,10 +6,10 @@
 //!
 //! Time passes only when [`VirtualBoard::pass_time`] is called, in milliseconds. The events in a frame of 20 ms:
 //!
-//! | ms | what |
+//! | ms | event |
 //! |---|---|
-//! | 0 | the tick, for which main computes a frame |
-//! | 4 | the frame that main handed over is taken over, and A1's pulse begins |
+//! | 0 | the tick, for which the main loop computes a frame |
+//! | 4 | the frame that the main loop submitted is taken over, and A1's pulse begins |
 //! | 8, 12, 16 | the pulses of A2, A3 and A4 begin |
 //!
 //! The board is compact, because it is cloned and hashed millions of times.
@@ -19,7 +19,7 @@
 mod converter;
 mod eeprom;
 mod ram;
-mod running;
+mod running_robot;
 mod transmitter;
 
 use std::collections::VecDeque;
@@ -28,20 +28,21 @@ use crate::console::answer::Counters;
 use crate::control::supply::Reading;
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::pose::Pulses;
-use crate::numbers::rate::Rate;
-use crate::numbers::units::{self, CYCLES_PER_US, Width};
+use crate::numbers::rate::BaudRate;
+use crate::numbers::units::{self, CYCLES_PER_US, PulseWidth};
 use crate::step::Board;
 
 pub use converter::{Converter, compute_reading};
 pub use eeprom::Eeprom;
 pub use ram::Ram;
-pub use running::{RunningRobot, is_final};
+pub use running_robot::{RunningRobot, is_answer};
 pub use transmitter::Transmitter;
 
 /// Milliseconds from one tick to the next.
 pub const FRAME_MS: u8 = units::FRAME_MS as u8;
 
-/// Milliseconds from the tick to the hand-over, and from the start of each servo's pulse to the start of the next.
+/// Milliseconds from the tick until the submitted frame is taken over, and from the start of each servo's pulse to the
+/// start of the next.
 const SLOT_MS: u8 = 4;
 
 /// Milliseconds without feeding after which the watchdog interrupts the program. After twice this time, it resets
@@ -58,24 +59,27 @@ const VALID_WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct VirtualBoard {
     /// Milliseconds since the last tick.
-    ms: u8,
+    ms_since_tick: u8,
     ticks: u8,
-    submitted: Pulses,
+    /// The frame that the main loop submitted last.
+    submitted_pulses: Pulses,
     /// True while the submitted frame waits to be taken over.
-    is_fresh: bool,
-    playing: Pulses,
-    started: Pulses,
+    is_frame_pending: bool,
+    /// The frame that was taken over last; it repeats until the next one is taken over.
+    played_pulses: Pulses,
+    /// The pulses that have begun since the frame was taken over.
+    started_pulses: Pulses,
     is_lit: bool,
-    received: VecDeque<u8>,
+    received_bytes: VecDeque<u8>,
     lost_bytes: u16,
     /// Pulse edges that came late.
     pub late_edges: u16,
     /// True unless the stack has grown into the data.
     pub is_stack_intact: bool,
     /// The pins whose contacts are closed, one bit for each Arduino number.
-    pub closed: u32,
+    pub closed_pins: u32,
     /// The pins whose pull-ups are on, one bit for each Arduino number.
-    pub pulled_up: u32,
+    pub pulled_up_pins: u32,
     /// The transmitter of the serial line.
     pub transmitter: Transmitter,
     /// The memory that keeps its bytes without power.
@@ -86,14 +90,16 @@ pub struct VirtualBoard {
     pub ram: Ram,
     /// True if a boot loader hides the cause of a reset from the program.
     pub has_boot_loader: bool,
-    restart: Restart,
+    /// The last restart, as the main loop is told of it.
+    last_restart: Restart,
     /// The rate of the serial line.
-    pub rate: Rate,
+    pub rate: BaudRate,
     /// Milliseconds since the watchdog was fed.
     ms_since_fed: u16,
+    /// True once the watchdog has ended the pulses.
     are_pulses_ended: bool,
     /// The pins of the servos and of the rail, once the main loop has connected them.
-    connected: Option<([u8; 4], Option<u8>)>,
+    connected_pins: Option<([u8; 4], Option<u8>)>,
 }
 
 impl Default for VirtualBoard {
@@ -103,44 +109,44 @@ impl Default for VirtualBoard {
 }
 
 impl VirtualBoard {
-    /// A board at power-on with this memory; its supplies cannot be measured.
+    /// A board at power-on with this memory. Its supplies are not measured: every reading is 0.
     pub fn new(memory: Eeprom) -> Self {
         Self {
-            ms: FRAME_MS - 1,
+            ms_since_tick: FRAME_MS - 1,
             ticks: 0,
-            submitted: Pulses::default(),
-            is_fresh: false,
-            playing: Pulses::default(),
-            started: Pulses::default(),
+            submitted_pulses: Pulses::default(),
+            is_frame_pending: false,
+            played_pulses: Pulses::default(),
+            started_pulses: Pulses::default(),
             is_lit: false,
-            received: VecDeque::new(),
+            received_bytes: VecDeque::new(),
             lost_bytes: 0,
             late_edges: 0,
             is_stack_intact: true,
-            closed: 0,
-            pulled_up: 0,
+            closed_pins: 0,
+            pulled_up_pins: 0,
             transmitter: Transmitter::default(),
             memory,
             converter: Converter::default(),
             ram: Ram::default(),
             has_boot_loader: false,
-            restart: Restart::NONE,
-            rate: Rate::Fastest,
+            last_restart: Restart::NONE,
+            rate: BaudRate::Fastest,
             ms_since_fed: 0,
             are_pulses_ended: false,
-            connected: None,
+            connected_pins: None,
         }
     }
 
     /// Returns the board after a reset with this cause and state.
     #[must_use]
-    pub fn restarted(self, restart: Restart) -> Self {
+    pub fn after_restart(self, restart: Restart) -> Self {
         if let Some(stance) = &restart.stance_before {
             self.ram.store_stance(stance, restart.brown_outs);
         }
         let rate = restart.rate;
         Self {
-            restart,
+            last_restart: restart,
             rate,
             ..self
         }
@@ -152,8 +158,8 @@ impl VirtualBoard {
         Self { ticks, ..self }
     }
 
-    /// Lets time pass in which the main loop does not feed the watchdog. Stops and returns true as soon as the
-    /// watchdog resets the processor; [`VirtualBoard::reset`] has to follow then.
+    /// Lets milliseconds pass while the main loop does not run. Stops and returns true as soon as the
+    /// watchdog resets the processor; [`VirtualBoard::reset`] must follow then.
     pub fn pass_time(&mut self, ms: u16) -> bool {
         for _ in 0..ms {
             self.ms_since_fed = self.ms_since_fed.saturating_add(1);
@@ -164,76 +170,78 @@ impl VirtualBoard {
             if self.ms_since_fed >= 2 * WATCHDOG_MS {
                 return true;
             }
-            self.pass_millisecond();
+            self.pass_one_ms();
         }
         false
     }
 
-    fn pass_millisecond(&mut self) {
+    fn pass_one_ms(&mut self) {
         self.transmitter.pass_time(1);
         self.memory.pass_time();
-        self.ms += 1;
-        if self.ms == FRAME_MS {
-            self.ms = 0;
+        self.ms_since_tick += 1;
+        if self.ms_since_tick == FRAME_MS {
+            self.ms_since_tick = 0;
             self.ticks = self.ticks.wrapping_add(1);
-        } else if self.ms.is_multiple_of(SLOT_MS) {
-            let servo = usize::from(self.ms / SLOT_MS - 1);
+        } else if self.ms_since_tick.is_multiple_of(SLOT_MS) {
+            let servo = usize::from(self.ms_since_tick / SLOT_MS - 1);
             if servo == 0 {
-                self.take_over();
+                self.take_over_frame();
             }
-            let width = self.playing.0[servo];
-            if !self.are_pulses_ended && self.connected.is_some() && VALID_WIDTHS.contains(&width.0)
+            let width = self.played_pulses.0[servo];
+            if !self.are_pulses_ended
+                && self.connected_pins.is_some()
+                && VALID_WIDTHS.contains(&width.0)
             {
-                self.started.0[servo] = width;
+                self.started_pulses.0[servo] = width;
             }
         }
     }
 
-    /// Takes over the submitted frame and gives a tick at once.
+    /// Takes over the submitted frame and counts a tick, without any time passing.
     pub fn tick(&mut self) {
-        self.take_over();
+        self.take_over_frame();
         self.ticks = self.ticks.wrapping_add(1);
     }
 
-    fn take_over(&mut self) {
-        if self.is_fresh {
-            self.playing = self.submitted;
-            self.is_fresh = false;
+    fn take_over_frame(&mut self) {
+        if self.is_frame_pending {
+            self.played_pulses = self.submitted_pulses;
+            self.is_frame_pending = false;
         }
-        self.started = Pulses([Width(0); 4]);
+        self.started_pulses = Pulses([PulseWidth(0); 4]);
     }
 
     /// Milliseconds until the next tick.
     pub const fn ms_until_tick(&self) -> u16 {
-        (FRAME_MS - self.ms) as u16
+        (FRAME_MS - self.ms_since_tick) as u16
     }
 
-    /// Resets the processor: its state is lost, and the main loop has to start again.
+    /// Resets the processor: its state is lost, and the main loop must start again.
     pub fn reset(&mut self, cause: Cause) {
         let is_power_on = cause == Cause::Power;
         let reported_cause = (!self.has_boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
-        // A start takes longer than writing a byte to the memory.
-        memory.settle();
+        // The start of the program takes longer than writing a byte to the memory.
+        memory.complete_write();
         *self = Self {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
             converter: core::mem::take(&mut self.converter).reset(),
             has_boot_loader: self.has_boot_loader,
-            closed: self.closed,
-            restart: ram.begin(reported_cause),
+            closed_pins: self.closed_pins,
+            last_restart: ram.begin(reported_cause),
             ram,
             ..Self::new(memory)
         };
         if is_power_on {
             self.ram = Ram::default();
-            self.restart = Restart::NONE;
+            self.last_restart = Restart::NONE;
         }
-        self.rate = self.restart.rate;
+        self.rate = self.last_restart.rate;
     }
 
-    /// Turns the power off and on. If a byte is being written to the memory, it gets the value `torn_byte`, since it
-    /// may hold anything.
+    /// Turns the power off and on. A byte that is being written to the memory gets the value `torn_byte`, because it
+    /// may hold any value after a power cut; for `None`, the write is completed.
     pub fn lose_power(&mut self, torn_byte: Option<u8>) {
         if let Some(byte) = torn_byte {
             self.memory.cut_power(byte);
@@ -241,11 +249,11 @@ impl VirtualBoard {
         self.reset(Cause::Power);
     }
 
-    /// Sends bytes to the board. Bytes that do not fit into the receiver are lost.
+    /// Sends bytes to the board. Bytes that do not fit into its receive buffer are lost.
     pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            if self.received.len() < RECEIVE_CAPACITY {
-                self.received.push_back(*byte);
+            if self.received_bytes.len() < RECEIVE_CAPACITY {
+                self.received_bytes.push_back(*byte);
             } else {
                 self.lost_bytes = self.lost_bytes.saturating_add(1);
             }
@@ -253,28 +261,28 @@ impl VirtualBoard {
     }
 
     /// The number of bytes that the main loop has not read yet.
-    pub fn unread(&self) -> usize {
-        self.received.len()
+    pub fn unread_count(&self) -> usize {
+        self.received_bytes.len()
     }
 
     /// Counts this many bytes as lost.
-    pub const fn count_lost(&mut self, bytes: u16) {
+    pub const fn count_lost_bytes(&mut self, bytes: u16) {
         self.lost_bytes = self.lost_bytes.saturating_add(bytes);
     }
 
     /// The frame that the main loop submitted last.
-    pub const fn submitted(&self) -> Pulses {
-        self.submitted
+    pub const fn submitted_pulses(&self) -> Pulses {
+        self.submitted_pulses
     }
 
     /// True while the submitted frame waits to be taken over.
     pub const fn is_frame_pending(&self) -> bool {
-        self.is_fresh
+        self.is_frame_pending
     }
 
-    /// The pulses that have begun since the last hand-over.
+    /// The pulses that have begun since a frame was last taken over.
     pub const fn started_pulses(&self) -> Pulses {
-        self.started
+        self.started_pulses
     }
 
     /// True while the LED is lit.
@@ -306,7 +314,7 @@ impl Board for VirtualBoard {
     const CYCLES_PER_US: u16 = CYCLES_PER_US;
 
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
-        self.connected = Some((servos, rail));
+        self.connected_pins = Some((servos, rail));
     }
 
     fn ticks(&self) -> u8 {
@@ -314,15 +322,15 @@ impl Board for VirtualBoard {
     }
 
     fn is_frame_taken(&self) -> bool {
-        !self.is_fresh
+        !self.is_frame_pending
     }
 
     fn submit(&mut self, pulses: Pulses) {
-        self.submitted = pulses;
-        self.is_fresh = true;
+        self.submitted_pulses = pulses;
+        self.is_frame_pending = true;
     }
 
-    fn feed(&mut self) {
+    fn feed_watchdog(&mut self) {
         self.ms_since_fed = 0;
     }
 
@@ -330,21 +338,21 @@ impl Board for VirtualBoard {
         self.ram.store_stance(stance, brown_outs);
     }
 
-    fn restart(&self) -> &Restart {
-        &self.restart
+    fn last_restart(&self) -> &Restart {
+        &self.last_restart
     }
 
-    fn supply(&mut self) -> Reading {
-        self.converter.next()
+    fn read_supply(&mut self) -> Reading {
+        self.converter.advance_frame()
     }
 
     fn is_stack_intact(&self) -> bool {
         self.is_stack_intact
     }
 
-    fn is_closed(&mut self, pin: u8) -> bool {
-        self.pulled_up |= 1 << pin;
-        self.closed & 1 << pin != 0
+    fn is_contact_closed(&mut self, pin: u8) -> bool {
+        self.pulled_up_pins |= 1 << pin;
+        self.closed_pins & 1 << pin != 0
     }
 
     fn memory(&mut self) -> &mut Eeprom {
@@ -364,10 +372,10 @@ impl Board for VirtualBoard {
     }
 
     fn receive(&mut self) -> Option<u8> {
-        self.received.pop_front()
+        self.received_bytes.pop_front()
     }
 
-    fn set_rate(&mut self, rate: Rate) {
+    fn set_rate(&mut self, rate: BaudRate) {
         self.rate = rate;
         self.ram.store_rate(rate);
     }

@@ -1,75 +1,83 @@
 //! The camera: maps points on and above the floor to points of the picture.
 //!
-//! The model is a pinhole with square pixels whose axis passes through the middle of the picture. Phones correct the
-//! distortion of their pictures to some tenths of a percent; the rest appears in the fit's residuals.
+//! The model is a pinhole camera with square pixels, whose axis passes through the middle of the picture. Phones
+//! correct the distortion of their pictures to some tenths of a percent; the rest appears in the fit's residuals.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::homography::Homography;
 use crate::picture::Pixel;
 
-/// Position and direction of a camera: a rotation vector from the floor's axes to the camera's, rad, and a shift in
-/// the camera's axes, mm.
+/// Position and direction of a camera: the rotation vector from the floor's axes to the camera's, rad, and the
+/// floor's origin in the camera's axes, mm.
 pub(crate) type Pose = [f64; 6];
 
 /// A camera in its pose.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Camera {
-    focal: f64,
-    middle: Pixel,
+    /// Focal length, px.
+    focal_length: f64,
+    /// The point of the picture to which the camera's axis points.
+    principal_point: Pixel,
+    /// Rotation from the floor's axes to the camera's.
     rotation: Matrix3<f64>,
-    shift: Vector3<f64>,
+    /// The floor's origin in the camera's axes, mm.
+    translation: Vector3<f64>,
 }
 
 impl Camera {
-    /// A camera with a focal length (px) for pictures of a size, in a pose.
-    pub(crate) fn new(focal: f64, size: [usize; 2], pose: &[f64]) -> Self {
+    /// Makes a camera from its focal length, px, the width and height of its pictures, px, and its pose.
+    pub(crate) fn new(focal_length: f64, picture_size: [usize; 2], pose: &[f64]) -> Self {
         Self {
-            focal,
-            middle: middle(size),
+            focal_length,
+            principal_point: principal_point(picture_size),
             rotation: Rotation3::new(Vector3::new(pose[0], pose[1], pose[2])).into_inner(),
-            shift: Vector3::new(pose[3], pose[4], pose[5]),
+            translation: Vector3::new(pose[3], pose[4], pose[5]),
         }
     }
 
-    /// The image of a point: x and y on the floor and z up from it, mm.
+    /// The image of a point: x and y along the floor and z up from it, mm.
     pub(crate) fn project(&self, [x, y]: [f64; 2], z: f64) -> Pixel {
-        let in_camera = self.rotation * Vector3::new(x, y, z) + self.shift;
+        let in_camera = self.rotation * Vector3::new(x, y, z) + self.translation;
         [
-            self.middle[0] + self.focal * in_camera.x / in_camera.z,
-            self.middle[1] + self.focal * in_camera.y / in_camera.z,
+            self.principal_point[0] + self.focal_length * in_camera.x / in_camera.z,
+            self.principal_point[1] + self.focal_length * in_camera.y / in_camera.z,
         ]
     }
 
     /// The direction away from the floor, in the camera's axes: right, down, ahead.
-    pub(crate) fn up(&self) -> Vector3<f64> {
+    pub(crate) fn up_direction(&self) -> Vector3<f64> {
         self.rotation.column(2).into_owned()
     }
 
     /// Converts a direction from the camera's axes to the floor's axes.
-    pub(crate) fn on_floor(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn to_floor_axes(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.rotation.tr_mul(direction)
     }
 
     /// The camera's height above the floor, mm, and its tilt from straight down, deg.
-    pub(crate) fn stand(&self) -> [f64; 2] {
-        let position = -(self.rotation.transpose() * self.shift);
+    pub(crate) fn height_and_tilt(&self) -> [f64; 2] {
+        let position = -(self.rotation.transpose() * self.translation);
         let cos_tilt = -self.rotation[(2, 2)];
         [position.z, cos_tilt.clamp(-1.0, 1.0).acos().to_degrees()]
     }
 }
 
-/// The middle of a picture.
-fn middle(size: [usize; 2]) -> Pixel {
-    size.map(|length| (length as f64 - 1.0) / 2.0)
+/// The principal point: the middle of a picture.
+fn principal_point(picture_size: [usize; 2]) -> Pixel {
+    picture_size.map(|length| (length as f64 - 1.0) / 2.0)
 }
 
 /// The pose of a camera with this focal length that maps the floor to its picture by this homography; `None` if the
 /// homography is degenerate.
-pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<Pose> {
-    let [cx, cy] = middle(size);
-    let calibration = Matrix3::new(focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0);
-    let columns = calibration.try_inverse()? * map.0;
+pub(crate) fn pose_from_homography(
+    homography: &Homography,
+    focal_length: f64,
+    picture_size: [usize; 2],
+) -> Option<Pose> {
+    let [cx, cy] = principal_point(picture_size);
+    let calibration = Matrix3::new(focal_length, 0.0, cx, 0.0, focal_length, cy, 0.0, 0.0, 1.0);
+    let columns = calibration.try_inverse()? * homography.0;
     let (first, second, third) = (columns.column(0), columns.column(1), columns.column(2));
     let mut scale = 2.0 / (first.norm() + second.norm());
     if third.z < 0.0 {
@@ -81,7 +89,14 @@ pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<
     let y = (y - x * x.dot(&y)).normalize();
     let rotation = Matrix3::from_columns(&[x, y, x.cross(&y)]);
     let turn = Rotation3::from_matrix_unchecked(rotation).scaled_axis();
-    let shift = third * scale;
-    let pose = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
+    let translation = third * scale;
+    let pose = [
+        turn.x,
+        turn.y,
+        turn.z,
+        translation.x,
+        translation.y,
+        translation.z,
+    ];
     pose.iter().all(|value| value.is_finite()).then_some(pose)
 }

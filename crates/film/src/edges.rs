@@ -1,29 +1,29 @@
-//! Finds the edges of a tag with an error much smaller than a pixel.
+//! The edges of a tag, found with an error much smaller than a pixel.
 //!
-//! Lens and movement blur an edge over several pixels, but equally to both sides. So along a line across the edge,
-//! the sum of grey is the same as for a sharp step, and the position of that step is the position of the edge. A
-//! straight line is fitted to many of these positions. Its error is much smaller than a pixel, and two lines
+//! Lens and movement blur an edge over several pixels, but equally to both sides. So the grey levels along a line
+//! across the edge have the same sum as for a sharp step, and the position of that step is the position of the edge.
+//! A straight line is fitted to many of these positions. Its error is much smaller than a pixel, and two lines
 //! intersect in a corner.
 
 use crate::blobs::Quad;
 use crate::picture::{Picture, Pixel};
-use crate::sheet::SQUARES;
+use crate::sheet::SQUARES_PER_SIDE;
 
-/// Share of an edge's length that is ignored next to each corner, since the adjacent edge is too near.
+/// Share of an edge's length that is ignored next to each corner, where the adjacent edge is too near.
 const END_SHARE: f64 = 0.12;
-/// Distance to either side of an edge over which grey is sampled, px, if the tag is large enough.
-const MAX_ACROSS: f64 = 4.0;
-/// Largest such distance, as a share of a square's width, which limits it for small tags: the code begins one
-/// square inside, and the first corners have an error of a pixel.
-const MAX_ACROSS_SHARE: f64 = 0.6;
+/// Distance to either side of an edge up to which grey is sampled, px, if the tag is large enough.
+const MAX_SAMPLING_DISTANCE: f64 = 4.0;
+/// Largest distance up to which grey is sampled, as a share of a square's width. It applies to small tags: the code
+/// begins one square inside the edge, and the first corners have an error of a pixel.
+const MAX_SAMPLING_SHARE: f64 = 0.6;
 /// Distance between samples across an edge, px.
-const STEP_PX: f64 = 0.5;
+const SAMPLE_SPACING: f64 = 0.5;
 /// Smallest difference of brightness that counts as an edge, in grey levels.
 const MIN_CONTRAST: f64 = 25.0;
-/// Largest root mean square distance of an edge's places from the fitted line, px.
+/// Largest root-mean-square distance of an edge's points from the fitted line, px.
 const MAX_EDGE_DEVIATION: f64 = 0.7;
 /// Number of iterations, each of which fits the lines again from better corners.
-const ROUNDS: usize = 3;
+const ITERATION_COUNT: usize = 3;
 
 /// The corners of a black square to sub-pixel accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,32 +31,32 @@ pub(crate) struct Square {
     /// The corners, clockwise as seen in the picture.
     pub corners: Quad,
     /// The grey level halfway between black and white.
-    pub middle: f64,
+    pub mid_grey: f64,
 }
 
-/// A line: a point on it, and its direction.
+/// A straight line in the picture, given by a point on it and its direction.
 struct Line {
-    at: Pixel,
-    along: [f64; 2],
+    point: Pixel,
+    direction: [f64; 2],
 }
 
-/// Refines the corners of a quadrilateral; `None` if it has no four straight edges, long enough, from black inside
-/// to white outside.
+/// Refines the corners of a quadrilateral; `None` unless its four edges are straight, long enough, black inside and
+/// white outside.
 pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
     let mut square = Square {
         corners: quad,
-        middle: 0.0,
+        mid_grey: 0.0,
     };
-    for _ in 0..ROUNDS {
+    for _ in 0..ITERATION_COUNT {
         let corners = square.corners;
         let edges: [Option<(Line, f64)>; 4] =
             std::array::from_fn(|i| fit_edge(picture, corners[i], corners[(i + 1) % 4]));
         let mut lines = Vec::with_capacity(4);
-        square.middle = 0.0;
+        square.mid_grey = 0.0;
         for edge in edges {
-            let (line, middle) = edge?;
+            let (line, mid_grey) = edge?;
             lines.push(line);
-            square.middle += middle / 4.0;
+            square.mid_grey += mid_grey / 4.0;
         }
         for i in 0..4 {
             square.corners[i] = intersect(&lines[(i + 3) % 4], &lines[i])?;
@@ -70,77 +70,82 @@ pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
 fn fit_edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
-    let across = MAX_ACROSS.min(MAX_ACROSS_SHARE * length / SQUARES as f64);
-    if !(2.0 * STEP_PX..1e4).contains(&across) {
+    let sampling_distance =
+        MAX_SAMPLING_DISTANCE.min(MAX_SAMPLING_SHARE * length / SQUARES_PER_SIDE as f64);
+    if !(2.0 * SAMPLE_SPACING..1e4).contains(&sampling_distance) {
         return None;
     }
     let (along, normal) = ([dx / length, dy / length], [dy / length, -dx / length]);
-    let half_count = (across / STEP_PX) as usize;
-    let count = ((length * (1.0 - 2.0 * END_SHARE)) as usize).max(4);
+    let half_count = (sampling_distance / SAMPLE_SPACING) as usize;
+    let profile_count = ((length * (1.0 - 2.0 * END_SHARE)) as usize).max(4);
     let start = END_SHARE * length;
-    let stride = length * (1.0 - 2.0 * END_SHARE) / (count - 1) as f64;
-    let mut profiles = vec![0.0; count * (2 * half_count + 1)];
+    let stride = length * (1.0 - 2.0 * END_SHARE) / (profile_count - 1) as f64;
+    let mut profiles = vec![0.0; profile_count * (2 * half_count + 1)];
     for (i, profile) in profiles.chunks_mut(2 * half_count + 1).enumerate() {
         let s = start + i as f64 * stride;
         for (j, grey) in profile.iter_mut().enumerate() {
-            let t = (j as f64 - half_count as f64) * STEP_PX;
+            let t = (j as f64 - half_count as f64) * SAMPLE_SPACING;
             *grey = picture.at([
                 from[0] + s * along[0] + t * normal[0],
                 from[1] + s * along[1] + t * normal[1],
             ]);
         }
     }
-    let column_mean = |j: usize| {
+    let mean_grey_at = |j: usize| {
         let sum: f64 = profiles
             .chunks(2 * half_count + 1)
             .map(|profile| profile[j])
             .sum();
-        sum / count as f64
+        sum / profile_count as f64
     };
     let (black, white) = (
-        (column_mean(0) + column_mean(1)) / 2.0,
-        (column_mean(2 * half_count) + column_mean(2 * half_count - 1)) / 2.0,
+        (mean_grey_at(0) + mean_grey_at(1)) / 2.0,
+        (mean_grey_at(2 * half_count) + mean_grey_at(2 * half_count - 1)) / 2.0,
     );
     if white - black < MIN_CONTRAST {
         return None;
     }
-    // Fits the straight line t = offset + slope s by least squares; s starts at the middle of the edge.
+    // Fits the straight line t = offset + slope s by least squares: s runs along the edge from its middle, and t
+    // outward across it.
     let (mut sum, mut moment, mut square_sum) = (0.0, 0.0, 0.0);
-    let mut places = Vec::with_capacity(count);
+    let mut edge_points = Vec::with_capacity(profile_count);
     for (i, profile) in profiles.chunks(2 * half_count + 1).enumerate() {
         let ends_mean = (profile[0] + profile[2 * half_count]) / 2.0;
-        let grey = profile.iter().sum::<f64>() - ends_mean;
-        let bright_width = STEP_PX * (grey - black * (2 * half_count) as f64) / (white - black);
+        let grey_sum = profile.iter().sum::<f64>() - ends_mean;
+        let bright_width =
+            SAMPLE_SPACING * (grey_sum - black * (2 * half_count) as f64) / (white - black);
         let (s, t) = (
-            (i as f64 - (count - 1) as f64 / 2.0) * stride,
-            half_count as f64 * STEP_PX - bright_width,
+            (i as f64 - (profile_count - 1) as f64 / 2.0) * stride,
+            half_count as f64 * SAMPLE_SPACING - bright_width,
         );
-        places.push((s, t));
+        edge_points.push((s, t));
         sum += t;
         moment += s * t;
         square_sum += s * s;
     }
-    let (offset, slope) = (sum / count as f64, moment / square_sum);
-    let square_errors = places.iter().map(|(s, t)| (t - offset - slope * s).powi(2));
-    if (square_errors.sum::<f64>() / count as f64).sqrt() > MAX_EDGE_DEVIATION {
+    let (offset, slope) = (sum / profile_count as f64, moment / square_sum);
+    let squared_residuals = edge_points
+        .iter()
+        .map(|(s, t)| (t - offset - slope * s).powi(2));
+    if (squared_residuals.sum::<f64>() / profile_count as f64).sqrt() > MAX_EDGE_DEVIATION {
         return None;
     }
-    let middle = length / 2.0;
+    let half_length = length / 2.0;
     let line = Line {
-        at: std::array::from_fn(|i| from[i] + middle * along[i] + offset * normal[i]),
-        along: std::array::from_fn(|i| along[i] + slope * normal[i]),
+        point: std::array::from_fn(|i| from[i] + half_length * along[i] + offset * normal[i]),
+        direction: std::array::from_fn(|i| along[i] + slope * normal[i]),
     };
     Some((line, (black + white) / 2.0))
 }
 
 /// The intersection of two lines; `None` if they are parallel.
 fn intersect(a: &Line, b: &Line) -> Option<Pixel> {
-    let cross = a.along[0] * b.along[1] - a.along[1] * b.along[0];
-    let [x, y] = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
-    let distance = (x * b.along[1] - y * b.along[0]) / cross;
+    let cross = a.direction[0] * b.direction[1] - a.direction[1] * b.direction[0];
+    let [x, y] = [b.point[0] - a.point[0], b.point[1] - a.point[1]];
+    let distance = (x * b.direction[1] - y * b.direction[0]) / cross;
     let point = [
-        a.at[0] + distance * a.along[0],
-        a.at[1] + distance * a.along[1],
+        a.point[0] + distance * a.direction[0],
+        a.point[1] + distance * a.direction[1],
     ];
     point.iter().all(|value| value.is_finite()).then_some(point)
 }

@@ -1,6 +1,6 @@
-//! A measured figure with its standard error.
+//! A measured value with its standard error.
 
-/// A measured figure.
+/// A measured value with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure {
     /// The measured value.

@@ -4,11 +4,11 @@ use lizard_contact::{Place, Travel};
 
 use crate::path;
 
-/// Weight of a turn, mm per rad: the distance of the robot's legs from its middle.
-const ARM: f64 = 60.0;
+/// Distance of the robot's legs from its middle, mm; a turn of 1 rad counts as this distance.
+const TURN_ARM: f64 = 60.0;
 /// Smallest movement per cycle with which a robot counts as moving, mm.
-pub(crate) const MOVED: f64 = 3.0;
-/// Half of the time window whose pictures determine the place at a calm phase, in cycles.
+pub(crate) const MIN_MOVEMENT: f64 = 3.0;
+/// Half of the time window whose pictures determine the place at a calm phase, as a share of a cycle.
 pub(crate) const HALF_WINDOW: f64 = 0.08;
 
 /// A predicted gait.
@@ -21,10 +21,10 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// The displacement of a cycle divided by its duration, mm/s; a turn counts as the distance that the legs move.
+    /// The displacement of a cycle divided by its duration, mm/s; a turn counts as the distance that it moves the legs.
     pub fn speed(&self) -> f64 {
         let displacement = self.path[self.path.len() - 1].travel();
-        size(movement(displacement)) / self.period
+        movement_length(movement_in_mm(displacement)) / self.period
     }
 
     /// The place at a phase, relative to the start of cycle 0.
@@ -47,47 +47,52 @@ impl Gait {
         let roughness_at = |i: usize| {
             let movement_at = |j: f64| {
                 let start = (i as f64 + j) / count as f64;
-                self.step(start, start + 1.0 / count as f64)
+                self.movement_between(start, start + 1.0 / count as f64)
             };
             let movements = [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(movement_at);
             let changes = movements
                 .windows(2)
-                .map(|pair| size([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
+                .map(|pair| movement_length([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
             // A movement itself counts half, because the clock is not known exactly.
             changes.sum::<f64>()
                 + 0.5
                     * movements
                         .iter()
-                        .map(|movement| size(*movement))
+                        .map(|movement| movement_length(*movement))
                         .sum::<f64>()
         };
         let calmest = (0..count).min_by(|&a, &b| roughness_at(a).total_cmp(&roughness_at(b)));
         calmest.unwrap_or(0) as f64 / count as f64
     }
 
-    /// The predicted movement around a phase, scaled to an entire cycle: mm, mm, deg.
-    pub(crate) fn pace(&self, phase: f64) -> [f64; 3] {
-        let [forward, left, turn] = self.step(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
-        [forward, left, (turn / ARM).to_degrees()].map(|value| value / HALF_WINDOW)
+    /// The predicted rate of movement around a phase, per cycle: mm, mm, deg.
+    pub(crate) fn rate_at(&self, phase: f64) -> [f64; 3] {
+        let [forward, left, turn] =
+            self.movement_between(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
+        [forward, left, (turn / TURN_ARM).to_degrees()].map(|value| value / HALF_WINDOW)
     }
 
-    /// The predicted movement from a phase to a later one.
-    pub(crate) fn step(&self, from: f64, to: f64) -> [f64; 3] {
+    /// The predicted movement from a phase to a later one, as [`movement_in_mm`] gives it.
+    pub(crate) fn movement_between(&self, from: f64, to: f64) -> [f64; 3] {
         let whole_cycles = from.floor();
-        movement(
+        movement_in_mm(
             self.place_at(to - whole_cycles)
-                .seen_from(self.place_at(from - whole_cycles)),
+                .travel_from(self.place_at(from - whole_cycles)),
         )
     }
 }
 
-/// A movement in mm: forward, left, and the turn times `ARM`.
-pub(crate) fn movement(travel: Travel) -> [f64; 3] {
-    [travel.forward, travel.left, ARM * travel.turn.to_radians()]
+/// A movement in mm: forward, left, and the turn times [`TURN_ARM`].
+pub(crate) fn movement_in_mm(travel: Travel) -> [f64; 3] {
+    [
+        travel.forward,
+        travel.left,
+        TURN_ARM * travel.turn.to_radians(),
+    ]
 }
 
 /// The length of a movement, mm.
-pub(crate) fn size(movement: [f64; 3]) -> f64 {
+pub(crate) fn movement_length(movement: [f64; 3]) -> f64 {
     movement
         .iter()
         .map(|value| value * value)

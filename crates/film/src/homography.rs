@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// A map from one plane to another that keeps lines straight.
+/// A map from one plane to another that keeps lines straight, as a matrix of homogeneous coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Homography(pub Matrix3<f64>);
 

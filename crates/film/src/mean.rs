@@ -1,39 +1,38 @@
 //! The mean of a film's cycles and its standard error.
 //!
-//! The cycles of a robot differ by more than the error of a tag's position. So the spread of the cycles
-//! gives the error of their mean. The spread of a few cycles is itself uncertain: Student's distribution
-//! tells by how much the error has to be enlarged for that. Then the true value lies within two errors
-//! as often as for a film of many cycles.
+//! The cycles of a robot differ by more than the error of a tag's position, so the spread of the cycles gives the
+//! error of their mean. The spread of a few cycles is itself uncertain. Student's distribution tells how much the
+//! error has to be enlarged, so that the true value lies within two errors as often as for a film of many cycles.
 //!
-//! Several walks of a gait may differ more from each other than the cycles of a walk do, since each starts
-//! elsewhere on the floor. Then the walks count as the samples, and not their cycles.
+//! Several walks of a gait may differ more from each other than the cycles of a walk do, since each starts at another
+//! place on the floor. Then the samples are the walks, not their cycles.
 
-/// Share of a normal distribution within two standard deviations.
-const SHARE_WITHIN_TWO: f64 = 0.9545;
+/// Probability that a normally distributed value lies within two standard deviations of its mean.
+const PROBABILITY_WITHIN_TWO_SIGMAS: f64 = 0.9545;
 
 /// A mean over the cycles of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mean {
     /// The mean, in the unit of the cycles' values.
-    pub mean: f64,
-    /// Spread of single cycles: their standard deviation.
+    pub value: f64,
+    /// Standard deviation of single cycles.
     pub spread: f64,
     /// Standard error of the mean: the true value is within twice this with a probability of 95 %.
     pub error: f64,
-    /// The part of the error that more cycles do not reduce: the errors of camera, clock and ruler.
-    pub common: f64,
+    /// The part of the error that more cycles do not reduce: that of camera, clock and ruler.
+    pub common_error: f64,
 }
 
-/// The values of a walk's cycles, and the part of the error that they share.
-pub(crate) type Cycles = (Vec<f64>, f64);
+/// The values of a walk's cycles, and the part of their error that all cycles share.
+pub(crate) type WalkValues = (Vec<f64>, f64);
 
 /// Computes the mean over walks of two cycles or more.
-pub(crate) fn mean_of_walks(walks: &[Cycles]) -> Mean {
-    let count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
+pub(crate) fn mean_of_walks(walks: &[WalkValues]) -> Mean {
+    let cycle_count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
     let mean_of = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
-    let weighted_mean = |value: &dyn Fn(&Cycles) -> f64| {
+    let weighted_mean = |value: &dyn Fn(&WalkValues) -> f64| {
         let terms = walks.iter().map(|walk| walk.0.len() as f64 * value(walk));
-        terms.sum::<f64>() / count as f64
+        terms.sum::<f64>() / cycle_count as f64
     };
     let mean = weighted_mean(&|(cycles, _)| mean_of(cycles));
     let squares_around = |cycles: &[f64], middle: f64| {
@@ -44,36 +43,36 @@ pub(crate) fn mean_of_walks(walks: &[Cycles]) -> Mean {
         .iter()
         .map(|(cycles, _)| squares_around(cycles, mean))
         .sum();
-    let inside_squares: f64 = walks
+    let squares_within: f64 = walks
         .iter()
         .map(|(cycles, _)| squares_around(cycles, mean_of(cycles)))
         .sum();
-    let freedom = count - walks.len();
-    let variance_within = inside_squares / freedom as f64;
+    let degrees_of_freedom = cycle_count - walks.len();
+    let variance_within = squares_within / degrees_of_freedom as f64;
     let variance_between =
-        (total_squares - inside_squares) / walks.len().saturating_sub(1).max(1) as f64;
-    let (variance, freedom) = match variance_between > variance_within {
+        (total_squares - squares_within) / walks.len().saturating_sub(1).max(1) as f64;
+    let (variance, degrees_of_freedom) = match variance_between > variance_within {
         true => (variance_between, walks.len() - 1),
-        false => (variance_within, freedom),
+        false => (variance_within, degrees_of_freedom),
     };
-    let error = (variance / count as f64).sqrt() * widening(freedom);
+    let error = (variance / cycle_count as f64).sqrt() * small_sample_factor(degrees_of_freedom);
     // Camera, clock and ruler are nearly the same for all walks, so more walks do not reduce their error.
-    let common = weighted_mean(&|(_, common)| *common);
+    let common_error = weighted_mean(&|(_, walk_error)| *walk_error);
     Mean {
-        mean,
-        spread: (total_squares / (count - 1) as f64).sqrt(),
-        error: error.hypot(common),
-        common,
+        value: mean,
+        spread: (total_squares / (cycle_count - 1) as f64).sqrt(),
+        error: error.hypot(common_error),
+        common_error,
     }
 }
 
-/// The factor that enlarges an error whose spread was estimated with few degrees of freedom, so that the true value
-/// lies within two errors with a probability of 95 %.
-pub(crate) fn widening(freedom: usize) -> f64 {
+/// The factor by which an error has to be enlarged if it was estimated with few degrees of freedom, so that the true
+/// value lies within two errors with a probability of 95 %.
+pub(crate) fn small_sample_factor(degrees_of_freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        *if student_probability(2.0 * middle, freedom) < SHARE_WITHIN_TWO {
+        *if student_probability(2.0 * middle, degrees_of_freedom) < PROBABILITY_WITHIN_TWO_SIGMAS {
             &mut low
         } else {
             &mut high
@@ -83,14 +82,14 @@ pub(crate) fn widening(freedom: usize) -> f64 {
 }
 
 /// The probability that Student's variable lies between `-t` and `t`.
-fn student_probability(t: f64, freedom: usize) -> f64 {
-    let angle = (t / (freedom as f64).sqrt()).atan();
+fn student_probability(t: f64, degrees_of_freedom: usize) -> f64 {
+    let angle = (t / (degrees_of_freedom as f64).sqrt()).atan();
     let (sin, cos) = angle.sin_cos();
-    // The terms of the finite series for whole degrees of freedom.
-    let is_odd = freedom % 2 == 1;
+    // For a whole number of degrees of freedom, the probability is a finite series.
+    let is_odd = degrees_of_freedom % 2 == 1;
     let mut term = if is_odd { cos } else { 1.0 };
     let mut sum = 0.0;
-    for i in 0..freedom / 2 {
+    for i in 0..degrees_of_freedom / 2 {
         sum += term;
         let numerator = if is_odd { 2 * i + 2 } else { 2 * i + 1 };
         term *= cos * cos * numerator as f64 / (numerator + 1) as f64;
@@ -106,8 +105,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn student_is_that_of_the_tables() {
-        for (freedom, t) in [
+    fn students_distribution_agrees_with_the_tables() {
+        for (degrees_of_freedom, t) in [
             (1, 12.706),
             (2, 4.303),
             (3, 3.182),
@@ -115,12 +114,15 @@ mod tests {
             (9, 2.262),
             (30, 2.042),
         ] {
-            let share = student_probability(t, freedom);
-            assert!((share - 0.95).abs() < 1e-4, "{freedom}: {share}");
+            let probability = student_probability(t, degrees_of_freedom);
+            assert!(
+                (probability - 0.95).abs() < 1e-4,
+                "{degrees_of_freedom}: {probability}"
+            );
         }
     }
 
-    /// Random numbers of a normal distribution, the same in every run.
+    /// Random numbers that are nearly normally distributed, the same in every run.
     fn noise_source() -> impl FnMut() -> f64 {
         let mut state = 1u64;
         let mut uniform = move || {
@@ -133,39 +135,41 @@ mod tests {
     }
 
     #[test]
-    fn the_truth_lies_within_two_errors_as_often_for_three_cycles_as_for_ten() {
+    fn the_truth_lies_within_two_errors_in_95_percent_of_films_of_three_to_ten_cycles() {
         let mut noise = noise_source();
-        for count in [3, 5, 10] {
-            let films = 4000;
-            let hits = (0..films).filter(|_| {
-                let cycles: Vec<f64> = (0..count).map(|_| 3.0 + noise()).collect();
+        for cycle_count in [3, 5, 10] {
+            let film_count = 4000;
+            let hits = (0..film_count).filter(|_| {
+                let cycles: Vec<f64> = (0..cycle_count).map(|_| 3.0 + noise()).collect();
                 let mean = mean_of_walks(&[(cycles, 0.0)]);
-                (mean.mean - 3.0).abs() < 2.0 * mean.error
+                (mean.value - 3.0).abs() < 2.0 * mean.error
             });
-            let share = hits.count() as f64 / f64::from(films);
-            assert!((0.945..0.965).contains(&share), "{count}: {share}");
+            let share = hits.count() as f64 / f64::from(film_count);
+            assert!((0.945..0.965).contains(&share), "{cycle_count}: {share}");
         }
     }
 
     #[test]
-    fn walks_that_differ_make_the_error_that_of_a_few_walks() {
+    fn the_error_covers_the_truth_whether_or_not_walks_differ_from_each_other() {
         let mut noise = noise_source();
-        for (walk_spread, walks) in [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)] {
-            let films = 2000;
-            let hits = (0..films).filter(|_| {
-                let mut walk = |_| {
+        for (walk_spread, walk_count) in
+            [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)]
+        {
+            let film_count = 2000;
+            let hits = (0..film_count).filter(|_| {
+                let mut walk_values = |_| {
                     let walk_offset = walk_spread * noise();
                     ((0..4).map(|_| 3.0 + walk_offset + noise()).collect(), 0.0)
                 };
-                let values: Vec<_> = (0..walks).map(&mut walk).collect();
-                let mean = mean_of_walks(&values);
-                (mean.mean - 3.0).abs() < 2.0 * mean.error
+                let walks: Vec<_> = (0..walk_count).map(&mut walk_values).collect();
+                let mean = mean_of_walks(&walks);
+                (mean.value - 3.0).abs() < 2.0 * mean.error
             });
-            let share = hits.count() as f64 / f64::from(films);
-            // Two or three walks hardly show if walks differ, so the bounds are wide.
+            let share = hits.count() as f64 / f64::from(film_count);
+            // Two or three walks hardly show whether walks differ, so the bounds are wide.
             assert!(
                 (0.9..0.99).contains(&share),
-                "{walk_spread} {walks}: {share}"
+                "{walk_spread} {walk_count}: {share}"
             );
         }
     }

@@ -2,7 +2,7 @@
 
 use lizard_contact::{Place, Travel};
 
-use crate::least;
+use crate::least_squares;
 
 /// Smallest number of pictures to which a parabola is fitted.
 const MIN_PICTURES: usize = 4;
@@ -18,20 +18,20 @@ pub struct PathPoint {
 
 /// Converts a place relative to `from` into a place on the floor.
 pub(crate) fn compose(from: Place, relative: Place) -> Place {
-    from.after(relative.travel())
+    from.moved_by_travel(relative.travel())
 }
 
 /// Inverts a place: the floor's origin relative to `place`.
 pub(crate) fn inverse(place: Place) -> Place {
-    of_travel(Place::START.seen_from(place))
+    place_of_travel(Place::START.travel_from(place))
 }
 
 /// Converts a movement into the place where it ends, relative to its start.
-pub(crate) fn of_travel(travel: Travel) -> Place {
-    Place::START.after(travel)
+pub(crate) fn place_of_travel(travel: Travel) -> Place {
+    Place::START.moved_by_travel(travel)
 }
 
-/// The place at a share of the straight line between two places.
+/// The place at a share of the way along the straight line between two places.
 pub(crate) fn interpolate(a: Place, b: Place, share: f64) -> Place {
     Place {
         forward: a.forward + share * (b.forward - a.forward),
@@ -40,8 +40,8 @@ pub(crate) fn interpolate(a: Place, b: Place, share: f64) -> Place {
     }
 }
 
-/// Makes the headings continuous, so that two full turns differ from none.
-pub(crate) fn unwind(path: &mut [PathPoint]) {
+/// Makes the headings continuous, so that a robot that turned twice has a heading of two full turns.
+pub(crate) fn unwrap_headings(path: &mut [PathPoint]) {
     for i in 1..path.len() {
         let previous = path[i - 1].place.heading;
         let turn = path[i].place.heading - previous;
@@ -66,8 +66,12 @@ pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<Place> 
 }
 
 /// The place at a time, by a parabola fitted to the pictures within `half_window` seconds of it, or to the four nearest
-/// ones if there are fewer. `None` if there are no pictures before or after.
-pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half_window: f64) -> Option<Place> {
+/// ones if there are fewer. `None` if there are no pictures before it or after it.
+pub(crate) fn smoothed_place_at(
+    path: &[PathPoint],
+    seconds: f64,
+    half_window: f64,
+) -> Option<Place> {
     let mut begin = path.partition_point(|point| point.seconds < seconds - half_window);
     let mut end = path.partition_point(|point| point.seconds <= seconds + half_window);
     while end - begin < MIN_PICTURES {
@@ -80,7 +84,7 @@ pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half_window: f64) ->
     if nearby[0].seconds > seconds || nearby[nearby.len() - 1].seconds < seconds {
         return None;
     }
-    let smoothed = |coordinate: fn(&Place) -> f64| {
+    let smoothed_coordinate = |coordinate: fn(&Place) -> f64| {
         // A constant curve through the first picture is a sufficient start, because the model is linear.
         let model = |parameters: &[f64]| -> Vec<f64> {
             let residual_of = |point: &PathPoint| {
@@ -89,11 +93,11 @@ pub(crate) fn smoothed_at(path: &[PathPoint], seconds: f64, half_window: f64) ->
             };
             nearby.iter().map(residual_of).collect()
         };
-        Some(least::fit(&[coordinate(&nearby[0].place), 0.0, 0.0], model)?.at[0])
+        Some(least_squares::fit(&[coordinate(&nearby[0].place), 0.0, 0.0], model)?.parameters[0])
     };
     Some(Place {
-        forward: smoothed(|place| place.forward)?,
-        left: smoothed(|place| place.left)?,
-        heading: smoothed(|place| place.heading)?,
+        forward: smoothed_coordinate(|place| place.forward)?,
+        left: smoothed_coordinate(|place| place.left)?,
+        heading: smoothed_coordinate(|place| place.heading)?,
     })
 }

@@ -1,20 +1,19 @@
 //! The layout of the printed sheet of tags. All its dimensions are defined here.
 //!
-//! The robot covers more than a sheet of paper, so the sheet is cut: two strips lie on the floor
-//! beside the robot's path, one on either side, and a card lies on its deck. The two tags of a
-//! strip have a known distance, which gives the scale; the strips' positions are found in
-//! the film, so nobody has to measure them. A ruler line on each strip shows the scale at
-//! which the sheet was printed.
+//! The robot is larger than a sheet of paper, so the sheet is cut into three pieces: two strips lie on the floor, one
+//! on either side of the robot's path, and a card lies on the robot's deck. The two tags of a strip have a known
+//! distance, which gives the scale. The strips' positions are found in the film, so nobody has to measure them. A
+//! ruler line on each strip shows the scale at which the sheet was printed.
 //!
 //! The tags have ids 0 to 4 of the AprilTag family 36h11, so other programs can read them, too.
 
-/// A point of the sheet or of a tag, mm: to the right, up.
+/// A point of the sheet or of a tag, mm: to the right, and up.
 pub type Point = [f64; 2];
 
 /// The number of squares along an edge of a tag: six of its code, and a black one on either side.
-pub const SQUARES: usize = 8;
+pub const SQUARES_PER_SIDE: usize = 8;
 
-/// The code of each tag by its id: 36 bits by rows from the top left one, 1 for white.
+/// The code of each tag by its id: 36 bits, row by row from the top left square, 1 for white.
 pub const CODES: [u64; 5] = [
     0xd_5d62_8584,
     0xd_97f1_8b49,
@@ -24,62 +23,63 @@ pub const CODES: [u64; 5] = [
 ];
 
 /// The number of strips.
-pub const STRIPS: usize = 2;
+pub const STRIP_COUNT: usize = 2;
 /// The number of tags on a strip.
-pub const TAGS_ON_STRIP: usize = 2;
+pub const TAGS_PER_STRIP: usize = 2;
 /// The number of tags on the floor. Their ids start at 0.
-pub const FLOOR_TAGS: usize = STRIPS * TAGS_ON_STRIP;
+pub const FLOOR_TAG_COUNT: usize = STRIP_COUNT * TAGS_PER_STRIP;
 /// The id of the tag on the deck.
-pub const DECK_TAG: usize = FLOOR_TAGS;
+pub const DECK_TAG_ID: usize = FLOOR_TAG_COUNT;
 /// Edge of a tag on the floor, mm.
-pub const FLOOR_EDGE: f64 = 50.0;
-/// Edge of the deck's tag, mm. A UNO is 53 mm wide.
-pub const DECK_EDGE: f64 = 36.0;
+pub const FLOOR_TAG_EDGE: f64 = 50.0;
+/// Edge of the deck's tag, mm. It has to fit on an Arduino UNO, which is 53 mm wide.
+pub const DECK_TAG_EDGE: f64 = 36.0;
 /// Distance between the middles of a strip's tags, mm.
-pub const SPAN: f64 = 200.0;
+pub const TAG_SPACING: f64 = 200.0;
 /// Length and width of a strip, mm: its tags with a white margin wider than one of their squares.
-pub const STRIP: [f64; 2] = [266.0, 66.0];
+pub const STRIP_SIZE: [f64; 2] = [266.0, 66.0];
 /// Width and length of the deck's card, mm. The tag is at its lower edge; its upper edge faces the robot's head.
-pub const CARD: [f64; 2] = [50.0, 60.0];
+pub const CARD_SIZE: [f64; 2] = [50.0, 60.0];
 /// White margin around the deck's tag, mm.
 pub const CARD_MARGIN: f64 = 7.0;
 /// Length of the line that shows the printer's scale, mm.
-pub const RULER: f64 = 100.0;
+pub const RULER_LENGTH: f64 = 100.0;
 /// Word beside the card's arrow, which points to the robot's head.
 pub const FORWARD_WORD: &str = "HEAD";
 
 /// The strip of a floor tag, counted from 0.
 pub fn strip_of(id: usize) -> usize {
-    id / TAGS_ON_STRIP
+    id / TAGS_PER_STRIP
 }
 
 /// The middle of a floor tag, mm, relative to the middle of its strip; x runs along the strip.
 pub fn middle_on_strip(id: usize) -> Point {
-    let end = (id % TAGS_ON_STRIP) as f64 * 2.0 - 1.0;
-    [end * SPAN / 2.0, 0.0]
+    let end = (id % TAGS_PER_STRIP) as f64 * 2.0 - 1.0;
+    [end * TAG_SPACING / 2.0, 0.0]
 }
 
 /// Edge of a tag, mm.
-pub fn edge(id: usize) -> f64 {
-    if id == DECK_TAG {
-        DECK_EDGE
+pub fn tag_edge(id: usize) -> f64 {
+    if id == DECK_TAG_ID {
+        DECK_TAG_EDGE
     } else {
-        FLOOR_EDGE
+        FLOOR_TAG_EDGE
     }
 }
 
 /// The corners of a tag relative to its middle, mm: top left, top right, bottom right, bottom left.
-pub fn corners(edge: f64) -> [Point; 4] {
+pub fn tag_corners(edge: f64) -> [Point; 4] {
     let half = edge / 2.0;
     [[-half, half], [half, half], [half, -half], [-half, -half]]
 }
 
 /// True if a square of a tag is white. Row 0 is the top one, column 0 the left one.
 pub fn is_white(id: usize, row: usize, column: usize) -> bool {
-    let code_range = 1..SQUARES - 1;
+    let code_range = 1..SQUARES_PER_SIDE - 1;
     let is_inside = code_range.contains(&row) && code_range.contains(&column);
-    let inner = SQUARES - 2;
-    is_inside && CODES[id] >> (inner * inner - 1 - ((row - 1) * inner + column - 1)) & 1 == 1
+    let code_side = SQUARES_PER_SIDE - 2;
+    is_inside
+        && CODES[id] >> (code_side * code_side - 1 - ((row - 1) * code_side + column - 1)) & 1 == 1
 }
 
 #[cfg(test)]
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn any_two_tags_however_turned_differ_in_eleven_squares() {
+    fn any_two_tags_in_any_orientation_differ_in_at_least_eleven_squares() {
         for (a, first_code) in CODES.into_iter().enumerate() {
             assert_eq!(codes_when_turned(a)[0], first_code);
             for b in 0..CODES.len() {
@@ -117,16 +117,16 @@ mod tests {
     }
 
     #[test]
-    fn every_tag_has_a_white_margin_of_a_square_on_its_piece() {
-        for id in 0..FLOOR_TAGS {
+    fn every_tag_has_a_white_margin_wider_than_one_of_its_squares() {
+        for id in 0..FLOOR_TAG_COUNT {
             let [x, y] = middle_on_strip(id).map(f64::abs);
-            let square = FLOOR_EDGE / SQUARES as f64;
-            let half = FLOOR_EDGE / 2.0 + square;
-            assert!(x + half < STRIP[0] / 2.0 && y + half < STRIP[1] / 2.0);
+            let square = FLOOR_TAG_EDGE / SQUARES_PER_SIDE as f64;
+            let half = FLOOR_TAG_EDGE / 2.0 + square;
+            assert!(x + half < STRIP_SIZE[0] / 2.0 && y + half < STRIP_SIZE[1] / 2.0);
         }
         const {
-            assert!(CARD_MARGIN > DECK_EDGE / SQUARES as f64);
-            assert!(DECK_EDGE + 2.0 * CARD_MARGIN <= CARD[0]);
+            assert!(CARD_MARGIN > DECK_TAG_EDGE / SQUARES_PER_SIDE as f64);
+            assert!(DECK_TAG_EDGE + 2.0 * CARD_MARGIN <= CARD_SIZE[0]);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The reasons why a film cannot be measured, each as the sentence that the user sees.
 
-use crate::sheet::{FLOOR_EDGE, FLOOR_TAGS};
+use crate::sheet::{FLOOR_TAG_COUNT, FLOOR_TAG_EDGE};
 
 /// A reason why a film cannot be measured.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -9,22 +9,22 @@ pub enum Trouble {
     #[error("the film has no pictures")]
     NoPictures,
     /// The pictures differ in size.
-    #[error("picture {number} has another size than the first one")]
-    Size {
+    #[error("picture {number} differs in size from the first one")]
+    SizeDiffers {
         /// Number of the picture, from 1.
         number: usize,
     },
-    /// The times of the pictures do not increase.
+    /// The time of a picture is not later than that of the picture before.
     #[error("picture {number} is not later than the one before")]
-    Times {
+    TimeNotLater {
         /// Number of the picture, from 1.
         number: usize,
     },
     /// A tag appears twice in a picture.
     #[error(
-        "picture {number} shows tag {id} twice: which of them counts is not guessed; take the other away"
+        "picture {number} shows tag {id} twice, and the program does not guess which of them counts: remove the other"
     )]
-    Twice {
+    DuplicateTag {
         /// Id of the tag.
         id: usize,
         /// Number of the picture, from 1.
@@ -36,22 +36,23 @@ pub enum Trouble {
          pictures are dark, and not mirrored"
     )]
     NoTag,
-    /// A floor tag is never visible.
+    /// A floor tag is not completely visible in any picture.
     #[error(
-        "tag {id} of the floor is not seen whole in any picture: each of the {FLOOR_TAGS} tags of the two strips has to be, \
-         with its white edge"
+        "tag {id} of the floor is not completely visible in any picture: each of the {FLOOR_TAG_COUNT} tags of the \
+         two strips has to be, with its white edge"
     )]
-    FloorTag {
+    NoFloorTag {
         /// Id of the tag.
         id: usize,
     },
     /// The deck tag is visible too rarely.
     #[error(
-        "the tag on the robot's deck, or on the horn, is in {seen} of {pictures} pictures only; nine of ten have to show it"
+        "the tag on the robot's deck, or on the horn, is in only {visible_count} of {pictures} pictures; nine of ten \
+         have to show it"
     )]
-    DeckTag {
+    DeckTagTooRare {
         /// Number of pictures that show it.
-        seen: usize,
+        visible_count: usize,
         /// Number of pictures.
         pictures: usize,
     },
@@ -78,40 +79,42 @@ pub enum Trouble {
     },
     /// The size of the floor tags does not fit their distance.
     #[error(
-        "the floor's tags are {edge:.1} mm wide for their distance and not {FLOOR_EDGE}: were they cut apart, or \
+        "the floor's tags are {edge:.1} mm wide by their distance, not {FLOOR_TAG_EDGE} mm: were they cut apart, or \
          printed with another scale in each direction?"
     )]
-    TagSize {
+    WrongTagSize {
         /// Edge of a floor tag, computed from the known distance between a strip's tags, mm.
         edge: f64,
     },
     /// The deck tag is not at its given height.
     #[error(
-        "the tag on the deck, or on the horn, is {found:.0} mm above the strips by its size, not {height:.0} mm: measure it and give \
-         --height, and print card and strips with one scale"
+        "the tag on the deck, or on the horn, is {height_by_size:.0} mm above the strips by its size, not {height:.0} mm: \
+         measure the height and give it with --height, and print the card and the strips at the same scale"
     )]
-    Height {
-        /// Height found by the size of the tag, mm.
-        found: f64,
+    WrongHeight {
+        /// Height computed from the size of the tag, mm.
+        height_by_size: f64,
         /// Given height, mm.
         height: f64,
     },
     /// The robot leaves the area in which the floor tags give valid places.
     #[error(
         "the robot, or the horn, is {distance:.0} mm away from the middle of the strips {seconds:.1} s after the beginning, \
-         farther than the tags tell places: move the strips, or film fewer cycles"
+         too far for the tags to locate it: move the strips, or film fewer cycles"
     )]
-    OutOfSheet {
+    TooFarFromStrips {
         /// Distance from the middle of the strips, mm.
         distance: f64,
         /// Time since the first picture, s.
         seconds: f64,
     },
     /// The robot did not move.
-    #[error("the robot did not move: {way:.1} mm and {turn:.1} deg in the time of a cycle at most")]
+    #[error(
+        "the robot did not move: {distance:.1} mm and {turn:.1} deg in the time of a cycle at most"
+    )]
     NotMoved {
         /// Largest distance within the duration of a cycle, mm.
-        way: f64,
+        distance: f64,
         /// Largest turn within the duration of a cycle, deg.
         turn: f64,
     },
@@ -128,17 +131,17 @@ pub enum Trouble {
     },
     /// The cycles take a multiple of their predicted duration.
     #[error(
-        "the cycles take {times} times as long as they should: give the pace with --speed (a weak supply halves it), \
+        "the cycles take {ratio} times as long as they should: give the pace with --speed (a weak supply halves it), \
          or, for a film in slow motion, the rate at which it was taken with --fps"
     )]
     AnotherPace {
         /// Measured duration of a cycle divided by the predicted one.
-        times: u32,
+        ratio: u32,
     },
     /// The path differs from the gait's predicted path.
     #[error(
         "the path is not that of this gait in cycles of {period:.2} s: was it another gait, another pace, several gaits \
-         without a rest between them, or does the arrow of the deck's card not show to the head?"
+         without a rest between them, or does the arrow of the deck's card not point to the head?"
     )]
     NotThisGait {
         /// Duration of a cycle, s.
@@ -146,14 +149,14 @@ pub enum Trouble {
     },
     /// The movement changes from one cycle to the next.
     #[error(
-        "from one cycle to the next, {seconds:.1} s after the beginning, the robot moves otherwise: between two gaits \
-         it has to rest"
+        "{seconds:.1} s after the beginning, the robot's movement changes from one cycle to the next: it has to rest \
+         between two gaits"
     )]
-    Changes {
+    MovementChanges {
         /// Time since the first picture, s.
         seconds: f64,
     },
     /// No gait moves the robot, so there is none to compare with.
-    #[error("there is no gait that goes anywhere to compare with")]
+    #[error("no gait moves the robot, so there is nothing to compare the film with")]
     NoGait,
 }

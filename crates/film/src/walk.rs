@@ -8,24 +8,26 @@ use crate::cycles::Cycles;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Walk {
     pub cycles: Cycles,
-    /// Variances of the mean cycle that result from the covariance of the scene: forward, left, turn.
+    /// Variances of the mean cycle that result from the covariance of the scene: forward and left, mm^2, and turn,
+    /// deg^2.
     pub scene_variances: [f64; 3],
     /// Standard error of all lengths, as a share.
-    pub scale: f64,
+    pub scale_error: f64,
     /// The deviation of each picture from the predicted path.
     pub deviations: Vec<Deviation>,
 }
 
 impl Walk {
-    /// The errors of the mean cycle that all its cycles share: the errors of ruler and height, clock and camera.
+    /// The part of the mean cycle's error that all cycles share: the errors of ruler and height, of clock, and of
+    /// camera. Forward and left, mm, and turn, deg.
     pub(crate) fn common_errors(&self) -> [f64; 3] {
-        let movements = parts(&self.cycles.travels);
+        let components = travel_components(&self.cycles.travels);
         let [period, error] = self.cycles.period;
         [0, 1, 2].map(|i| {
-            let mean = movements[i].iter().sum::<f64>() / movements[i].len() as f64;
-            let scale = if i < 2 { mean * self.scale } else { 0.0 };
-            let clock = self.cycles.pace[i] * error / period;
-            (scale.powi(2) + clock.powi(2) + self.scene_variances[i]).sqrt()
+            let mean = components[i].iter().sum::<f64>() / components[i].len() as f64;
+            let scale_error = if i < 2 { mean * self.scale_error } else { 0.0 };
+            let clock_error = self.cycles.calm_rate[i] * error / period;
+            (scale_error.powi(2) + clock_error.powi(2) + self.scene_variances[i]).sqrt()
         })
     }
 }
@@ -33,16 +35,16 @@ impl Walk {
 /// The place in a picture minus the predicted one, both relative to the beginning of the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Deviation {
-    /// Index of the cycle.
+    /// Index of the cycle in the walk.
     pub cycle: usize,
     /// Phase of the picture, 0 to 1.
     pub phase: f64,
     /// Forward and left, mm, and turn, deg.
-    pub off: [f64; 3],
+    pub offset: [f64; 3],
 }
 
-/// Forward, left and turn of every cycle.
-pub(crate) fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
+/// The forward, left and turn components of every cycle: mm, mm, deg.
+pub(crate) fn travel_components(travels: &[Travel]) -> [Vec<f64>; 3] {
     let values_of = |coordinate: fn(&Travel) -> f64| travels.iter().map(coordinate).collect();
     [
         values_of(|travel| travel.forward),

@@ -1,9 +1,8 @@
 //! The walks of a path: the times in which the robot moves, between its rests.
 //!
-//! A robot that is slow within a cycle does not rest: a rest lasts longer than any part of a cycle in which a gait
-//! stands still.
+//! A gait may make the robot stand still for a part of its cycle. Only a longer standstill counts as a rest.
 
-use crate::gait::{Gait, MOVED, movement, size};
+use crate::gait::{Gait, MIN_MOVEMENT, movement_in_mm, movement_length};
 use crate::path::PathPoint;
 
 /// Shortest rest, s.
@@ -16,13 +15,14 @@ const MIN_PICTURES: usize = 3;
 /// Ratio of the shortest rest to the longest time for which a gait stands still.
 const MIN_REST_RATIO: f64 = 1.4;
 
-/// Finds the walks: the times, s, in which the robot moves away between two rests, each extended by half of `rest`
-/// at its beginning and its end. A rest lasts `rest` seconds or more.
-pub(crate) fn find_walks(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
+/// Finds the walks: the times, s, in which the robot moves away between two rests, each extended by half of
+/// `shortest_rest` at its beginning and its end. A rest lasts `shortest_rest` seconds or more.
+pub(crate) fn find_walks(path: &[PathPoint], shortest_rest: f64) -> Vec<[f64; 2]> {
     let mut is_resting = vec![false; path.len()];
     for (first, point) in path.iter().enumerate() {
-        let end =
-            path.partition_point(|later_point| later_point.seconds < point.seconds + rest) + 1;
+        let end = path
+            .partition_point(|later_point| later_point.seconds < point.seconds + shortest_rest)
+            + 1;
         // A rest at the beginning or at the end of the film may have lasted longer.
         let ends = match first {
             0 => MIN_PICTURES.min(end)..end + 1,
@@ -46,16 +46,19 @@ pub(crate) fn find_walks(path: &[PathPoint], rest: f64) -> Vec<[f64; 2]> {
         let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
         if !is_rest && moves_away(walk) {
             // The gait may begin and end with a time in which the robot stands still, which looks like a rest.
-            let from = path[0].seconds.max(first - rest / 2.0);
-            walks.push([from, path[path.len() - 1].seconds.min(last + rest / 2.0)]);
+            let from = path[0].seconds.max(first - shortest_rest / 2.0);
+            walks.push([
+                from,
+                path[path.len() - 1].seconds.min(last + shortest_rest / 2.0),
+            ]);
         }
         begin = end;
     }
     walks
 }
 
-/// The shortest time of a rest between two walks of these gaits, s: longer than any standstill within their cycles.
-pub fn rest(gaits: &[Gait]) -> f64 {
+/// The shortest rest between two walks of these gaits, s: longer than any standstill within their cycles.
+pub fn shortest_rest(gaits: &[Gait]) -> f64 {
     let longest_seconds = gaits.iter().map(longest_standstill).fold(0.0, f64::max);
     (longest_seconds * MIN_REST_RATIO).max(MIN_REST)
 }
@@ -77,16 +80,18 @@ fn longest_standstill(gait: &Gait) -> f64 {
     (0..count).map(standstill_from).fold(0.0, f64::max)
 }
 
-/// True if the places differ no more than the places of a robot at rest do from picture to picture.
+/// True if the places scatter no more than those of a robot at rest.
 fn is_still(path: &[PathPoint]) -> bool {
     let count = path.len() as f64;
     let movements: Vec<[f64; 3]> = path
         .iter()
-        .map(|point| movement(point.place.seen_from(path[0].place)))
+        .map(|point| movement_in_mm(point.place.travel_from(path[0].place)))
         .collect();
-    let mean = [0, 1, 2].map(|axis| movements.iter().map(|step| step[axis]).sum::<f64>() / count);
-    let squared_deviation =
-        |step: &[f64; 3]| size([0, 1, 2].map(|axis| step[axis] - mean[axis])).powi(2);
+    let mean =
+        [0, 1, 2].map(|axis| movements.iter().map(|movement| movement[axis]).sum::<f64>() / count);
+    let squared_deviation = |movement: &[f64; 3]| {
+        movement_length([0, 1, 2].map(|axis| movement[axis] - mean[axis])).powi(2)
+    };
     path.len() >= MIN_PICTURES
         && (movements.iter().map(squared_deviation).sum::<f64>() / count).sqrt()
             < MAX_REST_DEVIATION
@@ -96,5 +101,5 @@ fn is_still(path: &[PathPoint]) -> bool {
 fn moves_away(path: &[PathPoint]) -> bool {
     let start = path[0].place;
     path.iter()
-        .any(|point| size(movement(point.place.seen_from(start))) > MOVED)
+        .any(|point| movement_length(movement_in_mm(point.place.travel_from(start))) > MIN_MOVEMENT)
 }

@@ -26,7 +26,7 @@ impl Card {
     /// Converts a movement of the robot to that of the card, in the card's frame at the start.
     pub(crate) fn card_travel(&self, travel: Travel) -> Travel {
         let card_place_of = |body: Place| {
-            let [forward, left] = body.on_floor([self.ahead, self.left]);
+            let [forward, left] = body.to_floor([self.ahead, self.left]);
             let heading = body.heading + self.turn.to_radians();
             Place {
                 forward,
@@ -39,7 +39,7 @@ impl Card {
             left: travel.left,
             heading: travel.turn.to_radians(),
         };
-        card_place_of(end).seen_from(card_place_of(Place::START))
+        card_place_of(end).travel_from(card_place_of(Place::START))
     }
 }
 

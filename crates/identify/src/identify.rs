@@ -49,7 +49,7 @@ pub fn identify(
     for movement in &mut movements {
         let gait = robot.gait(&movement.gait);
         let gait = gait.ok_or_else(|| Trouble::NoSuchGait(movement.gait.clone()))?;
-        if !gait.moves() {
+        if !gait.has_movement() {
             return Err(Trouble::MovesNoServo(movement.gait.clone()));
         }
         let numbers = movement.mean.iter().chain(&movement.error);

@@ -40,7 +40,7 @@ pub const KEYS: [Key; KEY_COUNT] = [
         assumed: "mounting of the legs",
         step: 1.0,
         least: f64::NEG_INFINITY,
-        field: |ground| &mut ground.feet.mount,
+        field: |ground| &mut ground.feet.mount_angle,
     },
     Key {
         name: "leg.drive.play",
@@ -62,7 +62,7 @@ pub const KEYS: [Key; KEY_COUNT] = [
         assumed: "mass centre ahead",
         step: 1.0,
         least: f64::NEG_INFINITY,
-        field: |ground| &mut ground.body.centre[0],
+        field: |ground| &mut ground.body.mass_centre[0],
     },
     Key {
         name: "body.centre",
@@ -73,7 +73,7 @@ pub const KEYS: [Key; KEY_COUNT] = [
         assumed: "mass centre ahead",
         step: 1.0,
         least: f64::NEG_INFINITY,
-        field: |ground| &mut ground.body.centre[1],
+        field: |ground| &mut ground.body.mass_centre[1],
     },
     Key {
         name: "feet.twist",
@@ -95,7 +95,7 @@ pub const KEYS: [Key; KEY_COUNT] = [
         assumed: "friction of a pad",
         step: 0.05,
         least: 0.05,
-        field: |ground| &mut ground.friction,
+        field: |ground| &mut ground.friction_coefficient,
     },
     Key {
         name: "ground.friction_back_over_forward",
@@ -106,7 +106,7 @@ pub const KEYS: [Key; KEY_COUNT] = [
         assumed: "friction backward over forward",
         step: 0.03,
         least: 0.1,
-        field: |ground| &mut ground.ratio,
+        field: |ground| &mut ground.friction_ratio,
     },
 ];
 

@@ -16,13 +16,13 @@ const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn change_key(ground: &mut Ground, key: usize, change: f64) {
     let value = match key {
-        0 => &mut ground.feet.mount,
+        0 => &mut ground.feet.mount_angle,
         1 => &mut ground.drive.play,
-        2 => &mut ground.body.centre[0],
-        3 => &mut ground.body.centre[1],
+        2 => &mut ground.body.mass_centre[0],
+        3 => &mut ground.body.mass_centre[1],
         4 => &mut ground.stance.twist,
-        5 => &mut ground.friction,
-        _ => &mut ground.ratio,
+        5 => &mut ground.friction_coefficient,
+        _ => &mut ground.friction_ratio,
     };
     *value += change;
 }
@@ -45,7 +45,11 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
             [prediction.forward, prediction.turn].map(|part| part.unwrap_or(0.0).abs());
         (ahead + turn) / gait.period()
     };
-    let mut gaits: Vec<&CheckedGait> = robot.gaits().iter().filter(|gait| gait.moves()).collect();
+    let mut gaits: Vec<&CheckedGait> = robot
+        .gaits()
+        .iter()
+        .filter(|gait| gait.has_movement())
+        .collect();
     gaits.sort_by(|a, b| speed_of(b).total_cmp(&speed_of(a)));
     gaits.truncate(GAITS);
     let motors = robot.motors();

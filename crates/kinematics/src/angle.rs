@@ -1,15 +1,15 @@
-//! Degrees, the one angle unit of the interface, and their trigonometry.
+//! Trigonometry in degrees, the unit of all angles in the crate's interface.
 //!
-//! Reducing degrees by multiples of 90 is exact, reducing radians is not: so sin 180 is exactly 0,
-//! and an angle and the same angle a turn later have the same sine, bit for bit. Only exactly on a
-//! diagonal the last bit may differ, since either of the two neighbouring octants may be used. The
-//! functions do not branch on their arguments, so they are several times faster than the general
-//! functions of a mathematics library. Only IEEE additions, multiplications, divisions and
-//! comparisons are used, never fused: the same bits on every host.
+//! Reducing an angle by multiples of 90 degrees is exact, by multiples of pi/2 it is not. So sin 180
+//! is exactly 0, and angles that differ by whole turns have the same sine, bit for bit. Only for odd
+//! multiples of 45 degrees may the last bit differ, because either of the two neighbouring quadrants
+//! may be used. Sine, cosine and arc tangent do not branch on ordinary arguments, so they are several
+//! times faster than the general functions of a mathematics library. They use only IEEE additions,
+//! multiplications, divisions and comparisons, never fused, and give the same bits on every host.
 //!
-//! The polynomials come from `src/angle/polynomials.rs`, which computes them with
-//! 256 bits; their own errors are at most 2.1e-17 of the result, a fifth of an
-//! f64's rounding.
+//! The polynomials come from `src/angle/polynomials.rs`, which computes them with a precision of 256
+//! bits. Their approximation errors are at most 2.1e-17 of the result, a fifth of the rounding error
+//! of an f64.
 
 use core::f64::consts::PI;
 
@@ -49,15 +49,14 @@ const ATAN: [f64; 11] = [
 ];
 
 /// tan 22.5 degrees.
-const HALF_EIGHTH: f64 = 0.41421356237309503;
+const TAN_HALF_EIGHTH: f64 = 0.41421356237309503;
 
-/// 1.5 * 2^52: adding and subtracting it rounds to a whole number, and the last bits of the sum are
-/// those of the whole number.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+/// 1.5 * 2^52. Adding it rounds a number to an integer, whose last bits are those of the sum;
+/// subtracting it again gives the integer.
+const ROUNDING_CONSTANT: f64 = 6_755_399_441_055_744.0;
 
-/// Least size of an angle for which the reduction by adding a large constant is no longer exact,
-/// deg.
-const MAX_REDUCED: f64 = 1e15;
+/// Least magnitude of an angle, deg, that [`ROUNDING_CONSTANT`] may not reduce exactly.
+const MIN_FAR_ANGLE: f64 = 1e15;
 
 /// Evaluates a polynomial by Horner's rule.
 #[inline(always)]
@@ -71,8 +70,8 @@ fn horner<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     sum
 }
 
-/// Returns `yes` if the mask is all ones, `no` if it is zero. A comparison of random
-/// numbers that became a branch would be mispredicted half the time.
+/// Returns `yes` if the mask is all ones, `no` if it is zero. If a comparison of random numbers
+/// were compiled to a branch, half of its predictions would be wrong.
 #[inline(always)]
 fn choose(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(no.to_bits() ^ ((yes.to_bits() ^ no.to_bits()) & mask))
@@ -84,11 +83,11 @@ fn mask_of(condition: bool) -> u64 {
     u64::from(condition).wrapping_neg()
 }
 
-/// The bit that makes a number negative.
-const SIGN: u64 = 1 << 63;
+/// The sign bit of an f64.
+const SIGN_BIT: u64 = 1 << 63;
 
 /// Sine and cosine of an angle in degrees, each within 1.5 units in the last
-/// place of the exact value. Not a number if the angle is infinite.
+/// place of the exact value. NaN if the angle is infinite.
 ///
 /// ```
 /// let (sin, cos) = lizard_kinematics::sin_cos(30.0);
@@ -101,43 +100,43 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// Sines and cosines of several angles in degrees, bit for bit those of [`sin_cos`]. Each step runs
-/// over all angles, which the compiler turns into vector instructions.
+/// Sines and cosines of several angles in degrees, bit for bit those of [`sin_cos`]. The compiler can
+/// vectorise the computation.
 #[inline(always)]
 pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     let mut degrees = degrees;
     let mut has_far_angle = false;
     for angle in &degrees {
-        has_far_angle |= angle.abs() >= MAX_REDUCED;
+        has_far_angle |= angle.abs() >= MIN_FAR_ANGLE;
     }
     if has_far_angle {
-        reduce(&mut degrees);
+        reduce_far_angles(&mut degrees);
     }
     for i in 0..N {
-        let rounded = degrees[i] * (1.0 / 90.0) + ROUND;
-        let quarter = rounded.to_bits();
-        let r = (degrees[i] - (rounded - ROUND) * 90.0) * (PI / 180.0);
+        let rounded = degrees[i] * (1.0 / 90.0) + ROUNDING_CONSTANT;
+        let quadrant = rounded.to_bits();
+        let r = (degrees[i] - (rounded - ROUNDING_CONSTANT) * 90.0) * (PI / 180.0);
         let z = r * r;
         let sin = r + r * (z * horner(&SIN, z));
-        // 1 - z/2 is rounded; the rounding error is added with the small terms.
+        // The difference 1 - z/2 is rounded; its rounding error is added together with the small terms.
         let half_square = 0.5 * z;
         let main_term = 1.0 - half_square;
         let cos = main_term + (((1.0 - main_term) - half_square) + z * (z * horner(&COS, z)));
-        // In quarters 1 and 3 sine and cosine change places; quarters 2 and 3 negate the sine, 1
-        // and 2 the cosine. + 0.0 makes a negative zero positive.
-        let odd_mask = (quarter & 1).wrapping_neg();
-        let sine_sign = (quarter & 2) << 62;
-        let cosine_sign = sine_sign ^ (odd_mask & SIGN);
+        // In the odd quadrants sine and cosine change places. The sine is negative in quadrants 2 and
+        // 3, the cosine in 1 and 2. Adding 0.0 makes a negative zero positive.
+        let odd_mask = (quadrant & 1).wrapping_neg();
+        let sine_sign = (quadrant & 2) << 62;
+        let cosine_sign = sine_sign ^ (odd_mask & SIGN_BIT);
         sines[i] = f64::from_bits(choose(odd_mask, cos, sin).to_bits() ^ sine_sign) + 0.0;
         cosines[i] = f64::from_bits(choose(odd_mask, sin, cos).to_bits() ^ cosine_sign) + 0.0;
     }
     (sines, cosines)
 }
 
-/// Reduces huge angles to their exact remainders.
+/// Reduces angles of any magnitude to within a turn, exactly.
 #[cold]
-fn reduce(degrees: &mut [f64]) {
+fn reduce_far_angles(degrees: &mut [f64]) {
     for angle in degrees {
         *angle %= 360.0;
     }
@@ -155,8 +154,9 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
     let steep_mask = mask_of(ay > ax);
     let (long, short) = (choose(steep_mask, ay, ax), choose(steep_mask, ax, ay));
-    // Within the first 45 degrees, the polynomial is that about 0 or about 45, whichever is nearer.
-    let diagonal_mask = mask_of(short > HALF_EIGHTH * long);
+    // Within the first 45 degrees, the polynomial is evaluated relative to 0 or to 45 degrees,
+    // whichever is nearer.
+    let diagonal_mask = mask_of(short > TAN_HALF_EIGHTH * long);
     let numerator = choose(diagonal_mask, short - long, short);
     let denominator = choose(diagonal_mask, short + long, long);
     let zero_mask = mask_of(denominator == 0.0);
@@ -169,8 +169,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     choose(mask_of(y < 0.0), -half, half)
 }
 
-/// Wraps an angle to the same direction in (-180, 180] degrees, exactly. Not a number if the angle
-/// is infinite.
+/// Wraps an angle to (-180, 180] degrees, exactly. NaN if the angle is infinite.
 ///
 /// ```
 /// use lizard_kinematics::wrap;
@@ -206,9 +205,9 @@ mod tests {
         })]
 
         #[test]
-        fn sines_and_cosines_are_the_librarys(degrees in -45.0..45.0f64) {
-            // Within 45 degrees the library's argument has no error of its own
-            // beyond one rounding.
+        fn sines_and_cosines_agree_with_libm(degrees in -45.0..45.0f64) {
+            // Within 45 degrees the only error of libm's argument is the rounding of its conversion to
+            // radians.
             let (sin, cos) = sin_cos(degrees);
             let (s, c) = libm::sincos(degrees.to_radians());
             prop_assert!((sin - s).abs() <= 3.0 * f64::EPSILON * s.abs(), "{sin} {s}");
@@ -219,10 +218,9 @@ mod tests {
         fn quarter_turns_change_only_order_and_signs(
             degrees in -44.99..44.99f64, turns in -1_000_000..1_000_000i32,
         ) {
-            // On this grid, adding the turns is exact. Angles of 45 degrees are left out, because
-            // they belong to two quarters.
+            // On this grid, adding quarter turns is exact.
             let grid = (degrees * 4096.0).round() / 4096.0;
-            // On a diagonal either octant may answer.
+            // At 45 degrees either of two quadrants may be used.
             prop_assume!(grid.abs() < 45.0);
             let (sin, cos) = sin_cos(grid);
             let quarter = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
@@ -232,7 +230,7 @@ mod tests {
         }
 
         #[test]
-        fn arc_tangents_are_the_librarys(
+        fn arc_tangents_agree_with_libm(
             x in -1.0..1.0f64, y in -1.0..1.0f64, size in -300..300i32,
         ) {
             let scale = 10f64.powi(size);
@@ -242,7 +240,7 @@ mod tests {
         }
 
         #[test]
-        fn the_angle_of_a_direction_is_the_angle(degrees in -180.0..180.0f64) {
+        fn atan2_inverts_sin_cos(degrees in -180.0..180.0f64) {
             let (sin, cos) = sin_cos(degrees);
             prop_assert!((atan2(sin, cos) - degrees).abs() < 1e-13);
         }
@@ -271,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn nan_and_infinity_give_nan() {
+    fn nan_and_infinity_give_nan_but_huge_angles_do_not() {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(sin_cos(value).0.is_nan() && sin_cos(value).1.is_nan());
         }
@@ -281,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn the_polynomials_are_what_the_generator_gives() {
+    fn the_coefficients_equal_the_generated_ones_and_are_accurate() {
         let tables: [&[f64]; 3] = [&SIN, &COS, &ATAN];
         for (polynomial, coefficients) in polynomials::POLYNOMIALS.iter().zip(tables) {
             let name = polynomial.name;
@@ -303,7 +301,7 @@ mod tests {
             (1e308, 1e308 % 360.0),
             (-1e308, -1e308 % 360.0),
         ] {
-            // The expected angle is the one of these three, a turn apart, that is in range.
+            // The expected angle is the one in range of these three angles, which are a turn apart.
             let turns = [expected - 360.0, expected, expected + 360.0];
             let expected = turns
                 .into_iter()

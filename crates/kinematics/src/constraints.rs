@@ -1,17 +1,18 @@
 //! The eight loop equations of the body and their Jacobians K and K*.
 //!
-//! The paper prints K as 8x8 and takes its determinant; there are only four active rates, so K is 8x4 and has no
-//! determinant. K* is 8x8 and block diagonal, and its determinant is the product of four block determinants. The rows
-//! are the x and y of the head, tail, left and right loops, mm. All are in the chassis frame and angles are
-//! counter-clockwise, so several entries have the opposite sign to the printed ones.
+//! K holds the derivatives of the equations with respect to the active joints, K* those with respect to the passive
+//! joints. The paper prints K as 8x8 and takes its determinant, but there are only four active joints, so K is 8x4 and
+//! has no determinant. K* is 8x8 and block diagonal; its determinant is the product of four block determinants. The
+//! rows are the x and y components of the head, tail, left and right loops, mm, all in the chassis frame with
+//! counter-clockwise angles. So several entries have the opposite sign to the printed ones.
 
 use crate::end::End;
 use crate::lizard::{Lizard, Solution};
 use crate::side::Side;
 use crate::vector::Vector;
 
-/// The passive joints, chassis frame. phi and s of a slider stand for the
-/// paper's theta10, theta11 (right: theta14, theta15).
+/// The values of the passive joints, chassis frame. The direction phi and the travel s of a slider
+/// replace the paper's theta10 and theta11 (on the right: theta14 and theta15).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassiveJoints {
     /// Head, left coupler: degrees, (-180, 180].
@@ -54,7 +55,7 @@ impl BlockDeterminants {
 
 impl Solution {
     /// The passive joints of this solution.
-    pub fn passive(&self) -> PassiveJoints {
+    pub fn passive_joints(&self) -> PassiveJoints {
         PassiveJoints {
             theta2: self.theta2(),
             theta3: self.theta3(),
@@ -67,52 +68,57 @@ impl Solution {
         }
     }
 
-    /// K: derivatives of the loop equations with respect to theta1, theta4, theta8, theta5, mm per radian. 8x4.
+    /// K: derivatives of the loop equations with respect to theta1, theta4, theta8, theta5, mm per radian.
     pub fn active_matrix(&self) -> [[f64; 4]; 8] {
         let mut k = [[0.0; 4]; 8];
-        for (row, end) in ROWS.into_iter().zip(End::ALL) {
+        for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
             let ([left, right], pose) = (end.servos(), self.end(end));
             let bars = &pose.bars;
-            let crank = end.mirror(pose.left_crank) * bars.crank_left;
-            put_entry(&mut k, row, left, crank.rotated_left());
-            let crank = end.mirror(pose.right_crank) * bars.crank_right;
-            put_entry(&mut k, row, right, -crank.rotated_left());
+            let crank = end.mirror(pose.left_crank) * bars.left_crank_length;
+            put_derivative(&mut k, row, left, crank.rotated_left());
+            let crank = end.mirror(pose.right_crank) * bars.right_crank_length;
+            put_derivative(&mut k, row, right, -crank.rotated_left());
         }
-        for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
+        for (row, side) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL) {
             let ([front, rear], pose) = (side.servos(), self.side(side));
-            put_entry(&mut k, row, front, pose.front_arm().rotated_left());
-            put_entry(&mut k, row, rear, -pose.rear_tip.rotated_left());
+            put_derivative(&mut k, row, front, pose.front_arm().rotated_left());
+            put_derivative(&mut k, row, rear, -pose.rear_tip.rotated_left());
         }
         k
     }
 
-    /// K*: derivatives of the loop equations with respect to theta2, theta3, theta6, theta7, phi and s left, phi and
-    /// s right, mm per radian and mm per mm. 8x8.
+    /// K*: derivatives of the loop equations with respect to theta2, theta3, theta6, theta7, phi and s of the left
+    /// slider, phi and s of the right slider, mm per radian and mm per mm.
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
         let mut k = [[0.0; 8]; 8];
-        for (row, end) in ROWS.into_iter().zip(End::ALL) {
+        for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
             let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
-            put_entry(&mut k, row, row, (left * bars.coupler_left).rotated_left());
-            put_entry(
+            put_derivative(
+                &mut k,
+                row,
+                row,
+                (left * bars.left_coupler_length).rotated_left(),
+            );
+            put_derivative(
                 &mut k,
                 row,
                 row + 1,
-                -(right * bars.coupler_right).rotated_left(),
+                -(right * bars.right_coupler_length).rotated_left(),
             );
         }
-        for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
+        for (row, side) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL) {
             let slider = self.side(side);
-            put_entry(&mut k, row, row, -slider.span.rotated_left());
-            put_entry(&mut k, row, row + 1, slider.span * (-1.0 / slider.d));
+            put_derivative(&mut k, row, row, -slider.span.rotated_left());
+            put_derivative(&mut k, row, row + 1, slider.span * (-1.0 / slider.d));
         }
         k
     }
 
     /// The determinants of the blocks of K*, whose product is det K*.
-    pub fn blocks(&self) -> BlockDeterminants {
+    pub fn block_determinants(&self) -> BlockDeterminants {
         let block_of = |end: End| {
             let pose = self.end(end);
-            let lengths = pose.bars.coupler_left * pose.bars.coupler_right;
+            let lengths = pose.bars.left_coupler_length * pose.bars.right_coupler_length;
             // Mirroring changes the sign of the sine.
             -end.sign() * lengths * pose.type2
         };
@@ -126,9 +132,9 @@ impl Solution {
 }
 
 impl Lizard {
-    /// The residuals of the eight loop equations for any values of the joints, mm; zero at
-    /// a solution. Active angles in servo order.
-    pub fn residual(&self, active: [f64; 4], passive: &PassiveJoints) -> [f64; 8] {
+    /// The residuals of the eight loop equations for any values of the joints, mm; zero at a
+    /// solution. The active angles are in degrees and in servo order.
+    pub fn residuals(&self, active: [f64; 4], passive: &PassiveJoints) -> [f64; 8] {
         let (shafts, cis) = (self.shafts(), Vector::direction);
         let couplers = [
             [passive.theta2, passive.theta3],
@@ -139,37 +145,42 @@ impl Lizard {
             (passive.phi_right, passive.s_right),
         ];
         let mut residual = [0.0; 8];
-        let mut put_gap = |row: usize, gap: Vector| {
+        let mut put_residual = |row: usize, gap: Vector| {
             (residual[row], residual[row + 1]) = (gap.x, gap.y);
         };
-        for ((row, end), theta) in ROWS.into_iter().zip(End::ALL).zip(couplers) {
+        for ((row, end), theta) in LOOP_ROWS.into_iter().zip(End::ALL).zip(couplers) {
             let ([left, right], bars) = (end.servos(), self.end(end));
             let gap = shafts[left]
-                + cis(active[left]) * bars.crank_left
-                + cis(theta[0]) * bars.coupler_left
+                + cis(active[left]) * bars.left_crank_length
+                + cis(theta[0]) * bars.left_coupler_length
                 - (shafts[right]
-                    + cis(active[right]) * bars.crank_right
-                    + cis(theta[1]) * bars.coupler_right);
-            put_gap(row, gap);
+                    + cis(active[right]) * bars.right_crank_length
+                    + cis(theta[1]) * bars.right_coupler_length);
+            put_residual(row, gap);
         }
-        for ((row, side), (phi, s)) in ROWS.into_iter().skip(2).zip(Side::ALL).zip(sliders) {
+        for ((row, side), (phi, s)) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL).zip(sliders) {
             let ([front, rear], slider) = (side.servos(), self.side(side));
             let right_angle = 90.0 * side.sign();
-            let gap = shafts[front] + cis(active[front] + right_angle) * slider.front
-                - (shafts[rear] + cis(active[rear] - right_angle) * slider.rear)
-                - cis(phi) * (slider.nominal + s);
-            put_gap(row, gap);
+            let gap = shafts[front] + cis(active[front] + right_angle) * slider.front_arm
+                - (shafts[rear] + cis(active[rear] - right_angle) * slider.rear_arm)
+                - cis(phi) * (slider.nominal_length + s);
+            put_residual(row, gap);
         }
         residual
     }
 }
 
-/// The first row of each loop in K and K*: head, tail, left, right. In K* these are also
-/// the first columns of the loops.
-const ROWS: [usize; 4] = [0, 2, 4, 6];
+/// The first row of each loop in K and K*: head, tail, left, right. In K* the loops' first
+/// columns have the same numbers.
+const LOOP_ROWS: [usize; 4] = [0, 2, 4, 6];
 
-/// Writes the derivative of one loop by one joint: its x and y rows, in the joint's column.
-fn put_entry<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, entry: Vector) {
+/// Writes the derivative of a loop with respect to a joint into the loop's two rows, in the joint's column.
+fn put_derivative<const N: usize>(
+    matrix: &mut [[f64; N]; 8],
+    row: usize,
+    column: usize,
+    entry: Vector,
+) {
     matrix[row][column] = entry.x;
     matrix[row + 1][column] = entry.y;
 }
@@ -179,16 +190,16 @@ fn put_entry<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usi
 mod tests {
     use proptest::prelude::*;
 
-    use crate::reference::{any_solved, cases};
+    use crate::reference::{any_solved_robot, config_with_cases};
 
     proptest! {
-        #![proptest_config(cases(2048))]
+        #![proptest_config(config_with_cases(2048))]
 
         #[test]
         fn k_and_k_star_are_the_derivatives_of_the_loop_equations(
-            (robot, pose, solution) in any_solved(),
+            (robot, pose, solution) in any_solved_robot(),
         ) {
-            let passive = solution.passive();
+            let passive = solution.passive_joints();
             let step = 1e-4;
             let radian = 1f64.to_degrees();
             let k = solution.active_matrix();
@@ -196,7 +207,7 @@ mod tests {
                 let residual_after = |step_size: f64| {
                     let mut active = pose;
                     active[column] += step_size * radian;
-                    robot.residual(active, &passive)
+                    robot.residuals(active, &passive)
                 };
                 let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
@@ -213,7 +224,7 @@ mod tests {
                         &mut shifted.phi_left, &mut shifted.s_left, &mut shifted.phi_right, &mut shifted.s_right,
                     ].into_iter().nth(column).unwrap();
                     *field += if matches!(column, 5 | 7) { step_size } else { step_size * radian };
-                    robot.residual(pose, &shifted)
+                    robot.residuals(pose, &shifted)
                 };
                 let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
@@ -224,10 +235,10 @@ mod tests {
         }
 
         #[test]
-        fn the_blocks_multiply_to_the_determinant_of_k_star(
-            (robot, _, solution) in any_solved(),
+        fn the_product_of_the_block_determinants_is_the_determinant_of_k_star(
+            (robot, _, solution) in any_solved_robot(),
         ) {
-            let product = solution.blocks().determinant();
+            let product = solution.block_determinants().determinant();
             let eliminated_determinant = determinant_of(solution.passive_matrix());
             let l = robot.links;
             let scale = l.l2 * l.l3 * l.l7 * l.l8 * solution.left.d * solution.right.d;

@@ -1,9 +1,9 @@
-//! Passive rates and accelerations from those of the servos.
+//! Rates and accelerations of the passive joints from those of the servos.
 //!
-//! The paper announces the acceleration analysis and leaves it out. Rates and
-//! accelerations are linear in the unknowns, with the same matrix K*. Projecting a loop
-//! equation on one coupler removes the other, so a 2x2 system becomes two divisions by
-//! sin(theta3 - theta2).
+//! The paper announces an acceleration analysis but does not contain one. The differentiated loop
+//! equations are linear in the unknown rates and in the unknown accelerations, both with the matrix
+//! K*. Projecting the equation of a five-bar onto one coupler eliminates the other coupler's unknown,
+//! so the 2x2 system needs only two divisions by sin(theta3 - theta2).
 
 use core::f64::consts::PI;
 
@@ -14,16 +14,16 @@ use crate::side::Side;
 use crate::slider::SliderPose;
 use crate::vector::Vector;
 
-/// Rates and accelerations of the four servos, in servo order A1, A2, A3, A4, chassis frame.
+/// The rates and accelerations of the four servos, in servo order A1, A2, A3, A4, chassis frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drive {
+pub struct ServoMotion {
     /// Rates, deg/s.
     pub rate: [f64; 4],
     /// Accelerations, deg/s^2.
     pub acceleration: [f64; 4],
 }
 
-/// First and second time derivative of a quantity.
+/// The first and second time derivatives of a quantity in degrees or mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derivative<T> {
     /// Per second: deg/s or mm/s.
@@ -32,8 +32,8 @@ pub struct Derivative<T> {
     pub acceleration: T,
 }
 
-/// Rates and accelerations of the passive joints, chassis frame. The legs are not listed, since they turn
-/// with their servos.
+/// The rates and accelerations of the passive joints and of the end points, chassis frame. The legs are left
+/// out, because they turn with their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derivatives {
     /// Head, left coupler; degrees.
@@ -58,40 +58,43 @@ pub struct Derivatives {
     pub s_right: Derivative<f64>,
 }
 
-/// Angular rate and acceleration in radians.
+/// Angular rate and acceleration, rad/s and rad/s^2.
 type Spin = Derivative<f64>;
 
 impl Solution {
-    /// Rates and accelerations of the passive joints. Not finite at a type-2 singularity, where the servos'
-    /// rates do not determine them.
-    pub fn derivatives(&self, drive: &Drive) -> Derivatives {
-        let spin_of = |servo: usize| Spin::new(drive.rate[servo], drive.acceleration[servo]);
+    /// The rates and accelerations of the passive joints and of the end points. Not finite at a type-2
+    /// singularity, where the servos' rates do not determine them.
+    pub fn derivatives(&self, motion: &ServoMotion) -> Derivatives {
+        let spin_of = |servo: usize| Spin::new(motion.rate[servo], motion.acceleration[servo]);
         let spins = [0, 1, 2, 3].map(|servo| spin_of(servo).map(|degrees| degrees * (PI / 180.0)));
-        let loop_of_end = |end: End| {
+        let derivatives_of_end = |end: End| {
             let apply_sign = |w: f64| end.sign() * w;
             let [left, right] = end.pick(spins).map(|spin| spin.map(apply_sign));
-            let LoopDerivatives { left, right, point } =
-                loop_derivatives(self.end(end), left, right);
+            let LoopDerivatives {
+                left_coupler: left,
+                right_coupler: right,
+                point,
+            } = loop_derivatives(self.end(end), left, right);
             LoopDerivatives {
-                left: left.map(apply_sign).map(degrees_of),
-                right: right.map(apply_sign).map(degrees_of),
+                left_coupler: left.map(apply_sign).map(degrees_of),
+                right_coupler: right.map(apply_sign).map(degrees_of),
                 point: point.map(|v| end.mirror(v)),
             }
         };
-        let (head, tail) = (loop_of_end(End::Head), loop_of_end(End::Tail));
-        let slider_of_side = |side: Side| {
+        let (head, tail) = (derivatives_of_end(End::Head), derivatives_of_end(End::Tail));
+        let derivatives_of_slider = |side: Side| {
             let ([front, rear], pose) = (side.pick(spins), self.side(side));
             let (phi, s) =
                 slider_derivatives(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
             (phi.map(degrees_of), s)
         };
-        let (phi_left, s_left) = slider_of_side(Side::Left);
-        let (phi_right, s_right) = slider_of_side(Side::Right);
+        let (phi_left, s_left) = derivatives_of_slider(Side::Left);
+        let (phi_right, s_right) = derivatives_of_slider(Side::Right);
         Derivatives {
-            theta2: head.left,
-            theta3: head.right,
-            theta6: tail.left,
-            theta7: tail.right,
+            theta2: head.left_coupler,
+            theta3: head.right_coupler,
+            theta6: tail.left_coupler,
+            theta7: tail.right_coupler,
             head: head.point,
             tail: tail.point,
             phi_left,
@@ -116,36 +119,38 @@ fn degrees_of(radians: f64) -> f64 {
     radians * (180.0 / PI)
 }
 
-/// Rates and accelerations of one five-bar: both couplers and the end point, in the end's own frame.
+/// The rates and accelerations of a five-bar, in the end's own frame.
 struct LoopDerivatives {
-    left: Spin,
-    right: Spin,
+    /// Rotation of the left coupler.
+    left_coupler: Spin,
+    right_coupler: Spin,
     point: Derivative<Vector>,
 }
 
-/// Solves the first and second time derivative of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3 for the couplers.
+/// Solves the first and second time derivatives of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3 for the couplers, where u1 to
+/// u4 are the unit vectors of the links.
 fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopDerivatives {
-    let r1 = pose.left_crank * pose.bars.crank_left;
-    let r2 = pose.left_coupler * pose.bars.coupler_left;
-    let r3 = pose.right_coupler * pose.bars.coupler_right;
-    let r4 = pose.right_crank * pose.bars.crank_right;
+    let r1 = pose.left_crank * pose.bars.left_crank_length;
+    let r2 = pose.left_coupler * pose.bars.left_coupler_length;
+    let r3 = pose.right_coupler * pose.bars.right_coupler_length;
+    let r4 = pose.right_crank * pose.bars.right_crank_length;
     let (u2, u3) = (pose.left_coupler, pose.right_coupler);
-    // The unknown rates x of theta2 and y of theta3 obey x left(r2) - y left(r3) = c; the dot product with u3
-    // isolates x, that with u2 isolates y.
+    // The unknown rates x of theta2 and y of theta3 obey x rot(r2) - y rot(r3) = c, where rot turns a vector by +90
+    // degrees. The dot product with u3 isolates x, that with u2 isolates y.
     let solve_couplers = |c: Vector| {
         (
-            c.dot(u3) / (pose.bars.coupler_left * pose.type2),
-            c.dot(u2) / (pose.bars.coupler_right * pose.type2),
+            c.dot(u3) / (pose.bars.left_coupler_length * pose.type2),
+            c.dot(u2) / (pose.bars.right_coupler_length * pose.type2),
         )
     };
     let (w1, w4) = (crank_left.rate, crank_right.rate);
     let (w2, w3) = solve_couplers(r4.rotated_left() * w4 - r1.rotated_left() * w1);
-    let inward = r1 * (w1 * w1) + r2 * (w2 * w2) - r3 * (w3 * w3) - r4 * (w4 * w4);
+    let centripetal = r1 * (w1 * w1) + r2 * (w2 * w2) - r3 * (w3 * w3) - r4 * (w4 * w4);
     let (e1, e4) = (crank_left.acceleration, crank_right.acceleration);
-    let (e2, e3) = solve_couplers(inward + r4.rotated_left() * e4 - r1.rotated_left() * e1);
+    let (e2, e3) = solve_couplers(centripetal + r4.rotated_left() * e4 - r1.rotated_left() * e1);
     LoopDerivatives {
-        left: Spin::new(w2, e2),
-        right: Spin::new(w3, e3),
+        left_coupler: Spin::new(w2, e2),
+        right_coupler: Spin::new(w3, e3),
         point: Derivative {
             rate: r1.rotated_left() * w1 + r2.rotated_left() * w2,
             acceleration: end_acceleration(r1, crank_left) + r2.rotated_left() * e2
@@ -154,12 +159,12 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
     }
 }
 
-/// Acceleration of the moving end of a link that turns about its other end.
+/// The acceleration of a link's moving end relative to its other end.
 fn end_acceleration(link: Vector, spin: Spin) -> Vector {
     link.rotated_left() * spin.acceleration - link * (spin.rate * spin.rate)
 }
 
-/// Rates and accelerations of the slider's direction (radians) and length (mm).
+/// The rates and accelerations of a slider's direction (rad) and length (mm), from its arms and their rates.
 fn slider_derivatives(
     pose: &SliderPose,
     (rear, rear_spin): (Vector, Spin),
@@ -184,16 +189,16 @@ mod tests {
 
     use super::*;
     use crate::lizard::{Lizard, Pose};
-    use crate::reference::{any_solved, cases};
+    use crate::reference::{any_solved_robot, config_with_cases};
     use crate::wrap;
 
-    /// Longest step of the central differences, s.
-    const STEP: f64 = 1e-4;
-    /// Approximate largest angle by which a joint turns in a step, deg.
-    const TURN: f64 = 0.1;
+    /// Largest step of the central differences, s.
+    const MAX_STEP: f64 = 1e-4;
+    /// Approximate largest change of a passive quantity in a step, deg or mm.
+    const MAX_STEP_TURN: f64 = 0.1;
 
-    /// Every passive quantity: angles of the couplers and sliders, coordinates of head and tail, travels of
-    /// the sliders.
+    /// The values of all passive quantities: angles of couplers and sliders, coordinates of head and tail, travels
+    /// of the sliders.
     fn values_of(solution: &Solution) -> [f64; 12] {
         let (head, tail) = (solution.head_point(), solution.tail_point());
         [
@@ -212,9 +217,9 @@ mod tests {
         ]
     }
 
-    /// Rates and accelerations of all passive quantities, in the order of [`values_of`].
-    fn derivatives_of(solution: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
-        let derivatives = solution.derivatives(drive);
+    /// The rates and the accelerations of all passive quantities, in the order of [`values_of`].
+    fn derivatives_of(solution: &Solution, motion: &ServoMotion) -> ([f64; 12], [f64; 12]) {
+        let derivatives = solution.derivatives(motion);
         let angles = [
             derivatives.theta2,
             derivatives.theta3,
@@ -224,7 +229,7 @@ mod tests {
             derivatives.phi_right,
         ];
         let points = [derivatives.head, derivatives.tail]
-            .map(|points_of| [points_of.map(|v| v.x), points_of.map(|v| v.y)]);
+            .map(|point_derivative| [point_derivative.map(|v| v.x), point_derivative.map(|v| v.y)]);
         let all_derivatives = [
             &angles[..],
             points.as_flattened(),
@@ -242,40 +247,45 @@ mod tests {
     }
 
     /// Solves the robot's pose `t` seconds later, under constant servo accelerations.
-    fn solve_after(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
+    fn solve_after(
+        robot: &Lizard,
+        pose: [f64; 4],
+        motion: &ServoMotion,
+        t: f64,
+    ) -> Option<Solution> {
         let mut moved_pose = pose;
         for (i, angle) in moved_pose.iter_mut().enumerate() {
-            *angle += drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0;
+            *angle += motion.rate[i] * t + motion.acceleration[i] * t * t / 2.0;
         }
         robot.solve(&Pose::from(moved_pose)).ok()
     }
 
-    fn any_drive() -> impl Strategy<Value = Drive> {
+    fn any_motion() -> impl Strategy<Value = ServoMotion> {
         let four_ranges = |max: f64| [-max..max, -max..max, -max..max, -max..max];
         (four_ranges(300.0), four_ranges(2000.0))
-            .prop_map(|(rate, acceleration)| Drive { rate, acceleration })
+            .prop_map(|(rate, acceleration)| ServoMotion { rate, acceleration })
     }
 
     proptest! {
-        #![proptest_config(cases(2048))]
+        #![proptest_config(config_with_cases(2048))]
 
         #[test]
-        fn rates_and_accelerations_are_the_differences_of_positions(
-            (robot, pose, solution) in any_solved(), drive in any_drive(),
+        fn rates_and_accelerations_are_the_difference_quotients_of_positions(
+            (robot, pose, solution) in any_solved_robot(), motion in any_motion(),
         ) {
-            // Near a singularity the third derivative swamps any fixed step.
+            // Near a singularity, higher derivatives are too large for any fixed step.
             prop_assume!(solution.margins.type2[0] > 0.3 && solution.margins.type2[1] > 0.3);
             prop_assume!(solution.head.gap.length() > 5.0 && solution.tail.gap.length() > 5.0);
             prop_assume!(solution.left.d > 20.0 && solution.right.d > 20.0);
-            let (rates, accelerations) = derivatives_of(&solution, &drive);
+            let (rates, accelerations) = derivatives_of(&solution, &motion);
             let largest_of = |values: &[f64; 12]| values.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
             let (largest_rate, largest_acceleration) = (largest_of(&rates), largest_of(&accelerations));
-            let step = STEP.min(TURN / largest_rate);
-            // Five points: error of the fourth order in the step.
-            let values_at = |steps: f64| solve_after(&robot, pose, &drive, steps * step).map(|s| values_of(&s));
+            let step = MAX_STEP.min(MAX_STEP_TURN / largest_rate);
+            // The formulas with five points have errors of the fourth order in the step.
+            let values_at = |steps: f64| solve_after(&robot, pose, &motion, steps * step).map(|s| values_of(&s));
             let start_values = values_of(&solution);
             let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(values_at) else {
-                return Err(TestCaseError::fail("a neighbour does not close"));
+                return Err(TestCaseError::fail("a loop does not close in a neighbouring pose"));
             };
             for i in 0..12 {
                 let difference_from_start = |value: f64| {

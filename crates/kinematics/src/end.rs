@@ -1,9 +1,9 @@
-//! The two ends of the robot, each carried by a five-bar.
+//! The two ends of the robot, head and tail, each carried by a five-bar.
 //!
-//! The tail is the mirror image of the head at the chassis frame's x axis. So each end
-//! has its own frame: x to the robot's right, y away from the chassis, origin in the
-//! middle of the end's base. In that frame one closed form solves both ends. Only this
-//! module knows the differences between them.
+//! The mechanism of the tail is that of the head, mirrored in the chassis frame's x axis. So each
+//! end has its own frame: x to the robot's right, y away from the chassis, origin in the middle of
+//! the end's base. In that frame one closed form solves both ends. Only this module knows the
+//! differences between them.
 
 use core::fmt;
 
@@ -32,8 +32,8 @@ impl End {
         }
     }
 
-    /// Indices, in servo order, of the servos of the left and of the right
-    /// crank: A1 and A2, or A4 and A3.
+    /// Indices, in servo order, of the servos of the left and of the right crank: A1 and A2 at the
+    /// head, A4 and A3 at the tail.
     pub const fn servos(self) -> [usize; 2] {
         match self {
             Self::Head => [0, 1],
@@ -41,13 +41,13 @@ impl End {
         }
     }
 
-    /// The end at which a servo stands, by its index in servo order, 0 to 3.
+    /// The end to which a servo belongs, by the servo's index in servo order, 0 to 3.
     pub const fn of_servo(servo: usize) -> Self {
         if servo < 2 { Self::Head } else { Self::Tail }
     }
 
-    /// The direction of the end's y axis in the chassis frame: 1 forward, -1 backward.
-    /// Angles, rates and y coordinates change frame by this factor.
+    /// The direction of the end's y axis in the chassis frame: 1 forward, -1 backward. This factor
+    /// converts angles, their rates, and y components between the two frames.
     pub const fn sign(self) -> f64 {
         match self {
             Self::Head => 1.0,
@@ -69,7 +69,7 @@ impl End {
         wrap(self.sign() * degrees)
     }
 
-    /// The values of the left and the right crank, picked from four in servo order.
+    /// Picks the values of the end's left and right cranks from four values in servo order.
     #[inline(always)]
     pub fn pick<T: Copy>(self, values: [T; 4]) -> [T; 2] {
         let [left, right] = self.servos();
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_servo_stands_at_the_end_that_names_it() {
+    fn each_servo_belongs_to_the_end_that_lists_it() {
         let mut count = [0; 4];
         for end in End::ALL {
             for servo in end.servos() {
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tails_frame_has_negative_angles_and_the_heads_is_the_chassis() {
+    fn the_tails_frame_is_mirrored_and_the_heads_has_the_axes_of_the_chassis() {
         assert_eq!(End::Tail.mirror_angle(221.5), 138.5);
         assert_eq!(End::Tail.mirror_angle(180.0), 180.0);
         assert_eq!(End::Head.mirror_angle(221.5), -138.5);

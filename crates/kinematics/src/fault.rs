@@ -1,4 +1,4 @@
-//! The reasons why a position does not exist, as the messages that the user sees.
+//! The reasons why a mechanism has no position, with their messages for the user.
 
 use core::fmt;
 
@@ -23,39 +23,38 @@ impl fmt::Display for Part {
     }
 }
 
-/// A reason why one loop has no position, or no unique one. Lengths in mm.
+/// A reason why a loop has no position, or no unique one. All lengths are in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// An input or a result is infinite or not a number. Lengths above about 1e75 mm or
-    /// below 1e-75 mm overflow in the computation.
+    /// An input or a result is infinite or NaN. Lengths above about 1e75 mm overflow in the
+    /// computation, and lengths below about 1e-75 mm underflow.
     NotFinite,
-    /// The crank tips are further apart than both couplers reach.
+    /// The crank tips are farther apart than both couplers together reach.
     TooFarApart {
         /// Distance between the crank tips.
         gap: f64,
-        /// Sum of the couplers.
-        reach: f64,
+        /// Largest possible distance: the sum of the couplers' lengths.
+        max_gap: f64,
     },
-    /// The crank tips are closer than the couplers differ in length.
+    /// The crank tips are closer together than the couplers, of unequal length, allow.
     TooClose {
         /// Distance between the crank tips.
         gap: f64,
-        /// Difference of the couplers.
-        least: f64,
+        /// Smallest possible distance: the difference of the couplers' lengths.
+        min_gap: f64,
     },
-    /// The crank tips coincide (d = 0): the end point can be anywhere on a
-    /// circle.
+    /// The crank tips of a five-bar coincide, so the end point can be anywhere on a circle.
     Coincident,
-    /// A point is outside the ring that one crank and its coupler reach.
+    /// A point is outside the ring that a crank and its coupler can reach.
     OutOfReach {
-        /// True for the left crank, seen along the five-bar's own y axis.
+        /// True for the left crank, false for the right one, in the five-bar's own frame.
         is_left: bool,
         /// Distance of the point from that crank's shaft.
         distance: f64,
-        /// Least distance that the crank and its coupler reach.
-        least: f64,
-        /// Greatest distance that the crank and its coupler reach.
-        most: f64,
+        /// Smallest distance from the shaft that crank and coupler can reach.
+        min_reach: f64,
+        /// Largest distance from the shaft that crank and coupler can reach.
+        max_reach: f64,
     },
     /// A point lies on a shaft whose crank and coupler are equally long, so every crank
     /// angle is a solution.
@@ -68,13 +67,13 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NotFinite => f.write_str("a value is not a finite number"),
-            Self::TooFarApart { gap, reach } => write!(
+            Self::TooFarApart { gap, max_gap } => write!(
                 f,
-                "the crank tips are {gap:.3} mm apart, the couplers reach {reach:.3} mm"
+                "the crank tips are {gap:.3} mm apart, the couplers reach {max_gap:.3} mm"
             ),
-            Self::TooClose { gap, least } => write!(
+            Self::TooClose { gap, min_gap } => write!(
                 f,
-                "the crank tips are {gap:.3} mm apart, the couplers need {least:.3} mm"
+                "the crank tips are {gap:.3} mm apart, the couplers need {min_gap:.3} mm"
             ),
             Self::Coincident => {
                 f.write_str("singular: the crank tips coincide, the end point is free on a circle")
@@ -82,11 +81,11 @@ impl fmt::Display for Fault {
             Self::OutOfReach {
                 is_left,
                 distance,
-                least,
-                most,
+                min_reach,
+                max_reach,
             } => write!(
                 f,
-                "the point is {distance:.3} mm from the {} shaft, which reaches {least:.3} to {most:.3} mm",
+                "the point is {distance:.3} mm from the {} shaft, which reaches {min_reach:.3} to {max_reach:.3} mm",
                 if is_left { "left" } else { "right" }
             ),
             Self::OnShaft => {
@@ -99,12 +98,12 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// A pose that the robot cannot take, with the mechanism and the reason.
+/// The error for a pose that the robot cannot take: the mechanism and the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Infeasible {
-    /// The mechanism that does not close.
+    /// The mechanism whose loop does not close.
     pub part: Part,
-    /// The reason.
+    /// The reason why it does not close.
     pub fault: Fault,
 }
 

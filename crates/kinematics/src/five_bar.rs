@@ -1,12 +1,12 @@
-//! The RRRRR five-bar: two motors, two cranks, two couplers, one end point.
+//! The RRRRR five-bar: two cranks, each driven by a motor, and two couplers that are joined at the end point.
 //!
-//! The couplers are joined at the end point. Given the crank tips, the end point is an intersection of two circles;
-//! given the end point, each crank tip is an intersection of two circles. Both directions use the area of a triangle
-//! in Heron's factored form, which loses no digits when the triangle is flat.
+//! Given the crank tips, the end point is an intersection of two circles; given the end point, each crank tip is an
+//! intersection of two circles. Forward and inverse kinematics both use the area of a triangle in the factored form of
+//! Heron's formula, which loses no digits if the triangle is flat.
 //!
-//! The paper solves R1 + R2 = R0 + R4 + R3 by half-angle tangents. Its theta3 is right,
-//! but it is 0/0 if the crank tips coincide and loses digits if A = 0; its theta2 (D, E,
-//! F, K4) has three wrong signs.
+//! The paper solves R1 + R2 = R0 + R4 + R3 with the tangents of half angles. Its theta3 is right, but the formula is
+//! 0/0 if the crank tips coincide, and loses digits if the paper's A is 0. Its theta2 (D, E, F, K4) has three wrong
+//! signs.
 
 mod inverse;
 
@@ -16,40 +16,38 @@ use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// Gap between the crank tips, mm, below which the end point is undefined: rounding alone
-/// moves it by more than 0.1 mm.
+/// Gap between the crank tips, mm, below which the end point counts as undefined: rounding errors
+/// alone move it by more than 0.1 mm.
 const MIN_GAP: f64 = 1e-12;
 
-/// Link lengths of a five-bar in mm, all above 0. Its frame has the origin in the
-/// middle of the base, x from the left shaft to the right one, y away from the
-/// chassis.
+/// The links of a five-bar; all but the base must be longer than 0. Its own frame has the origin in
+/// the middle of the base, x from the left shaft to the right one, y away from the chassis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveBar {
     /// Distance between the shafts, mm: l0, l5. May be 0.
     pub base: f64,
     /// Left crank, mm: l1, l6.
-    pub crank_left: f64,
+    pub left_crank_length: f64,
     /// Left coupler, mm: l2, l7.
-    pub coupler_left: f64,
+    pub left_coupler_length: f64,
     /// Right coupler, mm: l3, l8.
-    pub coupler_right: f64,
+    pub right_coupler_length: f64,
     /// Right crank, mm: l4, l9.
-    pub crank_right: f64,
+    pub right_crank_length: f64,
 }
 
-/// The side of the line from the left crank tip to the right one on which the end
-/// point lies. A mechanism cannot change it without passing a type-2
-/// singularity.
+/// The side of the line through the crank tips on which the end point lies. A mechanism cannot
+/// change it without passing through a type-2 singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssemblyMode {
-    /// End point to the left of the line from the left crank tip to the right one: ahead as long as the cranks are
-    /// not crossed. The robot is built in this mode; it is the paper's -sqrt in theta3.
+    /// End point to the left of the line from the left crank tip to the right one, which is ahead as long as the cranks
+    /// are not crossed. The robot is built in this mode; in the paper's theta3 it is the root with -sqrt.
     Ahead,
     /// End point to the right of the line from the left crank tip to the right one.
     Behind,
 }
 
-/// A closed five-bar, in its own frame.
+/// A pose of a five-bar whose loop closes, in the five-bar's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveBarPose<T = f64> {
     /// Links of the five-bar.
@@ -68,54 +66,51 @@ pub struct FiveBarPose<T = f64> {
     pub right_coupler: Vector<T>,
     /// The end point, mm.
     pub end_point: Vector<T>,
-    /// From the left crank tip to the right one, mm: (K2, K1) in the paper. The
-    /// cranks are crossed where x is not above 0.
+    /// Vector from the left crank tip to the right one, mm: (K2, K1) in the paper. The cranks are
+    /// crossed if its x is not above 0.
     pub gap: Vector<T>,
-    /// Type-2 margin sin(theta3 - theta2), -1 to 1: 0 where the couplers line up
-    /// and the end point can move with both servos still. Positive in
-    /// [`AssemblyMode::Ahead`].
+    /// Type-2 margin sin(theta3 - theta2), -1 to 1: 0 if the couplers line up, so that the end
+    /// point can move although both servos hold. Positive in [`AssemblyMode::Ahead`].
     pub type2: T,
 }
 
 impl FiveBarPose {
-    /// theta2 (theta6 mirrored): angle of the left coupler, degrees.
+    /// theta2 (for the tail theta6, mirrored): angle of the left coupler, degrees.
     #[inline]
     pub fn theta_left_coupler(&self) -> f64 {
         self.left_coupler.angle()
     }
 
-    /// theta3 (theta7 mirrored): angle of the right coupler, degrees.
+    /// theta3 (for the tail theta7, mirrored): angle of the right coupler, degrees.
     #[inline]
     pub fn theta_right_coupler(&self) -> f64 {
         self.right_coupler.angle()
     }
 
-    /// Smallest of the type-2 and the two type-1 margins; the margins of the legs are not included.
+    /// The smallest of the type-2 margin and the two type-1 margins; the margins of the legs are not included.
     pub fn margin(&self) -> f64 {
         self.type2.min(self.type1_left()).min(self.type1_right())
     }
 }
 
 impl<T: Real> FiveBarPose<T> {
-    /// Type-1 margin of the left arm, sin(theta1 - theta2), -1 to 1: 0 where
-    /// crank and coupler line up and the end point cannot move along them,
-    /// positive for an outward elbow.
+    /// Type-1 margin of the left arm, sin(theta1 - theta2), -1 to 1: 0 if crank and coupler line
+    /// up, so that the end point cannot move along them; positive for an outward elbow.
     #[inline(always)]
     pub fn type1_left(&self) -> T {
         self.left_coupler.cross(self.left_crank)
     }
 
-    /// Type-1 margin of the right arm, sin(theta3 - theta4), -1 to 1: 0 where crank and coupler line up, positive for
-    /// an outward elbow.
+    /// Type-1 margin of the right arm, sin(theta3 - theta4), -1 to 1: 0 if crank and coupler line up; positive for an
+    /// outward elbow.
     #[inline(always)]
     pub fn type1_right(&self) -> T {
         self.right_crank.cross(self.right_coupler)
     }
 
-    /// A number that is finite if and only if every number of the pose is finite, since it is computed from all of
-    /// them.
+    /// A sum that is finite if and only if every number of the pose is finite.
     #[inline(always)]
-    fn probe(&self) -> T {
+    fn finiteness_probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()
     }
 }
@@ -127,10 +122,10 @@ impl FiveBar {
         let [base, crank_left, coupler_left, coupler_right, crank_right] = lengths;
         Self {
             base,
-            crank_left,
-            coupler_left,
-            coupler_right,
-            crank_right,
+            left_crank_length: crank_left,
+            left_coupler_length: coupler_left,
+            right_coupler_length: coupler_right,
+            right_crank_length: crank_right,
         }
     }
 
@@ -146,13 +141,12 @@ impl FiveBar {
         Vector::new(self.base / 2.0, 0.0)
     }
 
-    /// The pose at two crank angles in degrees (own frame), in the assembly mode
-    /// that the robot is built in. Loops of this size close within 1e-12 mm.
+    /// The pose at two crank angles (degrees, own frame), in the assembly mode in which the robot is
+    /// built. Loops of the robot's size close within 1e-12 mm.
     ///
     /// # Errors
-    /// Returns [`Fault::TooFarApart`] and [`Fault::TooClose`] if the couplers cannot reach each other,
-    /// [`Fault::Coincident`] if the end point is free, [`Fault::NotFinite`] for input that is not finite or that
-    /// overflows.
+    /// Returns [`Fault::TooFarApart`] or [`Fault::TooClose`] if the couplers cannot meet, [`Fault::Coincident`] if the
+    /// crank tips coincide, [`Fault::NotFinite`] if the input is not finite or overflows.
     ///
     /// ```
     /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
@@ -163,8 +157,7 @@ impl FiveBar {
         self.forward_in(AssemblyMode::Ahead, theta_left, theta_right)
     }
 
-    /// The pose at two crank angles in degrees (own frame), in either assembly
-    /// mode.
+    /// The pose at two crank angles (degrees, own frame), in either assembly mode.
     ///
     /// # Errors
     /// Fails as [`FiveBar::forward`] does.
@@ -178,8 +171,8 @@ impl FiveBar {
         self.close(mode, left, right)
     }
 
-    /// The pose at two crank directions of length one: all of the solution except
-    /// the sines and arc tangents.
+    /// The pose at two crank directions of length one; like [`FiveBar::forward_in`], but without
+    /// computing sines and cosines.
     ///
     /// # Errors
     /// Fails as [`FiveBar::forward`] does.
@@ -198,30 +191,31 @@ impl FiveBar {
     /// Checks that the loop of a pose closes.
     #[inline]
     pub(crate) fn check(&self, pose: &FiveBarPose) -> Result<(), Fault> {
-        self.check_numbers(pose.gap.length(), pose.probe())
+        self.check_closure(pose.gap.length(), pose.finiteness_probe())
     }
 
-    /// True in each lane whose loop closes; [`FiveBar::close`] gives the reason why a loop does not.
+    /// True for each lane whose loop closes; [`FiveBar::close`] gives the reason why a loop does not.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
-        let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.probe());
+        let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.finiteness_probe());
         let mut is_closed = [false; N];
         for i in 0..N {
-            is_closed[i] = self.check_numbers(d[i], probe[i]).is_ok();
+            is_closed[i] = self.check_closure(d[i], probe[i]).is_ok();
         }
         is_closed
     }
 
+    /// Checks a pose by the distance `d` of its crank tips, and by its [`FiveBarPose::finiteness_probe`].
     #[inline(always)]
-    fn check_numbers(&self, d: f64, probe: f64) -> Result<(), Fault> {
-        let (l2, l3) = (self.coupler_left, self.coupler_right);
-        let (min, reach) = ((l2 - l3).abs(), l2 + l3);
-        if !d.is_finite() || !reach.is_finite() {
+    fn check_closure(&self, d: f64, probe: f64) -> Result<(), Fault> {
+        let (l2, l3) = (self.left_coupler_length, self.right_coupler_length);
+        let (min_gap, max_gap) = ((l2 - l3).abs(), l2 + l3);
+        if !d.is_finite() || !max_gap.is_finite() {
             Err(Fault::NotFinite)
-        } else if d > reach {
-            Err(Fault::TooFarApart { gap: d, reach })
-        } else if d < min {
-            Err(Fault::TooClose { gap: d, least: min })
+        } else if d > max_gap {
+            Err(Fault::TooFarApart { gap: d, max_gap })
+        } else if d < min_gap {
+            Err(Fault::TooClose { gap: d, min_gap })
         } else if d < MIN_GAP {
             Err(Fault::Coincident)
         } else if !probe.is_finite() {
@@ -231,8 +225,8 @@ impl FiveBar {
         }
     }
 
-    /// The pose at crank directions of length one, without checking that the loop closes: the pose is meaningless if
-    /// it does not, see [`FiveBar::closes`]. The compiler leaves out the parts that the caller does not use.
+    /// The pose at crank directions of length one, without a check that the loop closes: if it does not (see
+    /// [`FiveBar::closes`]), the pose is meaningless. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
     pub fn pose_unchecked<T: Real>(
         &self,
@@ -240,21 +234,21 @@ impl FiveBar {
         left: Vector<T>,
         right: Vector<T>,
     ) -> FiveBarPose<T> {
-        let left_tip = Vector::of(self.left_shaft()) + left * self.crank_left;
-        let right_tip = Vector::of(self.right_shaft()) + right * self.crank_right;
+        let left_tip = Vector::constant(self.left_shaft()) + left * self.left_crank_length;
+        let right_tip = Vector::constant(self.right_shaft()) + right * self.right_crank_length;
         let gap = right_tip - left_tip;
         let square = gap.length_squared();
-        let (l2, l3) = (self.coupler_left, self.coupler_right);
+        let (l2, l3) = (self.left_coupler_length, self.right_coupler_length);
         let area = match mode {
-            AssemblyMode::Ahead => double_area(l2, l3, square.root()),
-            AssemblyMode::Behind => -double_area(l2, l3, square.root()),
+            AssemblyMode::Ahead => double_area(l2, l3, square.sqrt_or_zero()),
+            AssemblyMode::Behind => -double_area(l2, l3, square.sqrt_or_zero()),
         };
-        // Foot of the perpendicular from the end point to the line between the tips, and the end point's height over
-        // that line, both in units of the gap.
-        let foot = (square + T::of((l2 - l3) * (l2 + l3))) / (square * 2.0);
+        // The end point relative to the left tip: `foot` is its coordinate along the gap, relative to the gap's length;
+        // `rise` is its component perpendicular to the gap.
+        let foot = (square + T::constant((l2 - l3) * (l2 + l3))) / (square * 2.0);
         let rise = gap.rotated_left().scaled(area / square);
         let left_vector = gap.scaled(foot) + rise;
-        let right_vector = gap.scaled(foot - T::of(1.0)) + rise;
+        let right_vector = gap.scaled(foot - T::constant(1.0)) + rise;
         FiveBarPose {
             bars: *self,
             left_crank: left,
@@ -270,12 +264,12 @@ impl FiveBar {
     }
 }
 
-/// Twice the area of a triangle from its sides, by Heron's formula in factored form.
+/// Twice the area of a triangle with these sides, by Heron's formula in factored form.
 #[inline(always)]
 fn double_area<T: Real>(a: f64, b: f64, c: T) -> T {
-    let (sum, difference) = (T::of(a + b), T::of(a - b));
+    let (sum, difference) = (T::constant(a + b), T::constant(a - b));
     let product = (sum + c) * (sum - c) * (c + difference) * (c - difference);
-    product.root() * 0.5
+    product.sqrt_or_zero() * 0.5
 }
 
 #[cfg(test)]

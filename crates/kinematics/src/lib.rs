@@ -1,18 +1,20 @@
-//! Closed-form kinematics of a robotic lizard: every joint from four servo angles, and back.
+//! Closed-form kinematics of a robotic lizard: all joints from four servo angles, and servo angles from a point.
 //!
 //! The body is a planar mechanism. Two five-bars (RRRRR) carry the head and the tail. On
-//! each side two arms and a prismatic joint form a loop (RRPRR). Four parallelograms are
-//! the legs. Four servos drive all of it. Each loop is solved by intersecting two
-//! circles, so each has a closed form. This crate uses the geometric forms, which stay
-//! accurate where the paper's half-angle formulas divide zero by zero.
+//! each side two arms and a prismatic joint form a loop (RRPRR). Each leg is a parallelogram.
+//! Four servos drive the whole mechanism. The position of a five-bar follows from the
+//! intersection of two circles, that of a slider from its arm tips, so both have closed forms.
+//! This crate uses geometric forms, which stay accurate where the paper's half-angle formulas
+//! divide zero by zero.
 //!
 //! # When not to use it
-//! - For a mechanism with other loops: this is not a general solver. It knows five-bars,
-//!   sliders between two arms, and parallelograms.
-//! - For forces, masses or contact with the floor: it knows geometry and rates only.
-//! - On a small chip: it computes in f64. The firmware of this robot has integer forms.
-//! - For a path or a choice among working modes: it solves one pose at a time and returns
-//!   all four solutions of a five-bar's inverse.
+//! - For mechanisms with other loops: it solves only five-bars, sliders between two arms, and
+//!   parallelograms.
+//! - For forces, masses or contact with the floor: it computes geometry and rates only.
+//! - On a microcontroller: it computes in f64. The firmware of this robot has its own integer
+//!   arithmetic.
+//! - To plan a path or to choose a working mode: it solves one pose at a time, and returns all
+//!   four solutions of a five-bar's inverse kinematics.
 //!
 //! # Example
 //!
@@ -20,7 +22,7 @@
 //! use lizard_kinematics::{End, Infeasible, Leg, Lizard, Vector};
 //!
 //! fn main() -> Result<(), Infeasible> {
-//!     // The paper's robot: l0 to l19 in mm, then the parallelogram of a leg.
+//!     // The paper's robot: links l0 to l19, then the parallelogram of a leg, mm.
 //!     let (crank, coupler, arm, body) = (30.0, 50.0, 45.0, 135.0);
 //!     let head = [20.0, crank, coupler, coupler, crank];
 //!     let side = [body, crank, arm, arm, crank];
@@ -33,11 +35,11 @@
 //!     let point = solution.head_point();
 //!     println!("head at {:.2}, {:.2} mm; left slider at {:.2} mm", point.x, point.y, solution.left.s);
 //!
-//!     // The least distance from a singularity: 1 is the farthest, 0 is a singularity.
+//!     // The smallest margin: 0 is a singularity, 1 is the farthest from one.
 //!     let (check, margin) = solution.margins.min();
 //!     assert!(margin > 0.3, "{check} has only {margin}");
 //!
-//!     // Back, in the head's own frame: the two servo angles that put its point there.
+//!     // Inverse, in the head's own frame: the angles of A1 and A2 that put the head at this point.
 //!     let [theta1, theta4] = lizard.point_angles(End::Head, lizard.to_end(End::Head, point))?;
 //!     assert!((theta1 - 130.0).abs() < 1e-9 && (theta4 - 45.0).abs() < 1e-9);
 //!
@@ -52,24 +54,25 @@
 //! # Conventions
 //! - Chassis frame: origin in the middle of the chassis, x to the robot's right,
 //!   y forward, angles counter-clockwise from +x seen from above.
-//! - Degrees and millimetres in every signature. Radians never leave this crate,
-//!   except in rates and Jacobians, which say so.
-//! - Servo order A1, A2, A3, A4 = theta1, theta4, theta8, theta5: clockwise from
-//!   the front left.
+//! - All signatures use degrees and millimetres, except where Jacobians and other derivatives
+//!   are documented to be per radian.
+//! - Servo order is A1, A2, A3, A4 = theta1, theta4, theta8, theta5: clockwise, seen from above,
+//!   from the front left. Legs are in servo order, too: left front, right front, right hind,
+//!   left hind (LF, RF, RH, LH).
 //! - Each [`End`] has its own frame, in which the tail is solved like the head; each
 //!   [`Side`] has a front and a rear servo. Only these two types convert between frames
 //!   and orders of servos.
-//! - Legs in servo order: LF, RF, RH, LH.
-//! - Symbols (l0..l19, theta1..theta16, lg) are the paper's: *Optimal Kinematic Design of
-//!   a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. If a printed equation does
-//!   not hold, the item that replaces it says so; `lizard errata` measures its error.
+//! - Symbols (l0..l19, theta1..theta16, lg) are those of the paper: *Optimal Kinematic Design
+//!   of a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. Where a printed equation is
+//!   wrong, the documentation of the item that replaces it says so; `lizard errata` measures
+//!   its error.
 //!
 //! # Determinism
-//! The crate uses only IEEE basic operations, including the square root, and `libm`. So
-//! the same input gives the same bits on every host, and a program, a test and a web page
-//! agree. The square root is that of the standard library: `libm`'s is one SSE
-//! instruction in inline assembly, which no compiler turns into a vector instruction and
-//! which takes a hundred times as long among AVX instructions.
+//! The crate uses only basic IEEE operations, including the square root, and `libm`. So the
+//! same input gives the same bits on every host, and programs, tests and the web page agree.
+//! The square root is that of the standard library. `libm`'s is an SSE instruction in inline
+//! assembly, which the compiler cannot vectorise and which is a hundred times slower among
+//! AVX instructions.
 
 #[cfg(test)]
 extern crate self as lizard_kinematics;
@@ -105,7 +108,7 @@ mod readme {}
 pub use angle::{atan2, sin_cos, sin_cos_all, wrap};
 pub use conditioning::Jacobian;
 pub use constraints::{BlockDeterminants, PassiveJoints};
-pub use derivatives::{Derivative, Derivatives, Drive};
+pub use derivatives::{Derivative, Derivatives, ServoMotion};
 pub use end::End;
 pub use fault::{Fault, Infeasible, Part};
 pub use five_bar::{AssemblyMode, Elbow, FiveBar, FiveBarPose, InverseSolution, WorkingMode};

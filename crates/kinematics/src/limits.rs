@@ -8,27 +8,27 @@ use crate::lizard::Solution;
 use crate::margins::Check;
 use crate::side::Side;
 
-/// Smallest margins and the slider's travel that a robot allows.
+/// The smallest margins and the range of the sliders' travel that a robot allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Least type-2 margin of head and tail, a sine, 0 to 1.
+    /// Smallest type-2 margin of head and tail, a sine, 0 to 1.
     pub type2: f64,
-    /// Least signed type-1 margin of the four arms, a sine, 0 to 1.
+    /// Smallest signed type-1 margin of the four arms, a sine, 0 to 1.
     pub type1: f64,
-    /// Least signed margin of the four legs, a sine, 0 to 1.
+    /// Smallest signed margin of the four legs, a sine, 0 to 1.
     pub leg: f64,
-    /// Least slider travel from nominal, mm, at most 0.
+    /// Smallest slider travel from the nominal length, mm, at most 0.
     pub stroke_min: f64,
-    /// Greatest slider travel from nominal, mm, at least 0.
+    /// Largest slider travel from the nominal length, mm, at least 0.
     pub stroke_max: f64,
 }
 
-/// A limit that a pose breaks.
+/// A violation of a limit by a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
-    /// The condition that is out of bounds.
+    /// The condition that the pose does not meet.
     pub check: Check,
-    /// The value of the condition: a sine for margins, mm for stroke and crossing.
+    /// The condition's value in the pose: a sine for margins, mm for slider travels and crossing.
     pub value: f64,
     /// The violated limit, in the same unit.
     pub limit: f64,
@@ -41,7 +41,7 @@ impl fmt::Display for Violation {
             value,
             limit,
         } = *self;
-        // Rounded to the digits that are shown, without the sign of a zero.
+        // Rounding first, and adding 0.0, keeps a negative zero from being shown.
         let round_to = |scale: f64| libm::round(value * scale) / scale + 0.0;
         let (thousandths, hundredths) = (round_to(1e3), round_to(100.0));
         let write_stroke = |f: &mut fmt::Formatter<'_>, side: Side| {
@@ -68,8 +68,8 @@ impl fmt::Display for Violation {
 }
 
 impl Limits {
-    /// The violation of a condition's limit by a value (a sine, or mm); `None` if the value is
-    /// safe. A value at its limit is safe, but crank tips at 0 mm count as crossed.
+    /// The violation of a condition's limit by a value (a sine or mm); `None` if the value is safe.
+    /// A value at its limit is safe, but a distance of 0 mm between crank tips counts as crossed.
     pub fn violation_of(&self, check: Check, value: f64) -> Option<Violation> {
         let limit_if_below = |limit: f64| (value < limit).then_some(limit);
         let limit = match check {
@@ -91,12 +91,12 @@ impl Limits {
         })
     }
 
-    /// Every limit that a solved pose breaks; empty if it is safe. This is the only definition
-    /// of a safe pose.
+    /// The violations of all limits that a solved pose breaks; none if it is safe. This is the only
+    /// definition of a safe pose.
     ///
-    /// Besides margins and strokes it requires that the crank tips are not crossed (x of [`FiveBarPose::gap`] above
-    /// 0, the paper's K2). Poses with crossed tips may have good margins, too, but the robot cannot reach them
-    /// without passing a singularity.
+    /// In addition to margins and slider travels, a safe pose requires crank tips that are not crossed: the x of
+    /// [`FiveBarPose::gap`], the paper's K2, must be above 0. Poses with crossed tips may have good margins, too, but
+    /// the robot cannot reach them without passing through a singularity.
     pub fn violations(&self, solution: &Solution) -> impl Iterator<Item = Violation> + use<> {
         let limits = *self;
         solution
@@ -104,7 +104,7 @@ impl Limits {
             .filter_map(move |(check, value)| limits.violation_of(check, value))
     }
 
-    /// Every limit that the five-bar of one end breaks, whatever the pose of the rest of the robot.
+    /// The violations of all limits that the five-bar of one end breaks, whatever the pose of the rest of the robot.
     pub fn end_violations(
         &self,
         end: End,

@@ -1,7 +1,7 @@
 //! The paper's table of link lengths.
 
-/// The links of the body in mm, by the paper's symbols. All are above 0 except l0 and l5,
-/// which may be 0. The paper's table prints l16 twice; the second one is l17.
+/// The lengths of the body's links, mm, by the paper's symbols. All are above 0 except l0 and
+/// l5, which may be 0. The paper's table prints l16 twice; the second one is l17.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links {
     /// Base of the head, between A1 and A2, mm.
@@ -47,7 +47,7 @@ pub struct Links {
 }
 
 impl Links {
-    /// The links from l0 to l19.
+    /// Returns the lengths of the links from l0 to l19, mm.
     pub const fn to_array(&self) -> [f64; 20] {
         [
             self.l0, self.l1, self.l2, self.l3, self.l4, self.l5, self.l6, self.l7, self.l8,

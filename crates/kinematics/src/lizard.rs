@@ -1,4 +1,4 @@
-//! The forward kinematics of the complete robot: all joints from four servo angles (Algorithm 1).
+//! The forward kinematics of the complete robot: all joints from four servo angles (the paper's Algorithm 1).
 
 use crate::angle::sin_cos_all;
 use crate::end::End;
@@ -12,16 +12,16 @@ use crate::side::Side;
 use crate::slider::{Slider, SliderPose};
 use crate::vector::Vector;
 
-/// Four servo angles in degrees, chassis frame. Declared in servo order.
+/// A pose of the robot: four servo angles in degrees, chassis frame, declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// A1, front left. It may be any finite angle, as may the other three.
+    /// Angle of A1, front left. Like the other three it may be any finite angle.
     pub theta1: f64,
-    /// A2, front right.
+    /// Angle of A2, front right.
     pub theta4: f64,
-    /// A3, back right.
+    /// Angle of A3, rear right.
     pub theta8: f64,
-    /// A4, back left.
+    /// Angle of A4, rear left.
     pub theta5: f64,
 }
 
@@ -44,8 +44,8 @@ impl From<Pose> for [f64; 4] {
     }
 }
 
-/// The robot's dimensions. The chassis is a rectangle with a shaft near each
-/// corner, so l10 = l15; every leg is a parallelogram.
+/// The dimensions of a robot. The chassis is a rectangle with a shaft near each corner, so
+/// l10 = l15; every leg is a parallelogram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lizard {
     /// Links of the body.
@@ -54,46 +54,46 @@ pub struct Lizard {
     pub leg: Leg,
 }
 
-/// All joints of the robot at a pose, and its margins.
+/// The positions of all joints of the robot in a pose, and its margins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {
     /// The servo angles of this solution.
     pub pose: Pose,
-    /// The head in its own frame, whose axes are the chassis frame's and whose
-    /// origin is the middle of l0.
+    /// The head's five-bar in its own frame, which has the axes of the chassis frame and its
+    /// origin in the middle of l0.
     pub head: FiveBarPose,
-    /// The tail in its own frame: origin in the middle of l5, y backwards. Its
-    /// left crank is A4's. See [`Solution::point`] for the chassis frame.
+    /// The tail's five-bar in its own frame: origin in the middle of l5, y backward. Its left
+    /// crank is that of A4. See [`Solution::point`] for the chassis frame.
     pub tail: FiveBarPose,
-    /// The slider between A1 and A4; axes are the chassis frame's.
+    /// The slider between A1 and A4, in the axes of the chassis frame.
     pub left: SliderPose,
-    /// The slider between A2 and A3; axes are the chassis frame's.
+    /// The slider between A2 and A3, in the axes of the chassis frame.
     pub right: SliderPose,
-    /// Legs in servo order: left front, right front, right hind, left hind.
+    /// The legs in servo order: left front, right front, right hind, left hind.
     pub legs: [LegPose; 4],
-    /// Distance from each singularity.
+    /// The margins from all singularities and change points.
     pub margins: Margins,
     /// The robot that was solved.
     lizard: Lizard,
 }
 
 impl Solution {
-    /// theta2, the head's left coupler: degrees, chassis frame.
+    /// theta2: angle of the head's left coupler, degrees, chassis frame.
     pub fn theta2(&self) -> f64 {
         self.couplers(End::Head)[0].angle()
     }
 
-    /// theta3, the head's right coupler: degrees, chassis frame.
+    /// theta3: angle of the head's right coupler, degrees, chassis frame.
     pub fn theta3(&self) -> f64 {
         self.couplers(End::Head)[1].angle()
     }
 
-    /// theta6, the tail's left coupler: degrees, chassis frame.
+    /// theta6: angle of the tail's left coupler, degrees, chassis frame.
     pub fn theta6(&self) -> f64 {
         self.couplers(End::Tail)[0].angle()
     }
 
-    /// theta7, the tail's right coupler: degrees, chassis frame.
+    /// theta7: angle of the tail's right coupler, degrees, chassis frame.
     pub fn theta7(&self) -> f64 {
         self.couplers(End::Tail)[1].angle()
     }
@@ -114,7 +114,7 @@ impl Solution {
         }
     }
 
-    /// The head or tail point, mm, chassis frame.
+    /// The point of the head or the tail, mm, chassis frame.
     pub fn point(&self, end: End) -> Vector {
         self.lizard.to_chassis(end, self.end(end).end_point)
     }
@@ -129,14 +129,13 @@ impl Solution {
         self.point(End::Tail)
     }
 
-    /// Directions of the left and the right coupler of an end, length one,
-    /// chassis frame.
+    /// The directions of an end's left and right couplers, length one, chassis frame.
     pub fn couplers(&self, end: End) -> [Vector; 2] {
-        let bars = self.end(end);
-        [bars.left_coupler, bars.right_coupler].map(|coupler| end.mirror(coupler))
+        let five_bar = self.end(end);
+        [five_bar.left_coupler, five_bar.right_coupler].map(|coupler| end.mirror(coupler))
     }
 
-    /// Tips of the four cranks in servo order, mm, chassis frame.
+    /// The tips of the four cranks in servo order, mm, chassis frame.
     pub fn crank_tips(&self) -> [Vector; 4] {
         let mut tips = [self.head.left_tip; 4];
         for end in End::ALL {
@@ -168,15 +167,15 @@ impl Lizard {
             Side::Right => (l.l15, l.l19, l.l16, l.l17 + l.l18),
         };
         Slider {
-            offset: side.sign() * (l.l5 - l.l0) / 2.0,
+            front_offset: side.sign() * (l.l5 - l.l0) / 2.0,
             base,
-            front,
-            rear,
-            nominal,
+            front_arm: front,
+            rear_arm: rear,
+            nominal_length: nominal,
         }
     }
 
-    /// y of the middle of an end's base, mm, chassis frame.
+    /// The y coordinate of the middle of an end's base, mm, chassis frame.
     #[inline]
     pub const fn base_y(&self, end: End) -> f64 {
         end.sign() * self.links.l10 / 2.0
@@ -185,16 +184,16 @@ impl Lizard {
     /// Converts a point from an end's own frame to the chassis frame, mm.
     #[inline(always)]
     pub fn to_chassis<T: Real>(&self, end: End, point: Vector<T>) -> Vector<T> {
-        end.mirror(point) + Vector::of(Vector::new(0.0, self.base_y(end)))
+        end.mirror(point) + Vector::constant(Vector::new(0.0, self.base_y(end)))
     }
 
     /// Converts a point from the chassis frame to an end's own frame, mm.
     #[inline(always)]
     pub fn to_end<T: Real>(&self, end: End, point: Vector<T>) -> Vector<T> {
-        end.mirror(point - Vector::of(Vector::new(0.0, self.base_y(end))))
+        end.mirror(point - Vector::constant(Vector::new(0.0, self.base_y(end))))
     }
 
-    /// Shafts of A1, A2, A3, A4 in mm, chassis frame.
+    /// The shafts of A1, A2, A3, A4, mm, chassis frame.
     pub fn shafts(&self) -> [Vector; 4] {
         let mut shafts = [Vector::default(); 4];
         for end in End::ALL {
@@ -212,7 +211,7 @@ impl Lizard {
     /// [`Slider::forward`].
     #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
-        let solution = self.shape(pose);
+        let solution = self.solve_unchecked(pose);
         self.check(&solution)?;
         Ok(solution)
     }
@@ -222,25 +221,28 @@ impl Lizard {
     fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
         let infeasible_at = |part: Part| move |fault: Fault| Infeasible { part, fault };
         for end in End::ALL {
-            let check_result = self.end(end).check(solution.end(end));
-            check_result.map_err(infeasible_at(Part::End(end)))?;
+            let closure = self.end(end).check(solution.end(end));
+            closure.map_err(infeasible_at(Part::End(end)))?;
         }
         for side in Side::ALL {
-            let check_result = self.side(side).check(solution.side(side));
-            check_result.map_err(infeasible_at(Part::Side(side)))?;
+            let closure = self.side(side).check(solution.side(side));
+            closure.map_err(infeasible_at(Part::Side(side)))?;
         }
         Ok(())
     }
 
-    /// Evaluates every closed form, without checking that the loops close.
+    /// Evaluates all closed forms, without a check that the loops close.
     #[inline]
-    fn shape(&self, pose: &Pose) -> Solution {
+    fn solve_unchecked(&self, pose: &Pose) -> Solution {
         let angles: [f64; 4] = (*pose).into();
         let (sines, cosines) = sin_cos_all(angles);
         let cranks = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
-        let head = self.shape_end(End::Head, cranks);
-        let tail = self.shape_end(End::Tail, cranks);
-        let leg_pose_of = |i: usize| self.leg.shape(End::of_servo(i), angles[i], cranks[i]);
+        let head = self.end_pose_unchecked(End::Head, cranks);
+        let tail = self.end_pose_unchecked(End::Tail, cranks);
+        let leg_pose_of = |i: usize| {
+            self.leg
+                .pose_of_direction(End::of_servo(i), angles[i], cranks[i])
+        };
         let legs: [LegPose; 4] = core::array::from_fn(leg_pose_of);
         let mut type1 = [head.type2; 4];
         for (end, bars) in [(End::Head, &head), (End::Tail, &tail)] {
@@ -252,8 +254,8 @@ impl Lizard {
             pose: *pose,
             head,
             tail,
-            left: self.shape_side(Side::Left, cranks),
-            right: self.shape_side(Side::Right, cranks),
+            left: self.side_pose_unchecked(Side::Left, cranks),
+            right: self.side_pose_unchecked(Side::Right, cranks),
             legs,
             margins: Margins {
                 type2: [head.type2, tail.type2],
@@ -264,26 +266,30 @@ impl Lizard {
         }
     }
 
-    /// The five-bar of an end at crank directions in servo order (length one,
-    /// chassis frame); only the end's own two are read. It is meaningless if the loop
-    /// does not close: see [`FiveBar::closes`].
+    /// The five-bar of an end at four crank directions in servo order (length one, chassis frame),
+    /// of which only the end's own two are used. It is meaningless if the loop does not close: see
+    /// [`FiveBar::closes`].
     #[inline(always)]
-    pub fn shape_end<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
+    pub fn end_pose_unchecked<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
         let [left, right] = end.pick(cranks);
         self.end(end)
             .pose_unchecked(AssemblyMode::Ahead, end.mirror(left), end.mirror(right))
     }
 
-    /// The slider of a side at crank directions in servo order (length one, chassis frame); only the side's own two
-    /// are read. It is meaningless if the slider has no direction: see [`Slider::closes`].
+    /// The slider of a side at four crank directions in servo order (length one, chassis frame), of which only the
+    /// side's own two are used. It is meaningless if the slider has no direction: see [`Slider::closes`].
     #[inline(always)]
-    pub fn shape_side<T: Real>(&self, side: Side, cranks: [Vector<T>; 4]) -> SliderPose<T> {
+    pub fn side_pose_unchecked<T: Real>(
+        &self,
+        side: Side,
+        cranks: [Vector<T>; 4],
+    ) -> SliderPose<T> {
         let [front, rear] = side.pick(cranks);
         self.side(side)
-            .shape(side.rear_arm(rear), side.front_arm(front))
+            .pose_unchecked(side.rear_arm(rear), side.front_arm(front))
     }
 
-    /// The margins at a pose, computed without arc tangents.
+    /// The margins of a pose.
     ///
     /// # Errors
     /// Fails as [`Lizard::solve`] does.
@@ -291,9 +297,9 @@ impl Lizard {
         self.solve(pose).map(|solution| solution.margins)
     }
 
-    /// The angles of an end's two servos (degrees in (-180, 180], chassis frame)
-    /// that put its end point at `point` (mm, the end's own frame) with the elbows
-    /// outward. In servo order: A1, A2 or A3, A4.
+    /// The angles of an end's two servos ((-180, 180] degrees, chassis frame) that put its end
+    /// point at `point` (mm, the end's own frame) with both elbows outward. In servo order: A1, A2
+    /// for the head; A3, A4 for the tail.
     ///
     /// # Errors
     /// Fails as [`FiveBar::inverse`] does.

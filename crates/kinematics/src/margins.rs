@@ -1,4 +1,4 @@
-//! The conditions of a safe pose, by name, and their values.
+//! The names of the conditions of a safe pose, and the margins among them.
 
 use core::fmt;
 
@@ -30,7 +30,7 @@ pub enum Check {
     /// Travel of the right slider, mm.
     StrokeRight,
     /// Distance to the right, mm, from the tip of A1's crank to the tip of A2's: K2 in the
-    /// paper. At 0 or below the cranks are crossed, which the robot can only be if it was
+    /// paper. At 0 or below the cranks are crossed, which is possible only if the robot was
     /// assembled so.
     UncrossedHead,
     /// Distance to the right, mm, from the tip of A4's crank to the tip of A3's. At 0 or
@@ -45,13 +45,13 @@ impl Check {
     pub const TYPE1: [Self; 4] = [Self::Type1A1, Self::Type1A2, Self::Type1A3, Self::Type1A4];
     /// The margins of the four legs, in servo order.
     pub const LEG: [Self; 4] = [Self::LegLf, Self::LegRf, Self::LegRh, Self::LegLh];
-    /// The strokes of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
+    /// The slider travels of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
     pub const STROKE: [Self; 2] = [Self::StrokeLeft, Self::StrokeRight];
     /// The conditions that the crank tips are not crossed, in the order of
     /// [`End::ALL`](crate::End::ALL).
     pub const UNCROSSED: [Self; 2] = [Self::UncrossedHead, Self::UncrossedTail];
 
-    /// The name in JSON and in answers, such as `type2_head`.
+    /// The condition's name in JSON and in messages, such as `type2_head`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Type2Head => "type2_head",
@@ -78,9 +78,9 @@ impl fmt::Display for Check {
     }
 }
 
-/// All ten margins of a pose. Each is the sine of an angle between two links, -1
-/// to 1: 0 at a singularity or a change point, positive on the side on which the
-/// robot is built. [`Check`] documents each.
+/// The ten margins of a pose. Each is the sine of an angle between two links, -1 to 1: 0 at a
+/// singularity or a change point, positive on the side on which the robot is built. [`Check`]
+/// documents each of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
     /// Type-2 margins of head and tail: [`Check::TYPE2`].
@@ -92,12 +92,12 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// Every margin with its condition.
+    /// Iterates over all margins with their conditions.
     pub fn iter(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
-        let pairs_of = |checks, values| core::iter::zip(checks, values);
+        let zip_checks = |checks, values| core::iter::zip(checks, values);
         core::iter::zip(Check::TYPE2, self.type2)
-            .chain(pairs_of(Check::TYPE1, self.type1))
-            .chain(pairs_of(Check::LEG, self.leg))
+            .chain(zip_checks(Check::TYPE1, self.type1))
+            .chain(zip_checks(Check::LEG, self.leg))
     }
 
     /// The smallest margin with its condition; the first one if several are equal.

@@ -1,15 +1,14 @@
-//! Numbers for the closed forms: one f64, or several at once.
+//! The numbers of the closed forms: one f64, or several at once.
 //!
-//! The closed forms are written once, for any [`Real`]. A pose takes an f64; a batch of
-//! five-bars or sliders takes [`Lanes`], whose operations the compiler turns into vector
-//! instructions. Every lane has exactly the bits that the computation with a single f64
-//! gives.
+//! The closed forms are written once, for any [`Real`]. A single pose uses f64; a batch of
+//! five-bars or sliders uses [`Lanes`], whose operations the compiler can vectorise. Every
+//! lane has exactly the bits that the computation with a single f64 gives.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::angle::sin_cos_all;
 
-/// A number that the closed forms can be computed with.
+/// A number, or several, with which the closed forms can be computed.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -20,21 +19,21 @@ pub trait Real:
     + Neg<Output = Self>
 {
     /// Converts a constant to this type of number.
-    fn of(value: f64) -> Self;
-    /// Square root, rounded correctly; 0 for a negative number.
-    fn root(self) -> Self;
+    fn constant(value: f64) -> Self;
+    /// The correctly rounded square root; 0 for a negative number, NaN for NaN.
+    fn sqrt_or_zero(self) -> Self;
     /// Sines and cosines of angles in degrees.
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]);
 }
 
 impl Real for f64 {
     #[inline(always)]
-    fn of(value: f64) -> Self {
+    fn constant(value: f64) -> Self {
         value
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
+    fn sqrt_or_zero(self) -> Self {
         // `max` would turn NaN into 0.
         (if self < 0.0 { 0.0 } else { self }).sqrt()
     }
@@ -45,7 +44,7 @@ impl Real for f64 {
     }
 }
 
-/// Several numbers on which every operation is carried out at once.
+/// Several numbers; every operation acts on all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
@@ -69,7 +68,7 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-macro_rules! lane_by_lane {
+macro_rules! impl_lane_by_lane {
     ($($operator:ident $method:ident $symbol:tt)*) => {$(
         impl<const N: usize> $operator for Lanes<N> {
             type Output = Self;
@@ -81,7 +80,7 @@ macro_rules! lane_by_lane {
     )*};
 }
 
-lane_by_lane!(Add add + Sub sub - Mul mul * Div div /);
+impl_lane_by_lane!(Add add + Sub sub - Mul mul * Div div /);
 
 impl<const N: usize> Mul<f64> for Lanes<N> {
     type Output = Self;
@@ -101,13 +100,13 @@ impl<const N: usize> Neg for Lanes<N> {
 
 impl<const N: usize> Real for Lanes<N> {
     #[inline(always)]
-    fn of(value: f64) -> Self {
+    fn constant(value: f64) -> Self {
         Self([value; N])
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
-        self.map_lanes(Real::root)
+    fn sqrt_or_zero(self) -> Self {
+        self.map_lanes(Real::sqrt_or_zero)
     }
 
     #[inline(always)]

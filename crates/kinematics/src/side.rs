@@ -1,10 +1,9 @@
-//! The two sides of the robot, each with a slider between a front and a rear
-//! arm.
+//! The two sides of the robot, each with a slider between a front and a rear arm.
 //!
-//! An arm is fixed to its crank at a right angle, away from the robot's middle line. So
-//! the arm's direction is the crank's, turned by +90 or -90 degrees, and the right side
-//! is the mirror image of the left one. The paper prints theta16 = theta4 + 90 and
-//! theta13 = theta8 - 90, which would swing the right arms across the chassis.
+//! An arm is fixed to its crank at a right angle, away from the robot's middle line. So the
+//! arm's direction is that of the crank, turned by +90 or -90 degrees, and the right side is
+//! the mirror image of the left one. The paper prints theta16 = theta4 + 90 and
+//! theta13 = theta8 - 90, which would make the right arms point across the chassis.
 
 use core::fmt;
 
@@ -40,9 +39,8 @@ impl Side {
         }
     }
 
-    /// The sign of the side: 1 on the left, -1 on the right. The angle from a crank to its
-    /// front arm is +90 degrees times this sign, to its rear arm -90 degrees times this
-    /// sign.
+    /// The sign of the side: 1 on the left, -1 on the right. The angle from the front crank to its
+    /// arm is +90 degrees times this sign, that from the rear crank to its arm -90 degrees times it.
     pub const fn sign(self) -> f64 {
         match self {
             Self::Left => 1.0,
@@ -50,8 +48,8 @@ impl Side {
         }
     }
 
-    /// Direction of the front arm on a crank of this direction: theta12 =
-    /// theta1 + 90, theta16 = theta4 - 90. Chassis frame.
+    /// The direction of the arm on a front crank of this direction, chassis frame:
+    /// theta12 = theta1 + 90, theta16 = theta4 - 90.
     #[inline(always)]
     pub fn front_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
         match self {
@@ -60,8 +58,8 @@ impl Side {
         }
     }
 
-    /// Direction of the rear arm on a crank of this direction: theta9 =
-    /// theta5 - 90, theta13 = theta8 + 90. Chassis frame.
+    /// The direction of the arm on a rear crank of this direction, chassis frame:
+    /// theta9 = theta5 - 90, theta13 = theta8 + 90.
     #[inline(always)]
     pub fn rear_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
         match self {
@@ -70,7 +68,7 @@ impl Side {
         }
     }
 
-    /// The values of the front and the rear servo, picked from four in servo order.
+    /// Picks the values of the side's front and rear servos from four values in servo order.
     #[inline(always)]
     pub fn pick<T: Copy>(self, values: [T; 4]) -> [T; 2] {
         let [front, rear] = self.servos();
@@ -90,7 +88,7 @@ mod tests {
     use crate::end::End;
 
     #[test]
-    fn each_servo_has_one_side_and_one_end() {
+    fn ends_and_sides_list_the_same_servos() {
         for (end, row) in [(End::Head, 0), (End::Tail, 1)] {
             for (side, column) in [(Side::Left, 0), (Side::Right, 1)] {
                 assert_eq!(end.servos()[column], side.servos()[row]);
@@ -100,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn with_the_cranks_straight_out_every_arm_points_away_from_the_middle_line() {
+    fn with_the_cranks_parallel_to_the_middle_line_every_arm_points_away_from_it() {
         let (forward_crank, backward_crank) = (Vector::new(0.0, 1.0), Vector::new(0.0, -1.0));
         for side in Side::ALL {
             let outward_arm = Vector::new(-side.sign(), 0.0);

@@ -1,28 +1,27 @@
-//! The singular positions of a five-bar, as curves in the plane of its crank angles.
+//! The singular poses of a five-bar, as curves in the plane of its crank angles.
 //!
-//! The paper finds singular configurations at sin(theta2 + theta3) = 0, which holds in
-//! every symmetrical pose, including the neutral one. In fact the determinant of K* is
-//! sin(theta3 - theta2) times lengths. Each curve below is a function of the left crank:
-//! if that is fixed, the intersection of two circles gives the singular right crank.
+//! The paper finds singular configurations at sin(theta2 + theta3) = 0, which holds in every
+//! symmetrical pose, including the neutral one. In fact the determinant of K* is proportional
+//! to sin(theta3 - theta2). Here each curve is a function of the left crank's angle: for a
+//! given left crank, intersections of two circles give the singular right cranks.
 
 use crate::angle::wrap;
 use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
 use crate::vector::Vector;
 
-/// A kind of singular position.
+/// A kind of singularity, by the links that line up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Singularity {
-    /// Type 2: the couplers lie on one line, or the crank tips coincide; the
-    /// end point is loose although both servos hold.
+    /// Type 2: the couplers lie on one line, or the crank tips coincide; the end point can move
+    /// although both servos hold.
     Couplers,
-    /// Type 1: left crank and coupler lie on one line; the end point cannot move
-    /// along it.
+    /// Type 1: left crank and coupler lie on one line; the end point cannot move along it.
     LeftArm,
     /// Type 1: right crank and coupler lie on one line; the end point cannot move along it.
     RightArm,
 }
 
-/// A singular position of a five-bar. Crank angles in (-180, 180] degrees.
+/// A singular pose of a five-bar. Crank angles in (-180, 180] degrees, the five-bar's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingularPose {
     /// The links that line up.
@@ -34,16 +33,19 @@ pub struct SingularPose {
 }
 
 impl FiveBar {
-    /// Every singular position with this left crank angle (degrees), in the
-    /// assembly mode that the robot is built in; at most ten.
+    /// The singular poses with this left crank angle (degrees), in the assembly mode in which the
+    /// robot is built; at most ten.
     ///
-    /// Poses with coinciding crank tips are isolated points and not among them: see
-    /// [`FiveBar::coinciding_tips`].
-    pub fn singular_with(&self, theta_left: f64) -> impl Iterator<Item = SingularPose> + use<> {
+    /// Poses with coinciding crank tips are isolated points and are not included: see
+    /// [`FiveBar::poses_with_coinciding_tips`].
+    pub fn singular_poses_with(
+        &self,
+        theta_left: f64,
+    ) -> impl Iterator<Item = SingularPose> + use<> {
         let bars = *self;
         let left = Vector::direction(theta_left);
-        let tip = bars.left_shaft() + left * bars.crank_left;
-        let (l2, l3) = (bars.coupler_left, bars.coupler_right);
+        let tip = bars.left_shaft() + left * bars.left_crank_length;
+        let (l2, l3) = (bars.left_coupler_length, bars.right_coupler_length);
         // Type 2: the distance between the crank tips is the sum or the difference of the
         // couplers.
         let couplers = [l2 + l3, (l2 - l3).abs()]
@@ -51,13 +53,14 @@ impl FiveBar {
             .filter(|reach| *reach > 0.0)
             .flat_map(move |reach| bars.right_cranks_at(tip, reach))
             .map(|theta| (Singularity::Couplers, theta));
-        // Type 1 left: the end point is at the tip of the stretched or folded left arm.
+        // Type 1, left arm: the end point is at the tip of the stretched or folded arm.
         let left_arm = [l2, -l2]
             .into_iter()
             .flat_map(move |reach| bars.right_cranks_at(tip + left * reach, l3))
             .map(|theta| (Singularity::LeftArm, theta));
-        // Type 1 right: the end point on a circle about the right shaft, l4 +- l3.
-        let right_arm = [bars.crank_right + l3, bars.crank_right - l3]
+        // Type 1, right arm: the end point is on a circle about the right shaft with radius l4 + l3 or
+        // |l4 - l3|.
+        let right_arm = [bars.right_crank_length + l3, bars.right_crank_length - l3]
             .into_iter()
             .flat_map(move |reach| {
                 circle_intersections(tip, l2, bars.right_shaft(), reach.abs())
@@ -76,12 +79,12 @@ impl FiveBar {
             .filter(move |pose| bars.is_singular(pose))
     }
 
-    /// The crank angles at which both crank tips coincide and the end point is free on a
-    /// circle; none if the couplers differ in length.
-    pub fn coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
+    /// The poses in which both crank tips coincide, so that the end point is free on a circle;
+    /// none if the couplers differ in length.
+    pub fn poses_with_coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
         let (left, right) = (self.left_shaft(), self.right_shaft());
-        let has_equal_couplers = self.coupler_left == self.coupler_right;
-        circle_intersections(left, self.crank_left, right, self.crank_right)
+        let has_equal_couplers = self.left_coupler_length == self.right_coupler_length;
+        circle_intersections(left, self.left_crank_length, right, self.right_crank_length)
             .filter(move |_| has_equal_couplers)
             .map(move |tip| SingularPose {
                 kind: Singularity::Couplers,
@@ -90,16 +93,16 @@ impl FiveBar {
             })
     }
 
-    /// Right crank angles that put the right tip at a distance from a point.
+    /// The right crank angles (degrees) at which the right tip is at distance `reach` from a point.
     fn right_cranks_at(&self, point: Vector, reach: f64) -> impl Iterator<Item = f64> + use<> {
         let shaft = self.right_shaft();
-        circle_intersections(point, reach, shaft, self.crank_right)
+        circle_intersections(point, reach, shaft, self.right_crank_length)
             .map(move |tip| (tip - shaft).angle())
     }
 
-    /// True if the candidate's margin vanishes in the robot's own assembly mode; the other
-    /// mode uses the same circles with other arms. A candidate of the couplers also counts
-    /// if its loop does not close, which is an effect of rounding.
+    /// True if the margin of a candidate vanishes in the assembly mode in which the robot is built;
+    /// the same circles also give singular poses of the other mode. A type-2 candidate whose loop
+    /// does not close counts, too: only rounding keeps it from closing.
     fn is_singular(&self, pose: &SingularPose) -> bool {
         match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
@@ -109,7 +112,7 @@ impl FiveBar {
 }
 
 impl Singularity {
-    /// The margin that vanishes at a singularity of this kind.
+    /// The margin of a pose that vanishes at singularities of this kind.
     fn margin(self, pose: &FiveBarPose) -> f64 {
         match self {
             Self::Couplers => pose.type2,
@@ -119,7 +122,8 @@ impl Singularity {
     }
 }
 
-/// The intersections of two circles: none or two, which are equal if the circles touch.
+/// The intersections of two circles with centres `a`, `b` and radii `r`, `s`: none or two, which
+/// are equal if the circles touch.
 fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let centre_vector = b - a;
     let square = centre_vector.length_squared();
@@ -137,7 +141,7 @@ fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::HEAD;
+    use crate::reference::PAPER_HEAD;
 
     fn margin_of(bars: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
         let pose = bars.forward(left, right).ok()?;
@@ -145,12 +149,12 @@ mod tests {
     }
 
     #[test]
-    fn every_sign_change_of_a_type_1_margin_lies_on_a_named_curve() {
+    fn every_sign_change_of_a_type_1_margin_lies_on_a_singular_curve() {
         let unequal_bars = FiveBar::new([20.0, 25.0, 55.0, 50.0, 30.0]);
-        let mut crossings = 0;
-        for bars in [HEAD, unequal_bars] {
+        let mut sign_change_count = 0;
+        for bars in [PAPER_HEAD, unequal_bars] {
             for left in (-175..180).step_by(10).map(f64::from) {
-                let named_poses: Vec<_> = bars.singular_with(left).collect();
+                let singular_poses: Vec<_> = bars.singular_poses_with(left).collect();
                 for kind in [Singularity::LeftArm, Singularity::RightArm] {
                     for step in 0..3600 {
                         let (a, b) = (f64::from(step) / 10.0 + 0.03, f64::from(step) / 10.0 + 0.13);
@@ -160,30 +164,31 @@ mod tests {
                         ) else {
                             continue;
                         };
-                        // Near d = 0 the end point turns fast and signs change abruptly.
+                        // If the crank tips nearly coincide, the end point moves fast and signs change
+                        // abruptly.
                         let gap = bars.forward(left, a).unwrap().gap.length();
                         if value_a * value_b >= 0.0 || gap < 1.0 {
                             continue;
                         }
-                        crossings += 1;
-                        let is_near = named_poses.iter().any(|pose| {
+                        sign_change_count += 1;
+                        let is_near = singular_poses.iter().any(|pose| {
                             pose.kind == kind && wrap(pose.theta_right - (a + b) / 2.0).abs() < 0.2
                         });
-                        assert!(is_near, "{kind:?} at {left} {a}: {named_poses:?}");
+                        assert!(is_near, "{kind:?} at {left} {a}: {singular_poses:?}");
                     }
                 }
             }
         }
-        assert!(crossings > 100, "{crossings}");
+        assert!(sign_change_count > 100, "{sign_change_count}");
     }
 
     #[test]
-    fn every_named_position_is_singular() {
+    fn every_singular_pose_has_a_vanishing_margin() {
         let short_bars = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
         let mut kind_counts = [0; 3];
-        for bars in [HEAD, short_bars] {
+        for bars in [PAPER_HEAD, short_bars] {
             for left in -180..180 {
-                for pose in bars.singular_with(f64::from(left)) {
+                for pose in bars.singular_poses_with(f64::from(left)) {
                     kind_counts[pose.kind as usize] += 1;
                     if let Some(value) =
                         margin_of(&bars, pose.kind, pose.theta_left, pose.theta_right)
@@ -198,16 +203,16 @@ mod tests {
             "{kind_counts:?}"
         );
         assert!(
-            (0..360).all(|left| HEAD
-                .singular_with(f64::from(left))
+            (0..360).all(|left| PAPER_HEAD
+                .singular_poses_with(f64::from(left))
                 .all(|pose| pose.kind != Singularity::Couplers)),
-            "the paper's couplers never stretch: d <= 80 < 100"
+            "the paper's couplers never line up: the crank tips are at most 80 mm apart, less than 100 mm"
         );
     }
 
     #[test]
-    fn the_crank_tips_coincide_outside_the_papers_range() {
-        let poses: Vec<_> = HEAD.coinciding_tips().collect();
+    fn the_papers_crank_tips_coincide_in_two_poses() {
+        let poses: Vec<_> = PAPER_HEAD.poses_with_coinciding_tips().collect();
         assert_eq!(poses.len(), 2);
         for pose in poses {
             assert!((pose.theta_left.abs() - 70.52878).abs() < 1e-5);
@@ -217,37 +222,49 @@ mod tests {
 
     #[test]
     fn no_path_of_good_margins_leads_to_crossed_cranks() {
-        // Poses in which every margin, those of the legs included, is at least 0.3, on a
-        // half-degree grid between the legs' change points at 0 and 180, are divided into
-        // connected regions: no region has both signs of K2.
-        const N: usize = 360;
-        let state_of = |left: usize, right: usize| {
+        // A flood fill divides the poses of a half-degree grid in which every margin, including those
+        // of the legs, is at least 0.3, into connected regions. No region contains both crossed and
+        // uncrossed cranks. The grid covers the cranks' range between the legs' change points at 0 and
+        // 180 degrees.
+        const CELLS_PER_SIDE: usize = 360;
+        let is_uncrossed_at = |left: usize, right: usize| {
             let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);
-            let pose = HEAD.forward(left, right).ok()?;
-            let leg = pose.left_crank.y.abs().min(pose.right_crank.y.abs());
-            (pose.margin().min(leg) >= 0.3).then_some(pose.gap.x > 0.0)
+            let pose = PAPER_HEAD.forward(left, right).ok()?;
+            let leg_margin = pose.left_crank.y.abs().min(pose.right_crank.y.abs());
+            (pose.margin().min(leg_margin) >= 0.3).then_some(pose.gap.x > 0.0)
         };
-        let grid: Vec<Option<bool>> = (0..N * N).map(|i| state_of(i / N, i % N)).collect();
-        let mut is_seen = vec![false; N * N];
+        let grid: Vec<Option<bool>> = (0..CELLS_PER_SIDE * CELLS_PER_SIDE)
+            .map(|i| is_uncrossed_at(i / CELLS_PER_SIDE, i % CELLS_PER_SIDE))
+            .collect();
+        let mut is_visited = vec![false; CELLS_PER_SIDE * CELLS_PER_SIDE];
         let (mut crossed_count, mut uncrossed_count) = (0, 0);
-        for start in 0..N * N {
-            if grid[start].is_none() || is_seen[start] {
+        for start in 0..CELLS_PER_SIDE * CELLS_PER_SIDE {
+            if grid[start].is_none() || is_visited[start] {
                 continue;
             }
-            let mut open_cells = vec![start];
-            is_seen[start] = true;
-            while let Some(i) = open_cells.pop() {
-                let (left, right) = (i / N, i % N);
-                assert_eq!(grid[i], grid[start], "a way across at {left} {right}");
+            let mut cells_to_visit = vec![start];
+            is_visited[start] = true;
+            while let Some(i) = cells_to_visit.pop() {
+                let (left, right) = (i / CELLS_PER_SIDE, i % CELLS_PER_SIDE);
+                assert_eq!(
+                    grid[i], grid[start],
+                    "crossed and uncrossed cranks are connected at {left} {right}"
+                );
                 match grid[i] {
                     Some(true) => uncrossed_count += 1,
                     _ => crossed_count += 1,
                 }
-                for (dl, dr) in [(1, 0), (N - 1, 0), (0, 1), (0, N - 1)] {
-                    let next_cell = (left + dl) % N * N + (right + dr) % N;
-                    if grid[next_cell].is_some() && !is_seen[next_cell] {
-                        is_seen[next_cell] = true;
-                        open_cells.push(next_cell);
+                for (dl, dr) in [
+                    (1, 0),
+                    (CELLS_PER_SIDE - 1, 0),
+                    (0, 1),
+                    (0, CELLS_PER_SIDE - 1),
+                ] {
+                    let next_cell = (left + dl) % CELLS_PER_SIDE * CELLS_PER_SIDE
+                        + (right + dr) % CELLS_PER_SIDE;
+                    if grid[next_cell].is_some() && !is_visited[next_cell] {
+                        is_visited[next_cell] = true;
+                        cells_to_visit.push(next_cell);
                     }
                 }
             }

@@ -1,35 +1,35 @@
-//! A slider between two arms, one on each side of the robot: the RRPRR loop.
+//! A slider between the front and the rear arm of a side of the robot: the RRPRR loop.
 //!
-//! Each arm is rigidly joined to a crank, so the arm tips are known, and the prismatic joint
-//! lies on the line from the rear tip to the front one: length d = l12 + l13 + s, direction
-//! phi. Its only singularity is d = 0; in practice its stroke limits it.
+//! Each arm is rigidly joined to a crank, so the arm tips are known. The prismatic joint lies on
+//! the line from the rear tip to the front one, with length d = l12 + l13 + s and direction phi.
+//! Its only singularity is d = 0; in practice its stroke limits it.
 //!
-//! The paper takes theta10 + theta11 = 0 for the two halves of the slider; with angles counted
-//! counter-clockwise the halves have opposite directions, theta11 = theta10 + 180, and the
-//! unknowns are phi = theta10 and s.
+//! The paper takes theta10 + theta11 = 0 for the two halves of the slider. With counter-clockwise
+//! angles the halves have opposite directions, theta11 = theta10 + 180, and the unknowns are
+//! phi = theta10 and s.
 
 use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// Dimensions of one side in mm. The origin is the rear shaft, the axes are the
-/// chassis frame's.
+/// The dimensions of a side's loop. Its origin is the rear shaft, its axes are those of the
+/// chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
-    /// x of the front shaft relative to the rear one, mm, either sign: 0 if head
-    /// and tail have equally wide bases.
-    pub offset: f64,
+    /// x of the front shaft relative to the rear one, mm: 0 if the bases of head and tail are equally
+    /// wide, otherwise of either sign.
+    pub front_offset: f64,
     /// y of the front shaft relative to the rear one, mm: l10, l15.
     pub base: f64,
-    /// Front arm, mm: l14, l19.
-    pub front: f64,
-    /// Rear arm, mm: l11, l16.
-    pub rear: f64,
-    /// Distance of the arm tips at s = 0, mm: l12 + l13, l17 + l18.
-    pub nominal: f64,
+    /// Length of the front arm, mm: l14, l19.
+    pub front_arm: f64,
+    /// Length of the rear arm, mm: l11, l16.
+    pub rear_arm: f64,
+    /// Distance between the arm tips at s = 0, mm: l12 + l13, l17 + l18.
+    pub nominal_length: f64,
 }
 
-/// The solved pose of one side's loop. Points in mm from the rear shaft.
+/// A pose of a side's loop. All points are relative to the rear shaft, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderPose<T = f64> {
     /// Tip of the rear arm.
@@ -40,44 +40,44 @@ pub struct SliderPose<T = f64> {
     pub front_shaft: Vector<T>,
     /// Vector from the rear tip to the front one, mm.
     pub span: Vector<T>,
-    /// Length of the span, mm: d.
+    /// d: length of the span, mm.
     pub d: T,
-    /// Slider travel from nominal, mm: s, positive when longer.
+    /// s: travel of the slider from its nominal length, mm; positive if it is longer.
     pub s: T,
 }
 
 impl SliderPose {
-    /// theta10 (right: theta14): direction of the slider from rear to front,
-    /// degrees.
+    /// phi: direction of the slider from rear to front, (-180, 180] degrees; theta10 on the left,
+    /// theta14 on the right.
     pub fn phi(&self) -> f64 {
         self.span.angle()
     }
 
-    /// The front arm, from its shaft to its tip.
+    /// Vector of the front arm from its shaft to its tip, mm.
     pub fn front_arm(&self) -> Vector {
         self.front_tip - self.front_shaft
     }
 }
 
 impl Slider {
-    /// The slider between arms at two angles in degrees (theta9 and theta12 on
-    /// the left, theta13 and theta16 on the right).
+    /// The pose with arms at two angles in degrees (theta9 and theta12 on the left, theta13 and
+    /// theta16 on the right).
     ///
     /// # Errors
-    /// Returns [`Fault::Collapsed`] if the arm tips coincide, or [`Fault::NotFinite`] if the input is not finite or
+    /// Returns [`Fault::Collapsed`] if the arm tips coincide, [`Fault::NotFinite`] if the input is not finite or
     /// overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
         let [rear, front] = [theta_rear, theta_front].map(Vector::direction);
         self.close(rear, front)
     }
 
-    /// The slider between arms that point along two unit vectors.
+    /// The pose with arms along two unit vectors.
     ///
     /// # Errors
     /// Fails as [`Slider::forward`] does.
     #[inline]
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
-        let pose = self.shape(rear, front);
+        let pose = self.pose_unchecked(rear, front);
         self.check(&pose)?;
         Ok(pose)
     }
@@ -85,29 +85,28 @@ impl Slider {
     /// Checks that the slider of a pose has a direction.
     #[inline]
     pub(crate) fn check(&self, pose: &SliderPose) -> Result<(), Fault> {
-        check_numbers(pose.d, pose.s)
+        check_direction(pose.d, pose.s)
     }
 
-    /// True in each lane whose slider has a direction; [`Slider::close`] gives the reason why a
+    /// True for each lane whose slider has a direction; [`Slider::close`] gives the reason why a
     /// slider has none.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
         let mut is_closed = [false; N];
         for i in 0..N {
-            is_closed[i] = check_numbers(d[i], s[i]).is_ok();
+            is_closed[i] = check_direction(d[i], s[i]).is_ok();
         }
         is_closed
     }
 
-    /// The pose with arms along two unit vectors, without checking that the slider has a
-    /// direction: see [`Slider::closes`]. The compiler leaves out the parts that the caller
-    /// does not use.
+    /// The pose with arms along two unit vectors, without a check that the slider has a direction:
+    /// see [`Slider::closes`]. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
-    pub fn shape<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
-        let rear_tip = rear * self.rear;
-        let front_shaft = Vector::of(Vector::new(self.offset, self.base));
-        let front_tip = front_shaft + front * self.front;
+    pub fn pose_unchecked<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
+        let rear_tip = rear * self.rear_arm;
+        let front_shaft = Vector::constant(Vector::new(self.front_offset, self.base));
+        let front_tip = front_shaft + front * self.front_arm;
         let span = front_tip - rear_tip;
         let d = span.length();
         SliderPose {
@@ -116,13 +115,14 @@ impl Slider {
             front_shaft,
             span,
             d,
-            s: d - T::of(self.nominal),
+            s: d - T::constant(self.nominal_length),
         }
     }
 }
 
+/// Checks that a slider of length `d` and travel `s` has a direction.
 #[inline(always)]
-fn check_numbers(d: f64, s: f64) -> Result<(), Fault> {
+fn check_direction(d: f64, s: f64) -> Result<(), Fault> {
     if !d.is_finite() || !s.is_finite() {
         Err(Fault::NotFinite)
     } else if d == 0.0 {

@@ -1,4 +1,4 @@
-//! Points and directions of the plane.
+//! Points, displacements and directions in the plane.
 
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -8,14 +8,14 @@ use crate::real::Real;
 /// A point or a displacement in mm, or a direction of length one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector<T = f64> {
-    /// The component to the right.
+    /// Component along the frame's x axis, to the robot's right.
     pub x: T,
-    /// The component forward.
+    /// Component along the frame's y axis, forward or (in the tail's frame) backward.
     pub y: T,
 }
 
 impl<T> Vector<T> {
-    /// The vector with these two components.
+    /// Makes a vector from its two components.
     #[inline(always)]
     pub const fn new(x: T, y: T) -> Self {
         Self { x, y }
@@ -44,13 +44,13 @@ impl Vector {
 }
 
 impl<T: Real> Vector<T> {
-    /// Length in the unit of the components.
+    /// The vector's length, in the unit of its components.
     #[inline(always)]
     pub fn length(self) -> T {
-        self.length_squared().root()
+        self.length_squared().sqrt_or_zero()
     }
 
-    /// Square of the vector's length.
+    /// The square of the vector's length.
     #[inline(always)]
     pub fn length_squared(self) -> T {
         self.dot(self)
@@ -62,7 +62,7 @@ impl<T: Real> Vector<T> {
         self.x * other.x + self.y * other.y
     }
 
-    /// Cross product: |self| |other| sin of the angle from self to other.
+    /// The cross product: the product of both lengths and the sine of the angle from `self` to `other`.
     #[inline(always)]
     pub fn cross(self, other: Self) -> T {
         self.x * other.y - self.y * other.x
@@ -80,7 +80,7 @@ impl<T: Real> Vector<T> {
         Self::new(self.y, -self.x)
     }
 
-    /// The mirror image in the x axis: angles change sign.
+    /// The mirror image in the x axis, whose angle has the opposite sign.
     #[inline(always)]
     pub fn mirrored(self) -> Self {
         Self::new(self.x, -self.y)
@@ -92,10 +92,10 @@ impl<T: Real> Vector<T> {
         Self::new(self.x * factor, self.y * factor)
     }
 
-    /// The vector with the components of a constant vector.
+    /// Converts a constant vector to this type of number.
     #[inline(always)]
-    pub(crate) fn of(vector: Vector) -> Self {
-        Self::new(T::of(vector.x), T::of(vector.y))
+    pub(crate) fn constant(vector: Vector) -> Self {
+        Self::new(T::constant(vector.x), T::constant(vector.y))
     }
 }
 

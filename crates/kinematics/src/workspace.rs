@@ -1,4 +1,4 @@
-//! The workspace of a symmetrical five-bar's end point: the intersection of two rings, one
+//! The workspace of the end point of a symmetrical five-bar: the intersection of two rings, one
 //! about each shaft, with radii |l1 - l2| and l1 + l2.
 
 use core::f64::consts::PI;
@@ -6,72 +6,75 @@ use core::f64::consts::PI;
 use crate::five_bar::FiveBar;
 use crate::vector::Vector;
 
-/// A circle in the five-bar's frame, mm.
+/// A circle in the five-bar's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// The centre.
+    /// Centre, mm.
     pub centre: Vector,
-    /// The radius, mm.
+    /// Radius, mm.
     pub radius: f64,
 }
 
-/// The theoretical workspace of a five-bar with equal arms (l1 = l4, l2 = l3).
-/// The paper's four circles print y where y^2 belongs.
+/// The theoretical workspace of a five-bar with equal arms (l1 = l4, l2 = l3). The paper's
+/// equations of its four circles have y where y^2 belongs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Workspace {
     /// Half the base, mm.
     pub half_base: f64,
     /// Inner radius of each ring, mm.
-    pub inner: f64,
+    pub inner_radius: f64,
     /// Outer radius of each ring, mm.
-    pub outer: f64,
+    pub outer_radius: f64,
 }
 
 impl Workspace {
-    /// The workspace of a five-bar, from its left arm.
+    /// The workspace of a five-bar, both of whose arms have the lengths of its left arm.
     pub fn of(bars: &FiveBar) -> Self {
         Self {
             half_base: bars.base / 2.0,
-            inner: (bars.crank_left - bars.coupler_left).abs(),
-            outer: bars.crank_left + bars.coupler_left,
+            inner_radius: (bars.left_crank_length - bars.left_coupler_length).abs(),
+            outer_radius: bars.left_crank_length + bars.left_coupler_length,
         }
     }
 
-    /// True if the end point can reach a point of the five-bar's frame.
+    /// True if the end point can reach a point (mm, own frame).
     pub fn contains(&self, point: Vector) -> bool {
         [-self.half_base, self.half_base].into_iter().all(|x| {
             let distance_squared = (point - Vector::new(x, 0.0)).length_squared();
-            distance_squared >= self.inner * self.inner
-                && distance_squared <= self.outer * self.outer
+            distance_squared >= self.inner_radius * self.inner_radius
+                && distance_squared <= self.outer_radius * self.outer_radius
         })
     }
 
-    /// The area in mm^2, on both sides of the base together.
+    /// The area, mm^2, of the parts on both sides of the base together.
     pub fn area(&self) -> f64 {
         let distance = 2.0 * self.half_base;
-        let (r, s) = (self.inner, self.outer);
-        // Both rings overlap where both large discs do, less the overlap with either small disc;
-        // the overlap of both small discs, subtracted twice, is added back once.
+        let (r, s) = (self.inner_radius, self.outer_radius);
+        // The overlap of both large discs, minus the overlap of each small disc with the other large
+        // disc. The overlap of both small discs is thereby subtracted twice, so it is added once.
         lens_area(s, s, distance) - 2.0 * lens_area(r, s, distance) + lens_area(r, r, distance)
     }
 
-    /// The largest circle within the workspace; of two mirror images, the upper one. `None` if
-    /// the two rings have no area in common.
+    /// The largest circle within the workspace; of two mirror images, the one ahead. `None` if the
+    /// two rings have no area in common.
     ///
-    /// The radius of a circle within a ring is at most half the ring's width. If the middle
-    /// circles of both rings intersect (l0/2 is at most the larger of l1 and l2), a circle
-    /// centred on the intersection has that radius and touches all four circles: the paper's.
-    /// With a wider base only the outer circles limit the inscribed circle: it is centred on the
-    /// base, and the paper's y is not real. If crank and coupler are equally long, a ring has no
-    /// inner circle, but its centre is a shaft, where the arm is folded and singular; the shaft
-    /// stays outside the inscribed circle, too.
+    /// The radius of a circle within a ring is at most half the ring's width. If the centre lines
+    /// of both rings intersect (l0/2 is at most the larger of l1 and l2), a circle centred on the
+    /// intersection has that radius and touches all four circles: this is the paper's solution.
+    /// With a wider base only the outer circles limit the inscribed circle: its centre is the
+    /// middle of the base, and the paper's y is not real. If crank and coupler are equally long, a
+    /// ring has no inner circle. At the ring's centre, a shaft, the arm is then folded and
+    /// singular, so the shaft stays outside the inscribed circle, too.
     pub fn inscribed_circle(&self) -> Option<Circle> {
-        let middle = (self.outer + self.inner) / 2.0;
-        let height_squared = (middle - self.half_base) * (middle + self.half_base);
+        let middle_radius = (self.outer_radius + self.inner_radius) / 2.0;
+        let height_squared = (middle_radius - self.half_base) * (middle_radius + self.half_base);
         let (height, radius) = if height_squared >= 0.0 {
-            (libm::sqrt(height_squared), (self.outer - self.inner) / 2.0)
+            (
+                libm::sqrt(height_squared),
+                (self.outer_radius - self.inner_radius) / 2.0,
+            )
         } else {
-            (0.0, self.outer - self.half_base)
+            (0.0, self.outer_radius - self.half_base)
         };
         (radius > 0.0).then(|| Circle {
             centre: Vector::new(0.0, height),
@@ -80,7 +83,7 @@ impl Workspace {
     }
 }
 
-/// Area common to two discs of radii `a`, `b` with centres at a `distance`.
+/// The area common to two discs of radii `a` and `b` whose centres are at this distance.
 fn lens_area(a: f64, b: f64, distance: f64) -> f64 {
     let min_radius = a.min(b);
     if distance >= a + b {

@@ -1,27 +1,27 @@
 //! Comparison of filmed gaits with their predictions, for the program `lizard` and for the web page.
 //!
-//! A film shows how far the robot moves in a cycle; by itself that says little. [`expected`] is the path that a
-//! gait should take, which the film is compared with. [`Report`] sets both side by side, as a table or as JSON, and
-//! [`WatchedFilm::path`] is the filmed path as CSV. [`Paper::sheet`] is the sheet of tags that a film has to show,
-//! and [`height_of_board`] is the height of the robot's card. The crate reads no file and prints nothing.
+//! A film shows how far the robot moves in a cycle, which alone says little. [`predict_gait`] computes the path that a
+//! gait should take. [`Report`] sets the filmed path beside it, as a table or as JSON, and [`NamedFilm::path_csv`] is
+//! the filmed path as CSV. [`Paper::tag_sheet_pdf`] is the sheet of tags that a film has to show, and [`board_height`]
+//! is the height of the card on the robot's deck. The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For a path without a prediction, `lizard_film` is enough.
 
 mod board;
 mod engine;
-mod expected;
-mod named;
+mod gaits;
+mod named_film;
 mod part;
+mod predicted_gait;
 mod range;
 mod report;
 mod sheet;
-mod watched_film;
 
-pub use board::height_of_board;
-pub use expected::expected;
-pub use named::{Gaits, NamedWalk};
-pub use part::{MAX_AGREEING_ERRORS, PARTS, Part, verdict};
+pub use board::board_height;
+pub use gaits::{Gaits, MeasuredWalk};
+pub use named_film::NamedFilm;
+pub use part::{MAX_AGREEING_ERRORS, PART_NAMES, Part, verdict};
+pub use predicted_gait::predict_gait;
 pub use report::{GaitReport, PhasePoint, Report};
 pub use sheet::Paper;
-pub use watched_film::WatchedFilm;

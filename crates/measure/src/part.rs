@@ -6,44 +6,44 @@ use serde::Serialize;
 /// Largest difference from the prediction, in standard errors, that counts as agreement.
 pub const MAX_AGREEING_ERRORS: f64 = 2.0;
 /// The names of a movement's parts, with their units.
-pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
+pub const PART_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
 /// One part of a movement.
 #[derive(Debug, Serialize)]
 pub struct Part {
-    /// The mean.
+    /// The mean, mm or deg.
     pub mean: f64,
     /// Standard deviation of single cycles.
     sd: f64,
     /// Standard error of the mean.
     pub error: f64,
-    /// The prediction; `None` if it is undetermined, because two feet pull against the other
-    /// two.
+    /// The prediction; `None` if it is undetermined because two feet pull against the other two.
     pub predicted: Option<f64>,
-    /// The mean less the prediction, in standard errors.
+    /// The mean minus the prediction, in standard errors; `None` without a prediction.
     differs: Option<f64>,
+    /// True if the difference is at most [`MAX_AGREEING_ERRORS`]; `None` without a prediction.
     pub(crate) agrees: Option<bool>,
 }
 
-/// Describes a difference of so many standard errors: `agrees`, or its size and direction.
-pub fn verdict(difference_errors: f64) -> String {
-    if difference_errors.abs() <= MAX_AGREEING_ERRORS {
+/// Describes a difference, given in standard errors: `agrees`, or its size and direction.
+pub fn verdict(difference_in_errors: f64) -> String {
+    if difference_in_errors.abs() <= MAX_AGREEING_ERRORS {
         return "agrees".to_owned();
     }
-    let word = if difference_errors > 0.0 {
+    let word = if difference_in_errors > 0.0 {
         "more"
     } else {
         "less"
     };
-    format!("{:.1} errors {word}", difference_errors.abs())
+    format!("{:.1} errors {word}", difference_in_errors.abs())
 }
 
 impl Part {
     pub(crate) fn new(mean: Mean, predicted: Option<f64>) -> Self {
-        // A computed film may have no spread; the bound avoids a division by zero.
-        let differs = predicted.map(|predicted| (mean.mean - predicted) / mean.error.max(1e-6));
+        // A simulated film may have no spread; the bound avoids a division by zero.
+        let differs = predicted.map(|predicted| (mean.value - predicted) / mean.error.max(1e-6));
         Self {
-            mean: mean.mean,
+            mean: mean.value,
             sd: mean.spread,
             error: mean.error,
             predicted,
@@ -52,8 +52,7 @@ impl Part {
         }
     }
 
-    /// Describes the difference from the prediction: `agrees`, or its size and direction; `-`
-    /// without a prediction.
+    /// Describes the difference from the prediction: `agrees`, or its size and direction, or `-` without a prediction.
     pub fn verdict(&self) -> String {
         self.differs.map_or("-".to_owned(), verdict)
     }

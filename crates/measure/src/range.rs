@@ -3,30 +3,31 @@
 use lizard_robot::{CheckedGait, MovementRange, Robot};
 use serde::Serialize;
 
-use crate::part::PARTS;
+use crate::part::PART_NAMES;
 
-/// The least and the largest predicted movement per cycle, ahead or in turn, while one assumption at a
-/// time is set to either end of its plausible range.
+/// The smallest and the largest predicted movement per cycle, ahead or in turn, while one assumption at a time is set
+/// to either end of its plausible range.
 #[derive(Debug, Serialize)]
-pub(crate) struct Range {
-    /// The part of the movement, one of [`PARTS`].
+pub(crate) struct PredictionRange {
+    /// The part of the movement, one of [`PART_NAMES`].
     part: &'static str,
-    /// The least predicted movement, mm or deg.
+    /// The smallest predicted movement, mm or deg.
     least: f64,
     /// The largest predicted movement, mm or deg.
     most: f64,
-    /// The assumption whose change gives `least` or `most`; null if all are as in robot.toml.
+    /// The assumption whose change gives `least`; null if all are as in robot.toml.
     least_by: Option<&'static str>,
+    /// The assumption whose change gives `most`; null if all are as in robot.toml.
     most_by: Option<&'static str>,
 }
 
-impl Range {
-    /// Computes the range of a gait at a pace, as a multiple of the gait's own.
+impl PredictionRange {
+    /// Computes the range of a gait at a pace, which is a multiple of the gait's own.
     pub(crate) fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
-        let range = MovementRange::of(robot, gait, pace);
-        let [least_end, most_end] = [range.least, range.most];
+        let movement_range = MovementRange::of(robot, gait, pace);
+        let [least_end, most_end] = [movement_range.smallest, movement_range.largest];
         Self {
-            part: PARTS[if range.is_turn { 2 } else { 0 }],
+            part: PART_NAMES[if movement_range.is_turn { 2 } else { 0 }],
             least: least_end.movement,
             most: most_end.movement,
             least_by: least_end.assumption,

@@ -2,20 +2,22 @@
 
 use std::fmt::Write as _;
 
-use lizard_film::{Measured, Point, Setup};
-use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED};
+use lizard_film::{CyclePoint, MeasuredGait, Setup};
+use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED_NOTE};
 use serde::Serialize;
 
-use crate::engine::mujoco;
-use crate::named::{Candidate, Gaits, NamedWalk};
-use crate::part::{PARTS, Part};
-use crate::range::Range;
-use crate::watched_film::WatchedFilm;
+use crate::engine::mujoco_movement;
+use crate::gaits::{Candidate, Gaits, MeasuredWalk};
+use crate::named_film::NamedFilm;
+use crate::part::{PART_NAMES, Part};
+use crate::range::PredictionRange;
 
-/// Largest difference from the prediction within a cycle, in standard errors, that counts as agreement. It is more
-/// than for a single figure, since the largest of 72 random differences exceeds it only in one of 30 films.
+/// Largest difference from the prediction within a cycle, in standard errors, that counts as agreement. It is larger
+/// than for a single value, since it applies to the largest of 72 differences. If all of them are random, the largest
+/// exceeds it in one of 30 films.
 const MAX_AGREEING_ERRORS_OF_ALL: f64 = 3.5;
-/// The result of a measurement; its fields have the names of `--json`.
+
+/// The result of a measurement. `lizard measure --json` prints its fields by their names.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
     films: Vec<FilmLine<'a>>,
@@ -36,18 +38,18 @@ struct FilmLine<'a> {
 pub struct GaitReport<'a> {
     /// Name of the gait.
     pub gait: &'a str,
-    /// Pace, percent.
+    /// Pace, percent of the gait's own.
     speed: u8,
     walks: Vec<Span<'a>>,
     /// Number of complete cycles.
     pub cycles: usize,
-    /// Mean time of a cycle, s.
+    /// Mean duration of a cycle, s.
     period: f64,
-    /// Standard error of the mean time, s.
+    /// Standard error of the mean duration, s.
     period_error: f64,
-    /// Time of a cycle by robot.toml, s.
+    /// Duration of a cycle by robot.toml, s.
     period_expected: f64,
-    /// Distance ahead in a cycle, mm, in the robot's frame at its beginning.
+    /// Distance ahead in a cycle, mm, in the robot's frame at the beginning of the cycle.
     pub forward: Part,
     /// Drift to the left in a cycle, mm.
     pub left: Part,
@@ -55,18 +57,19 @@ pub struct GaitReport<'a> {
     pub turn: Part,
     /// The movement of each cycle.
     each: Vec<CycleMovement>,
-    /// The mean path within a cycle, and the point at which it is farthest from the predicted one.
+    /// The mean path within a cycle, beside the predicted one.
     pub within: Vec<PhasePoint>,
-    farthest: Option<LargestDifference>,
+    /// The largest deviation of that path from the predicted one; null if no part of the movement is predicted.
+    farthest: Option<LargestDeviation>,
     /// Movement per cycle according to MuJoCo with ideal servos: mm ahead and to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
-    /// Range of the prediction if an assumption is wrong.
+    /// Range of the prediction if one assumption is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
-    range: Option<Range>,
-    /// The predicted path of a cycle, at equal steps of time.
+    range: Option<PredictionRange>,
+    /// The predicted path of a cycle, at equal time steps.
     #[serde(skip)]
-    pub expected: &'a [Place],
+    pub predicted_path: &'a [Place],
 }
 
 /// A walk between two rests.
@@ -95,18 +98,19 @@ pub struct PhasePoint {
     pub turn: Part,
 }
 
-/// The largest difference within a cycle.
+/// The largest deviation from the predicted path within a cycle.
 #[derive(Debug, Serialize)]
-struct LargestDifference {
+struct LargestDeviation {
     phase: f64,
     part: &'static str,
-    /// Measured less predicted, mm or deg.
+    /// Measured minus predicted, mm or deg.
     difference: f64,
-    /// Measured less predicted, in standard errors.
+    /// Measured minus predicted, in standard errors.
     differs: f64,
     agrees: bool,
 }
 
+/// The movement in a cycle: mm, mm, deg.
 #[derive(Debug, Serialize)]
 struct CycleMovement {
     forward: f64,
@@ -114,7 +118,7 @@ struct CycleMovement {
     turn: f64,
 }
 
-/// The camera as the tags show it.
+/// The camera of a film, as the tags show it.
 #[derive(Debug, Serialize)]
 struct CameraLine {
     /// Height above the floor, mm.
@@ -123,8 +127,9 @@ struct CameraLine {
     tilt: f64,
     /// Focal length, px.
     focal: f64,
-    /// Mean error of the corners of the floor tags, px.
+    /// Root-mean-square error of a floor tag's corner, px.
     corners: f64,
+    /// True if the camera moved during the film.
     moved: bool,
     /// Height of the deck's tag above the floor as given, mm.
     deck: f64,
@@ -133,12 +138,16 @@ struct CameraLine {
 }
 
 impl<'a> Span<'a> {
-    fn new(gaits: &Gaits<'a>, named_walk: &NamedWalk<'a>, is_different: bool) -> Self {
-        let [from, to] = named_walk.walk.during;
-        let name = gaits.candidates()[named_walk.gait].name();
+    fn new(
+        gaits: &Gaits<'a>,
+        named_walk: &MeasuredWalk<'a>,
+        differs_from_prediction: bool,
+    ) -> Self {
+        let [from, to] = named_walk.walk.interval;
+        let name = gaits.candidates()[named_walk.candidate_index].name();
         // The likeness matters only if the walk differs from its prediction.
-        let resembled_name = if is_different {
-            gaits.resembled_gait(named_walk.walk)
+        let resembled_name = if differs_from_prediction {
+            gaits.find_resembled_gait(named_walk.walk)
         } else {
             None
         };
@@ -151,26 +160,26 @@ impl<'a> Span<'a> {
     }
 }
 
-impl LargestDifference {
-    /// The point with the largest difference in standard errors, among the parts that are predicted.
-    fn of(points: &[Point], predicted: [Option<f64>; 3]) -> Option<Self> {
-        let differences = points.iter().flat_map(|point| {
-            let differs = point.standardized_differences();
+impl LargestDeviation {
+    /// The point with the largest deviation, in standard errors, among the parts of the movement that are predicted.
+    fn of(points: &[CyclePoint], predicted: [Option<f64>; 3]) -> Option<Self> {
+        let deviations = points.iter().flat_map(|point| {
+            let differs = point.standardised_differences();
             (0..3).map(move |axis| (point, axis, differs[axis]))
         });
-        let known_differences = differences.filter(|(_, axis, _)| predicted[*axis].is_some());
+        let known_deviations = deviations.filter(|(_, axis, _)| predicted[*axis].is_some());
         let (point, axis, differs) =
-            known_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
+            known_deviations.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         Some(Self {
             phase: point.phase,
-            part: PARTS[axis],
-            difference: point.measured[axis].mean - point.predicted[axis],
+            part: PART_NAMES[axis],
+            difference: point.measured[axis].value - point.predicted[axis],
             differs,
             agrees: differs.abs() <= MAX_AGREEING_ERRORS_OF_ALL,
         })
     }
 
-    fn line(&self, points: usize) -> String {
+    fn line(&self, point_count: usize) -> String {
         let Self {
             phase,
             part,
@@ -181,7 +190,7 @@ impl LargestDifference {
         let verdict = if *agrees { "agrees" } else { "differs" };
         let (name, unit) = part.split_once(", ").unwrap_or((part, ""));
         format!(
-            "path within a cycle {verdict}: of {points} phases farthest off at {phase:.2}, by {difference:+.2} {unit} {name}, \
+            "path within a cycle {verdict}: of {point_count} phases farthest off at {phase:.2}, by {difference:+.2} {unit} {name}, \
              {:.1} errors\n",
             differs.abs()
         )
@@ -189,32 +198,43 @@ impl LargestDifference {
 }
 
 impl<'a> GaitReport<'a> {
-    /// The mean over all walks of a gait.
+    /// Reports the mean over all walks of a gait.
     fn new(
         robot: &Robot,
         speed: u8,
         gaits: &Gaits<'a>,
         candidate: &'a Candidate,
-        walks: &[&NamedWalk<'a>],
+        walks: &[&MeasuredWalk<'a>],
     ) -> Self {
-        let results: Vec<Measured> = walks.iter().map(|walk| walk.measured.clone()).collect();
-        let measured = Measured::together(&results, &candidate.expected);
-        let travel = candidate.expected.path.last().map(|place| place.travel());
+        let results: Vec<MeasuredGait> = walks
+            .iter()
+            .map(|walk| walk.measured_gait.clone())
+            .collect();
+        let measured_gait = MeasuredGait::combine(&results, &candidate.predicted_gait);
+        let travel = candidate
+            .predicted_gait
+            .path
+            .last()
+            .map(|place| place.travel());
         let prediction = robot.predict(candidate.gait);
         let Prediction {
             forward,
             left,
             turn,
-        } = travel.map_or(prediction, |travel| prediction.keep_known(travel));
-        let predicted = [forward, left, turn];
-        let means = [measured.forward, measured.left, measured.turn];
-        let [forward, left, turn] = [0, 1, 2].map(|i| Part::new(means[i], predicted[i]));
-        let is_different = [&forward, &left, &turn]
+        } = travel.map_or(prediction, |travel| prediction.known_components_of(travel));
+        let predicted_values = [forward, left, turn];
+        let means = [
+            measured_gait.forward,
+            measured_gait.left,
+            measured_gait.turn,
+        ];
+        let [forward, left, turn] = [0, 1, 2].map(|i| Part::new(means[i], predicted_values[i]));
+        let differs_from_prediction = [&forward, &left, &turn]
             .iter()
             .any(|part| part.agrees == Some(false));
-        let phase_point_of = |point: &Point| {
+        let phase_point_of = |point: &CyclePoint| {
             let part_of = |i: usize| {
-                let known_value = predicted[i].is_some().then_some(point.predicted[i]);
+                let known_value = predicted_values[i].is_some().then_some(point.predicted[i]);
                 Part::new(point.measured[i], known_value)
             };
             PhasePoint {
@@ -234,21 +254,25 @@ impl<'a> GaitReport<'a> {
             speed,
             walks: walks
                 .iter()
-                .map(|walk| Span::new(gaits, walk, is_different))
+                .map(|walk| Span::new(gaits, walk, differs_from_prediction))
                 .collect(),
-            cycles: measured.cycles.len(),
-            period: measured.period[0],
-            period_error: measured.period[1],
-            period_expected: candidate.expected.period,
+            cycles: measured_gait.cycles.len(),
+            period: measured_gait.period[0],
+            period_error: measured_gait.period[1],
+            period_expected: candidate.predicted_gait.period,
             forward,
             left,
             turn,
-            each: measured.cycles.iter().map(movement_of).collect(),
-            within: measured.within.iter().map(phase_point_of).collect(),
-            farthest: LargestDifference::of(&measured.within, predicted),
+            each: measured_gait.cycles.iter().map(movement_of).collect(),
+            within: measured_gait
+                .cycle_path
+                .iter()
+                .map(phase_point_of)
+                .collect(),
+            farthest: LargestDeviation::of(&measured_gait.cycle_path, predicted_values),
             mujoco: None,
             range: None,
-            expected: &candidate.expected.path,
+            predicted_path: &candidate.predicted_gait.path,
         }
     }
 
@@ -273,7 +297,7 @@ impl<'a> GaitReport<'a> {
             let _ = writeln!(text, "{film}, {from:.1} to {to:.1} s{like_text}");
         }
         text += "a cycle      measured      sd   error  predicted\n";
-        for (name, part) in PARTS.iter().zip(self.parts()) {
+        for (name, part) in PART_NAMES.iter().zip(self.parts()) {
             text += &part.line(name);
         }
         if let Some(range) = &self.range {
@@ -293,66 +317,66 @@ impl<'a> GaitReport<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// The report of walks in films at a pace in percent; walks of the same gait count together.
+    /// Reports walks in films; walks of the same gait count together. `speed` is the pace, percent of the gait's own.
     pub fn new(
         robot: &Robot,
         speed: u8,
         setup: Setup,
-        films: &'a [WatchedFilm],
+        films: &'a [NamedFilm],
         gaits: &'a Gaits<'a>,
-        walks: &[NamedWalk<'a>],
+        walks: &[MeasuredWalk<'a>],
     ) -> Self {
-        let mut gait_walks: Vec<(&Candidate, Vec<&NamedWalk>)> = Vec::new();
+        let mut walks_by_gait: Vec<(&Candidate, Vec<&MeasuredWalk>)> = Vec::new();
         for walk in walks {
-            let candidate = &gaits.candidates()[walk.gait];
-            match gait_walks
+            let candidate = &gaits.candidates()[walk.candidate_index];
+            match walks_by_gait
                 .iter_mut()
                 .find(|(other, _)| other.name() == candidate.name())
             {
                 Some((_, walks)) => walks.push(walk),
-                None => gait_walks.push((candidate, vec![walk])),
+                None => walks_by_gait.push((candidate, vec![walk])),
             }
         }
-        let film_line_of = |film: &'a WatchedFilm| {
-            let sight = &film.watched.sight;
+        let film_line_of = |film: &'a NamedFilm| {
+            let sight = &film.analysis.camera;
             FilmLine {
                 film: &film.name,
-                pictures: film.watched.path.len(),
+                pictures: film.analysis.path.len(),
                 camera: CameraLine {
                     height: sight.height,
                     tilt: sight.tilt,
-                    focal: sight.focal,
-                    corners: sight.error,
+                    focal: sight.focal_length,
+                    corners: sight.corner_error,
                     moved: sight.has_camera_moved,
-                    deck: setup.height,
-                    deck_by_size: sight.deck,
+                    deck: setup.deck_height,
+                    deck_by_size: sight.deck_height,
                 },
             }
         };
-        let gait_report_of = |(candidate, walks): &(&'a Candidate, Vec<&NamedWalk<'a>>)| {
+        let gait_report_of = |(candidate, walks): &(&'a Candidate, Vec<&MeasuredWalk<'a>>)| {
             GaitReport::new(robot, speed, gaits, candidate, walks)
         };
         Self {
             films: films.iter().map(film_line_of).collect(),
-            gaits: gait_walks.iter().map(gait_report_of).collect(),
+            gaits: walks_by_gait.iter().map(gait_report_of).collect(),
         }
     }
 
-    /// Adds the movements according to MuJoCo, which are known at full pace for the robots of the project's own
-    /// files. `text` is the content of the robot's file.
+    /// Adds the movements according to MuJoCo, which are known at full pace for the project's own robots. `text` is the
+    /// content of the robot's file.
     pub fn with_mujoco(mut self, text: &str) -> Self {
         for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
-            gait.mujoco = mujoco(text, gait.gait);
+            gait.mujoco = mujoco_movement(text, gait.gait);
         }
         self
     }
 
-    /// Adds the ranges of the predictions; takes a second for each gait.
+    /// Adds the ranges of the predictions, which takes a second for each gait.
     pub fn with_ranges(mut self, robot: &Robot) -> Self {
         for report in &mut self.gaits {
             let gait = robot.gait(report.gait);
             let pace = f64::from(report.speed) / 100.0;
-            report.range = gait.map(|gait| Range::of(robot, gait, pace));
+            report.range = gait.map(|gait| PredictionRange::of(robot, gait, pace));
         }
         self
     }
@@ -382,7 +406,7 @@ impl<'a> Report<'a> {
         }
         let mut parts = self.gaits.iter().flat_map(GaitReport::parts);
         if parts.any(|part| part.predicted.is_none()) {
-            let _ = write!(text, "\n{UNDECIDED}");
+            let _ = write!(text, "\n{UNDECIDED_NOTE}");
         }
         text
     }

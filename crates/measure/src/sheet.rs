@@ -1,37 +1,40 @@
 //! The sheet of tags as a PDF page: pieces, tags, ruler and instructions.
 
 use lizard_film::sheet::{
-    CARD, CARD_MARGIN, DECK_EDGE, DECK_TAG, FORWARD_WORD, Point, RULER, SQUARES, STRIP, STRIPS,
-    TAGS_ON_STRIP, edge, is_white, middle_on_strip,
+    CARD_MARGIN, CARD_SIZE, DECK_TAG_EDGE, DECK_TAG_ID, FORWARD_WORD, Point, RULER_LENGTH,
+    SQUARES_PER_SIDE, STRIP_COUNT, STRIP_SIZE, TAGS_PER_STRIP, is_white, middle_on_strip, tag_edge,
 };
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
 /// Length of a point, the unit of PDF, mm.
-const POINT: f64 = 25.4 / 72.0;
-const FONT: Name = Name(b"F1");
-/// Font size, and distance from one line to the next, mm.
-const FONT_SIZE: f64 = 3.3;
-const LINE_DISTANCE: f64 = 4.7;
-/// Thickness of the cut lines, and of the ruler's lines, mm.
-const CUT_THICKNESS: f64 = 0.15;
-const RULER_THICKNESS: f64 = 0.3;
-/// Grey of the cut lines.
+const POINT_MM: f64 = 25.4 / 72.0;
+/// Name of the font within the PDF.
+const FONT_NAME: Name = Name(b"F1");
+/// Size of the font, mm.
+const FONT_SIZE_MM: f64 = 3.3;
+/// Distance from one line of text to the next, mm.
+const LINE_SPACING_MM: f64 = 4.7;
+/// Thickness of the cut lines, mm.
+const CUT_THICKNESS_MM: f64 = 0.15;
+/// Thickness of the ruler and its marks, mm.
+const RULER_THICKNESS_MM: f64 = 0.3;
+/// Grey of the cut lines, from 0 for black to 1 for white.
 const CUT_GREY: f32 = 0.6;
 
-/// Instructions to print, cut, lay and glue the sheet, printed beside the card.
+/// Instructions for printing, cutting and placing the sheet, printed beside the card.
 const INSTRUCTIONS: [&str; 9] = [
     "1. Print at 100 % (\"actual size\"). Measure the line between the tags of a strip: if it is not 100 mm",
     "    long, tell lizard measure its length with --ruler.",
-    "2. Cut along the thin lines, and leave each strip in one piece: the distance of its tags counts.",
-    "3. Tape the strips flat on the floor, one on either side of the robot's way, 30 to 40 cm apart and",
+    "2. Cut along the thin lines, and leave each strip in one piece: the distance between its tags matters.",
+    "3. Tape the strips flat on the floor, one on either side of the robot's path, 30 to 40 cm apart and",
     "    roughly parallel to it. Their exact places do not matter.",
-    "4. Glue the card on stiff cardboard and that on the board: the middle of its tag above the middle",
-    "    of the robot, the arrow to the head. Measure the height of the tag above the floor for --height.",
+    "4. Glue the card to stiff cardboard, and this to the board, the middle of the tag above the middle",
+    "    of the robot, the arrow toward the head. Measure the height of the tag above the floor for --height.",
     "5. Film from above with a camera that stands still and sees all five tags the whole time. Begin",
     "    before the robot starts: five to ten cycles of one gait.",
 ];
 
-/// A paper size of printers, in landscape.
+/// A paper size, in landscape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Paper {
     /// 297 x 210 mm.
@@ -43,17 +46,17 @@ pub enum Paper {
 
 impl Paper {
     /// Width and height, mm.
-    fn size(self) -> Point {
+    fn paper_size(self) -> Point {
         match self {
             Self::A4 => [297.0, 210.0],
             Self::Letter => [279.4, 215.9],
         }
     }
 
-    /// The sheet of tags as PDF.
-    pub fn sheet(self) -> Vec<u8> {
+    /// The sheet of tags as the bytes of a PDF file.
+    pub fn tag_sheet_pdf(self) -> Vec<u8> {
         let [catalog, pages, page, font, content, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
-        let size = self.size().map(points_of);
+        let size_in_points = self.paper_size().map(to_points);
         let mut pdf = Pdf::new();
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
@@ -65,9 +68,9 @@ impl Paper {
             .title(TextStr("Tags for lizard measure"));
         pdf.pages(pages).kids([page]).count(1);
         let mut page_writer = pdf.page(page);
-        page_writer.media_box(Rect::new(0.0, 0.0, size[0], size[1]));
+        page_writer.media_box(Rect::new(0.0, 0.0, size_in_points[0], size_in_points[1]));
         page_writer.parent(pages).contents(content);
-        page_writer.resources().fonts().pair(FONT, font);
+        page_writer.resources().fonts().pair(FONT_NAME, font);
         page_writer.finish();
         pdf.type1_font(font).base_font(Name(b"Helvetica"));
         pdf.stream(content, &draw_page(self).finish());
@@ -76,28 +79,28 @@ impl Paper {
 }
 
 /// Converts mm to points.
-fn points_of(mm: f64) -> f32 {
-    (mm / POINT) as f32
+fn to_points(mm: f64) -> f32 {
+    (mm / POINT_MM) as f32
 }
 
 /// Draws the whole page.
 fn draw_page(paper: Paper) -> Content {
     let mut content = Content::new();
-    let [width, height] = paper.size();
-    let left = (width - STRIP[0]) / 2.0;
-    let used_height = STRIPS as f64 * STRIP[1] + CARD[1];
+    let [width, height] = paper.paper_size();
+    let left = (width - STRIP_SIZE[0]) / 2.0;
+    let used_height = STRIP_COUNT as f64 * STRIP_SIZE[1] + CARD_SIZE[1];
     let mut top = f64::midpoint(height, used_height);
-    for strip in 0..STRIPS {
-        draw_strip(&mut content, strip, [left, top - STRIP[1]]);
-        top -= STRIP[1];
+    for strip in 0..STRIP_COUNT {
+        draw_strip(&mut content, strip, [left, top - STRIP_SIZE[1]]);
+        top -= STRIP_SIZE[1];
     }
-    draw_card(&mut content, [left, top - CARD[1]]);
-    let text_corner = [left + CARD[0] + 8.0, top - 8.0];
+    draw_card(&mut content, [left, top - CARD_SIZE[1]]);
+    let text_corner = [left + CARD_SIZE[0] + 8.0, top - 8.0];
     for (i, line) in INSTRUCTIONS.iter().enumerate() {
-        write(
+        write_text(
             &mut content,
             line,
-            [text_corner[0], text_corner[1] - i as f64 * LINE_DISTANCE],
+            [text_corner[0], text_corner[1] - i as f64 * LINE_SPACING_MM],
         );
     }
     content
@@ -105,74 +108,79 @@ fn draw_page(paper: Paper) -> Content {
 
 /// Draws a strip with its lower left corner at a point.
 fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
-    draw_cut_line(content, [x, y], STRIP);
-    let middle = [x + STRIP[0] / 2.0, y + STRIP[1] / 2.0];
-    for id in strip * TAGS_ON_STRIP..(strip + 1) * TAGS_ON_STRIP {
+    draw_cut_rectangle(content, [x, y], STRIP_SIZE);
+    let middle = [x + STRIP_SIZE[0] / 2.0, y + STRIP_SIZE[1] / 2.0];
+    for id in strip * TAGS_PER_STRIP..(strip + 1) * TAGS_PER_STRIP {
         let [u, v] = middle_on_strip(id);
         draw_tag(content, id, [middle[0] + u, middle[1] + v]);
     }
-    let ruler_start = middle[0] - RULER / 2.0;
-    fill(
+    let ruler_start = middle[0] - RULER_LENGTH / 2.0;
+    fill_rectangle(
         content,
-        [ruler_start, middle[1] - RULER_THICKNESS / 2.0],
-        [RULER, RULER_THICKNESS],
+        [ruler_start, middle[1] - RULER_THICKNESS_MM / 2.0],
+        [RULER_LENGTH, RULER_THICKNESS_MM],
     );
     for i in 0..=10 {
         // The outer edges of the first and the last mark are the ends of the ruler.
-        let mark_x = ruler_start + f64::from(i) * (RULER - RULER_THICKNESS) / 10.0;
+        let mark_x = ruler_start + f64::from(i) * (RULER_LENGTH - RULER_THICKNESS_MM) / 10.0;
         let mark_length = if i % 10 == 0 { 8.0 } else { 3.0 };
-        fill(
+        fill_rectangle(
             content,
             [mark_x, middle[1] - mark_length / 2.0],
-            [RULER_THICKNESS, mark_length],
+            [RULER_THICKNESS_MM, mark_length],
         );
     }
     let text = format!(
-        "strip {} of {STRIPS}: flat on the floor, beside the robot's way",
+        "strip {} of {STRIP_COUNT}: flat on the floor, beside the robot's path",
         strip + 1
     );
-    write(content, &text, [ruler_start, middle[1] + 8.0]);
+    write_text(content, &text, [ruler_start, middle[1] + 8.0]);
     let text = "from end to end: 100 mm";
-    write(content, text, [ruler_start, middle[1] - 10.0]);
+    write_text(content, text, [ruler_start, middle[1] - 10.0]);
 }
 
 /// Draws the deck's card with its lower left corner at a point.
 fn draw_card(content: &mut Content, [x, y]: Point) {
-    draw_cut_line(content, [x, y], CARD);
-    let middle = x + CARD[0] / 2.0;
+    draw_cut_rectangle(content, [x, y], CARD_SIZE);
+    let middle_x = x + CARD_SIZE[0] / 2.0;
     draw_tag(
         content,
-        DECK_TAG,
-        [middle, y + CARD_MARGIN + DECK_EDGE / 2.0],
+        DECK_TAG_ID,
+        [middle_x, y + CARD_MARGIN + DECK_TAG_EDGE / 2.0],
     );
     // The arrow begins beyond the white margin of the tag.
-    let base = y + CARD_MARGIN + DECK_EDGE + CARD_MARGIN;
-    let tip = y + CARD[1] - 1.0;
-    content.move_to(points_of(middle - 4.0), points_of(base + 1.0));
-    content.line_to(points_of(middle + 4.0), points_of(base + 1.0));
-    content.line_to(points_of(middle), points_of(tip));
+    let arrow_base = y + CARD_MARGIN + DECK_TAG_EDGE + CARD_MARGIN;
+    let arrow_tip = y + CARD_SIZE[1] - 1.0;
+    content.move_to(to_points(middle_x - 4.0), to_points(arrow_base + 1.0));
+    content.line_to(to_points(middle_x + 4.0), to_points(arrow_base + 1.0));
+    content.line_to(to_points(middle_x), to_points(arrow_tip));
     content.close_path().fill_nonzero();
-    write(content, FORWARD_WORD, [middle + 6.0, base + 2.0]);
+    write_text(content, FORWARD_WORD, [middle_x + 6.0, arrow_base + 2.0]);
 }
 
-/// Draws a tag around its middle: a black square with white ones on it. If the black squares were drawn one by
+/// Draws a tag around its middle: one black square with white squares on it. If the black squares were drawn one by
 /// one, printers and viewers might leave a seam where two of them touch.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
-    let square = edge(id) / SQUARES as f64;
-    let half = edge(id) / 2.0;
-    fill(content, [x - half, y - half], [edge(id); 2]);
+    let square_edge = tag_edge(id) / SQUARES_PER_SIDE as f64;
+    let half_edge = tag_edge(id) / 2.0;
+    fill_rectangle(content, [x - half_edge, y - half_edge], [tag_edge(id); 2]);
     content.set_fill_gray(1.0);
-    for row in 0..SQUARES {
+    for row in 0..SQUARES_PER_SIDE {
         let mut column = 0;
-        while column < SQUARES {
-            let white_squares = (column..SQUARES).take_while(|&index| is_white(id, row, index));
+        while column < SQUARES_PER_SIDE {
+            let white_squares =
+                (column..SQUARES_PER_SIDE).take_while(|&index| is_white(id, row, index));
             let run_length = white_squares.count();
             if run_length > 0 {
                 let corner = [
-                    x - half + column as f64 * square,
-                    y + half - (row + 1) as f64 * square,
+                    x - half_edge + column as f64 * square_edge,
+                    y + half_edge - (row + 1) as f64 * square_edge,
                 ];
-                fill(content, corner, [run_length as f64 * square, square]);
+                fill_rectangle(
+                    content,
+                    corner,
+                    [run_length as f64 * square_edge, square_edge],
+                );
             }
             column += run_length.max(1);
         }
@@ -180,31 +188,36 @@ fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     content.set_fill_gray(0.0);
 }
 
-fn fill(content: &mut Content, [x, y]: Point, [width, height]: Point) {
+/// Fills a rectangle with its lower left corner at a point, mm.
+fn fill_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Point) {
     content.rect(
-        points_of(x),
-        points_of(y),
-        points_of(width),
-        points_of(height),
+        to_points(x),
+        to_points(y),
+        to_points(width),
+        to_points(height),
     );
     content.fill_nonzero();
 }
 
-fn draw_cut_line(content: &mut Content, [x, y]: Point, [width, height]: Point) {
+/// Draws the cut lines around a piece with its lower left corner at a point, mm.
+fn draw_cut_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Point) {
     content
-        .set_line_width(points_of(CUT_THICKNESS))
+        .set_line_width(to_points(CUT_THICKNESS_MM))
         .set_stroke_gray(CUT_GREY);
     content.rect(
-        points_of(x),
-        points_of(y),
-        points_of(width),
-        points_of(height),
+        to_points(x),
+        to_points(y),
+        to_points(width),
+        to_points(height),
     );
     content.stroke();
 }
 
-fn write(content: &mut Content, text: &str, [x, y]: Point) {
-    content.begin_text().set_font(FONT, points_of(FONT_SIZE));
-    content.next_line(points_of(x), points_of(y));
+/// Writes a line of text that starts at a point, mm.
+fn write_text(content: &mut Content, text: &str, [x, y]: Point) {
+    content
+        .begin_text()
+        .set_font(FONT_NAME, to_points(FONT_SIZE_MM));
+    content.next_line(to_points(x), to_points(y));
     content.show(Str(text.as_bytes())).end_text();
 }

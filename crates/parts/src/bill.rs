@@ -10,15 +10,15 @@ use lizard_robot::{Coil, Parts, Robot};
 use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
-use crate::bodies::pads::NOTCH;
+use crate::bodies::pads::NOTCH_DEPTH;
 use crate::decimals;
 use crate::hold::SpringEffect;
 use crate::layers::body::{Body, Kind, Prism};
-use crate::layers::fitting::{BATTERIES, Example, Fitting};
+use crate::layers::fitting::{BATTERY_EXAMPLES, Example, Fitting};
 use crate::layers::outline::Outline;
 use crate::part::{Part, volume};
 use crate::price::Price;
-use loose::{INPUTS, LOOSE_ITEMS, RADIO, Row};
+use loose::{INPUT_ITEMS, LOOSE_ITEMS, RADIO_ITEMS, Row};
 
 /// Mass per volume of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three lines of wall and a third of infill.
 /// The sum over all parts is within 10 % of PrusaSlicer's estimate.
@@ -27,21 +27,30 @@ const PRINTED_DENSITY: f64 = 1.0e-3;
 const PAD_DENSITY: f64 = 1.15e-3;
 /// Hours of printing for each piece, whatever its mass, in layers of 0.2 mm on an Ender 3. With the hours for
 /// each gram, the sum over all parts is within 10 % of PrusaSlicer's estimate.
-const HOURS_A_PIECE: f64 = 0.02;
+const HOURS_PER_PIECE: f64 = 0.02;
 /// Hours of printing for each gram of a piece.
-const HOURS_A_GRAM: f64 = 0.095;
-/// Masses of bought parts, g. Those of the battery and of a spring's steel are per mm^3; those whose names end
-/// in `MM` are per mm of length.
+const HOURS_PER_GRAM: f64 = 0.095;
+/// Mass of a servo, g.
 const SERVO_GRAMS: f64 = 9.5;
+/// Mass of a servo's horn, g.
 const HORN_GRAMS: f64 = 0.8;
+/// Mass of an Arduino UNO, g.
 const BOARD_GRAMS: f64 = 25.0;
+/// Mass per volume of a battery, g/mm^3.
 const BATTERY_DENSITY: f64 = 1.1e-3;
+/// Mass per volume of a spring's steel, g/mm^3.
 const STEEL_DENSITY: f64 = 7.85e-3;
+/// Mass of a screw's shank, g per mm of length.
 const SCREW_GRAMS_PER_MM: f64 = 0.044;
+/// Mass of a screw's head, g.
 const SCREW_HEAD_GRAMS: f64 = 0.25;
+/// Mass of a standoff, g per mm of length.
 const STANDOFF_GRAMS_PER_MM: f64 = 0.06;
+/// Mass of a lock nut, g.
 const NUT_GRAMS: f64 = 0.4;
+/// Mass of a screw between horn and link, g.
 const HORN_SCREW_GRAMS: f64 = 0.1;
+/// Mass of a screw that holds a servo's flange, g.
 const SERVO_SCREW_GRAMS: f64 = 0.2;
 
 /// A line of the bill.
@@ -67,14 +76,14 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let density = if part.rubbery {
+        let density = if part.is_rubbery {
             PAD_DENSITY
         } else {
             PRINTED_DENSITY
         };
         let grams = density * part.volume();
         Self {
-            hours: Some(HOURS_A_PIECE + HOURS_A_GRAM * grams),
+            hours: Some(HOURS_PER_PIECE + HOURS_PER_GRAM * grams),
             price: None,
             count: part.count(),
             what: part.name.clone(),
@@ -108,7 +117,7 @@ impl Item {
 pub struct Bill {
     /// Parts to print.
     pub printed: Vec<Item>,
-    /// Parts that may be printed instead of others: struts of the other kind.
+    /// Parts that may be printed in place of others: the struts of the kind that the robot does not have.
     pub instead: Vec<Item>,
     /// Things to buy.
     pub bought: Vec<Item>,
@@ -121,18 +130,18 @@ pub struct Bill {
     /// The robot's mass, g.
     #[serde(serialize_with = "decimals::one::<1, _>")]
     pub grams: f64,
-    /// The mass centre at neutral: ahead of, left of and above the plate's middle, mm.
+    /// The mass centre at the pose of the bill: ahead of, left of and above the plate's middle, mm.
     #[serde(serialize_with = "decimals::each::<10, _>")]
     pub centre: [f64; 3],
     /// The effect of the springs on the legs; `None` for rigid struts.
     pub hold: Option<SpringEffect>,
-    /// Space for the battery: to the right, forward, up, mm.
+    /// Size of the space for the battery: to the right, forward, up, mm.
     #[serde(skip)]
-    battery: [f64; 3],
+    battery_space: [f64; 3],
 }
 
-/// Returns the text of the bill's row for a bought body and the body's mass, g. The text is empty if the body is
-/// printed or comes with another one.
+/// Returns the text of the bill's row for a bought body, and the body's mass, g. The text is empty for a body that is
+/// printed or is sold as a part of another one.
 fn row_text_and_grams(
     body: &Body,
     assembly: &Assembly,
@@ -162,7 +171,7 @@ fn row_text_and_grams(
             (text, HORN_SCREW_GRAMS)
         }
         Kind::Lead => (String::new(), 0.0),
-        Kind::Fitting(fitting) => (fitting.what(), fitting.facts().grams),
+        Kind::Fitting(fitting) => (fitting.shopping_list_row(), fitting.facts().grams),
         Kind::Pad => (String::new(), PAD_DENSITY * volume(&body.prisms)),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
         Kind::Standoff(length) => {
@@ -170,8 +179,11 @@ fn row_text_and_grams(
             (text, STANDOFF_GRAMS_PER_MM * length)
         }
         Kind::Spring => {
-            let (wire, outer, length) =
-                (parts.spring.wire, parts.spring.outer, parts.spring.length);
+            let (wire, outer, length) = (
+                parts.spring.wire_diameter,
+                parts.spring.outer_diameter,
+                parts.spring.free_length,
+            );
             let coil_text =
                 format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull_text = hold.map_or(String::new(), |hold| {
@@ -207,14 +219,20 @@ pub(crate) fn spring_grams(coil: &Coil) -> f64 {
 }
 
 /// Mass of a body, g.
-pub(crate) fn grams(body: &Body, assembly: &Assembly) -> f64 {
+pub(crate) fn body_grams(body: &Body, assembly: &Assembly) -> f64 {
     row_text_and_grams(body, assembly, None).1
 }
 
-/// Volume of a spring's wire, mm^3: its coils, and three more for the hooks.
+/// Volume of a spring's wire, mm^3: that of its active coils, and of three more for the hooks.
 fn coil_volume(coil: &Coil) -> f64 {
     use std::f64::consts::PI;
-    (coil.coils() + 3.0) * PI * coil.mean_diameter() * PI * coil.wire * coil.wire / 4.0
+    (coil.active_coil_count() + 3.0)
+        * PI
+        * coil.mean_diameter()
+        * PI
+        * coil.wire_diameter
+        * coil.wire_diameter
+        / 4.0
 }
 
 /// The row for strips with a grain; `None` for plain pads.
@@ -222,37 +240,40 @@ fn strip_item(parts: &Parts) -> Option<Item> {
     /// Mass of a strip, g for each mm of its width: climbing skin of 1.2 kg/m^2, 30 mm long.
     const STRIP_GRAMS_PER_MM: f64 = 0.036;
     let name = format!(
-        "strip with a grain, {} x 30 mm, at most {NOTCH} mm thick: climbing skin of a ski (Pomoca Climb, Colltex; ~1.5 mm \
+        "strip with a grain, {} x 30 mm, at most {NOTCH_DEPTH} mm thick: climbing skin of a ski (Pomoca Climb, Colltex; ~1.5 mm \
          without hairs), or a strip of a brush with short, slanted bristles",
         parts.strip
     );
     (parts.strip > 0.0).then(|| Item::bought(4, name, STRIP_GRAMS_PER_MM * parts.strip, Price::C))
 }
 
-/// The rows for the inputs and strips that a robot has.
+/// The rows for the inputs of a robot and for the strips on its pads.
 fn input_items(robot: &Robot) -> Vec<Item> {
-    let has_input = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
-    let rows = INPUTS.into_iter().filter(|(name, _)| has_input(name));
+    let has_input = |name: &str| robot.inputs().named_pins().any(|(input, _)| input == name);
+    let rows = INPUT_ITEMS.into_iter().filter(|(name, _)| has_input(name));
     let rows = rows.map(|(_, row)| Item::loose(row));
     rows.chain(strip_item(robot.parts())).collect()
 }
 
 impl Bill {
-    /// The bill of a robot, whose mass centre is taken at a pose.
+    /// The bill of a robot, with its mass centre at `pose`.
     pub fn of(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
         let hold = SpringEffect::of(assembly);
-        let mut list: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
+        let mut bought_rows: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let (text, mass) = row_text_and_grams(body, assembly, hold.as_ref());
+            let (text, body_mass) = row_text_and_grams(body, assembly, hold.as_ref());
             if !text.is_empty() {
-                list.entry(text).or_insert((0, mass, price_of(body.kind))).0 += 1;
+                bought_rows
+                    .entry(text)
+                    .or_insert((0, body_mass, price_of(body.kind)))
+                    .0 += 1;
             }
             let [x, y, z] = centroid(&body.prisms);
             let position = assembly.place(body.mount, pose).map(Vector::new(x, y));
-            grams += mass;
+            grams += body_mass;
             for (sum, coordinate) in moment.iter_mut().zip([position.y, -position.x, z]) {
-                *sum += mass * coordinate;
+                *sum += body_mass * coordinate;
             }
         }
         let items_of = |is_alternative: bool| -> Vec<Item> {
@@ -260,7 +281,7 @@ impl Bill {
             let parts_listed = parts.filter(|part| part.instead_of.is_some() == is_alternative);
             parts_listed.map(Item::printed).collect()
         };
-        let bought = list.into_iter();
+        let bought = bought_rows.into_iter();
         let bought =
             bought.map(|(text, (count, grams, price))| Item::bought(count, text, grams, price));
         let loose_items = LOOSE_ITEMS.map(Item::loose);
@@ -271,24 +292,24 @@ impl Bill {
             instead: items_of(true),
             euros: Price::sum(bought.iter().filter_map(|item| item.price)),
             bought,
-            radio: RADIO.map(Item::loose).into(),
+            radio: RADIO_ITEMS.map(Item::loose).into(),
             inputs: input_items(assembly.robot()),
             grams,
             centre: moment.map(|sum| sum / grams),
             hold,
-            battery: assembly.robot().parts().battery,
+            battery_space: assembly.robot().parts().battery,
         }
     }
 
-    /// The text about the meaning of the price classes, and about their sum.
-    pub fn prices(&self) -> String {
+    /// The text that explains the price classes and states their sum.
+    pub fn price_text(&self) -> String {
         let [from, to] = self.euros;
-        let meaning = Price::meaning();
+        let meaning = Price::explanation();
         format!("{meaning} The sum of all rows, tools included, is {from} to {to} euros.")
     }
 
     /// Hours to print all parts.
-    pub fn hours(&self) -> f64 {
+    pub fn printing_hours(&self) -> f64 {
         let items = self.printed.iter();
         items
             .map(|item| item.count as f64 * item.hours.unwrap_or_default())
@@ -296,7 +317,7 @@ impl Bill {
     }
 
     /// The number of bought things whose name begins with `name_start`.
-    pub fn count(&self, name_start: &str) -> usize {
+    pub fn bought_count(&self, name_start: &str) -> usize {
         let bought = self.bought.iter();
         let matching_items = bought.filter(|item| item.what.starts_with(name_start));
         matching_items.map(|item| item.count).sum()
@@ -309,7 +330,7 @@ fn centroid(prisms: &[Prism]) -> [f64; 3] {
     for prism in prisms {
         let outline = Outline::of(prism);
         let height = prism.z[1] - prism.z[0];
-        let (area, moment) = (outline.area(), outline.moment());
+        let (area, moment) = (outline.area(), outline.first_moment());
         volume += area * height;
         sum[0] += moment.x * height;
         sum[1] += moment.y * height;
@@ -330,7 +351,7 @@ impl fmt::Display for Bill {
         writeln!(
             f,
             "\nAbout {:.0} hours on a printer like an Ender 3, in layers of 0.2 mm with 30 % infill.",
-            self.hours()
+            self.printing_hours()
         )?;
         writeln!(f, "\n{PADS_TEXT}")?;
         let (leg_text, kind) = match self.hold {
@@ -341,12 +362,12 @@ impl fmt::Display for Bill {
             let (count, name, grams) = (item.count, &item.what, item.grams);
             writeln!(
                 f,
-                "\nInstead of the struts, {count} x {name}, {grams:.1} g each, which make legs {leg_text}; with \
-                 `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide is about them."
+                "\nInstead of the struts, {count} x {name}, {grams:.1} g each, can be printed for legs {leg_text}; with \
+                 `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide describes such legs."
             )?;
         }
         writeln!(f, "\nTo buy:\n\n{}", buying_table(&self.bought))?;
-        writeln!(f, "{}\n\n{SERVOS_TEXT}", self.prices())?;
+        writeln!(f, "{}\n\n{SERVOS_TEXT}", self.price_text())?;
         writeln!(
             f,
             "\nOnly to drive it without a cable, by radio:\n\n{}",
@@ -359,7 +380,7 @@ impl fmt::Display for Bill {
         writeln!(
             f,
             "Where everything has its place, and what fits there:\n\n{}",
-            places(self.battery)
+            places_table(self.battery_space)
         )?;
         let (grams, position_text, height) = (self.grams, self.centre_in_words(), self.centre[2]);
         writeln!(
@@ -392,7 +413,7 @@ const PADS_TEXT: &str = "The pads are of TPU (95A), all four of one roll: the fl
 /// The guide's text about the servos.
 const SERVOS_TEXT: &str = "Take plain analog servos, all four of one make: by the model, digital ones lose 15 % of `walk`, and one with a light rotor more than half.";
 
-/// Rows to buy as a table.
+/// A Markdown table of things to buy.
 pub fn buying_table(items: &[Item]) -> String {
     let mut text = "| pieces | what | price |\n|---|---|---|\n".to_owned();
     for item in items {
@@ -403,8 +424,8 @@ pub fn buying_table(items: &[Item]) -> String {
     text
 }
 
-/// A table of the places for the battery and the fittings: space, what holds the thing, and examples that fit.
-pub fn places(battery: [f64; 3]) -> String {
+/// A Markdown table of the battery and the fittings: place, space, fastening, and examples that fit.
+pub fn places_table(battery: [f64; 3]) -> String {
     let size_text = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
     let list_text = |examples: &mut dyn Iterator<Item = Example>| {
         let names: Vec<_> = examples.map(|example| example.to_string()).collect();
@@ -418,11 +439,11 @@ pub fn places(battery: [f64; 3]) -> String {
     text += &format!(
         "| battery | on the plate, in the middle | {} | the battery strap | {} |\n",
         size_text(battery),
-        list_text(&mut BATTERIES.into_iter().filter(is_small_enough))
+        list_text(&mut BATTERY_EXAMPLES.into_iter().filter(is_small_enough))
     );
     for fitting in Fitting::ALL {
         let facts = fitting.facts();
-        let (name, place, hold) = (facts.name, facts.place, facts.hold);
+        let (name, place, hold) = (facts.name, facts.place, facts.fastening);
         let (room, examples) = (
             size_text(facts.size),
             list_text(&mut facts.examples.into_iter()),
@@ -434,7 +455,7 @@ pub fn places(battery: [f64; 3]) -> String {
 
 /// The text below the table of places: the sources of the sizes, and the sizes of everything else.
 const SIZES_TEXT: &str = "
-`~` is a usual size in shops, of which no drawing was found. The other sizes are of data sheets or standards, with their tolerances.
+`~` marks a usual size in shops, for which no drawing was found. The other sizes are from data sheets or standards, with their tolerances.
 
 | everything else | size, mm, by a standard or as common products have it |
 |---|---|
@@ -448,6 +469,6 @@ const SIZES_TEXT: &str = "
 ";
 
 /// The guide's text about rigid struts.
-const RIGID_TEXT: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \
+const RIGID_TEXT: &str = "The struts are rigid: a foot follows its servo except for the play of pins and gears. A foot that is caught \
                      can stall its servo, which gets hot and may burn out; a strut with a spring is no help there. Watch the robot while it \
                      walks, and switch the servos' supply off when a foot is caught.";

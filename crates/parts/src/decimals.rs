@@ -1,10 +1,10 @@
-//! Rounds numbers in JSON to the decimals that are known: `UNIT` is 10 for tenths, 1000 for thousandths.
+//! Serializers that round numbers to the decimals that are known: `UNIT` is 10 for tenths, 1000 for thousandths.
 
 use serde::{Serialize, Serializer};
 
 type SerializeResult<S> = Result<<S as Serializer>::Ok, <S as Serializer>::Error>;
 
-/// Rounds a number, without leaving a minus before 0.
+/// Rounds a number, without a minus sign before 0.
 fn round_to_unit<const UNIT: u32>(value: f64) -> f64 {
     let unit = f64::from(UNIT);
     (unit * value).round() / unit + 0.0

@@ -1,5 +1,5 @@
-//! The effect of the spring in a leg's strut: the torque above which the leg lags behind
-//! its servo, and the torque on the servo when a foot is caught.
+//! The effect of the springs in the legs' struts: the torque above which a leg lags behind its servo, and the torque
+//! on the servo when a foot is caught.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::bodies::assembly::Assembly;
 use crate::decimals;
 
-/// The effect of a leg's spring in its strut.
+/// The effect of the springs in the legs' struts, over all gaits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpringEffect {
     /// Length of the spring mounted in the strut, mm, measured inside its hooks.
@@ -20,8 +20,8 @@ pub struct SpringEffect {
     /// Rate of the spring, N/mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub rate: f64,
-    /// Lever of the strut about the leg's pivot, mm: the least and the greatest of any leg
-    /// in any gait. The pull is perpendicular to the anchor's arm at one pose only.
+    /// Lever of the strut about the leg's pivot, mm: the least and the greatest of any leg in any gait. It varies
+    /// since the pull is perpendicular to the anchor's arm at one pose only.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub lever: [f64; 2],
     /// Torque up to which the leg follows its servo exactly in all gaits, N mm.
@@ -42,13 +42,13 @@ pub struct SpringEffect {
 }
 
 impl SpringEffect {
-    /// True if a servo can continue to turn when its strut's slot has ended: the greatest torque
-    /// there is less than 0.7 of the servo's stall torque.
+    /// True if a servo can continue to turn when its leg has reached the end of the slot: the greatest torque there
+    /// is less than 0.7 of the servo's stall torque.
     pub fn lets_servo_turn(&self) -> bool {
         self.end[1] < 0.7 * self.stall
     }
 
-    /// The effect on the robot's legs, whose struts are equal; `None` if the struts are rigid.
+    /// The effect in a robot, whose struts are all equal; `None` if they are rigid.
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let strut = robot.drive().strut()?;
@@ -76,8 +76,8 @@ impl SpringEffect {
             preload: strut.force * lever[0],
             way: lag_range,
             end: torque_range,
-            friction: ground.grip() * ground.feet.reach,
-            stall: robot.motors().each[0].stall,
+            friction: ground.mean_pad_friction() * ground.feet.reach,
+            stall: robot.motors().per_servo[0].stall_torque,
         })
     }
 }
@@ -86,10 +86,13 @@ impl fmt::Display for SpringEffect {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (installed, force, rate) = (self.installed, self.force, self.rate);
         let (preload, friction, stall) = (self.preload, self.friction, self.stall);
-        let ([least_lever, most_lever], [least_lag, most_lag], [least_torque, most_torque]) =
-            (self.lever, self.way, self.end);
+        let (
+            [least_lever, greatest_lever],
+            [least_lag, greatest_lag],
+            [least_torque, greatest_torque],
+        ) = (self.lever, self.way, self.end);
         let stall_text = match self.lets_servo_turn() {
-            true => "So much less spares it.",
+            true => "So a caught foot does not stall it.",
             false => {
                 "So a caught foot can stall its servo as with a rigid strut: switch the servos' supply off."
             }
@@ -97,16 +100,16 @@ impl fmt::Display for SpringEffect {
         writeln!(
             f,
             "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm), at a lever of \
-             {least_lever:.1} to {most_lever:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
-             asks for about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot \
-             and body both held, a front foot on its way forward or a hind foot on its way back, the slot ends after \
-             {least_lag:.0} to {most_lag:.0} deg, at {least_torque:.0} to {most_torque:.0} N mm; the other way the strut is a bar. Its servo stalls \
+             {least_lever:.1} to {greatest_lever:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
+             takes about {friction:.0}: the use of the spring is to take up the play of its strut's two screws. If foot \
+             and body are both held while a front leg turns forward or a hind leg back, the slot ends after \
+             {least_lag:.0} to {greatest_lag:.0} deg, at {least_torque:.0} to {greatest_torque:.0} N mm; in the other direction the strut is rigid. A servo stalls \
              at {stall:.0} N mm. {stall_text}"
         )?;
         match preload < friction {
             true => writeln!(
                 f,
-                "That is less than the friction: the legs will lag. Take a stronger spring."
+                "The springs are weaker than the friction, so the legs will lag. Take stronger springs."
             ),
             false => Ok(()),
         }

@@ -9,7 +9,7 @@
 //! ```
 //! let robot = lizard_robot::Robot::parse(include_str!("../../../robots/paper.toml"))?;
 //! let assembly = lizard_parts::Assembly::new(&robot);
-//! let pose = robot.lizard().solve(&robot.neutral()).expect("it closes");
+//! let pose = robot.lizard().solve(&robot.neutral_pose()).expect("it closes");
 //! for body in assembly.bodies() {
 //!     let place = assembly.place(body.mount, &pose);
 //!     for prism in &body.prisms {
@@ -26,14 +26,14 @@
 //!   `Chassis` on none. Links, cranks and followers turn about a fixed point by the servo's
 //!   angle; feet and struts do not turn. [`Assembly::place`] computes this.
 //! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
-//!   union of its shapes less its holes, so its shapes without the holes are a safe hull
-//!   for collision proofs: a body that is clear of the hull is clear of the part.
+//!   union of its shapes less its holes, so its shapes without the holes enclose it,
+//!   which suits a collision proof: a body that is clear of the shapes is clear of the part.
 //!   [`Shape::distance`] is exact.
 //! - [`Assembly::may_touch`] is true for pairs that touch by design: bodies that move together,
 //!   and bodies of which one names the other in [`Body::allowed_contacts`], as a screw names the parts that it
 //!   passes through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
-//!   accepts; [`Assembly::nearest`] only checks some poses.
+//!   accepts; [`Assembly::close_pairs`] only checks some poses.
 //! - [`Assembly::alternatives`] are bodies that may replace others: struts of the kind that
 //!   robot.toml does not choose.
 //! - [`Layout`] is the plan of pivots and anchors from above. The pivots and anchors of the legs
@@ -41,6 +41,7 @@
 
 mod bill;
 mod bodies;
+mod build_problem;
 mod decimals;
 mod files;
 mod guide;
@@ -51,30 +52,29 @@ mod order;
 mod part;
 mod price;
 mod proof;
-mod unfit;
 mod weight;
 
-pub use bill::{Bill, Item, buying_table, places};
+pub use bill::{Bill, Item, buying_table, places_table};
 pub use bodies::assembly::Assembly;
 pub use bodies::layout::Layout;
+pub use build_problem::{BuildProblem, CollidingPair};
 pub use files::coupon::coupon;
 pub use files::mesh::Mesh;
 pub use files::sheet::{Layer, Sheet, sheets};
 pub use files::solid::{Edge, Face, Solid, Surface};
 pub use files::{File, part_files};
-pub use guide::papers::papers;
+pub use guide::documents::documents;
 pub use hold::SpringEffect;
 pub use layers::body::{Body, Kind, Mount, Prism};
-pub use layers::fitting::{BATTERIES, Example, Fitting, FittingFacts};
+pub use layers::fitting::{BATTERY_EXAMPLES, Example, Fitting, FittingFacts};
 pub use layers::outline::{Loop, Outline, Segment};
 pub use layers::placement::Placement;
 pub use layers::shape::Shape;
 pub use layers::stack::{Span, Stack};
-pub use model::{Block, Course, Floor, Pads, Pieces, Pull, Scene, mjcf};
+pub use model::{Block, Course, Floor, Pads, Pieces, Scene, StrutSpring, mjcf};
 pub use order::reach::{AccessPose, BlockedScrew, ScrewOperation};
 pub use order::steps::{ExtraView, Stage, Step, TurningPlace, steps};
 pub use part::{Part, PrintToBody};
 pub use price::Price;
 pub use proof::clearance::Clearance;
 pub use proof::{Answer, Clash, FAR_MM, MIN_GAP_MM, NearestPair, Proof, Questions};
-pub use unfit::{BuildProblem, Meeting};

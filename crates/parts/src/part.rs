@@ -3,7 +3,7 @@
 use std::iter::zip;
 
 use lizard_kinematics::{Side, Vector};
-use lizard_robot::servo::{LEGS, NAMES};
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Mount, Prism};
@@ -13,7 +13,7 @@ use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
 
-/// The word in the names of spacer rings, which are distinguished by length, not by position.
+/// The noun in the names of spacer rings, whose parts are named by length, not by position.
 const SPACER: &str = "spacer";
 
 /// A printed part.
@@ -22,13 +22,13 @@ pub struct Part {
     /// The name. A part named `link A1 A3` is needed twice, for A1 and for A3.
     pub name: String,
     /// Names of the bodies for which the part is printed.
-    pub bodies: Vec<String>,
+    pub body_names: Vec<String>,
     /// The layers as printed: from z = 0 up, the larger face below.
     pub prisms: Vec<Prism>,
     /// True if the part is turned over for printing.
     pub is_turned_over: bool,
     /// True if the part is printed in a rubbery filament, TPU.
-    pub rubbery: bool,
+    pub is_rubbery: bool,
     /// The part that it may replace; `None` for a standard part of the robot.
     pub instead_of: Option<String>,
     /// The digits engraved in the part: the numbers of its servos, such as `13` for A1 and A3. Empty if only one part
@@ -41,10 +41,10 @@ impl Part {
     pub(crate) fn single(name: &str, prisms: Vec<Prism>) -> Self {
         Self {
             name: name.to_owned(),
-            bodies: vec![name.to_owned()],
+            body_names: vec![name.to_owned()],
             prisms,
             is_turned_over: false,
-            rubbery: false,
+            is_rubbery: false,
             instead_of: None,
             mark: String::new(),
         }
@@ -52,11 +52,11 @@ impl Part {
 
     /// The number of pieces needed.
     pub fn count(&self) -> usize {
-        self.bodies.len()
+        self.body_names.len()
     }
 
-    /// The name of its files, without extension.
-    pub fn file(&self) -> String {
+    /// The name of the part's files, without extension.
+    pub fn file_stem(&self) -> String {
         self.name.replace(' ', "-")
     }
 
@@ -68,7 +68,7 @@ impl Part {
     }
 
     /// Centres of the closed holes, which are drilled later, in the frame of the printed part, mm.
-    pub fn closed_holes(&self) -> Vec<Vector> {
+    pub fn closed_hole_centres(&self) -> Vec<Vector> {
         roof::unsupported_hole_centres(&self.prisms)
     }
 
@@ -76,7 +76,7 @@ impl Part {
     pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
         PrintToBody {
-            flipped: self.is_turned_over,
+            is_flipped: self.is_turned_over,
             lift: if self.is_turned_over { high } else { low },
             frame: print_frame(body),
         }
@@ -93,7 +93,7 @@ impl Part {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintToBody {
     /// True if the part is first turned over: x, y, z become x, -y, -z.
-    pub flipped: bool,
+    pub is_flipped: bool,
     /// The lift after the flip, mm.
     pub lift: f64,
     /// The placement of the printed part's frame in the body's frame.
@@ -110,7 +110,7 @@ impl Assembly {
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = distinct_parts(self.bodies());
         let is_strut = |part: &&Part| {
-            let first_body = self.body(&part.bodies[0]);
+            let first_body = self.body(&part.body_names[0]);
             first_body.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
         };
         let strut_name = parts.iter().find(is_strut).map(|part| part.name.clone());
@@ -118,11 +118,11 @@ impl Assembly {
             part.instead_of.clone_from(&strut_name);
             parts.push(part);
         }
-        let noun_of = |part: &Part| noun_and_owner(&part.bodies[0]).0.to_owned();
+        let noun_of = |part: &Part| noun_and_owner(&part.body_names[0]).0.to_owned();
         let nouns: Vec<_> = parts.iter().map(noun_of).collect();
         for (part, noun) in parts.iter_mut().zip(&nouns) {
             if nouns.iter().filter(|other| *other == noun).count() > 1 {
-                part.mark = servo_digits(&part.bodies);
+                part.mark = servo_digits(&part.body_names);
             }
         }
         parts
@@ -141,7 +141,7 @@ fn servo_digits(names: &[String]) -> String {
         let (_, owner) = noun_and_owner(name);
         let index_in = |list: [&str; 4]| list.iter().position(|name| *name == owner);
         let side = Side::ALL.into_iter().find(|side| side.name() == owner);
-        numbers.extend(index_in(NAMES).or(index_in(LEGS)));
+        numbers.extend(index_in(SERVO_NAMES).or(index_in(LEG_NAMES)));
         numbers.extend(side.into_iter().flat_map(Side::servos));
     }
     numbers.sort_unstable();
@@ -153,15 +153,15 @@ fn servo_digits(names: &[String]) -> String {
 fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
-        let (prisms, is_turned_over) = print_layers(body);
+        let (prisms, is_turned_over) = layers_in_print_frame(body);
         match parts
             .iter_mut()
             .find(|part| are_equal(&part.prisms, &prisms))
         {
-            Some(part) => part.bodies.push(body.name.clone()),
+            Some(part) => part.body_names.push(body.name.clone()),
             None => parts.push(Part {
                 is_turned_over,
-                rubbery: body.kind == Kind::Pad,
+                is_rubbery: body.kind == Kind::Pad,
                 ..Part::single(&body.name, prisms)
             }),
         }
@@ -170,10 +170,10 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
         let top_layer = part
             .prisms
             .last()
-            .filter(|_| part.bodies[0].contains(SPACER));
+            .filter(|_| part.body_names[0].contains(SPACER));
         part.name = match top_layer {
             Some(top) => format!("{SPACER} {:.1}", top.z[1]),
-            None => shared_name(&part.bodies),
+            None => shared_name(&part.body_names),
         };
     }
     parts
@@ -181,7 +181,7 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
 
 /// A body's layers as printed, and true if the body is turned over for printing. The first shape is at the origin
 /// and the first bar along x, so equal parts have equal layers wherever they are used.
-fn print_layers(body: &Body) -> (Vec<Prism>, bool) {
+fn layers_in_print_frame(body: &Body) -> (Vec<Prism>, bool) {
     let area_of = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
     let is_turned_over = area_of(body.prisms.first()) < 0.7 * area_of(body.prisms.last());
     let [low, high] = body.z();
@@ -251,7 +251,10 @@ fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
     a.len() == b.len()
         && zip(a, b).all(|(a, b)| {
             let have_equal_heights = are_near(a.z[0], b.z[0]) && are_near(a.z[1], b.z[1]);
+            let have_equal_insets =
+                are_near(a.inset[0], b.inset[0]) && are_near(a.inset[1], b.inset[1]);
             have_equal_heights
+                && have_equal_insets
                 && are_equal_shapes(&a.filled_shapes, &b.filled_shapes)
                 && are_equal_shapes(&a.cut_shapes, &b.cut_shapes)
         })

@@ -6,7 +6,7 @@ use std::fmt;
 use serde::{Serialize, Serializer};
 
 /// The month in which the classes were estimated.
-pub const ESTIMATED: &str = "November 2026";
+pub const ESTIMATE_MONTH: &str = "November 2026";
 
 /// The price class of a row of the bill: of all its pieces, or of the smallest pack sold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,9 +38,9 @@ impl Price {
         }
     }
 
-    /// The message that explains the classes.
-    pub fn meaning() -> String {
-        let classes = Self::ALL.map(|class| {
+    /// The text that explains the classes.
+    pub fn explanation() -> String {
+        let class_texts = Self::ALL.map(|class| {
             let [from, to] = class.euros();
             match from {
                 0 => format!("{class} up to {to}"),
@@ -48,9 +48,9 @@ impl Price {
             }
         });
         format!(
-            "Price classes, euros for the whole row or the smallest pack: {}. They are estimates of {ESTIMATED} for \
+            "Price classes, euros for the whole row or the smallest pack: {}. They are estimates of {ESTIMATE_MONTH} for \
              European mail-order shops, without postage. Prices vary from shop to shop and from month to month.",
-            classes.join(", ")
+            class_texts.join(", ")
         )
     }
 

@@ -4,31 +4,34 @@ use lizard_robot::Body;
 
 use crate::bill::Bill;
 
-/// Distance along x or y from the plate's middle below which the mass centre counts as in the middle, mm.
-const MIDDLE: f64 = 1.0;
+/// Distance from the plate's middle, along x and along y, below which the mass centre counts as in the middle, mm.
+const MIDDLE_TOLERANCE: f64 = 1.0;
 /// Largest difference of the mass between robot.toml and the bill, as a share of the bill's mass.
 const MASS_TOLERANCE: f64 = 0.05;
 /// Largest distance between the mass centres of robot.toml and of the bill, mm.
 const CENTRE_TOLERANCE: f64 = 3.0;
 
 impl Bill {
-    /// The values for `[body]` in robot.toml: whole grams, and the mass centre to 0.1 mm, or zeros if the mass centre
+    /// The values for `[body]` in robot.toml: the mass in whole grams, and the mass centre to 0.1 mm, or zeros if it
     /// is in the plate's middle.
-    pub fn body(&self) -> Body {
+    pub fn body_values(&self) -> Body {
         let [ahead, left, _] = self.centre;
-        let centre = match ahead.abs() < MIDDLE && left.abs() < MIDDLE {
+        let centre = match ahead.abs() < MIDDLE_TOLERANCE && left.abs() < MIDDLE_TOLERANCE {
             true => [0.0; 2],
             false => [ahead, left].map(|coordinate| (coordinate * 10.0).round() / 10.0 + 0.0),
         };
         Body {
             mass: self.grams.round(),
-            centre,
+            mass_centre: centre,
         }
     }
 
     /// Formats [`Bill::body`] as a table of robot.toml.
     pub fn body_toml(&self) -> String {
-        let Body { mass, centre } = self.body();
+        let Body {
+            mass,
+            mass_centre: centre,
+        } = self.body_values();
         match centre {
             [0.0, 0.0] => format!("[body]\nmass = {mass:.1}\n"),
             [ahead, left] => {
@@ -38,9 +41,9 @@ impl Bill {
     }
 
     /// True if the `[body]` of a robot.toml differs from the bill by more than 5 % or 3 mm.
-    pub fn differs(&self, body: &Body) -> bool {
+    pub fn differs_from(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
-        let error = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
+        let error = libm::hypot(body.mass_centre[0] - ahead, body.mass_centre[1] - left);
         (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || error > CENTRE_TOLERANCE
     }
 

@@ -35,7 +35,7 @@ impl<'a> EndComparison<'a> {
             End::Tail => &maps.tail,
         };
         Self {
-            fixed: guard.end(core_end(end)),
+            fixed: guard.five_bar(core_end(end)),
             exact: robot.lizard().end(end),
             limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],

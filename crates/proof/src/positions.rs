@@ -20,16 +20,16 @@ pub struct Positions {
 impl Positions {
     /// Computes all positions of the servo with this index, 0 to 3, in the firmware's steps.
     pub fn of(guard: &CoreRobot, servo: usize) -> Self {
-        let neutral = guard.neutral()[servo];
+        let neutral = guard.neutral_angles()[servo];
         let calibration = guard.calibration()[servo];
         let end = End::of_servo(servo);
         let mut positions = Self {
-            first: calibration.min.0,
+            first: calibration.travel_min.0,
             degrees: Vec::new(),
             fixed: Vec::new(),
             exact: Vec::new(),
         };
-        for sweep in calibration.min.0..=calibration.max.0 {
+        for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
             let angle = neutral.swept(Sweep(sweep));
             let degrees = f64::from(angle.0) * 360.0 / 65536.0;
             let fixed = Direction::of(angle);

@@ -24,8 +24,8 @@ pub struct SideComparison<'a> {
 impl<'a> SideComparison<'a> {
     pub fn new(robot: &Robot, guard: &CoreRobot, maps: &'a CellMaps, side: Side) -> Self {
         let (fixed, map) = match side {
-            Side::Left => (guard.side(part::Side::Left), &maps.left),
-            Side::Right => (guard.side(part::Side::Right).mirrored(), &maps.right),
+            Side::Left => (guard.slider(part::Side::Left), &maps.left),
+            Side::Right => (guard.slider(part::Side::Right).mirrored(), &maps.right),
         };
         Self {
             side,
@@ -57,7 +57,9 @@ impl<'a> SideComparison<'a> {
             for_each_eight(columns(sample, row, rear.fixed.len()), |eight, count| {
                 // Positions are in the frame of their end, arms in the frame of the chassis.
                 let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
-                let pose = self.exact.shape(self.side.rear_arm(crank_rear), front_arm);
+                let pose = self
+                    .exact
+                    .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
                 let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
                 for lane in 0..count {
                     let column = eight[lane];

@@ -16,8 +16,9 @@ pub const STEPS_BAND: f64 = 4.0;
 /// couplers. That angle is large if the couplers are nearly in line: it grows with the reciprocal of the sine between
 /// them, which is at least `type2`.
 pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
-    let (left, right) = (bars.coupler_left, bars.coupler_right);
-    let max_tip_distance = (left + right).min(bars.base + bars.crank_left + bars.crank_right);
+    let (left, right) = (bars.left_coupler_length, bars.right_coupler_length);
+    let max_tip_distance =
+        (left + right).min(bars.base + bars.left_crank_length + bars.right_crank_length);
     let angle_per_mm = (max_tip_distance / (left * right)).max(1.0 / left.min(right));
     MARGIN_BAND.max(STEPS_BAND * step * angle_per_mm / type2)
 }

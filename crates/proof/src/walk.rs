@@ -80,10 +80,10 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
             tally: next_part_tally(),
         });
     }
-    for (servo, leg_name) in servo::LEGS.iter().enumerate() {
+    for (servo, leg_name) in servo::LEG_NAMES.iter().enumerate() {
         findings.push(Finding {
             part: format!("leg {leg_name}"),
-            servos: vec![servo::NAMES[servo]],
+            servos: vec![servo::SERVO_NAMES[servo]],
             tally: compare_leg(robot, guard, &Positions::of(guard, servo)),
         });
     }
@@ -103,7 +103,7 @@ pub fn widest_band(robot: &Robot) -> f64 {
 pub fn rows(guard: &CoreRobot) -> u64 {
     let count_positions = |servo: usize| {
         let calibration = guard.calibration()[servo];
-        (i32::from(calibration.max.0) - i32::from(calibration.min.0) + 1) as u64
+        (i32::from(calibration.travel_max.0) - i32::from(calibration.travel_min.0) + 1) as u64
     };
     let first_servos = End::ALL
         .map(|end| end.servos()[0])
@@ -113,5 +113,5 @@ pub fn rows(guard: &CoreRobot) -> u64 {
 }
 
 fn servo_names(servos: [usize; 2]) -> Vec<&'static str> {
-    servos.map(|servo| servo::NAMES[servo]).to_vec()
+    servos.map(|servo| servo::SERVO_NAMES[servo]).to_vec()
 }

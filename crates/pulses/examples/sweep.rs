@@ -41,13 +41,13 @@ mod servos {
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
 /// The number of bytes received, modulo 256. The handler increments it; `main` echoes bytes until it has echoed
 /// as many.
-static RECEIVED: Byte = Byte::new(0);
+static RECEIVED_COUNT: Byte = Byte::new(0);
 
-/// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. Each servo has its own
-/// step per frame.
+/// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. The width of each servo
+/// changes by another number of cycles per frame.
 fn width_cycles(servo: u8, frame: u16) -> u16 {
-    let step = 16 * u16::from(servo) + 5;
-    let ramp = frame.wrapping_mul(step) % 32_000;
+    let cycles_per_frame = 16 * u16::from(servo) + 5;
+    let ramp = frame.wrapping_mul(cycles_per_frame) % 32_000;
     let added_cycles = if ramp < 16_000 { ramp } else { 32_000 - ramp };
     1000 * CYCLES_PER_US + added_cycles
 }
@@ -68,10 +68,10 @@ fn main() -> ! {
     unsafe { servos::start() };
     // SAFETY: every interrupt that is enabled above has its handler.
     unsafe { avr_device::interrupt::enable() };
-    let (mut tick, mut frame, mut echoed) = (servos::ticks(), 0u16, 0u8);
+    let (mut last_tick, mut frame, mut echoed_count) = (servos::ticks(), 0u16, 0u8);
     loop {
-        if servos::ticks() != tick {
-            tick = servos::ticks();
+        if servos::ticks() != last_tick {
+            last_tick = servos::ticks();
             let mut widths = [0; PINS.len()];
             for (servo, width) in widths.iter_mut().enumerate() {
                 *width = width_cycles(servo as u8, frame);
@@ -79,14 +79,14 @@ fn main() -> ! {
             servos::submit(widths);
             frame = frame.wrapping_add(1);
             // Toggles the LED in one instruction, because PORTB also has servo pins.
-            if tick & 15 == 0 {
+            if last_tick & 15 == 0 {
                 // SAFETY: a one in this register toggles a pin of PORTB.
                 unsafe { chip.PORTB.pinb.write(|w| w.bits(1 << 5)) };
             }
         }
-        if RECEIVED.get() != echoed && chip.USART0.ucsr0a.read().udre0().bit_is_set() {
-            let byte = RING[usize::from(echoed & 15)].get();
-            echoed = echoed.wrapping_add(1);
+        if RECEIVED_COUNT.get() != echoed_count && chip.USART0.ucsr0a.read().udre0().bit_is_set() {
+            let byte = RING[usize::from(echoed_count & 15)].get();
+            echoed_count = echoed_count.wrapping_add(1);
             chip.USART0.udr0.write(|w| w.bits(byte));
         }
     }
@@ -96,7 +96,7 @@ fn main() -> ! {
 fn USART_RX() {
     // SAFETY: only this handler reads UDR0.
     let byte = unsafe { &*USART0::ptr() }.udr0.read().bits();
-    let received = RECEIVED.get();
-    RING[usize::from(received & 15)].set(byte);
-    RECEIVED.set(received.wrapping_add(1));
+    let received_count = RECEIVED_COUNT.get();
+    RING[usize::from(received_count & 15)].set(byte);
+    RECEIVED_COUNT.set(received_count.wrapping_add(1));
 }

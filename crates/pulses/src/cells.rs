@@ -41,8 +41,8 @@ impl Byte {
     }
 }
 
-/// Two bytes. An interrupt may occur between their accesses, so reader and writer must agree on who has access
-/// when.
+/// A word of two bytes. An interrupt may occur between the accesses to them, so reader and writer must agree on who
+/// may access the word at which time.
 pub struct Word {
     low: Byte,
     high: Byte,
@@ -80,7 +80,7 @@ impl Word {
     }
 }
 
-/// A counter of faults in interrupt handlers, which main reads. It stays at 65535.
+/// A counter of faults in interrupt handlers, which main reads. It saturates at 65535.
 pub struct Counter(Word);
 
 impl Default for Counter {
@@ -112,29 +112,29 @@ impl Counter {
         }
     }
 
-    /// The count so far. Disables interrupts for about 10 cycles.
+    /// Reads the count. Disables interrupts for about 10 cycles.
     #[cfg(any(doc, target_arch = "avr"))]
     pub fn read(&self) -> u16 {
         let sreg: u8;
         // SAFETY: reads and then clears the interrupt flag.
         unsafe { core::arch::asm!("in {}, 0x3f", "cli", out(reg) sreg, options(nostack)) };
         let count = self.0.get();
-        // SAFETY: gives the flag back as it was.
+        // SAFETY: restores the interrupt flag.
         unsafe { core::arch::asm!("out 0x3f, {}", in(reg) sreg, options(nostack)) };
         count
     }
 }
 
-/// Port and mask of each pin, then zeros up to `SIZE` entries.
+/// The address of the PORT register and the mask of each pin, then zeros up to `SIZE` entries.
 #[must_use]
-pub const fn pins<const SERVOS: usize, const SIZE: usize>(
+pub const fn pin_table<const SERVOS: usize, const SIZE: usize>(
     pins: [Pin; SERVOS],
 ) -> [[Byte; 2]; SIZE] {
-    let mut bytes = [const { [const { Byte::new(0) }; 2] }; SIZE];
+    let mut table = [const { [const { Byte::new(0) }; 2] }; SIZE];
     let mut slot = 0;
     while slot < SERVOS {
-        bytes[slot] = [Byte::new(pins[slot].port), Byte::new(pins[slot].mask)];
+        table[slot] = [Byte::new(pins[slot].port), Byte::new(pins[slot].mask)];
         slot += 1;
     }
-    bytes
+    table
 }

@@ -1,11 +1,11 @@
-//! Servo pulses, exact to the CPU cycle, and a steady clock: for any program on an
+//! Servo pulses that are exact to the CPU cycle, and a steady clock, for any program on an
 //! ATmega328P (Arduino UNO, Nano, Pro Mini).
 //!
 //! A servo turns the width of a pulse into an angle, so every cycle of jitter makes the horn tremble. Interrupt
 //! latency varies with the current instruction and with other interrupts that run. The remedy is to be early and
-//! then wait. Timer1 counts CPU cycles through slots. Each compare interrupt reads how late it already is, waits
-//! for the rest of [`LEAD`], and only then stores to the port. Both edges wait in the same code, so every constant
-//! delay cancels and the width is exact.
+//! then wait. Timer1 counts the CPU cycles of each slot. Each compare interrupt reads how late it already is, waits
+//! for the rest of [`LEAD_CYCLES`], and only then stores to the port. Both edges wait in the same code, so every
+//! constant delay cancels and the width is exact.
 //!
 //! ```text
 //! slot    0         1         2         3         4         0
@@ -19,7 +19,7 @@
 //!
 //! One pin is high at a time. The last slot has no pin: it opens with the tick, and just before it closes, the
 //! engine takes over the frame that main has submitted. The length of a slot follows from the number of servos,
-//! [`slot_cycles`]: with four it is 4 ms, and a frame is 20 ms to the cycle.
+//! [`slot_cycles`]: with four servos a slot is 4 ms, and a frame is exactly 20 ms.
 //!
 //! Each slot is planned at the end of the previous one, so that the opening interrupt has almost nothing to do
 //! before its edge.
@@ -40,30 +40,30 @@
 //! servos::submit([1500 * CYCLES_PER_US; 4]);
 //! ```
 //!
-//! The program needs `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a complete one.
+//! The program needs `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a complete program.
 //!
 //! # When not to use it
 //!
-//! The engine occupies Timer1, and its interrupts wait for a few per cent of the processor's time. Two servos on
-//! pins 9 and 10 need neither: the timer's own compare outputs are exact without any code. The engine does not run
-//! on other chips or clocks.
+//! The engine occupies Timer1, and its interrupt handlers spend a few per cent of the processor's time waiting. Two
+//! servos on pins 9 and 10 do not need it: the timer's own compare outputs are exact without any code. The engine
+//! does not run on other chips, or at other clock rates.
 //!
 //! # An edge that cannot be on time
 //!
 //! A late edge must not become a wrong angle:
 //!
-//! - A rising edge that is late is not made. The servo misses one of the 50 pulses of a second, and holds its
+//! - A rising edge that is late is not made. The servo misses one of its 50 pulses per second, and holds its
 //!   position.
 //! - A falling edge cannot be dropped, and nothing can shorten a pulse that is already too long. It is made at
 //!   once, so the pulse is longer by as much as the edge is late: 10 us, or 160 cycles, turn an SG-90 by one degree
 //!   for 20 ms. If interrupts stay off until the end of the slot, the start of the next slot ends the pulse.
-//! - Late edges of both kinds are counted, in `late`.
+//! - The function `late_edges` returns the number of late edges of both kinds.
 //!
 //! # Rules
 //!
-//! - The longest of the program's other handlers plus the longest time with interrupts off take less than [`LEAD`]
-//!   minus 60 cycles, which a handler of the engine itself needs before it reads the timer. If they take longer,
-//!   the edge is late.
+//! - The longest of the program's other handlers and the longest time with interrupts off together take less than
+//!   [`LEAD_CYCLES`] minus 60 cycles; the engine's own handler needs these 60 before it reads the timer. If they
+//!   take longer, the edge is late.
 //! - Handlers do not enable other interrupts. Timer1's compare interrupts are served before Timer0's, the USART's
 //!   and all later ones. INT0, INT1, PCINT, the watchdog and Timer2 are served before Timer1: in a program that
 //!   uses several of them, the times of their handlers add up.
@@ -87,10 +87,12 @@ mod timing;
 
 pub use engine::Engine;
 pub use pin::Pin;
-pub use timing::{CYCLES_PER_US, LEAD, MIN_WIDTH, frame_cycles, max_width, slot_cycles};
+pub use timing::{
+    CYCLES_PER_US, LEAD_CYCLES, MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles, slot_cycles,
+};
 
 /// Makes the enclosing module the owner of Timer1 and of the pins of one to eight servos. The module then has the
-/// functions `start`, `submit`, `is_taken`, `hush`, `ticks` and `late` of [`Engine`], and the handlers of both
+/// functions `start`, `submit`, `is_taken`, `hush`, `ticks` and `late_edges` of [`Engine`], and the handlers of both
 /// compare interrupts.
 ///
 /// - `engine!(PINS)` with a constant `PINS: [Pin; N]`, for pins that are known at compile time.
@@ -123,33 +125,33 @@ macro_rules! engine {
         /// Length of the tables: a power of two, so that a mask keeps an index in range.
         const SIZE: usize = SERVOS.next_power_of_two();
 
-        // Each is a separate variable, so that its address is part of the instruction. All are zero until `start`,
-        // so that none needs an initial value in flash.
+        // Each is a separate variable, so that its address is part of the instruction. All are zero until `start`
+        // (only pins given as a constant are not), so that they need no initial values in flash.
         static PINS: [[$crate::cells::Byte; 2]; SIZE] = $pins;
         static FRAMES: [[$crate::cells::Word; SIZE]; 2] =
             [const { [const { $crate::cells::Word::new(0) }; SIZE] }; 2];
-        static PLAYING: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static FRESH: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static PLAYED_FRAME: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static HAS_NEW_FRAME: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static SLOT: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static PORT: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static MASK: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static FALL: $crate::cells::Word = $crate::cells::Word::new(0);
-        static ALLOWED: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static FALL_COUNT: $crate::cells::Word = $crate::cells::Word::new(0);
+        static ALLOWED_PINS: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static TICKS: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static LATE: $crate::cells::Counter = $crate::cells::Counter::new();
+        static LATE_EDGES: $crate::cells::Counter = $crate::cells::Counter::new();
 
         const ENGINE: $crate::Engine<'static, SERVOS, SIZE> = $crate::Engine {
             pins: &PINS,
             frames: &FRAMES,
-            playing: &PLAYING,
-            fresh: &FRESH,
+            played_frame: &PLAYED_FRAME,
+            has_new_frame: &HAS_NEW_FRAME,
             slot: &SLOT,
             port: &PORT,
             mask: &MASK,
-            fall: &FALL,
-            allowed: &ALLOWED,
+            fall_count: &FALL_COUNT,
+            allowed_pins: &ALLOWED_PINS,
             ticks: &TICKS,
-            late: &LATE,
+            late_edges: &LATE_EDGES,
         };
 
         /// See `servo_pulses::Engine::submit`.
@@ -179,28 +181,28 @@ macro_rules! engine {
             ENGINE.ticks()
         }
 
-        /// See `servo_pulses::Engine::late`.
+        /// See `servo_pulses::Engine::late_edges`.
         #[allow(dead_code)]
-        pub fn late() -> u16 {
-            ENGINE.late()
+        pub fn late_edges() -> u16 {
+            ENGINE.late_edges()
         }
 
         /// The handler TIMER1_COMPA of an ATmega328P: opens a slot.
         #[unsafe(export_name = "__vector_11")]
-        extern "avr-interrupt" fn slot_opens() {
+        extern "avr-interrupt" fn handle_slot_start() {
             // SAFETY: this is the handler of the compare match A.
-            unsafe { ENGINE.open() }
+            unsafe { ENGINE.open_slot() }
         }
 
         /// The handler TIMER1_COMPB of an ATmega328P: closes a slot.
         #[unsafe(export_name = "__vector_12")]
-        extern "avr-interrupt" fn slot_closes() {
+        extern "avr-interrupt" fn handle_slot_end() {
             // SAFETY: this is the handler of the compare match B.
-            unsafe { ENGINE.close() }
+            unsafe { ENGINE.close_slot() }
         }
     };
     ($pins:expr) => {
-        $crate::engine!(@ $pins.len(), $crate::cells::pins($pins));
+        $crate::engine!(@ $pins.len(), $crate::cells::pin_table($pins));
 
         /// See `servo_pulses::Engine::start`.
         ///
@@ -209,7 +211,7 @@ macro_rules! engine {
         #[inline(always)]
         pub unsafe fn start() {
             // SAFETY: as the caller says.
-            unsafe { ENGINE.start_all() }
+            unsafe { ENGINE.start_with_fixed_pins() }
         }
     };
 }

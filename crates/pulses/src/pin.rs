@@ -1,7 +1,6 @@
 //! Arduino pins as port registers and bits.
 //!
-//! The numbers printed on the board are not the chip's pin numbers; the chip's pins belong to three ports in another
-//! order.
+//! The numbers printed on the board are not the chip's pin numbers, and the chip's pins are spread over three ports.
 
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +45,8 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// Ports and bits of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram, in the data
-    /// sheet's names.
+    /// Number, port and bit of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram. The ports have
+    /// their names in the data sheet.
     const SOCKETS: [(u8, char, u8); 20] = [
         (0, 'D', 0),
         (1, 'D', 1),
@@ -74,7 +73,7 @@ mod tests {
     #[test]
     fn every_pin_has_the_port_and_the_bit_of_the_circuit_diagram() {
         for (number, port, bit) in SOCKETS {
-            let pin = Pin::arduino(number).expect("the UNO has it");
+            let pin = Pin::arduino(number).expect("the UNO has this pin");
             // Data sheet, register summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
             let address = match port {
                 'B' => 0x25,
@@ -90,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn an_uno_has_no_other_pins() {
+    fn an_uno_has_no_pins_with_numbers_above_19() {
         for number in 20..=255 {
             assert_eq!(Pin::arduino(number), None);
         }

@@ -9,8 +9,8 @@ use core::arch::asm;
 /// their cost cancels out of the width.
 ///
 /// # Safety
-/// `port` is the PORT register of a servo pin and `low` has the right levels for its other pins
-/// until the store, so interrupts are off; `count` is at most 255 cycles ahead.
+/// `port` is the PORT register of a servo pin. `low` has the right levels for its other pins until
+/// the store, so interrupts are off. `count` is at most 255 cycles ahead.
 #[inline(always)]
 pub unsafe fn store_at(count: [u8; 2], port: *mut u8, low: u8, change: u8) -> u8 {
     let [left, high] = count;
@@ -24,8 +24,8 @@ pub unsafe fn store_at(count: [u8; 2], port: *mut u8, low: u8, change: u8) -> u8
             "sub {left}, {now}",
             "lds {now}, {tcnt1h}",
             "sbc {on_time}, {now}",
-            // A borrow means late: then on_time, left and change become 0; otherwise
-            // on_time is 0xff.
+            // A borrow means that the edge is late: then on_time, left and change become 0.
+            // Otherwise on_time is 0xff.
             "sbc {on_time}, {on_time}",
             "com {on_time}",
             "and {left}, {on_time}",

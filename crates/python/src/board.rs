@@ -8,19 +8,19 @@ use pyo3::prelude::*;
 
 use crate::robot::Robot;
 
-/// The firmware's core with a robot, in frames of 20 ms.
+/// The firmware's core with a robot, which runs in frames of 20 ms.
 #[pyclass(frozen)]
 pub struct Board(Mutex<RunningRobot>);
 
 #[pymethods]
 impl Board {
-    /// The robot at power-on.
+    /// Returns a board with this robot just after power-on.
     #[new]
     fn new(robot: &Robot) -> Self {
         Self(Mutex::new(RunningRobot::power_on(*robot.0.firmware())))
     }
 
-    /// Runs a frame after these bytes of the serial line, and returns the text of the robot.
+    /// Sends these bytes to the robot, runs one frame, and returns the text that the robot has sent.
     fn frame(&self, bytes: &[u8]) -> String {
         // The firmware gets them one by one, as from a serial line.
         let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -28,7 +28,7 @@ impl Board {
             running.board.send(&[*byte]);
             running.settle();
         }
-        running.frame();
+        running.run_frame();
         core::mem::take(&mut running.board.transmitter.text)
     }
 

@@ -1,7 +1,7 @@
-//! The Rust part of the Python package `lizard`: passes numpy arrays to the crates.
+//! The Rust part of the Python package `lizard`, which passes numpy arrays to the Rust crates.
 //!
-//! The classes for users are in `lizard/*.py`, where the shapes and units of the arrays are documented. Here poses are
-//! rows of a two-dimensional array.
+//! The classes for users are in `lizard/*.py`, where the shapes and units of the arrays are documented. Here, each row
+//! of a two-dimensional array is a pose.
 //!
 //! # When not to use it
 //! From Rust, use `lizard-kinematics` and `lizard-robot` directly.

@@ -16,14 +16,15 @@ pyo3::create_exception!(
     "A mistake in a robot.toml, with its `file`, `line` (None if it belongs to none) and `key`."
 );
 
-/// Columns of [`Robot::solve`]: head, tail, couplers, slider directions, travels, margins, safe.
-const COLUMNS: usize = 2 + 2 + 4 + 2 + 2 + 10 + 1;
+/// Number of columns of [`Robot::solve`]: head point, tail point, coupler angles, slider directions, slider travels,
+/// margins, and 1 if the pose is safe.
+const COLUMN_COUNT: usize = 2 + 2 + 4 + 2 + 2 + 10 + 1;
 
 /// A robot whose every value and gait has been checked.
 #[pyclass(frozen)]
 pub struct Robot(pub lizard_robot::Robot);
 
-/// Rows of numbers for numpy.
+/// A two-dimensional numpy array, or an error.
 type Rows<'py> = PyResult<Bound<'py, PyArray2<f64>>>;
 
 #[pymethods]
@@ -45,31 +46,34 @@ impl Robot {
         wrap_robot(py, py.detach(|| self.0.with_gait(table)))
     }
 
+    /// The robot's name.
     fn name(&self) -> &str {
         self.0.name()
     }
 
+    /// The servo angles of the neutral pose, deg.
     fn neutral(&self) -> [f64; 4] {
-        self.0.neutral().into()
+        self.0.neutral_pose().into()
     }
 
-    /// The range of the servos' travel from neutral, deg: smallest and largest of each.
+    /// The smallest and largest travel of each servo from neutral, deg.
     fn travel(&self) -> [(f64, f64); 4] {
         self.0.servos().map(|servo| servo.travel())
     }
 
-    /// The fastest turn of a servo in a gait, deg/s.
+    /// The greatest speed of a servo that a gait may use, deg/s.
     fn gait_slew(&self) -> f64 {
-        self.0.pace().gait_slew
+        self.0.speed_limits().gait_slew
     }
 
-    /// All joints and margins of poses: a row of [`COLUMNS`] for each row of four angles. A row is
-    /// NaN, and its last column 0, if there is no solution.
+    /// All joints and margins of poses: a row of [`COLUMN_COUNT`] numbers for each row of four angles. If a pose has
+    /// no solution, its row is NaN, except for 0 in the last column.
     fn solve<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
-        compute_rows(py, &poses, |angles| self.row(angles))
+        compute_rows(py, &poses, |angles| self.solution_row(angles))
     }
 
-    /// K and K* of poses, each row by row: 8 x 4 and 8 x 8 numbers, NaN if there is no solution.
+    /// The matrices K (8 x 4) and K* (8 x 8) of poses: a row has first the numbers of K, row by row, then those of K*;
+    /// NaN if there is no solution.
     fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
         compute_rows(py, &poses, |angles: [f64; 4]| {
             let mut row = [f64::NAN; 96];
@@ -82,8 +86,8 @@ impl Robot {
         })
     }
 
-    /// The left and right servo angles of an end for given positions of its point (mm, chassis frame), in all four
-    /// working modes; NaN where a point is out of reach.
+    /// The left and right servo angles of an end in all four working modes, for given positions of its point (mm,
+    /// chassis frame); NaN where a point is out of reach.
     fn inverse<'py>(
         &self,
         py: Python<'py>,
@@ -97,7 +101,9 @@ impl Robot {
                 .end(end)
                 .inverse(lizard.to_end(end, Vector::new(x, y)));
             let angles = solutions.map(|modes| {
-                modes.map(|mode| [mode.theta_left, mode.theta_right].map(|a| end.mirror_angle(a)))
+                modes.map(|mode| {
+                    [mode.theta_left, mode.theta_right].map(|angle| end.mirror_angle(angle))
+                })
             });
             let mut row = [f64::NAN; 8];
             if let Ok(angles) = angles {
@@ -110,7 +116,7 @@ impl Robot {
     /// The reasons why a pose is not safe, as messages; empty if it is safe.
     fn reasons(&self, angles: [f64; 4]) -> Vec<String> {
         match self.0.lizard().solve(&angles.into()) {
-            Ok(solution) => verdict::reasons(&self.0, &solution),
+            Ok(solution) => verdict::refusal_reasons(&self.0, &solution),
             Err(infeasible) => vec![infeasible.to_string()],
         }
     }
@@ -127,8 +133,8 @@ impl Robot {
         self.0.gaits().iter().map(CheckedGait::name).collect()
     }
 
-    /// A gait's period (s), its fastest turn (deg/s), its least margin with its name, and the times
-    /// (s) and servo angles of the frames of a cycle.
+    /// A gait's period (s), its peak servo speed (deg/s), the name and value of its least margin, and
+    /// the times (s) and servo angles (deg) of the frames of a cycle.
     #[expect(
         clippy::type_complexity,
         reason = "a tuple that Python takes apart at once"
@@ -144,7 +150,7 @@ impl Robot {
         Bound<'py, PyArray1<f64>>,
         Bound<'py, PyArray2<f64>>,
     )> {
-        let gait = self.find(name)?;
+        let gait = self.find_gait(name)?;
         let (times, angles): (Vec<f64>, Vec<Vec<f64>>) = gait
             .frames()
             .map(|(seconds, phase)| (seconds, gait.table_angles(phase).to_vec()))
@@ -161,21 +167,21 @@ impl Robot {
                 }
             })
             .map_or(("", f64::NAN), |least_margin| {
-                (Check::name(least_margin.what), least_margin.value)
+                (Check::name(least_margin.check), least_margin.value)
             });
         Ok((
             gait.period(),
-            audit.peak.speed,
+            audit.peak_speed.speed,
             least_margin,
             PyArray1::from_vec(py, times),
             PyArray2::from_vec2(py, &angles)?,
         ))
     }
 
-    /// The movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for the parts that are
-    /// undecided because two feet pull against the other two.
+    /// The predicted movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for the components
+    /// that are undecided because two feet pull against the other two.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
-        let gait = self.find(name)?;
+        let gait = self.find_gait(name)?;
         let Prediction {
             forward,
             left,
@@ -183,7 +189,7 @@ impl Robot {
         } = py.detach(|| {
             let prediction = self.0.predict(gait);
             match with_servos {
-                true => prediction.keep_known(gait.simulate_driven_cycle(
+                true => prediction.known_components_of(gait.simulate_driven_cycle(
                     self.0.ground(),
                     &self.0.motors(),
                     1.0,
@@ -202,7 +208,7 @@ impl Robot {
     /// The image for a board as Intel HEX: the firmware with this robot, or the robot alone.
     fn image(&self, py: Python<'_>, only_robot: bool) -> PyResult<String> {
         let image = py.detach(|| match only_robot {
-            true => file::robot_alone(&self.0),
+            true => file::robot_only_image(&self.0),
             false => file::image(&self.0),
         });
         image.map(|image| image.to_hex()).map_err(to_value_error)
@@ -212,11 +218,11 @@ impl Robot {
     fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);
-            assembly.check_measures().map_err(to_value_error)?;
+            assembly.check_dimensions().map_err(to_value_error)?;
             let neutral = self
                 .0
                 .lizard()
-                .solve(&self.0.neutral())
+                .solve(&self.0.neutral_pose())
                 .map_err(to_value_error)?;
             let scene = Scene {
                 has_shapes: shapes,
@@ -228,7 +234,8 @@ impl Robot {
 }
 
 impl Robot {
-    fn find(&self, name: &str) -> PyResult<&CheckedGait> {
+    /// Finds a gait by its name, or fails with the names of all gaits.
+    fn find_gait(&self, name: &str) -> PyResult<&CheckedGait> {
         let gait_error = || {
             let names = self.gaits().join(", ");
             PyKeyError::new_err(format!("there is no gait {name}; the gaits are {names}"))
@@ -236,24 +243,25 @@ impl Robot {
         self.0.gait(name).ok_or_else(gait_error)
     }
 
-    fn row(&self, angles: [f64; 4]) -> [f64; COLUMNS] {
-        let mut row = [f64::NAN; COLUMNS];
-        row[COLUMNS - 1] = 0.0;
+    /// The row of [`Robot::solve`] for one pose.
+    fn solution_row(&self, angles: [f64; 4]) -> [f64; COLUMN_COUNT] {
+        let mut row = [f64::NAN; COLUMN_COUNT];
+        row[COLUMN_COUNT - 1] = 0.0;
         if let Ok(solution) = self.0.lizard().solve(&angles.into()) {
-            fill(&mut row, &solution);
-            let is_safe = self.0.accepted(angles).is_some();
-            row[COLUMNS - 1] = f64::from(u8::from(is_safe));
+            fill_row(&mut row, &solution);
+            let is_safe = self.0.solve_if_allowed(angles).is_some();
+            row[COLUMN_COUNT - 1] = f64::from(u8::from(is_safe));
         }
         row
     }
 }
 
-/// Writes a solution into its row, in the order of [`COLUMNS`], except for the last column.
-fn fill(row: &mut [f64; COLUMNS], solution: &Solution) {
+/// Writes a solution into its row, in the order of the columns, except for the last column.
+fn fill_row(row: &mut [f64; COLUMN_COUNT], solution: &Solution) {
     let (head, tail, passive) = (
         solution.head_point(),
         solution.tail_point(),
-        solution.passive(),
+        solution.passive_joints(),
     );
     let joints = [
         head.x,
@@ -277,7 +285,7 @@ fn fill(row: &mut [f64; COLUMNS], solution: &Solution) {
     }
 }
 
-/// Computes a row of `N` numbers for each row of `M`.
+/// Computes a row of `N` numbers for each row of `M` numbers.
 fn compute_rows<'py, const M: usize, const N: usize>(
     py: Python<'py>,
     input: &PyReadonlyArray2<'py, f64>,

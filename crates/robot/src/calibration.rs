@@ -1,4 +1,4 @@
-//! The calibration of one robot, which `save` stores: as lines of the console, and as a file.
+//! The calibration of one robot, which the console command `save` stores, as console lines and as a file.
 //!
 //! Two robots built from one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The
 //! host program and the page measure these differences and store them; the rules for both are here.
@@ -9,19 +9,19 @@ use lizard_core::console::command::MAX_DEADMAN_MS;
 use toml::de::DeTable;
 
 use crate::file::{Checked, Error, Fault, Section, parse};
-use crate::measures::servo::NAMES;
+use crate::measures::servo::SERVO_NAMES;
 
-/// The value of the key `format`. The number rises when a key changes its meaning.
+/// The value of the key `format`. Its number increases when a key changes its meaning.
 const FORMAT: &str = "lizard calibration 1";
-const HEADER: &str = "\
+const FILE_HEADER: &str = "\
 # A lizard's calibration. `lizard calibrate restore` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 
 ";
-/// Tolerance for equal numbers: slightly less than half of the last digit that the console prints, 0.01.
+/// Largest difference of equal settings: slightly less than half of 0.01, the last digit that the console prints.
 const TOLERANCE: f64 = 0.0049;
 
-/// The settings of a robot.
+/// The settings of a robot that `save` stores.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Calibration {
@@ -48,8 +48,8 @@ pub struct ServoSettings {
 }
 
 impl ServoSettings {
-    /// The settings of a servo that turns in the opposite direction. The horn stays where it is: the same pulse is
-    /// the opposite trim.
+    /// Returns the settings of a servo that turns in the opposite direction. The neutral pulse stays the same, so
+    /// the trim changes its sign.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
@@ -59,7 +59,8 @@ impl ServoSettings {
         }
     }
 
-    /// The settings with another scale, us/deg. The horn stays where it is: the trim is converted to the new degrees.
+    /// Returns the settings with another scale, us/deg. The neutral pulse stays the same: the trim is converted to
+    /// the new scale.
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
         let scale = round_to_hundredths(scale);
@@ -97,14 +98,14 @@ impl ServoSettings {
         })
     }
 
-    fn read(section: &Section) -> Checked<Self> {
+    fn from_section(section: &Section) -> Checked<Self> {
         let read_number = |key| {
             let value = section.number(key, -360.0, 360.0, "deg")?;
             require_two_decimals(section, key, value)
         };
         let limit: [f64; 2] = section.numbers("limit", -360.0, 360.0, "deg")?;
-        for end in limit {
-            require_two_decimals(section, "limit", end)?;
+        for angle in limit {
+            require_two_decimals(section, "limit", angle)?;
         }
         let dir = match section.text("dir")? {
             "+" => '+',
@@ -126,28 +127,30 @@ impl ServoSettings {
 impl Calibration {
     /// Reads the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
     #[must_use]
-    pub fn from_lines(lines: &[String]) -> Option<Self> {
-        let rest_after = |word: &str| {
-            let mut rests = lines.iter().filter_map(|line| {
-                let rest = line.strip_prefix("# ")?.strip_prefix(word)?;
-                rest.strip_prefix(' ')
+    pub fn from_cal_answer(lines: &[String]) -> Option<Self> {
+        let text_after = |keyword: &str| {
+            let mut texts = lines.iter().filter_map(|line| {
+                let line_text = line.strip_prefix("# ")?.strip_prefix(keyword)?;
+                line_text.strip_prefix(' ')
             });
-            rests.next()
+            texts.next()
         };
-        let servos: Option<Vec<_>> = NAMES
+        let servos: Option<Vec<_>> = SERVO_NAMES
             .iter()
-            .map(|name| ServoSettings::parse(rest_after(name)?))
+            .map(|name| ServoSettings::parse(text_after(name)?))
             .collect();
         Some(Self {
-            boot: rest_after("boot").filter(|boot| is_name(boot))?.to_owned(),
-            deadman: rest_after("deadman")?.parse().ok()?,
+            boot: text_after("boot")
+                .filter(|boot| is_gait_name(boot))?
+                .to_owned(),
+            deadman: text_after("deadman")?.parse().ok()?,
             servos: servos?.try_into().ok()?,
         })
     }
 
-    /// The console's lines that set all these settings.
+    /// Returns the console lines that set all these settings.
     #[must_use]
-    pub fn lines(&self) -> Vec<String> {
+    pub fn console_lines(&self) -> Vec<String> {
         let servos = self.servos.iter().zip(1..).flat_map(|(servo, number)| {
             let [min, max] = servo.limit;
             [
@@ -164,13 +167,13 @@ impl Calibration {
         servos.chain(general_lines).collect()
     }
 
-    /// True if a robot would print the same settings for both calibrations; limits may differ by full turns.
+    /// True if a robot would print the same settings for both calibrations, apart from full turns in the limits.
     #[must_use]
-    pub fn is_same(&self, other: &Self) -> bool {
+    pub fn is_equivalent_to(&self, other: &Self) -> bool {
         let is_near = |a: f64, b: f64| (a - b).abs() < TOLERANCE;
         let is_same_angle = |a: f64, b: f64| {
-            let turn = (a - b).rem_euclid(360.0);
-            turn.min(360.0 - turn) < TOLERANCE
+            let difference = (a - b).rem_euclid(360.0);
+            difference.min(360.0 - difference) < TOLERANCE
         };
         let mut servos = self.servos.iter().zip(&other.servos);
         self.boot == other.boot
@@ -184,13 +187,13 @@ impl Calibration {
             })
     }
 
-    /// The text of the calibration file: TOML, so that a person can read and change it.
+    /// Returns the text of the calibration file: TOML, so that a person can read and change it.
     #[must_use]
-    pub fn text(&self) -> String {
+    pub fn to_toml(&self) -> String {
         let Self { boot, deadman, .. } = self;
         let mut text =
-            format!("{HEADER}format = \"{FORMAT}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n");
-        for (name, servo) in NAMES.iter().zip(&self.servos) {
+            format!("{FILE_HEADER}format = \"{FORMAT}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n");
+        for (name, servo) in SERVO_NAMES.iter().zip(&self.servos) {
             let ServoSettings {
                 trim,
                 limit,
@@ -209,33 +212,34 @@ impl Calibration {
     /// # Errors
     /// Returns the first mistake, with its line and key.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        parse(text, Self::read).map_err(|error| Error {
+        parse(text, Self::from_table).map_err(|error| Error {
             file: name.to_owned(),
             ..error
         })
     }
 
-    fn read(table: &DeTable) -> Checked<Self> {
+    fn from_table(table: &DeTable) -> Checked<Self> {
         let format = table.get("format").map(|value| value.get_ref().as_str());
         if format != Some(Some(FORMAT)) {
-            let problem = format!("must be \"{FORMAT}\": this is no calibration that can be read");
+            let problem =
+                format!("must be \"{FORMAT}\": this is not a calibration that can be read");
             return Err(Fault::new("format", problem));
         }
         let root = Section::root(table, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
-        if !is_name(boot) {
+        if !is_gait_name(boot) {
             return Err(root.fault("boot", "is not the name of a gait"));
         }
         let deadman = root.number("deadman", 0.0, f64::from(MAX_DEADMAN_MS), "ms")?;
         if deadman.fract() != 0.0 {
             return Err(root.fault("deadman", "must be a whole number of ms"));
         }
-        let servos = root.section("servo", &NAMES)?;
+        let servos = root.section("servo", &SERVO_NAMES)?;
         let read_servo = |name| {
             let keys = ["trim", "limit", "dir", "scale"];
-            ServoSettings::read(&servos.section(name, &keys)?)
+            ServoSettings::from_section(&servos.section(name, &keys)?)
         };
-        let [a1, a2, a3, a4] = NAMES;
+        let [a1, a2, a3, a4] = SERVO_NAMES;
         Ok(Self {
             boot: boot.to_owned(),
             deadman: deadman as u16,
@@ -249,75 +253,80 @@ impl Calibration {
     }
 }
 
-/// The lines that give a robot a calibration, unsaved, in an order that it accepts.
+/// A transfer of a calibration to a robot, line by line, in an order that the robot accepts. It does not save it.
 ///
-/// The robot refuses a line after which a gait would leave the servos' travel. While the settings change one by one,
-/// that may happen although both calibrations are valid. So refused lines are sent again after the others, as long as
-/// each round has fewer of them. Then all lines are sent once more after `factory`, which sets robot.toml's values.
+/// The robot refuses a line after which a gait would leave the servos' travel. This may happen while the settings
+/// change one by one, even if the old and the new calibration are both valid. So refused lines are sent again after
+/// the others, as long as each round has fewer of them. Then all lines are sent once more after `factory`, which sets
+/// robot.toml's values.
 #[derive(Clone, Debug)]
 pub struct Transfer {
-    all: Vec<String>,
+    /// The lines for all settings.
+    all_lines: Vec<String>,
     /// The lines of the current round that have not been sent yet.
     unsent_lines: VecDeque<String>,
-    last: String,
-    refused: Vec<String>,
+    /// The line that was sent last.
+    last_line: String,
+    /// The refused lines of the current round.
+    refused_lines: Vec<String>,
     /// Number of lines of the current round.
-    round: usize,
-    is_from_factory: bool,
+    round_line_count: usize,
+    /// True once a round has begun with `factory`.
+    has_sent_factory: bool,
 }
 
 impl Transfer {
     /// Makes a transfer that has sent no line yet.
     #[must_use]
     pub fn new(calibration: &Calibration) -> Self {
-        let lines = calibration.lines();
+        let lines = calibration.console_lines();
         Self {
             unsent_lines: lines.clone().into(),
-            last: String::new(),
-            refused: Vec::new(),
-            round: lines.len(),
-            is_from_factory: false,
-            all: lines,
+            last_line: String::new(),
+            refused_lines: Vec::new(),
+            round_line_count: lines.len(),
+            has_sent_factory: false,
+            all_lines: lines,
         }
     }
 
-    /// The next line to send; `None` if no line is left, or if no line of a round after `factory` was accepted.
+    /// Returns the next line to send; `None` if no line is left, or if no line of a round after `factory` was accepted.
     pub fn next_line(&mut self) -> Option<String> {
-        if self.unsent_lines.is_empty() && !self.refused.is_empty() {
-            if self.refused.len() < self.round {
-                self.unsent_lines = std::mem::take(&mut self.refused).into();
-            } else if !self.is_from_factory {
-                self.is_from_factory = true;
-                self.refused.clear();
-                self.unsent_lines = self.all.clone().into();
+        if self.unsent_lines.is_empty() && !self.refused_lines.is_empty() {
+            if self.refused_lines.len() < self.round_line_count {
+                self.unsent_lines = std::mem::take(&mut self.refused_lines).into();
+            } else if !self.has_sent_factory {
+                self.has_sent_factory = true;
+                self.refused_lines.clear();
+                self.unsent_lines = self.all_lines.clone().into();
                 self.unsent_lines.push_front("factory".to_owned());
             }
-            self.round = self.unsent_lines.len();
+            self.round_line_count = self.unsent_lines.len();
         }
-        self.last = self.unsent_lines.pop_front()?;
-        Some(self.last.clone())
+        self.last_line = self.unsent_lines.pop_front()?;
+        Some(self.last_line.clone())
     }
 
-    /// Records that the robot has refused the last line. Returns true for the first refusal of the current round.
-    pub fn refuse(&mut self) -> bool {
-        self.refused.push(std::mem::take(&mut self.last));
-        self.refused.len() == 1
+    /// Records that the robot has refused the last line. Returns true if it is the first refusal of the round.
+    pub fn record_refusal(&mut self) -> bool {
+        self.refused_lines.push(std::mem::take(&mut self.last_line));
+        self.refused_lines.len() == 1
     }
 
-    /// True if all lines are sent and none of them is still refused.
+    /// True if all lines have been sent and none of them is still refused.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        self.unsent_lines.is_empty() && self.refused.is_empty()
+        self.unsent_lines.is_empty() && self.refused_lines.is_empty()
     }
 }
 
 /// True if a text has the form of a gait's name and may be sent to the robot unchanged.
-fn is_name(text: &str) -> bool {
+fn is_gait_name(text: &str) -> bool {
     let is_allowed = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
     !text.is_empty() && text.len() <= 48 && text.chars().all(is_allowed)
 }
 
-/// Returns a number that has at most two decimals, and refuses any other number: the console accepts no more.
+/// Returns the value if it has at most two decimals, the most that the console accepts; refuses it otherwise.
 fn require_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),

@@ -1,21 +1,21 @@
 //! The reference of all keys, docs/robot-toml.md, generated from the reader.
 //!
-//! keys.txt has the meaning of each key. The key's range, unit and default are recorded while the reader reads, and
-//! checks, a robot with every table.
+//! keys.txt has the meaning of each key. Each key's range, unit and default are recorded while the reader reads a robot
+//! with every table.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use crate::file::{self, Error, KeyRead, READS, Section, format_number};
+use crate::file::{self, Error, KEY_READS, KeyRead, Section, format_number};
 use crate::gaits::{define, routine};
 use crate::measures::Measures;
-use crate::robot::KEYS;
+use crate::robot::TOP_LEVEL_KEYS;
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robot-toml.md");
-const MARK: &str = "<!-- keys of robot.toml -->\n";
+const PAGE_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robot-toml.md");
+const KEYS_MARK: &str = "<!-- keys of robot.toml -->\n";
 
-/// A robot with every table, and with each key whose default the reader does not record.
-fn robot() -> String {
+/// The text of a robot with every table, and with each key whose default the reader does not record.
+fn robot_text_with_every_table() -> String {
     let more_text = "
         [leg.drive]\nkind = \"strut\"
         [joints]
@@ -33,7 +33,7 @@ fn robot() -> String {
         [input.nose]\npin = \"A2\"
         [routine.patrol]\nsteps = [\"walk 1\"]
         ";
-    let text = crate::testing::text("paper")
+    let text = crate::testing::robot_text("paper")
         .replace("mass = 435.0", "mass = 435.0\ncentre = [0.0, 0.0]")
         .replace("mount = ", "hip_forward = 55.0\nhip_side = 35.0\nmount = ")
         .replace("[servo.A1]", "[servo]\nmodel = \"SG-90\"\n[servo.A1]");
@@ -61,21 +61,21 @@ fn generic_name(key: &str) -> String {
     parts.collect::<Vec<_>>().join(".")
 }
 
-/// The values and the default of a key, as the reader records them.
+/// A key's cells for values and default in the reference, as far as the reader records them.
 #[derive(Default)]
-struct Words {
+struct RecordedCells {
     values: Option<String>,
     default: Option<String>,
 }
 
 /// All keys that the reader knows, except keys whose values are tables.
-fn recorded_keys() -> BTreeMap<String, Words> {
-    READS.with_borrow_mut(Vec::clear);
-    read(&robot()).expect("a robot with every key");
-    let reads = READS.with_borrow_mut(std::mem::take);
-    let mut keys = BTreeMap::<String, Words>::new();
+fn recorded_keys() -> BTreeMap<String, RecordedCells> {
+    KEY_READS.with_borrow_mut(Vec::clear);
+    read_definitions(&robot_text_with_every_table()).expect("the robot with every table is valid");
+    let reads = KEY_READS.with_borrow_mut(std::mem::take);
+    let mut keys = BTreeMap::<String, RecordedCells>::new();
     for (key, read) in &reads {
-        let recorded = keys.entry(generic_name(key)).or_default();
+        let recorded_cells = keys.entry(generic_name(key)).or_default();
         if let KeyRead::Number {
             range: (min, max),
             unit,
@@ -84,8 +84,8 @@ fn recorded_keys() -> BTreeMap<String, Words> {
         {
             let unit = unit.trim_start_matches('(').trim_end_matches(')');
             let [min, max] = [*min, *max].map(format_number);
-            recorded.values = Some(format!("{min} to {max}, {unit}"));
-            recorded.default = default.map(format_number).or(recorded.default.take());
+            recorded_cells.values = Some(format!("{min} to {max}, {unit}"));
+            recorded_cells.default = default.map(format_number).or(recorded_cells.default.take());
         }
     }
     let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
@@ -98,15 +98,15 @@ fn recorded_keys() -> BTreeMap<String, Words> {
     keys
 }
 
-/// A line of keys.txt.
-struct Line {
+/// A line of keys.txt: the key's full name, and the cells for name, values, default and meaning.
+struct KeyLine {
     key: String,
     cells: [&'static str; 4],
 }
 
 /// The tables of keys.txt: name, meaning, keys.
-fn reference_tables() -> Vec<(&'static str, &'static str, Vec<Line>)> {
-    let mut tables: Vec<(_, _, Vec<Line>)> = Vec::new();
+fn reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
+    let mut tables: Vec<(_, _, Vec<KeyLine>)> = Vec::new();
     let lines = include_str!("keys.txt").lines();
     for line in lines.filter(|line| !line.is_empty() && !line.starts_with("# ")) {
         if let Some((name, meaning)) = line
@@ -123,7 +123,7 @@ fn reference_tables() -> Vec<(&'static str, &'static str, Vec<Line>)> {
             true => cells[0].to_owned(),
             false => format!("{table}.{}", cells[0]),
         };
-        lines.push(Line { key, cells });
+        lines.push(KeyLine { key, cells });
     }
     tables
 }
@@ -138,13 +138,13 @@ fn every_key_that_is_read_is_in_the_reference_and_no_other() {
             .symmetric_difference(&listed_keys)
             .collect::<Vec<_>>(),
         Vec::<&String>::new(),
-        "keys that are read are in src/keys.txt"
+        "src/keys.txt must list exactly the keys that are read"
     );
     assert!(read_keys.len() > 120, "{}", read_keys.len());
 }
 
 #[test]
-fn the_page_of_keys_is_what_the_reader_checks() {
+fn the_page_of_keys_agrees_with_the_reader() {
     let keys = recorded_keys();
     let mut text = String::new();
     for (table, meaning, lines) in reference_tables() {
@@ -153,25 +153,25 @@ fn the_page_of_keys_is_what_the_reader_checks() {
             _ => _ = write!(text, "## [{table}]\n\n{meaning}\n\n"),
         }
         text += "| key | values | default | meaning |\n|---|---|---|---|\n";
-        for Line { key, cells } in lines {
-            let recorded = &keys[&key];
+        for KeyLine { key, cells } in lines {
+            let recorded_cells = &keys[&key];
             let [name, values, default, meaning] = cells;
             let cell_text = |cell: &str, words: &Option<String>| match (cell, words) {
                 (".", Some(words)) => words.clone(),
-                (".", None) => panic!("the reader does not say it: {key}"),
+                (".", None) => panic!("the reader does not record this cell: {key}"),
                 (cell, _) => cell.to_owned(),
             };
-            let values = cell_text(values, &recorded.values);
-            let default = cell_text(default, &recorded.default);
+            let values = cell_text(values, &recorded_cells.values);
+            let default = cell_text(default, &recorded_cells.default);
             _ = writeln!(text, "| `{name}` | {values} | {default} | {meaning} |");
         }
         text.push('\n');
     }
-    let page = std::fs::read_to_string(PAGE).expect(PAGE);
-    let (text_before, _) = page.split_once(MARK).expect(MARK);
-    let expected = format!("{text_before}{MARK}\n{}\n", text.trim_end());
+    let page = std::fs::read_to_string(PAGE_PATH).expect(PAGE_PATH);
+    let (text_before, _) = page.split_once(KEYS_MARK).expect(KEYS_MARK);
+    let expected = format!("{text_before}{KEYS_MARK}\n{}\n", text.trim_end());
     if std::env::var_os("BLESS_KEYS").is_some() {
-        std::fs::write(PAGE, expected).expect(PAGE);
+        std::fs::write(PAGE_PATH, expected).expect(PAGE_PATH);
     } else {
         assert!(
             page == expected,
@@ -181,9 +181,9 @@ fn the_page_of_keys_is_what_the_reader_checks() {
 }
 
 /// Reads measures, gaits and routines, but does not compute their tables, which would take long.
-fn read(text: &str) -> Result<(), Error> {
+fn read_definitions(text: &str) -> Result<(), Error> {
     file::parse(text, |table| {
-        let root = Section::root(table, &KEYS)?;
+        let root = Section::root(table, &TOP_LEVEL_KEYS)?;
         let body = Measures::read(&root)?;
         let gaits = define::read_gaits(&root, &body)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
@@ -193,18 +193,18 @@ fn read(text: &str) -> Result<(), Error> {
 
 #[test]
 fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
-    let text = robot();
-    let mut count = 0;
+    let text = robot_text_with_every_table();
+    let mut checked_key_count = 0;
     for (table, _, lines) in reference_tables() {
         let start = match table {
             "" => 0,
             _ => match text.find(&format!("\n[{}]", table.replace("NAME", "walk"))) {
                 Some(start) => start + 1,
-                // The table is written as the value of a key.
+                // The table is written inline, as the value of a key.
                 None => continue,
             },
         };
-        for Line { cells, .. } in lines {
+        for KeyLine { cells, .. } in lines {
             let end = text[start..]
                 .find("\n[")
                 .map_or(text.len(), |end| start + end);
@@ -214,7 +214,9 @@ fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
                 continue;
             };
             let shorter_text = format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
-            let message = read(&shorter_text).err().map(|error| error.to_string());
+            let message = read_definitions(&shorter_text)
+                .err()
+                .map(|error| error.to_string());
             let is_needed = message.is_some_and(|message| message.contains("is missing"));
             assert_eq!(
                 is_needed,
@@ -222,8 +224,8 @@ fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
                 "{table}.{}",
                 cells[0]
             );
-            count += 1;
+            checked_key_count += 1;
         }
     }
-    assert!(count > 50, "{count}");
+    assert!(checked_key_count > 50, "{checked_key_count}");
 }

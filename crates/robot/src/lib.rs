@@ -1,4 +1,4 @@
-//! Reads and checks robot.toml: the robot's measurements and gaits, for the host program,
+//! A reader and checker of robot.toml, the robot's measurements and gaits, for the host program,
 //! the page, the firmware's build script and the tests.
 //!
 //! [`Robot::load`] reads the file and checks everything in it, including every sample of
@@ -7,19 +7,19 @@
 //! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).
 //!
-//! The folders, in the order of the work: `file/` has the text and its mistakes, `measures/`
-//! the measurements and their ranges, `gaits/` the gaits in floating point, `tables/` the
+//! The folders, in the order in which a file passes through them: `file/` has the text and its mistakes,
+//! `measures/` the measurements and their ranges, `gaits/` the gaits in floating point, `tables/` the
 //! integers for the chip, `checks/` the check of every sample, `reports/` tables for people.
 //! `lizard-contact` computes the movement over the floor; its types are exported here, too.
 //!
-//! The file except its gaits becomes `Measures`. The `Measures` and the gaits' `Tables` become the
+//! All of the file except its gaits becomes `Measures`. The `Measures` and the gaits' `Tables` become the
 //! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all three, and a
 //! [`CoreRobot`] is the core's view of the robot. docs/firmware.md lists the types of other crates
 //! that also describe a robot.
 //!
 //! # When not to use it
-//! For the geometry alone take `lizard-kinematics`, and for feet on a floor `lizard-contact`:
-//! neither needs a file. On a microcontroller take `lizard-core`: this crate needs `std` and
+//! For the geometry alone use `lizard-kinematics`, and for feet on a floor `lizard-contact`:
+//! neither needs a file. On a microcontroller use `lizard-core`: this crate needs `std` and
 //! floating point.
 
 mod calibration;
@@ -39,23 +39,23 @@ mod units;
 
 pub use calibration::{Calibration, ServoSettings, Transfer};
 pub use checks::{
-    Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, Peak, SimulatedCycle, TableError,
+    Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, PeakSpeed, SimulatedCycle, TableError,
 };
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, Joints, Motor, Motors, Place,
-    Prediction, SLOT, Slip, Stance, Strut, Travel, Walker,
+    Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
 };
 pub use measures::servo;
 pub use measures::{
-    Coil, FUSE, Horn, INPUTS, Inputs, LegPlace, LegPlan, Pad, Parts, Plate, Rail, SWITCH, Screw,
-    Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
+    Coil, FUSE_RATING_A, Horn, INPUT_NAMES, Inputs, LegPlace, LegPlan, MIN_SWITCH_RATING_A, Pad,
+    Parts, Plate, Rail, Screw, Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
 };
 pub use reports::verdict;
 pub use reports::{
-    Assumptions, Extreme, MovementRange, PACES, Report, Round, Row, Sensitivity, ServoTable,
-    SpringCost, UNDECIDED, WITHOUT_CONTACTS, plausible_range,
+    Assumptions, Extreme, MovementRange, PACES_PERCENT, Report, Round, Row, Sensitivity,
+    ServoTable, SpringCost, UNDECIDED_NOTE, WITHOUT_CONTACTS_NOTE, plausible_range,
 };
 pub use robot::Robot;
 pub use status::{Status, parse_angles};

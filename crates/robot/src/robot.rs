@@ -6,14 +6,14 @@ use std::sync::{Arc, OnceLock};
 use lizard_avr::Region;
 use lizard_contact::{Drive, Ground, Motors, Prediction, Strut, Travel};
 use lizard_core::numbers::gaits::{Gait, Step};
-use lizard_core::numbers::section::{Content, MAX_NAME_BYTES, SPACE};
+use lizard_core::numbers::section::{Content, MAX_NAME_BYTES, SPACE_BYTES};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
 use crate::checks::{CheckedGait, Effort, HIGH_LINE_SHARE};
 use crate::file::{self, Checked, Error, Fault, Section};
 use crate::gaits::{Routine, define, routine};
-use crate::measures::servo::FORWARD;
+use crate::measures::servo::FORWARD_TURN_SIGN;
 use crate::measures::{
     self, Coil, Inputs, LegPlan, Measures, Parts, Plate, Servo, ServoType, SpeedLimits, Supplies,
 };
@@ -26,9 +26,9 @@ pub struct Robot {
     gaits: Vec<CheckedGait>,
     routines: Vec<Routine>,
     content: Content,
-    /// The section without the maps of certified cells, as the core on a host reads it.
+    /// The section of flash without the maps of certified cells, as the core on a host reads it.
     section: Arc<[u8]>,
-    /// The core's view of the robot, in memory that is never freed; made at the first use.
+    /// The core's view of the robot, whose section is never freed; made at its first use.
     firmware: OnceLock<CoreRobot>,
 }
 
@@ -50,7 +50,7 @@ impl Robot {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match file::read(path) {
+        match file::read_text(path) {
             Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
             Err(problem) => Err(Fault::new("", problem).in_file(file, None)),
         }
@@ -87,8 +87,9 @@ impl Robot {
         })
     }
 
+    /// Reads and checks all tables of a robot.toml.
     fn read(table: &DeTable) -> Checked<Self> {
-        let root = Section::root(table, &KEYS)?;
+        let root = Section::root(table, &TOP_LEVEL_KEYS)?;
         let name = read_name(&root)?;
         let mut measures = Measures::read(&root)?;
         let robot = Self::with_measures(name, measures.clone(), &root)?;
@@ -106,7 +107,7 @@ impl Robot {
         let [_, stop, _] = rail.thresholds;
         let paces = efforts
             .iter()
-            .map(|effort| effort.max_pace(HIGH_LINE_SHARE * stop / volts));
+            .map(|effort| effort.max_sustainable_pace(HIGH_LINE_SHARE * stop / volts));
         measures.supplies.limit_pace(paces.fold(1.0, f64::min));
         Self::with_measures(name, measures, &root)
     }
@@ -117,13 +118,13 @@ impl Robot {
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
         let routines = routine::read_routines(root, &names, &measures.inputs)?;
         let tables = Tables::new(&gaits)?;
-        let content = numbers::content(name, &measures, &tables, &routines);
+        let content = numbers::section_content(name, &measures, &tables, &routines);
         let tables = Arc::new(tables);
-        let length = content.length();
-        if length > usize::from(SPACE) {
+        let length = content.section_length();
+        if length > usize::from(SPACE_BYTES) {
             return Err(size_fault(&content, length));
         }
-        let section: Arc<[u8]> = content.section().into();
+        let section: Arc<[u8]> = content.section_bytes().into();
         let flash = Region::new(&section);
         let core_fault = || {
             let message =
@@ -152,11 +153,11 @@ impl Robot {
         &self.content.name
     }
 
-    /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified cells, if there is
-    /// room; without them the firmware computes the distance from the limits at every pose.
+    /// Makes the robot's section of flash, at most [`SPACE_BYTES`] bytes. It contains the maps of certified cells if
+    /// there is room for them; without them the firmware computes the distance from the limits at every pose.
     pub fn section(&self) -> Vec<u8> {
         self.section_with_maps()
-            .unwrap_or_else(|| self.content.section())
+            .unwrap_or_else(|| self.content.section_bytes())
     }
 
     /// True if the section has room for the maps of certified cells.
@@ -167,13 +168,13 @@ impl Robot {
     /// An upper bound, in CPU cycles, of the console's search for the name of the last gait or routine. A test
     /// compares the bound with the simulated UNO.
     #[must_use]
-    pub fn longest_search(&self) -> usize {
+    pub fn max_search_cycles(&self) -> usize {
         let names = self.gaits.iter().map(CheckedGait::name);
         let names = names.chain(self.routines.iter().map(Routine::name));
         6_000 + names.map(|name| 1_400 + 92 * name.len()).sum::<usize>()
     }
 
-    /// Makes the section with the maps; `None` if it is longer than [`SPACE`].
+    /// Makes the section with the maps; `None` if it is longer than [`SPACE_BYTES`].
     fn section_with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {
             head,
@@ -185,7 +186,7 @@ impl Robot {
             maps: [head, tail, left, right],
             ..self.content.clone()
         };
-        Some(content.section()).filter(|section| section.len() <= usize::from(SPACE))
+        Some(content.section_bytes()).filter(|section| section.len() <= usize::from(SPACE_BYTES))
     }
 
     /// The robot's numbers as stored in its section.
@@ -208,8 +209,8 @@ impl Robot {
         &self.measures.servo_type
     }
 
-    /// The supply voltages of the servos for which the reports give figures, V: the servos' own, that at which the
-    /// robot slows down, and that at which it stops.
+    /// The supply voltages for which the reports give figures, V: the servos' own, the one at which the robot slows down,
+    /// and the one at which it stops.
     pub fn reported_volts(&self) -> [f64; 3] {
         let supplies = self.supplies();
         let [slow, stop, _] = supplies.rail.map_or(supplies.board, |rail| rail.thresholds);
@@ -223,14 +224,14 @@ impl Robot {
 
     /// The servos' motors and the friction of the joints, at a supply voltage in V.
     pub fn motors_at(&self, volts: f64) -> Motors {
-        self.motors_of(self.servo_type(), volts)
+        self.motors_of_type(self.servo_type(), volts)
     }
 
     /// The motors of another type of servo at a supply voltage in V, and the friction of the joints.
-    pub fn motors_of(&self, servo: &ServoType, volts: f64) -> Motors {
-        let motor_of = |settings: &Servo| servo.motor(volts, settings.us_per_degree);
+    pub fn motors_of_type(&self, servo_type: &ServoType, volts: f64) -> Motors {
+        let motor_of = |settings: &Servo| servo_type.motor(volts, settings.us_per_degree);
         Motors {
-            each: self.servos().each_ref().map(motor_of),
+            per_servo: self.servos().each_ref().map(motor_of),
             joints: self.measures.joints,
         }
     }
@@ -241,8 +242,8 @@ impl Robot {
     }
 
     /// Speed limits of the servos.
-    pub fn pace(&self) -> &SpeedLimits {
-        &self.measures.pace
+    pub fn speed_limits(&self) -> &SpeedLimits {
+        &self.measures.speed_limits
     }
 
     /// Thresholds of the board's supply and of the servos' rail.
@@ -270,13 +271,18 @@ impl Robot {
         Strut {
             force,
             rate,
-            ..self.strut_of(&self.parts().spring)
+            ..self.strut_with_coil(&self.parts().spring)
         }
     }
 
     /// A slotted strut of this robot's size with this coil spring.
-    pub fn strut_of(&self, coil: &Coil) -> Strut {
-        measures::strut_with_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
+    pub fn strut_with_coil(&self, coil: &Coil) -> Strut {
+        measures::strut_with_coil(
+            self.legs(),
+            self.measures.neutral_angles(),
+            self.parts(),
+            coil,
+        )
     }
 
     /// The length, inside its hooks, of a spring mounted in a strut, mm.
@@ -356,7 +362,7 @@ impl Robot {
             }
         }
         Self {
-            section: content.section().into(),
+            section: content.section_bytes().into(),
             content,
             firmware: OnceLock::new(),
             ..self.clone()
@@ -369,13 +375,13 @@ impl Robot {
     }
 
     /// The neutral pose of the servos.
-    pub fn neutral(&self) -> Pose {
-        self.measures.neutral().into()
+    pub fn neutral_pose(&self) -> Pose {
+        self.measures.neutral_angles().into()
     }
 
     /// Solves the robot at servo angles (deg, chassis frame, servo order). Returns `None` if a servo does not reach
     /// its angle or the pose breaks a limit.
-    pub fn accepted(&self, angles: [f64; 4]) -> Option<Solution> {
+    pub fn solve_if_allowed(&self, angles: [f64; 4]) -> Option<Solution> {
         let mut servos = self.servos().iter().zip(angles);
         if !servos.all(|(servo, angle)| servo.reaches(angle)) {
             return None;
@@ -387,16 +393,16 @@ impl Robot {
     /// Converts servo angles (deg, chassis frame) to the legs' sweeps (deg, positive if the foot is forward), both
     /// in servo order.
     pub fn sweeps(&self, angles: [f64; 4]) -> [f64; 4] {
-        let neutral = self.measures.neutral();
-        std::array::from_fn(|i| FORWARD[i] * wrap(angles[i] - neutral[i]))
+        let neutral_angles = self.measures.neutral_angles();
+        std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * wrap(angles[i] - neutral_angles[i]))
     }
 
-    /// Predicts the movement of the body while the servos take these angles (deg, chassis frame, servo order) one
-    /// after another, with the contact model and rigid legs. Returns a result even if it depends on unmeasurable
-    /// differences between the pads.
-    pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
+    /// Predicts the movement of the body while the servos go through these angles (deg, chassis frame, servo order), by
+    /// the contact model with rigid legs. Returns a result even if it depends on unmeasurable differences between the
+    /// pads.
+    pub fn predict_travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
-            .rigid()
+            .with_rigid_drive()
             .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
     }
 
@@ -407,14 +413,14 @@ impl Robot {
 }
 
 /// The top-level keys of the file: its tables, and `name`.
-pub(crate) const KEYS: [&str; 14] = [
+pub(crate) const TOP_LEVEL_KEYS: [&str; 14] = [
     "name", "links", "leg", "servo", "joints", "limits", "supply", "input", "body", "feet",
     "ground", "parts", "gait", "routine",
 ];
 
 /// Reads the robot's name from the top of the file.
 fn read_name<'a>(root: &Section<'a>) -> Checked<&'a str> {
-    if !root.has("name") {
+    if !root.has_key("name") {
         return Ok("robot");
     }
     let name = root.text("name")?;
@@ -427,10 +433,10 @@ fn read_name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     Ok(name)
 }
 
-/// Makes the error for a robot whose section is too large. It tells the bytes that waveforms, gaits and routines
-/// take.
+/// Makes the error for a robot whose section is too large. The message says how many bytes the waveforms, gaits and
+/// routines take.
 fn size_fault(content: &Content, bytes: usize) -> Fault {
-    let excess_bytes = bytes - usize::from(SPACE);
+    let excess_bytes = bytes - usize::from(SPACE_BYTES);
     let waves = content.waves.len();
     let wave_bytes = std::mem::size_of_val(content.waves.as_slice());
     let gaits = content.gaits.len();
@@ -446,7 +452,7 @@ fn size_fault(content: &Content, bytes: usize) -> Fault {
         _ => format!(", {routines} of them routines, whose steps take {step_bytes}"),
     };
     let message = format!(
-        "the robot takes {excess_bytes} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {wave_bytes}, {gaits} gaits and their names {gait_bytes}{routines_text}: leave out gaits, first those whose waveform no other has"
+        "the robot takes {excess_bytes} bytes more than the {SPACE_BYTES} that the board has for it; {waves} waveforms take {wave_bytes}, {gaits} gaits and their names {gait_bytes}{routines_text}: leave out gaits, first those whose waveform no other has"
     );
     Fault::new("gait", message)
 }

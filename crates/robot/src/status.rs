@@ -1,7 +1,7 @@
-//! The answer to `status`, read, and shortened to a line.
+//! The robot's answer to `status`: reading it, and shortening it to one line.
 
-/// The fault of a board without a usable robot in its flash.
-const NO_ROBOT: &str = "robot";
+/// The name of the fault of a board without a usable robot in its flash.
+const NO_ROBOT_FAULT: &str = "robot";
 
 /// The state that a robot reports.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,27 +10,26 @@ pub struct Status {
     pub gait: String,
     /// Servo angles, degrees, chassis frame; `None` without a robot in the flash.
     pub pose: Option<[f64; 4]>,
-    /// Frames since power-on.
+    /// Number of frames since power-on.
     pub frames: u64,
     /// The smallest of the guard's margins, a sine; `None` without a robot in the flash.
     pub margin: Option<f64>,
     /// True if the guard holds the robot in its last safe pose.
     pub is_held: bool,
-    /// The fault's name, if there is one.
+    /// The fault's name; `None` without a fault.
     pub fault: Option<String>,
-    /// Supply of the board, volts, once it is measured.
+    /// Supply of the board, volts; `None` until it is measured.
     pub vcc: Option<f64>,
-    /// Supply of the servos, volts, if it is measured.
+    /// Supply of the servos, volts; `None` if it is not measured.
     pub rail: Option<f64>,
-    /// Pulse edges that came late.
-    pub late: u32,
-    /// Received bytes that were lost.
-    pub rx_lost: u32,
+    /// Number of pulse edges that came late.
+    pub late_edges: u32,
+    /// Number of received bytes that were lost.
+    pub lost_bytes: u32,
 }
 
 impl Status {
-    /// Reads `ok gait=...`; `None` for any other line. Keys that this program does
-    /// not know are skipped.
+    /// Reads the answer `ok gait=...`; `None` for any other line. Skips unknown keys.
     #[must_use]
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
@@ -44,8 +43,8 @@ impl Status {
         let number_of = |key: &str| value_of(key)?.parse().ok();
         let pose = value_of("pose").and_then(parse_angles);
         let margin = number_of("margin");
-        let is_whole = pose.is_some() && margin.is_some();
-        if !is_whole && value_of("fault") != Some(NO_ROBOT) {
+        let has_pose_and_margin = pose.is_some() && margin.is_some();
+        if !has_pose_and_margin && value_of("fault") != Some(NO_ROBOT_FAULT) {
             return None;
         }
         Some(Self {
@@ -59,20 +58,20 @@ impl Status {
                 .map(str::to_owned),
             vcc: number_of("vcc"),
             rail: number_of("rail"),
-            late: value_of("late").and_then(|n| n.parse().ok()).unwrap_or(0),
-            rx_lost: value_of("rx_lost")
+            late_edges: value_of("late").and_then(|n| n.parse().ok()).unwrap_or(0),
+            lost_bytes: value_of("rx_lost")
                 .and_then(|n| n.parse().ok())
                 .unwrap_or(0),
         })
     }
 
-    /// True while a gait or a routine runs, which continues by itself.
+    /// True if a gait or a routine runs, so that the robot keeps moving without further commands.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
 
-    /// The state in a line of a terminal.
+    /// Returns the state as one line for a terminal.
     #[must_use]
     pub fn status_line(&self) -> String {
         let mut line = self.gait.clone();
@@ -93,7 +92,7 @@ impl Status {
             (None, true) => line += "  HELD by the guard",
             (None, false) => line += "  no fault",
         }
-        for (count, name) in [(self.late, "late"), (self.rx_lost, "bytes lost")] {
+        for (count, name) in [(self.late_edges, "late"), (self.lost_bytes, "bytes lost")] {
             if count > 0 {
                 line += &format!("  {count} {name}");
             }
@@ -129,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_and_the_guard_stand_out() {
+    fn a_fault_and_a_hold_by_the_guard_are_in_capitals() {
         let fault_status = WALKING_STATUS.replace("fault=none", "fault=supply");
         let line = Status::parse(&fault_status)
             .expect("it is a status")
@@ -143,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_without_a_robot_has_no_pose_and_says_why() {
+    fn a_board_without_a_robot_has_no_pose_and_shows_its_fault() {
         let line = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
         let status = Status::parse(line).expect("it is a status");
         assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));

@@ -3,17 +3,17 @@
 use crate::{Error, Robot};
 
 /// Names of the files in robots/, without `.toml`.
-pub const NAMES: [&str; 5] = ["paper", "large", "unequal", "own-gaits", "grain"];
+pub const ROBOT_NAMES: [&str; 5] = ["paper", "large", "unequal", "own-gaits", "grain"];
 
 /// Reads the text of a robot's file.
-pub fn text(name: &str) -> String {
+pub fn robot_text(name: &str) -> String {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).expect(&path)
 }
 
 /// Parses a robot's file with parts of its text replaced, each at its first occurrence.
-pub fn with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
-    let mut text = text(name);
+pub fn robot_with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
+    let mut text = robot_text(name);
     for (from, to) in changes {
         assert!(text.contains(from), "{name}.toml has no {from:?}");
         text = text.replacen(from, to, 1);
@@ -23,17 +23,19 @@ pub fn with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
 
 /// Reads a robot from its file.
 pub fn robot(name: &str) -> Robot {
-    with(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))
+    robot_with(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// Reads all robots.
-pub fn all() -> impl Iterator<Item = (&'static str, Robot)> {
-    NAMES.into_iter().map(|name| (name, robot(name)))
+/// Reads all robots, each with the name of its file.
+pub fn all_robots() -> impl Iterator<Item = (&'static str, Robot)> {
+    ROBOT_NAMES.into_iter().map(|name| (name, robot(name)))
 }
 
-/// Reads the text of a robot's file before its first gait, `stand`, so that a test can append other gaits.
+/// Reads the part of a robot's file before its first gait, `stand`, so that a test can append other gaits.
 pub fn text_before_gaits(name: &str) -> String {
-    let text = text(name);
-    let gaits = text.find("[gait.stand]").expect("stand");
+    let text = robot_text(name);
+    let gaits = text
+        .find("[gait.stand]")
+        .expect("the file has the gait stand");
     text[..gaits].to_string()
 }

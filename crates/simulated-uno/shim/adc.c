@@ -10,15 +10,16 @@ enum { /* ADMUX */
 	TEMPERATURE = 8, BANDGAP = 14,
 };
 
-#define NOMINAL_BANDGAP 1100.0
-#define ROOM_TEMPERATURE 314.0 /* mV of its sensor at 25 deg C (table 24-2) */
-#define SETTLING (70 * CHIP_CYCLES_PER_US) /* tBG, the longest (29.5) */
+#define NOMINAL_BANDGAP_MV 1100.0
+#define ROOM_TEMPERATURE_MV 314.0 /* output of the temperature sensor at 25 deg C (table 24-2) */
+#define SETTLING_CYCLES (70 * CHIP_CYCLES_PER_US) /* longest start-up of the bandgap (29.5) */
 
-/* Table 24-1, in halves of an ADC clock. */
-static const unsigned sample_halves[2] = { 3, 27 }; /* others, first */
-static const unsigned length_halves[2] = { 26, 50 };
+/* Times from the start of a conversion to its sample and to its end, in half ADC clocks
+ * (table 24-1). Index 1 is the first conversion after ADEN was set, index 0 every other one. */
+static const unsigned sample_half_clocks[2] = { 3, 27 };
+static const unsigned length_half_clocks[2] = { 26, 50 };
 
-static uint64_t clock_cycles(const avr_t *avr)
+static uint64_t cycles_per_clock(const avr_t *avr)
 {
 	unsigned select = avr->data[REG_ADCSRA] & ADPS;
 	return 1u << (select ? select : 1);
@@ -26,45 +27,47 @@ static uint64_t clock_cycles(const avr_t *avr)
 
 static double channel_mv(const struct adc *adc, uint8_t mux)
 {
-	if (mux < ADC_PINS)
-		return adc->pins[mux];
-	return mux == BANDGAP ? adc->bandgap : mux == TEMPERATURE ? ROOM_TEMPERATURE : 0.0;
+	if (mux < ADC_PIN_COUNT)
+		return adc->pin_mv[mux];
+	return mux == BANDGAP ? adc->bandgap_mv : mux == TEMPERATURE ? ROOM_TEMPERATURE_MV : 0.0;
 }
 
-/* "If not stabilized, the first value read after the first conversion may be
- * wrong" (24.4): here it lies on a line from the channel before to the bandgap. */
+/* "If not stabilized, the first value read after the first conversion may be wrong" (24.4):
+ * here the input changes linearly from the previous channel's voltage to the bandgap. */
 static double input_mv(const struct adc *adc)
 {
 	double mv = channel_mv(adc, adc->mux);
-	return adc->mux == BANDGAP ? adc->before + (mv - adc->before) * adc->settled : mv;
+	return adc->mux == BANDGAP
+	       ? adc->previous_mv + (mv - adc->previous_mv) * adc->settled_share
+	       : mv;
 }
 
 static avr_cycle_count_t sample(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct adc *adc = param;
-	double reference = 0.0; /* AREF: nothing is connected */
+	double reference = 0.0; /* nothing is connected to AREF */
 	if (adc->reference == REFERENCE_AVCC)
 		reference = supply_mv(adc->supply, when);
 	else if (adc->reference == REFERENCE_BANDGAP)
-		reference = adc->bandgap;
+		reference = adc->bandgap_mv;
 	double code = reference > 0.0 ? input_mv(adc) * 1024.0 / reference : 1023.0;
-	adc->sampled = code < 1023.0 ? (uint16_t)code : 1023;
+	adc->sampled_code = code < 1023.0 ? (uint16_t)code : 1023;
 	return 0;
 }
 
-static void begin(struct adc *adc, uint64_t edge);
+static void begin_conversion(struct adc *adc, uint64_t edge);
 
-static avr_cycle_count_t finish(avr_t *avr, avr_cycle_count_t when, void *param)
+static avr_cycle_count_t finish_conversion(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct adc *adc = param;
 	uint8_t *control = &avr->data[REG_ADCSRA];
 	adc->converting = false;
-	if (!adc->locked)
-		adc->result = adc->sampled;
+	if (!adc->result_locked)
+		adc->result = adc->sampled_code;
 	*control &= ~ADSC;
 	avr_raise_interrupt(avr, &adc->stock->adc);
 	if (*control & ADATE)
-		begin(adc, when); /* free running */
+		begin_conversion(adc, when); /* free-running mode */
 	return 0;
 }
 
@@ -72,31 +75,33 @@ static void arm_timers(struct adc *adc)
 {
 	avr_t *avr = adc->avr;
 	avr_cycle_timer_register(avr, chip_cycles_until(avr, adc->sample_at), sample, adc);
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, adc->end), finish, adc);
+	avr_cycle_timer_register(avr, chip_cycles_until(avr, adc->end_at), finish_conversion, adc);
 }
 
-static void stop(struct adc *adc)
+static void stop_conversion(struct adc *adc)
 {
 	adc->converting = false;
-	adc->first = true;
+	adc->next_is_first = true;
 	avr_cycle_timer_cancel(adc->avr, sample, adc);
-	avr_cycle_timer_cancel(adc->avr, finish, adc);
+	avr_cycle_timer_cancel(adc->avr, finish_conversion, adc);
 }
 
-static void begin(struct adc *adc, uint64_t edge)
+static void begin_conversion(struct adc *adc, uint64_t edge)
 {
 	avr_t *avr = adc->avr;
-	uint64_t clock = clock_cycles(avr);
-	uint64_t ready = adc->enabled > adc->selected ? adc->enabled : adc->selected;
-	uint64_t waited = edge > ready ? edge - ready : 0;
-	adc->settled = waited < SETTLING ? (double)waited / SETTLING : 1.0;
+	uint64_t clock = cycles_per_clock(avr);
+	uint64_t ready_at = adc->enabled_at > adc->selected_at ? adc->enabled_at : adc->selected_at;
+	uint64_t waited_cycles = edge > ready_at ? edge - ready_at : 0;
+	adc->settled_share = waited_cycles < SETTLING_CYCLES
+	                     ? (double)waited_cycles / SETTLING_CYCLES
+	                     : 1.0;
 	adc->mux = avr->data[REG_ADMUX] & MUX;
 	adc->reference = avr->data[REG_ADMUX] & REFS;
 	adc->converting = true;
 	avr->data[REG_ADCSRA] |= ADSC;
-	adc->sample_at = edge + sample_halves[adc->first] * clock / 2;
-	adc->end = edge + length_halves[adc->first] * clock / 2;
-	adc->first = false;
+	adc->sample_at = edge + sample_half_clocks[adc->next_is_first] * clock / 2;
+	adc->end_at = edge + length_half_clocks[adc->next_is_first] * clock / 2;
+	adc->next_is_first = false;
 	arm_timers(adc);
 }
 
@@ -104,8 +109,8 @@ static void begin(struct adc *adc, uint64_t edge)
  * the prescaler "starts counting from the moment the ADC is switched on" (24.4). */
 static uint64_t next_edge(const struct adc *adc, uint64_t cycle)
 {
-	uint64_t clock = clock_cycles(adc->avr);
-	return adc->enabled + ((cycle - adc->enabled) / clock + 1) * clock;
+	uint64_t clock = cycles_per_clock(adc->avr);
+	return adc->enabled_at + ((cycle - adc->enabled_at) / clock + 1) * clock;
 }
 
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
@@ -117,17 +122,17 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	control |= old & ADIF & ~value;
 	control |= adc->converting ? ADSC : 0;
 	if (!(control & ADEN)) {
-		stop(adc);
+		stop_conversion(adc);
 		control &= ~ADSC;
 	} else if (!(old & ADEN)) {
-		adc->enabled = cycle;
+		adc->enabled_at = cycle;
 	}
 	avr->data[address] = control;
 	if (!(control & ADIF))
-		adc->stock->adc.pending = 0; /* a conversion that ends in this cycle counts */
+		adc->stock->adc.pending = 0; /* a conversion that ends in this cycle sets ADIF again */
 	if ((control & ADEN) && (value & ADSC) && !adc->converting)
-		begin(adc, next_edge(adc, cycle));
-	interrupts_changed(adc->interrupts);
+		begin_conversion(adc, next_edge(adc, cycle));
+	interrupts_request_check(adc->interrupts);
 }
 
 static void write_channel(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
@@ -135,8 +140,8 @@ static void write_channel(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	struct adc *adc = param;
 	uint8_t old = avr->data[address] & MUX;
 	if (old != (value & MUX)) {
-		adc->before = channel_mv(adc, old);
-		adc->selected = instruction_effect_cycle(adc->instruction);
+		adc->previous_mv = channel_mv(adc, old);
+		adc->selected_at = instruction_effect_cycle(adc->instruction);
 	}
 	avr->data[address] = value & (REFS | ADLAR | MUX);
 }
@@ -144,14 +149,14 @@ static void write_channel(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 static uint8_t read_result(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	struct adc *adc = param;
-	uint16_t shown = avr->data[REG_ADMUX] & ADLAR ? adc->result << 6 : adc->result;
+	uint16_t shown_result = avr->data[REG_ADMUX] & ADLAR ? adc->result << 6 : adc->result;
 	/* "When ADCL is read, the ADC Data Register is not updated until ADCH is
 	 * read" (24.9.3). */
-	adc->locked = address == REG_ADCL;
-	return adc->locked ? shown : shown >> 8;
+	adc->result_locked = address == REG_ADCL;
+	return adc->result_locked ? shown_result : shown_result >> 8;
 }
 
-static void write_nothing(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+static void ignore_write(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 }
 
@@ -160,8 +165,8 @@ void adc_attach(struct adc *adc, avr_t *avr)
 	*adc = (struct adc){
 		.avr = avr,
 		.stock = (avr_adc_t *)chip_part(avr, "adc"),
-		.bandgap = NOMINAL_BANDGAP,
-		.first = true,
+		.bandgap_mv = NOMINAL_BANDGAP_MV,
+		.next_is_first = true,
 	};
 }
 
@@ -176,24 +181,24 @@ void adc_correct(struct adc *adc, const struct instruction *instruction,
 	hook_read(avr, REG_ADCSRA, NULL, NULL);
 	hook_write(avr, REG_ADMUX, write_channel, adc);
 	hook_read(avr, REG_ADMUX, NULL, NULL);
-	const uint16_t data[2] = { REG_ADCL, REG_ADCH };
+	const uint16_t result_registers[2] = { REG_ADCL, REG_ADCH };
 	for (int i = 0; i < 2; i++) {
-		hook_read(avr, data[i], read_result, adc);
-		hook_write(avr, data[i], write_nothing, adc);
+		hook_read(avr, result_registers[i], read_result, adc);
+		hook_write(avr, result_registers[i], ignore_write, adc);
 	}
 }
 
 void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv)
 {
-	adc->pins[channel % ADC_PINS] = mv;
-	avr_raise_irq(adc->stock->io.irq + ADC_IRQ_ADC0 + channel % ADC_PINS, mv);
+	adc->pin_mv[channel % ADC_PIN_COUNT] = mv;
+	avr_raise_irq(adc->stock->io.irq + ADC_IRQ_ADC0 + channel % ADC_PIN_COUNT, mv);
 }
 
 void adc_reset(struct adc *adc)
 {
-	stop(adc);
-	adc->locked = false;
+	stop_conversion(adc);
+	adc->result_locked = false;
 	adc->result = 0;
-	adc->enabled = adc->selected = 0;
-	adc->before = adc->pins[0];
+	adc->enabled_at = adc->selected_at = 0;
+	adc->previous_mv = adc->pin_mv[0];
 }

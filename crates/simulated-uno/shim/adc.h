@@ -1,9 +1,9 @@
-/* The ADC by the ATmega328P's data sheet, chapter 24: a supply that changes, the
- * bandgap that needs time to settle, 25 clocks for the first conversion and 13
- * for each other, and a result that is read in two halves.
+/* The ADC by the ATmega328P's data sheet, chapter 24: it measures against a supply that changes,
+ * the bandgap needs time to settle, the first conversion takes 25 ADC clocks and every other 13,
+ * and a result is read in two halves.
  *
- * Not modelled: triggers other than free running, the noise reduction sleep,
- * the settling of a reference that is switched, more than 200 kHz.
+ * Not modelled: triggers other than free running, the noise reduction sleep, the settling of a
+ * reference that is switched, the errors of an ADC clock above 200 kHz.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -15,28 +15,34 @@
 #include "interrupts.h"
 #include "supply.h"
 
-#define ADC_PINS 8
+#define ADC_PIN_COUNT 8
 
 struct adc {
 	avr_t *avr;
 	const struct instruction *instruction;
 	struct interrupts *interrupts;
 	const struct supply *supply;
-	avr_adc_t *stock;              /* simavr's, for its interrupt vector */
-	uint16_t pins[ADC_PINS];       /* mV at ADC0 to ADC7 */
-	double bandgap;                /* mV */
-	uint64_t enabled, selected;    /* cycles at which ADEN and the channel were set */
-	double before;                 /* mV of the previous channel */
-	bool converting, first, locked;
-	uint8_t mux, reference;        /* of the conversion in progress */
-	double settled;                /* share of the bandgap's settling at its start, 0 to 1 */
-	uint64_t sample_at, end;
-	uint16_t sampled, result;
+	avr_adc_t *stock;               /* simavr's ADC, for its interrupt vector */
+	uint16_t pin_mv[ADC_PIN_COUNT]; /* voltages at ADC0 to ADC7 */
+	double bandgap_mv;
+	uint64_t enabled_at;            /* cycle at which ADEN was set */
+	uint64_t selected_at;           /* cycle at which the channel was selected */
+	double previous_mv;             /* voltage of the channel selected before */
+	bool converting;                /* a conversion is in progress */
+	bool next_is_first;             /* the next conversion is the first since ADEN was set */
+	bool result_locked;             /* ADCL has been read and ADCH has not */
+	uint8_t mux;                    /* channel of the conversion in progress */
+	uint8_t reference;              /* REFS bits of the conversion in progress */
+	double settled_share;           /* settling of the bandgap when the conversion began, 0 to 1 */
+	uint64_t sample_at;             /* cycle at which the conversion samples its input */
+	uint64_t end_at;                /* cycle at which the conversion ends */
+	uint16_t sampled_code;          /* result of the conversion in progress, once sampled */
+	uint16_t result;                /* contents of the ADC Data Register, right adjusted */
 };
 
-/* Sets the values at the pins and the bandgap; there is no more in the stock fidelity. */
+/* All that the stock fidelity needs: access to simavr's ADC for adc_set_pin. */
 void adc_attach(struct adc *adc, avr_t *avr);
-/* Replaces simavr's handlers of its registers. */
+/* Replaces simavr's callbacks for the ADC's registers. */
 void adc_correct(struct adc *adc, const struct instruction *instruction,
                  struct interrupts *interrupts, const struct supply *supply);
 void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv);

@@ -23,36 +23,37 @@
 #include "watchdog.h"
 
 struct uno {
-	avr_t *avr;
-	avr_io_t io;            /* our place in simavr's reset chain */
-	bool data_sheet;
+	avr_t *avr;               /* simavr's model of the chip */
+	avr_io_t io;              /* our entry at the end of simavr's list of parts to reset */
+	bool data_sheet;          /* true: behaves as in the data sheet; false: as stock simavr */
 
-	uint64_t now;           /* time reached; ahead of avr->cycle only while asleep */
-	uint64_t asleep;        /* cycles spent asleep */
-	uint64_t resets;        /* resets by the watchdog */
-	bool off;               /* the power has been cut */
-	bool stop_at_line;
-	uint16_t data_end;      /* first SRAM address after static data */
-	char message[256];      /* simavr's last complaint */
+	uint64_t now;             /* current cycle; runs ahead of avr->cycle only while the CPU sleeps */
+	uint64_t asleep_cycles;   /* cycles up to avr->cycle in which the CPU slept */
+	uint64_t watchdog_resets; /* number of resets by the watchdog */
+	bool powered_off;         /* true from a power cut until the power is restored */
+	bool stop_at_line;        /* true: a run ends when the firmware has sent a line feed */
+	uint16_t data_end;        /* first SRAM address after the firmware's static data */
+	char error_message[256];  /* the last error that simavr logged; empty if none */
 
-	struct instruction instruction;
-	struct recorder recorder;
-	struct handlers handlers;
-	struct call_timer call_timer;
-	struct serial_bytes transmitted;
-	struct stock_uart stock_uart;
-	struct sender sender;
-	struct disturbance disturbance;
-	struct reset reset;
-	struct supply supply;   /* the stock fidelity keeps VCC here */
-	struct eeprom eeprom;   /* and the list of no operations */
-	struct adc adc;
-	struct contacts contacts;
+	/* Parts of both fidelities. */
+	struct instruction instruction;  /* the instruction being executed */
+	struct recorder recorder;        /* edges of the pins, and marks in GPIOR0 */
+	struct handlers handlers;        /* cycles spent in interrupt handlers */
+	struct call_timer call_timer;    /* times the calls of one function */
+	struct serial_bytes transmitted; /* bytes that the firmware has sent */
+	struct stock_uart stock_uart;    /* simavr's USART; receives only in the stock fidelity */
+	struct sender sender;            /* the other end of the serial cable */
+	struct disturbance disturbance;  /* interrupts and stalls imposed by a test */
+	struct reset reset;              /* requested resets, and MCUSR */
+	struct supply supply;            /* VCC; resets the chip only in the data-sheet fidelity */
+	struct eeprom eeprom;            /* in the stock fidelity, only gives access to simavr's bytes */
+	struct adc adc;                  /* in the stock fidelity, only sets the voltages at the pins */
+	struct contacts contacts;        /* contacts between pins and ground */
 
-	/* Corrections by the data sheet; idle in the stock fidelity. */
-	struct interrupts interrupts;
-	struct timer1 timer1;
-	struct pin_toggle pin_toggle;
-	struct usart usart;
-	struct watchdog watchdog;
+	/* Corrections by the data sheet; not attached in the stock fidelity. */
+	struct interrupts interrupts;    /* entry times and flags of interrupts */
+	struct timer1 timer1;            /* the TEMP byte of Timer1's 16-bit registers */
+	struct pin_toggle pin_toggle;    /* `sbi PINx, n` toggles one pin */
+	struct usart usart;              /* USART0 with its real buffers and frame length */
+	struct watchdog watchdog;        /* the watchdog's modes and timed sequence */
 };

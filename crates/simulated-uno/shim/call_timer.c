@@ -7,38 +7,39 @@ void call_timer_attach(struct call_timer *timer, const avr_t *avr,
 	*timer = (struct call_timer){
 		.avr = avr,
 		.handlers = handlers,
-		.calls.size = sizeof(struct call),
+		.calls.item_size = sizeof(struct call),
 	};
 }
 
 void call_timer_reset(struct call_timer *timer)
 {
-	timer->inside = false;
+	timer->in_call = false;
 }
 
-void call_timer_set(struct call_timer *timer, bool on, uint32_t entry)
+void call_timer_set(struct call_timer *timer, bool enabled, uint32_t entry)
 {
-	timer->on = on;
+	timer->enabled = enabled;
 	timer->entry = entry;
-	timer->inside = false;
+	timer->in_call = false;
 }
 
 void call_timer_check(struct call_timer *timer)
 {
 	const avr_t *avr = timer->avr;
 	uint16_t sp = avr->data[R_SPL] | avr->data[R_SPH] << 8;
-	if (timer->inside && avr->pc == timer->back && sp == timer->stack_pointer + 2) {
-		uint64_t interrupted = handlers_cycles(timer->handlers) - timer->handlers_before;
+	if (timer->in_call && avr->pc == timer->return_address && sp == timer->stack_pointer + 2) {
+		uint64_t interrupt_cycles =
+			handlers_cycles(timer->handlers) - timer->handler_cycles_at_entry;
 		struct call *call = list_push(&timer->calls);
-		*call = (struct call){ timer->enter, avr->cycle, interrupted };
-		timer->inside = false;
-	} else if (!timer->inside && avr->pc == timer->entry) {
-		/* The stack pointer may be anything, and wraps. */
+		*call = (struct call){ timer->enter_cycle, avr->cycle, interrupt_cycles };
+		timer->in_call = false;
+	} else if (!timer->in_call && avr->pc == timer->entry) {
+		/* The firmware may have set any stack pointer, so the address may wrap. */
 		uint8_t high = avr->data[(uint16_t)(sp + 1)], low = avr->data[(uint16_t)(sp + 2)];
-		timer->back = (high << 8 | low) << 1;
+		timer->return_address = (high << 8 | low) << 1;
 		timer->stack_pointer = sp;
-		timer->enter = avr->cycle;
-		timer->handlers_before = handlers_cycles(timer->handlers);
-		timer->inside = true;
+		timer->enter_cycle = avr->cycle;
+		timer->handler_cycles_at_entry = handlers_cycles(timer->handlers);
+		timer->in_call = true;
 	}
 }

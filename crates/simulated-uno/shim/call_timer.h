@@ -7,22 +7,30 @@
 #include "handlers.h"
 #include "list.h"
 
-struct call { uint64_t enter, leave, interrupted; };
+struct call {
+	uint64_t enter_cycle;      /* cycle of the first instruction */
+	uint64_t leave_cycle;      /* cycle after the return */
+	uint64_t interrupt_cycles; /* cycles of the interrupts during the call */
+};
 
 struct call_timer {
 	const avr_t *avr;
 	const struct handlers *handlers;
-	bool on;                /* then simavr must run one instruction at a time */
-	bool inside;            /* between entry and return */
-	uint32_t entry, back;   /* byte addresses in flash */
-	uint16_t stack_pointer; /* at entry */
-	uint64_t enter, handlers_before;
-	struct list calls;      /* struct call */
+	bool enabled;            /* true: simavr must run one instruction at a time */
+	bool in_call;            /* true between the entry and the return of a timed call */
+	uint32_t entry;          /* byte address of the function in flash */
+	/* Of the timed call in progress: */
+	uint32_t return_address; /* byte address in flash after the call instruction */
+	uint16_t stack_pointer;  /* stack pointer at the entry */
+	uint64_t enter_cycle;    /* cycle of the entry */
+	uint64_t handler_cycles_at_entry; /* handlers_cycles at the entry */
+	struct list calls;       /* completed calls: struct call */
 };
 
 void call_timer_attach(struct call_timer *timer, const avr_t *avr,
                        const struct handlers *handlers);
 void call_timer_reset(struct call_timer *timer);
-void call_timer_set(struct call_timer *timer, bool on, uint32_t entry);
-/* Checks the next instruction for an entry or a return. */
+/* Starts or stops timing the calls of the function at byte address `entry`. */
+void call_timer_set(struct call_timer *timer, bool enabled, uint32_t entry);
+/* To be called before each instruction: notices that a timed call begins or has returned. */
 void call_timer_check(struct call_timer *timer);

@@ -1,4 +1,5 @@
-/* An ATmega328P at 16 MHz: its registers, and a place of its own in simavr's table of them.
+/* An ATmega328P at 16 MHz: its registers, and hooks for our own callbacks in simavr's table of
+ * them.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -11,11 +12,11 @@
 #include <simavr/sim_avr.h>
 #include <simavr/sim_io.h>
 
-#define CHIP_FREQUENCY 16000000u
+#define CHIP_FREQUENCY 16000000u /* Hz */
 #define CHIP_CYCLES_PER_US (CHIP_FREQUENCY / 1000000u)
-#define CHIP_EEPROM 1024u /* bytes */
-#define CHIP_SRAM 0x100u  /* its first address, after the registers */
-#define CHIP_VECTORS 26 /* reset included */
+#define CHIP_EEPROM_SIZE 1024u /* bytes */
+#define CHIP_SRAM_START 0x100u /* first data address after the registers */
+#define CHIP_VECTOR_COUNT 26 /* interrupt vectors, including reset */
 
 /* I/O registers, as data addresses. */
 enum {
@@ -34,19 +35,19 @@ enum {
 	REG_UBRR0L = 0xc4, REG_UBRR0H = 0xc5, REG_UDR0 = 0xc6,
 };
 
-/* simavr's part of this kind, such as "eeprom". Ends the program if this
- * libsimavr has none. */
+/* Returns simavr's part of this kind, such as "eeprom". Aborts if this libsimavr has none. */
 avr_io_t *chip_part(avr_t *avr, const char *kind);
 
-/* The cycles up to then, at least one: the argument of simavr's timers. */
+/* Returns the number of cycles from now until `cycle`, at least 1, as simavr's timers take
+ * it. */
 uint64_t chip_cycles_until(const avr_t *avr, uint64_t cycle);
 
-/* A callback of simavr for each read or write of an I/O register. simavr's own
- * registration refuses to replace a callback that is there. */
-struct write_hook { avr_io_write_t call; void *param; };
-struct read_hook { avr_io_read_t call; void *param; };
+/* A callback that simavr calls for each write or read of an I/O register. hook_write and
+ * hook_read replace one, which simavr's own registration functions refuse to do. */
+struct write_hook { avr_io_write_t callback; void *param; };
+struct read_hook { avr_io_read_t callback; void *param; };
 
-/* Both return the previous callback. `address` is a data address. Without a `call`, the register
- * is plain memory. */
-struct write_hook hook_write(avr_t *avr, uint16_t address, avr_io_write_t call, void *param);
-struct read_hook hook_read(avr_t *avr, uint16_t address, avr_io_read_t call, void *param);
+/* Both return the previous callback. `address` is a data address. With `callback` NULL, the
+ * register behaves as plain memory. */
+struct write_hook hook_write(avr_t *avr, uint16_t address, avr_io_write_t callback, void *param);
+struct read_hook hook_read(avr_t *avr, uint16_t address, avr_io_read_t callback, void *param);

@@ -1,4 +1,4 @@
-/* EEPROM, supply, ADC, contacts, resets, boot loader and flash, as src/ uses them.
+/* The part of uno.h that concerns EEPROM, supply, ADC, contacts, resets, boot loader and flash.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -8,35 +8,35 @@
 void uno_reset(struct uno *uno)
 {
 	restart_catch_up(uno);
-	if (!uno->off && !uno->supply.held)
+	if (!uno->powered_off && !uno->supply.holds_reset)
 		restart(uno, RESET_EXTERNAL);
 }
 
 void uno_power_cycle(struct uno *uno)
 {
 	restart_catch_up(uno);
-	if (!uno->off)
+	if (!uno->powered_off)
 		restart_cut_power(uno);
-	uno->off = false;
+	uno->powered_off = false;
 	supply_power_on(&uno->supply);
-	restart(uno, uno->supply.held ? RESET_HOLD : RESET_POWER_ON);
+	restart(uno, uno->supply.holds_reset ? RESET_HOLD : RESET_POWER_ON);
 }
 
 void uno_set_boot_loader(struct uno *uno, bool on)
 {
 	uno->reset.boot_loader = on;
-	if (uno->avr->cycle == 0) { /* this start, too */
-		uno->reset.flags = RESET_POWER_ON;
+	if (uno->avr->cycle == 0) { /* not started yet: affects the present start, too */
+		uno->reset.mcusr = RESET_POWER_ON;
 		restart(uno, 0);
 	}
 }
 
-void uno_set_noise(struct uno *uno, uint64_t seed)
+void uno_set_noise_seed(struct uno *uno, uint64_t seed)
 {
-	uno->reset.noise = seed * 2 + 1; /* the generator stands still at zero */
+	uno->reset.noise_state = seed * 2 + 1; /* odd, since zero would stay zero */
 }
 
-bool uno_held_in_reset(const struct uno *uno) { return uno->supply.held; }
+bool uno_is_held_in_reset(const struct uno *uno) { return uno->supply.holds_reset; }
 struct list *uno_reset_events(struct uno *uno) { return &uno->reset.events; }
 uint8_t *uno_eeprom(struct uno *uno) { return uno->eeprom.stock->eeprom; }
 struct list *uno_eeprom_operations(struct uno *uno) { return &uno->eeprom.operations; }
@@ -45,21 +45,21 @@ void uno_set_torn_ones(struct uno *uno, uint8_t ones) { uno->eeprom.torn_ones = 
 void uno_cut_power_at(struct uno *uno, uint64_t cycle)
 {
 	restart_catch_up(uno);
-	supply_cut_at(&uno->supply, cycle);
+	supply_schedule_power_cut(&uno->supply, cycle);
 }
 
-void uno_cut_power_in_operation(struct uno *uno, uint64_t skip, bool in_write)
+void uno_cut_power_in_operation(struct uno *uno, uint64_t skip_count, bool in_write)
 {
-	uno->eeprom.ask = (struct eeprom_cut){ true, skip, in_write };
+	uno->eeprom.cut_request = (struct eeprom_cut_request){ true, skip_count, in_write };
 }
 
-void uno_keep_power(struct uno *uno)
+void uno_cancel_power_cut(struct uno *uno)
 {
-	supply_cut_at(&uno->supply, 0);
-	eeprom_keep_power(&uno->eeprom);
+	supply_schedule_power_cut(&uno->supply, 0);
+	eeprom_cancel_cut(&uno->eeprom);
 }
 
-double uno_supply(const struct uno *uno)
+double uno_supply_mv(const struct uno *uno)
 {
 	return supply_mv(&uno->supply, uno->now);
 }
@@ -76,7 +76,7 @@ void uno_set_brown_out(struct uno *uno, double mv)
 	supply_set_brown_out(&uno->supply, mv, uno->avr->cycle);
 }
 
-void uno_set_bandgap(struct uno *uno, double mv) { uno->adc.bandgap = mv; }
+void uno_set_bandgap(struct uno *uno, double mv) { uno->adc.bandgap_mv = mv; }
 
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv)
 {
@@ -88,9 +88,9 @@ void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed
 	contacts_set(&uno->contacts, address, bit, closed);
 }
 
-void uno_boot_at(struct uno *uno, uint32_t address)
+void uno_set_boot_address(struct uno *uno, uint32_t address)
 {
-	uno->avr->codeend = uno->avr->flashend; /* more code may come */
+	uno->avr->codeend = uno->avr->flashend; /* the boot loader may write code anywhere */
 	uno->avr->reset_pc = address;
 	uno->avr->pc = address;
 }

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contacts.h"
 
-/* Behind a port's PIN register, DDR and then PORT (data sheet, 14.4). */
+/* Offsets of a port's DDR and PORT registers from its PIN register (data sheet, 14.4). */
 enum { DDR = 1, PORT = 2 };
 
-static const uint16_t registers[CONTACT_PORTS] = { REG_PINB, REG_PINC, REG_PIND };
+static const uint16_t pin_registers[CONTACT_PORT_COUNT] = { REG_PINB, REG_PINC, REG_PIND };
 
 static uint8_t read_pin(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	struct contacts *contacts = param;
 	uint8_t value = avr->data[address];
-	for (int i = 0; i < CONTACT_PORTS; i++) {
-		if (registers[i] != address)
+	for (int i = 0; i < CONTACT_PORT_COUNT; i++) {
+		if (pin_registers[i] != address)
 			continue;
-		if (contacts->read[i].call)
-			value = contacts->read[i].call(avr, address, contacts->read[i].param);
-		uint8_t inputs = contacts->attached[i] & ~avr->data[address + DDR];
-		uint8_t high = avr->data[address + PORT] & ~contacts->closed[i];
+		if (contacts->stock_reads[i].callback)
+			value = contacts->stock_reads[i].callback(avr, address, contacts->stock_reads[i].param);
+		uint8_t inputs = contacts->contact_bits[i] & ~avr->data[address + DDR];
+		uint8_t high = avr->data[address + PORT] & ~contacts->closed_bits[i];
 		value = (value & ~inputs) | (high & inputs);
 	}
 	return value;
@@ -24,17 +24,17 @@ static uint8_t read_pin(avr_t *avr, avr_io_addr_t address, void *param)
 
 void contacts_attach(struct contacts *contacts, avr_t *avr)
 {
-	for (int i = 0; i < CONTACT_PORTS; i++)
-		contacts->read[i] = hook_read(avr, registers[i], read_pin, contacts);
+	for (int i = 0; i < CONTACT_PORT_COUNT; i++)
+		contacts->stock_reads[i] = hook_read(avr, pin_registers[i], read_pin, contacts);
 }
 
 void contacts_set(struct contacts *contacts, uint16_t address, uint8_t bit, bool closed)
 {
-	for (int i = 0; i < CONTACT_PORTS; i++) {
-		if (registers[i] != address)
+	for (int i = 0; i < CONTACT_PORT_COUNT; i++) {
+		if (pin_registers[i] != address)
 			continue;
-		contacts->attached[i] |= 1 << bit;
-		contacts->closed[i] &= ~(1 << bit);
-		contacts->closed[i] |= closed << bit;
+		contacts->contact_bits[i] |= 1 << bit;
+		contacts->closed_bits[i] &= ~(1 << bit);
+		contacts->closed_bits[i] |= closed << bit;
 	}
 }

@@ -1,6 +1,6 @@
-/* Contacts between pins and ground, such as push buttons. The level of an input pin with a
- * contact is low while that is closed; while it is open, the pull-up makes it high (data sheet, 14.2.1), and
- * without a pull-up it is taken to be low: a program must not rely on a pin that floats.
+/* Contacts between pins and ground, such as push buttons. An input pin with a contact is low
+ * while the contact is closed. While the contact is open, the pull-up makes the pin high (data
+ * sheet, 14.2.1); without a pull-up the pin floats and is read as low.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -8,13 +8,16 @@
 
 #include "chip.h"
 
-#define CONTACT_PORTS 3
+#define CONTACT_PORT_COUNT 3
 
 struct contacts {
-	struct read_hook read[CONTACT_PORTS]; /* simavr's, of ports B, C and D */
-	uint8_t attached[CONTACT_PORTS], closed[CONTACT_PORTS];
+	/* All by port: B, C, D. */
+	struct read_hook stock_reads[CONTACT_PORT_COUNT]; /* simavr's callbacks for the PIN registers */
+	uint8_t contact_bits[CONTACT_PORT_COUNT]; /* pins that have a contact */
+	uint8_t closed_bits[CONTACT_PORT_COUNT];  /* pins whose contact is closed */
 };
 
 void contacts_attach(struct contacts *contacts, avr_t *avr);
-/* Puts a contact at a pin, bit `bit` of the port whose PIN register this is. */
+/* Closes or opens the contact at bit `bit` of the port whose PIN register has this data
+ * address. The first call for a pin puts the contact there. */
 void contacts_set(struct contacts *contacts, uint16_t address, uint8_t bit, bool closed);

@@ -9,50 +9,51 @@ void disturbance_attach(struct disturbance *disturbance, avr_t *avr,
 	*disturbance = (struct disturbance){ .avr = avr, .handlers = handlers };
 }
 
-/* Interrupts are on, and not only since the instruction before. simavr does not
- * count on while the CPU sleeps. */
-static bool is_open(const avr_t *avr)
+/* True if interrupts have been enabled for at least one instruction. interrupt_state is
+ * negative until then; simavr does not count it up while the CPU sleeps. */
+static bool accepts_interrupts(const avr_t *avr)
 {
 	return avr->sreg[S_I] && (avr->interrupt_state >= 0 || avr->state == cpu_Sleeping);
 }
 
-/* The instruction after `sei` or a store to SREG is executed before any interrupt. */
+/* True if the previous instruction was `sei` or a store to SREG and interrupts were off
+ * before: the instruction after it is executed before any interrupt. */
 static bool follows_enable(const avr_t *avr)
 {
 	if (avr->pc < 2 || avr->interrupt_state >= 0)
 		return false;
 	const uint8_t *flash = avr->flash + avr->pc - 2;
-	uint16_t before = flash[0] | flash[1] << 8;
-	return before == 0x9478 || (before & 0xfe0f) == 0xbe0f;
+	uint16_t previous_opcode = flash[0] | flash[1] << 8;
+	return previous_opcode == 0x9478 || (previous_opcode & 0xfe0f) == 0xbe0f;
 }
 
 void disturbance_serve(struct disturbance *disturbance)
 {
 	avr_t *avr = disturbance->avr;
-	if (!disturbance->held || !is_open(avr))
+	if (!disturbance->blocked_cycles || !accepts_interrupts(avr))
 		return;
 	avr->state = cpu_Running;
-	/* Cycle by cycle: whatever is due meanwhile, such as a byte after a byte, is
-	 * due at its own time. */
-	for (; disturbance->held; disturbance->held--) {
+	/* Cycle by cycle, so that each event meanwhile, such as the arrival of a byte, has
+	 * its own time. */
+	for (; disturbance->blocked_cycles; disturbance->blocked_cycles--) {
 		avr->cycle++;
 		avr_cycle_timer_process(avr);
 	}
 }
 
-bool disturbance_waits(const struct disturbance *disturbance)
+bool disturbance_is_active(const struct disturbance *disturbance)
 {
-	return disturbance->held || disturbance->avr->cycle < disturbance->stalled_until;
+	return disturbance->blocked_cycles || disturbance->avr->cycle < disturbance->stalled_until;
 }
 
-bool disturbance_stalls(const struct disturbance *disturbance)
+bool disturbance_stalls_main(const struct disturbance *disturbance)
 {
 	const avr_t *avr = disturbance->avr;
 	return avr->cycle < disturbance->stalled_until && !disturbance->handlers->depth &&
 	       avr->sreg[S_I] && !follows_enable(avr);
 }
 
-void disturbance_wait(struct disturbance *disturbance, uint64_t until)
+void disturbance_advance_stall(struct disturbance *disturbance, uint64_t until)
 {
 	avr_t *avr = disturbance->avr;
 	uint64_t end = until < disturbance->stalled_until ? until : disturbance->stalled_until;

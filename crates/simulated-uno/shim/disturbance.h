@@ -1,5 +1,5 @@
-/* Disturbances of the processor by a test: an interrupt of no source on the chip, and a
- * main program that makes no progress.
+/* Disturbances of the CPU that a test imposes: a foreign interrupt, which has no source on the
+ * chip and outranks all others, and a main program that makes no progress.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -10,19 +10,21 @@
 struct disturbance {
 	avr_t *avr;
 	const struct handlers *handlers;
-	uint64_t held;          /* cycles of a foreign interrupt that is pending */
-	uint64_t stalled_until; /* main executes nothing before this cycle */
+	uint64_t blocked_cycles; /* remaining cycles of the foreign interrupt; 0: none is pending */
+	uint64_t stalled_until;  /* the main program executes nothing before this cycle */
 };
 
 void disturbance_attach(struct disturbance *disturbance, avr_t *avr,
                         const struct handlers *handlers);
-/* Serves the foreign interrupt if it is pending and interrupts are on: cycles pass in
- * which nothing is executed and flags are set. To be called before the chip's interrupts are served. */
+/* Serves the foreign interrupt if it is pending and interrupts are enabled: its cycles pass
+ * without an instruction, while timers and the serial line continue and set their flags. To
+ * be called before the chip's interrupts are served. */
 void disturbance_serve(struct disturbance *disturbance);
-/* True while a disturbance is pending or in progress; then simavr must run one instruction at
- * a time. */
-bool disturbance_waits(const struct disturbance *disturbance);
-/* True if the next instruction is main's and main is stopped. */
-bool disturbance_stalls(const struct disturbance *disturbance);
-/* Advances the time to the next event, to `until` or to the end of the stall. */
-void disturbance_wait(struct disturbance *disturbance, uint64_t until);
+/* True while a disturbance is pending or in progress; simavr must then run one instruction at a
+ * time. */
+bool disturbance_is_active(const struct disturbance *disturbance);
+/* True if the next instruction belongs to the main program and the main program is stalled. */
+bool disturbance_stalls_main(const struct disturbance *disturbance);
+/* Advances the clock to the next simavr timer, to `until` or to the end of the stall,
+ * whichever comes first. */
+void disturbance_advance_stall(struct disturbance *disturbance, uint64_t until);

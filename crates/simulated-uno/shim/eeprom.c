@@ -5,22 +5,22 @@ enum { /* EECR */
 	EEPM = 3 << 4, EERIE = 1 << 3, EEMPE = 1 << 2, EEPE = 1 << 1, EERE = 1 << 0,
 };
 
-#define ARMED_CYCLES 4
-#define READ_HALT 4
-#define WRITE_HALT 2
+#define ARMED_CYCLES 4 /* EEPE must be set within these after EEMPE */
+#define READ_HALT_CYCLES 4 /* the CPU stands still after EERE is set */
+#define WRITE_HALT_CYCLES 2 /* the CPU stands still after EEPE is set */
 
-/* Table 8-1, by enum eeprom_mode. */
-static const uint64_t duration[] = {
+/* Durations of an operation by enum eeprom_mode (table 8-1). */
+static const uint64_t duration_cycles[] = {
 	3400 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US,
 };
 
-static struct eeprom_operation *latest(struct eeprom *eeprom)
+static struct eeprom_operation *latest_operation(struct eeprom *eeprom)
 {
 	struct eeprom_operation *operations = eeprom->operations.items;
 	return &operations[eeprom->operations.count - 1];
 }
 
-static uint16_t address_of(const avr_t *avr)
+static uint16_t selected_address(const avr_t *avr)
 {
 	return avr->data[REG_EEARL] | (avr->data[REG_EEARH] & 0x03) << 8;
 }
@@ -28,14 +28,14 @@ static uint16_t address_of(const avr_t *avr)
 static void set_idle(struct eeprom *eeprom)
 {
 	eeprom->busy = false;
-	eeprom->interrupts->eeprom_ready.up = true;
+	eeprom->interrupts->eeprom_ready.requested = true;
 }
 
-static avr_cycle_count_t finish(avr_t *avr, avr_cycle_count_t when, void *param)
+static avr_cycle_count_t finish_operation(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct eeprom *eeprom = param;
-	const struct eeprom_operation *operation = latest(eeprom);
-	eeprom->stock->eeprom[operation->address] = operation->stored;
+	const struct eeprom_operation *operation = latest_operation(eeprom);
+	eeprom->stock->eeprom[operation->address] = operation->new_value;
 	set_idle(eeprom);
 	avr_raise_interrupt(avr, &eeprom->stock->ready); /* wakes the CPU, if enabled */
 	return 0;
@@ -44,63 +44,63 @@ static avr_cycle_count_t finish(avr_t *avr, avr_cycle_count_t when, void *param)
 static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct eeprom *eeprom = param;
-	reset_ask_power_cut(eeprom->reset);
+	reset_request_power_cut(eeprom->reset);
 	return 0;
 }
 
 static void arm_timers(struct eeprom *eeprom)
 {
 	avr_t *avr = eeprom->avr;
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, eeprom->end), finish, eeprom);
-	if (eeprom->cut)
-		avr_cycle_timer_register(avr, chip_cycles_until(avr, eeprom->cut), cut_power,
+	avr_cycle_timer_register(avr, chip_cycles_until(avr, eeprom->ends_at), finish_operation, eeprom);
+	if (eeprom->cut_at)
+		avr_cycle_timer_register(avr, chip_cycles_until(avr, eeprom->cut_at), cut_power,
 		                         eeprom);
 }
 
-/* Cycle at which an erase and write has erased: the data sheet does not say, so
- * the middle. */
-static uint64_t erased_at(const struct eeprom *eeprom)
+/* The cycle at which the erase phase of an erase-and-write operation ends. The data sheet
+ * does not tell; half of the duration is assumed. */
+static uint64_t erase_end(const struct eeprom *eeprom)
 {
-	return eeprom->start + (eeprom->end - eeprom->start) / 2;
+	return eeprom->started_at + (eeprom->ends_at - eeprom->started_at) / 2;
 }
 
-/* The middle of the phase in which the power is to fail; 0: not in this
- * operation. */
-static uint64_t cut_cycle(struct eeprom *eeprom, uint8_t mode)
+/* Counts the operation against the requested power cut. Returns the cycle at which the power
+ * is to fail, the middle of the requested phase; 0 if not in this operation. */
+static uint64_t take_cut_request(struct eeprom *eeprom, uint8_t mode)
 {
-	struct eeprom_cut *ask = &eeprom->ask;
-	if (!ask->on)
+	struct eeprom_cut_request *request = &eeprom->cut_request;
+	if (!request->pending)
 		return 0;
-	if (ask->skip) {
-		ask->skip--;
+	if (request->skip_count) {
+		request->skip_count--;
 		return 0;
 	}
-	ask->on = false;
-	uint64_t middle = erased_at(eeprom);
+	request->pending = false;
+	uint64_t middle = erase_end(eeprom);
 	if (mode == EEPROM_ERASE || mode == EEPROM_WRITE)
 		return middle;
-	return ask->in_write ? (middle + eeprom->end) / 2 : (eeprom->start + middle) / 2;
+	return request->in_write ? (middle + eeprom->ends_at) / 2 : (eeprom->started_at + middle) / 2;
 }
 
-static void begin(struct eeprom *eeprom, uint64_t cycle)
+static void begin_operation(struct eeprom *eeprom, uint64_t cycle)
 {
 	avr_t *avr = eeprom->avr;
 	uint8_t mode = (avr->data[REG_EECR] & EEPM) >> 4;
 	if (mode > EEPROM_WRITE)
-		mode = EEPROM_ERASE_WRITE; /* reserved */
-	uint16_t address = address_of(avr);
-	uint8_t old = eeprom->stock->eeprom[address];
+		mode = EEPROM_ERASE_WRITE; /* reserved value; assumed */
+	uint16_t address = selected_address(avr);
+	uint8_t old_value = eeprom->stock->eeprom[address];
 	uint8_t data = avr->data[REG_EEDR];
-	uint8_t stored = mode == EEPROM_ERASE ? 0xff : mode == EEPROM_WRITE ? old & data : data;
+	uint8_t new_value = mode == EEPROM_ERASE ? 0xff : mode == EEPROM_WRITE ? old_value & data : data;
 	struct eeprom_operation *operation = list_push(&eeprom->operations);
-	*operation = (struct eeprom_operation){ cycle, address, mode, old, stored, false };
+	*operation = (struct eeprom_operation){ cycle, address, mode, old_value, new_value, false };
 	eeprom->busy = true;
-	eeprom->interrupts->eeprom_ready.up = false;
-	eeprom->target = data;
-	eeprom->start = cycle;
-	eeprom->end = cycle + duration[mode];
-	eeprom->cut = cut_cycle(eeprom, mode);
-	instruction_halt_cpu(eeprom->instruction, WRITE_HALT);
+	eeprom->interrupts->eeprom_ready.requested = false;
+	eeprom->written_data = data;
+	eeprom->started_at = cycle;
+	eeprom->ends_at = cycle + duration_cycles[mode];
+	eeprom->cut_at = take_cut_request(eeprom, mode);
+	instruction_halt_cpu(eeprom->instruction, WRITE_HALT_CYCLES);
 	arm_timers(eeprom);
 }
 
@@ -111,18 +111,19 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	uint8_t touched = instruction_touched_bits(eeprom->instruction);
 	uint8_t ones = value & touched;
 	bool armed = cycle <= eeprom->armed_until;
-	uint8_t plain = touched & (EERIE | (eeprom->busy ? 0 : EEPM));
-	avr->data[address] = (avr->data[address] & (EERIE | EEPM) & ~plain) | (value & plain);
-	interrupts_changed(eeprom->interrupts);
+	uint8_t stored_bits = touched & (EERIE | (eeprom->busy ? 0 : EEPM));
+	uint8_t kept_bits = avr->data[address] & (EERIE | EEPM) & ~stored_bits;
+	avr->data[address] = kept_bits | (value & stored_bits);
+	interrupts_request_check(eeprom->interrupts);
 	if (eeprom->busy)
 		ones &= EEMPE;
 	if ((ones & EEMPE) && !(value & touched & EEPE))
 		eeprom->armed_until = cycle + ARMED_CYCLES;
 	if ((ones & EEPE) && armed) {
-		begin(eeprom, cycle);
+		begin_operation(eeprom, cycle);
 	} else if (ones & EERE) {
-		avr->data[REG_EEDR] = eeprom->stock->eeprom[address_of(avr)];
-		instruction_halt_cpu(eeprom->instruction, READ_HALT);
+		avr->data[REG_EEDR] = eeprom->stock->eeprom[selected_address(avr)];
+		instruction_halt_cpu(eeprom->instruction, READ_HALT_CYCLES);
 	}
 }
 
@@ -151,7 +152,7 @@ void eeprom_attach(struct eeprom *eeprom, avr_t *avr)
 	*eeprom = (struct eeprom){
 		.avr = avr,
 		.stock = (avr_eeprom_t *)chip_part(avr, "eeprom"),
-		.operations.size = sizeof(struct eeprom_operation),
+		.operations.item_size = sizeof(struct eeprom_operation),
 	};
 }
 
@@ -162,7 +163,7 @@ void eeprom_correct(struct eeprom *eeprom, const struct instruction *instruction
 	eeprom->instruction = instruction;
 	eeprom->interrupts = interrupts;
 	eeprom->reset = reset;
-	interrupts->eeprom_ready = (struct level){ &eeprom->stock->ready, true };
+	interrupts->eeprom_ready = (struct level_interrupt){ &eeprom->stock->ready, true };
 	hook_write(avr, REG_EECR, write_control, eeprom);
 	hook_read(avr, REG_EECR, read_control, eeprom);
 	hook_write(avr, REG_EEARL, write_address, eeprom);
@@ -177,7 +178,7 @@ void eeprom_reset(struct eeprom *eeprom)
 		return;
 	/* "During reset, the EEPMn bits will be reset to 0b00 unless the EEPROM
 	 * is busy programming" (8.6.3). */
-	avr->data[REG_EECR] = latest(eeprom)->mode << 4;
+	avr->data[REG_EECR] = latest_operation(eeprom)->mode << 4;
 	arm_timers(eeprom);
 }
 
@@ -186,27 +187,27 @@ void eeprom_tear(struct eeprom *eeprom)
 	if (!eeprom->busy)
 		return;
 	avr_t *avr = eeprom->avr;
-	struct eeprom_operation *operation = latest(eeprom);
+	struct eeprom_operation *operation = latest_operation(eeprom);
 	uint8_t ones = eeprom->torn_ones;
 	bool erasing = operation->mode == EEPROM_ERASE;
 	if (operation->mode != EEPROM_ERASE && operation->mode != EEPROM_WRITE)
-		erasing = avr->cycle < erased_at(eeprom);
+		erasing = avr->cycle < erase_end(eeprom);
 	if (erasing)
-		operation->stored = operation->old | ones;
+		operation->new_value = operation->old_value | ones;
 	else if (operation->mode == EEPROM_WRITE)
-		operation->stored = operation->old & (eeprom->target | ones);
+		operation->new_value = operation->old_value & (eeprom->written_data | ones);
 	else
-		operation->stored = eeprom->target | ones;
-	operation->torn = true;
-	eeprom->stock->eeprom[operation->address] = operation->stored;
-	avr_cycle_timer_cancel(avr, finish, eeprom);
+		operation->new_value = eeprom->written_data | ones;
+	operation->is_torn = true;
+	eeprom->stock->eeprom[operation->address] = operation->new_value;
+	avr_cycle_timer_cancel(avr, finish_operation, eeprom);
 	avr_cycle_timer_cancel(avr, cut_power, eeprom);
 	set_idle(eeprom);
 }
 
-void eeprom_keep_power(struct eeprom *eeprom)
+void eeprom_cancel_cut(struct eeprom *eeprom)
 {
-	eeprom->ask.on = false;
-	eeprom->cut = 0;
+	eeprom->cut_request.pending = false;
+	eeprom->cut_at = 0;
 	avr_cycle_timer_cancel(eeprom->avr, cut_power, eeprom);
 }

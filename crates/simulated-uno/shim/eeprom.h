@@ -16,43 +16,51 @@
 #include "list.h"
 #include "reset.h"
 
-/* EEPM1:0. Kept in step with `EepromMode` in src/eeprom.rs. */
+/* EEPM1:0. Must match `EepromMode` in src/eeprom.rs. */
 enum eeprom_mode { EEPROM_ERASE_WRITE, EEPROM_ERASE, EEPROM_WRITE };
 
 struct eeprom_operation {
-	uint64_t cycle;      /* at which it started */
-	uint16_t address;
-	uint8_t mode;        /* enum eeprom_mode */
-	uint8_t old, stored; /* the byte before and after */
-	uint8_t torn;        /* 1 if a power cut ended it */
+	uint64_t cycle;    /* cycle at which the operation started */
+	uint16_t address;  /* of the byte */
+	uint8_t mode;      /* enum eeprom_mode */
+	uint8_t old_value; /* the byte before the operation */
+	uint8_t new_value; /* the byte after the operation */
+	uint8_t is_torn;   /* 1 if a power cut ended the operation */
 };
 
-struct eeprom_cut { bool on; uint64_t skip; bool in_write; };
+/* The request that the power fail in a later operation. */
+struct eeprom_cut_request {
+	bool pending;
+	uint64_t skip_count; /* operations that begin before that one */
+	bool in_write;       /* true: in the write phase; false: in the erase phase */
+};
 
 struct eeprom {
 	avr_t *avr;
 	const struct instruction *instruction;
 	struct interrupts *interrupts;
 	struct reset *reset;
-	avr_eeprom_t *stock;       /* simavr's, which keeps the bytes */
-	uint64_t armed_until;      /* last cycle at which EEPE may be written */
-	bool busy;
-	uint64_t start, end, cut;  /* cycles of the operation in progress; 0: no cut */
-	uint8_t target;            /* EEDR at its start */
-	struct eeprom_cut ask;     /* power cut in a later operation */
-	uint8_t torn_ones;         /* bits of a torn byte that are still, or already, one */
-	struct list operations;    /* struct eeprom_operation */
+	avr_eeprom_t *stock;       /* simavr's EEPROM, which keeps the bytes */
+	uint64_t armed_until;      /* last cycle at which setting EEPE starts an operation */
+	bool busy;                 /* an operation is in progress */
+	uint64_t started_at;       /* cycle at which the operation in progress started */
+	uint64_t ends_at;          /* cycle at which it ends */
+	uint64_t cut_at;           /* cycle at which a power cut tears it, 0: never */
+	uint8_t written_data;      /* EEDR when it started */
+	struct eeprom_cut_request cut_request;
+	uint8_t torn_ones;         /* bits set in a torn byte in addition to its old or new value */
+	struct list operations;    /* all operations so far: struct eeprom_operation */
 };
 
-/* Finds simavr's bytes; there is no more in the stock fidelity. */
+/* All that the stock fidelity needs: access to simavr's bytes. */
 void eeprom_attach(struct eeprom *eeprom, avr_t *avr);
-/* Replaces simavr's handlers of its registers. */
+/* Replaces simavr's callbacks for the EEPROM's registers. */
 void eeprom_correct(struct eeprom *eeprom, const struct instruction *instruction,
                     struct interrupts *interrupts, struct reset *reset);
 /* "If a reset occurs while a write operation is in progress, the write
  * operation will be completed" (8.4.2). */
 void eeprom_reset(struct eeprom *eeprom);
-/* The supply fails: an operation in progress leaves a torn byte. */
+/* To be called when the supply fails: an operation in progress ends and leaves a torn byte. */
 void eeprom_tear(struct eeprom *eeprom);
-/* Cancels a power cut that has not happened. */
-void eeprom_keep_power(struct eeprom *eeprom);
+/* Cancels a power cut in an operation that has not happened yet. */
+void eeprom_cancel_cut(struct eeprom *eeprom);

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "handlers.h"
 
-#define RETI_CYCLES 4 /* simavr tells of a `reti` before it counts them */
+#define RETI_CYCLES 4 /* simavr reports a `reti` before it counts its cycles */
 
 uint64_t handlers_cycles(const struct handlers *handlers)
 {
 	uint64_t running = handlers->avr->cycle - handlers->running_since;
-	return handlers->finished + (handlers->depth ? running : 0);
+	return handlers->finished_cycles + (handlers->depth ? running : 0);
 }
 
-/* Adds the elapsed cycles to the innermost handler. */
-static void account(struct handlers *handlers, uint64_t cycle)
+/* Adds the cycles since `running_since` to the innermost handler. */
+static void account_cycles(struct handlers *handlers, uint64_t cycle)
 {
 	if (handlers->depth) {
 		uint64_t spent = cycle - handlers->running_since;
-		handlers->finished += spent;
-		handlers->vectors[handlers->running[handlers->depth - 1]].cycles += spent;
+		handlers->finished_cycles += spent;
+		handlers->vectors[handlers->running_vectors[handlers->depth - 1]].cycles += spent;
 	}
 	handlers->running_since = cycle;
 }
@@ -24,13 +24,13 @@ static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
 {
 	struct handlers *handlers = param;
 	uint8_t vector = irq->irq / 256;
-	account(handlers, handlers->avr->cycle + (running ? 0 : RETI_CYCLES));
+	account_cycles(handlers, handlers->avr->cycle + (running ? 0 : RETI_CYCLES));
 	if (!running) {
 		if (handlers->depth)
 			handlers->depth--;
-	} else if (vector < CHIP_VECTORS && handlers->depth < sizeof handlers->running) {
+	} else if (vector < CHIP_VECTOR_COUNT && handlers->depth < sizeof handlers->running_vectors) {
 		handlers->vectors[vector].entries++;
-		handlers->running[handlers->depth++] = vector;
+		handlers->running_vectors[handlers->depth++] = vector;
 	}
 }
 

@@ -1,4 +1,4 @@
-/* The number of times that each interrupt is served, and the cycles of its handler.
+/* Statistics of interrupts: how often each one is served, and the cycles that its handler takes.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -6,18 +6,21 @@
 
 #include "chip.h"
 
-struct vector_use { uint64_t entries, cycles; };
+struct vector_use {
+	uint64_t entries; /* number of times that the interrupt was served */
+	uint64_t cycles;  /* cycles spent in its handler */
+};
 
 struct handlers {
 	const avr_t *avr;
-	struct vector_use vectors[CHIP_VECTORS];
-	uint8_t running[16];    /* nested handlers, the innermost last */
-	uint8_t depth;
-	uint64_t running_since; /* cycle at which the innermost started or resumed */
-	uint64_t finished;      /* cycles in handlers up to `running_since` */
+	struct vector_use vectors[CHIP_VECTOR_COUNT];
+	uint8_t running_vectors[16]; /* vector numbers of the nested handlers, the innermost last */
+	uint8_t depth;               /* number of nested handlers; 0: the main program runs */
+	uint64_t running_since;      /* cycle at which the innermost handler started or resumed */
+	uint64_t finished_cycles;    /* cycles spent in handlers up to `running_since` */
 };
 
 void handlers_attach(struct handlers *handlers, avr_t *avr);
 void handlers_reset(struct handlers *handlers);
-/* Cycles spent in all handlers up to now. */
+/* The cycles spent in all handlers so far. */
 uint64_t handlers_cycles(const struct handlers *handlers);

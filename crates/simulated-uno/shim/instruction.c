@@ -36,8 +36,8 @@ uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t 
 uint8_t instruction_touched_bits(const struct instruction *instruction)
 {
 	uint16_t code = opcode(instruction->avr);
-	bool is_bit = instruction->executing && (code & 0xfd00) == 0x9800; /* cbi, sbi */
-	return is_bit ? 1 << (code & 7) : 0xff;
+	bool is_bit_instruction = instruction->executing && (code & 0xfd00) == 0x9800; /* cbi, sbi */
+	return is_bit_instruction ? 1 << (code & 7) : 0xff;
 }
 
 void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles)

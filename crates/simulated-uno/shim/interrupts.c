@@ -12,12 +12,12 @@ static bool is_due(const struct interrupts *interrupts, const avr_int_vector_t *
 	if (!avr_regbit_get(avr, vector->enable))
 		return false;
 	if (vector == interrupts->eeprom_ready.vector)
-		return interrupts->eeprom_ready.up;
+		return interrupts->eeprom_ready.requested;
 	return vector->raised.reg ? avr_regbit_get(avr, vector->raised) : vector->pending;
 }
 
-/* Rebuilds simavr's list of pending interrupts, which `sleep` checks, from
- * the flags. Returns the one that outranks the others. */
+/* Rebuilds simavr's list of pending interrupts, which `sleep` checks, from the flags. Returns
+ * the interrupt of highest priority; NULL if none is due. */
 static avr_int_vector_t *collect_due(const struct interrupts *interrupts)
 {
 	avr_t *avr = interrupts->avr;
@@ -41,8 +41,8 @@ static void enter(struct interrupts *interrupts, avr_int_vector_t *vector)
 	avr_t *avr = interrupts->avr;
 	avr_int_table_t *table = &avr->interrupts;
 	avr_raise_irq(vector->irq + AVR_INT_IRQ_RUNNING, 1);
-	avr->cycle += ENTRY_CYCLES + (interrupts->slept ? WAKE_CYCLES : 0);
-	interrupts->slept = false;
+	avr->cycle += ENTRY_CYCLES + (interrupts->ends_sleep ? WAKE_CYCLES : 0);
+	interrupts->ends_sleep = false;
 	_avr_push_addr(avr, avr->pc);
 	avr_sreg_set(avr, S_I, 0);
 	avr->pc = vector->vector * avr->vector_size;
@@ -56,17 +56,17 @@ bool interrupts_serve(struct interrupts *interrupts)
 {
 	avr_t *avr = interrupts->avr;
 	if (!avr->sreg[S_I]) {
-		if (interrupts->recheck)
+		if (interrupts->needs_check)
 			collect_due(interrupts);
-		interrupts->recheck = false;
+		interrupts->needs_check = false;
 		return false;
 	}
 	if (avr->interrupt_state < 0) {
-		/* simavr counts two instructions after `sei`; silicon one. */
+		/* simavr waits for two instructions after `sei`, the chip for one. */
 		if (++avr->interrupt_state < 0)
 			return false;
 	}
-	interrupts->recheck = false;
+	interrupts->needs_check = false;
 	avr_int_vector_t *vector = collect_due(interrupts);
 	avr->interrupt_state = vector != NULL;
 	if (!vector)
@@ -79,19 +79,19 @@ static void write_enable(avr_t *avr, avr_io_addr_t address, uint8_t value, void 
 {
 	struct interrupts *interrupts = param;
 	avr->data[address] = value;
-	interrupts_changed(interrupts);
+	interrupts_request_check(interrupts);
 }
 
 static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct interrupts *interrupts = param;
 	avr->data[address] &= ~instruction_written_bits(interrupts->instruction, value);
-	interrupts_changed(interrupts);
+	interrupts_request_check(interrupts);
 }
 
-void interrupts_changed(struct interrupts *interrupts)
+void interrupts_request_check(struct interrupts *interrupts)
 {
-	interrupts->recheck = true;
+	interrupts->needs_check = true;
 	instruction_end_slice(interrupts->instruction);
 }
 

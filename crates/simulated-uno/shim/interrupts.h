@@ -1,8 +1,8 @@
 /* Corrections of simavr 1.6's interrupts by the ATmega328P's data sheet.
  *
  * - An interrupt takes 4 cycles to enter, 4 more from sleep (7.7.1).
- * - Interrupts are levels: an enabled one whose flag is set fires, whenever it
- *   was enabled, and one instruction after `sei`.
+ * - An enabled interrupt is served whenever its flag is set, even if it was enabled after the
+ *   flag was set, and after `sei` when one more instruction has run.
  * - A one written to TIFRn clears that flag and no other.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
@@ -12,19 +12,23 @@
 #include "instruction.h"
 
 /* An interrupt without a flag: it is requested as long as its condition holds. */
-struct level { const avr_int_vector_t *vector; bool up; };
+struct level_interrupt {
+	const avr_int_vector_t *vector;
+	bool requested; /* its condition holds */
+};
 
 struct interrupts {
 	const struct instruction *instruction;
 	avr_t *avr;
-	struct level eeprom_ready;
-	bool slept;   /* the next interrupt to be served ends a sleep */
-	bool recheck; /* a flag or an enable bit changed: all must be checked */
+	struct level_interrupt eeprom_ready;
+	bool ends_sleep;  /* the next interrupt to be served wakes the CPU */
+	bool needs_check; /* a flag or an enable bit has changed since the last check of all interrupts */
 };
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction);
-/* A flag or an enable bit has changed: checks all interrupts after the instruction being
- * executed. */
-void interrupts_changed(struct interrupts *interrupts);
-/* Serves the highest enabled interrupt. True if cycles passed. */
+/* To be called when a flag or an enable bit has changed: all interrupts are checked right
+ * after the instruction being executed. */
+void interrupts_request_check(struct interrupts *interrupts);
+/* Enters the handler of the due interrupt of highest priority. Returns true if cycles have
+ * passed. */
 bool interrupts_serve(struct interrupts *interrupts);

@@ -5,18 +5,18 @@
 
 void *list_push(struct list *list)
 {
-	if (list->count == list->room) {
-		list->room = list->room ? list->room * 2 : 1024;
-		list->items = realloc(list->items, list->room * list->size);
+	if (list->count == list->capacity) {
+		list->capacity = list->capacity ? list->capacity * 2 : 1024;
+		list->items = realloc(list->items, list->capacity * list->item_size);
 		if (!list->items)
 			abort();
 	}
-	return (char *)list->items + list->size * list->count++;
+	return (char *)list->items + list->item_size * list->count++;
 }
 
 void serial_bytes_init(struct serial_bytes *bytes)
 {
-	*bytes = (struct serial_bytes){ .bytes.size = sizeof(struct serial_byte) };
+	*bytes = (struct serial_bytes){ .bytes.item_size = sizeof(struct serial_byte) };
 }
 
 void serial_bytes_push(struct serial_bytes *bytes, uint64_t cycle, uint8_t byte)

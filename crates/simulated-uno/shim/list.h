@@ -1,4 +1,5 @@
-/* Lists that grow. The reader looks at items and count, and may set count to 0.
+/* Growing arrays. A reader may read `items` and `count`, and may empty the list by setting
+ * `count` to 0.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -8,19 +9,21 @@
 
 struct list {
 	void *items;
-	size_t count, room, size; /* items in use, items allocated, bytes of one */
+	size_t count;     /* items in use */
+	size_t capacity;  /* items allocated */
+	size_t item_size; /* bytes of one item */
 };
 
-/* Address of a new last item, not initialised. Ends the program when memory
- * does. */
+/* Appends an uninitialised item and returns its address. Aborts if memory runs out. */
 void *list_push(struct list *list);
 
-/* The bytes of one direction of the serial line, each with the cycle at which it was complete. */
+/* A byte on the serial line, with the cycle at which it was complete. */
 struct serial_byte { uint64_t cycle; uint8_t byte; };
 
+/* The bytes of one direction of the serial line. */
 struct serial_bytes {
 	struct list bytes;  /* struct serial_byte */
-	bool line_ended;    /* a line feed has come; its reader sets it back */
+	bool line_ended;    /* true after a line feed, until the reader resets it */
 };
 
 void serial_bytes_init(struct serial_bytes *bytes);

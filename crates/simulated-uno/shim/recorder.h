@@ -1,5 +1,5 @@
-/* An oscilloscope on the board: records every edge of the pins that it is connected to,
- * and every store to GPIOR0, which firmware may use as a mark.
+/* An oscilloscope on the board: records every edge of the chosen pins, and every store to
+ * GPIOR0, with which the firmware may mark an event.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -8,26 +8,27 @@
 #include "instruction.h"
 #include "list.h"
 
-struct edge { uint64_t cycle; uint8_t pin, level; }; /* pin: Arduino number */
+struct edge { uint64_t cycle; uint8_t pin, level; }; /* `pin`: Arduino number; `level`: new level */
 struct mark { uint64_t cycle; uint8_t value; };
 
 struct recorder;
 struct recorded_port {
 	struct recorder *recorder;
 	char name;          /* 'B', 'C' or 'D' */
-	uint8_t first, bits; /* Arduino number of its bit 0; its pins on the board */
+	uint8_t first_pin;  /* Arduino number of the port's bit 0 */
+	uint8_t pin_count;  /* number of the port's pins that the board has */
 };
 
 struct recorder {
 	const struct instruction *instruction;
 	struct recorded_port ports[3];
 	uint32_t pins;      /* recorded pins, bit n = Arduino pin n */
-	uint32_t levels;    /* of these, the ones that are high */
+	uint32_t levels;    /* levels of the recorded pins, bit n = Arduino pin n */
 	struct list edges;  /* struct edge */
 	struct list marks;  /* struct mark */
 };
 
 void recorder_attach(struct recorder *recorder, const struct instruction *instruction,
                      uint32_t pins);
-/* Every recorded pin that is high goes low: a reset makes all pins inputs. */
+/* Records every pin as low: a reset makes all pins inputs. */
 void recorder_release_pins(struct recorder *recorder);

@@ -4,16 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REGISTERS 32 /* r0 to r31 */
-#define FIRST_NOISE UINT64_C(0x2545f4914f6cdd1d)
+#define REGISTER_COUNT 32 /* r0 to r31 */
+#define INITIAL_NOISE_STATE UINT64_C(0x2545f4914f6cdd1d)
 
 /* "The bit is reset by a Power-on Reset, or by writing a logic zero to the
  * flag" (11.9.1): a one written changes nothing. */
-static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+static void write_mcusr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct reset *reset = param;
-	reset->flags &= value;
-	avr->data[address] = reset->flags;
+	reset->mcusr &= value;
+	avr->data[address] = reset->mcusr;
 }
 
 void reset_attach(struct reset *reset, avr_t *avr, bool data_sheet)
@@ -21,96 +21,96 @@ void reset_attach(struct reset *reset, avr_t *avr, bool data_sheet)
 	*reset = (struct reset){
 		.avr = avr,
 		.data_sheet = data_sheet,
-		.noise = FIRST_NOISE,
-		.sram = calloc(1, avr->ramend + 1),
-		.events.size = sizeof(struct reset_event),
+		.noise_state = INITIAL_NOISE_STATE,
+		.initial_sram = calloc(1, avr->ramend + 1),
+		.events.item_size = sizeof(struct reset_event),
 	};
-	if (!reset->sram)
+	if (!reset->initial_sram)
 		abort();
 	if (data_sheet)
-		hook_write(avr, REG_MCUSR, write_flags, reset);
+		hook_write(avr, REG_MCUSR, write_mcusr, reset);
 }
 
-void reset_ask(struct reset *reset, enum reset_cause cause)
+void reset_request(struct reset *reset, enum reset_cause cause)
 {
-	reset->asked |= cause;
+	reset->requested_causes |= cause;
 	reset->avr->run_cycle_count = 1;
 }
 
-void reset_ask_power_cut(struct reset *reset)
+void reset_request_power_cut(struct reset *reset)
 {
-	reset->cut_asked = true;
+	reset->power_cut_requested = true;
 	reset->avr->run_cycle_count = 1;
 }
 
 void reset_stop_timers(const struct reset *reset)
 {
-	static const uint16_t control[] = {
+	static const uint16_t control_registers[] = {
 		REG_TCCR0B, REG_TCCR1B, REG_TCCR2B, REG_TCCR0A, REG_TCCR1A, REG_TCCR2A,
 	};
 	avr_t *avr = reset->avr;
-	for (size_t i = 0; i < ARRAY_SIZE(control); i++) {
-		avr_io_addr_t io = AVR_DATA_TO_IO(control[i]);
+	for (size_t i = 0; i < ARRAY_SIZE(control_registers); i++) {
+		avr_io_addr_t io = AVR_DATA_TO_IO(control_registers[i]);
 		if (avr->io[io].w.c)
-			avr->io[io].w.c(avr, control[i], 0, avr->io[io].w.param);
+			avr->io[io].w.c(avr, control_registers[i], 0, avr->io[io].w.param);
 	}
 }
 
-/* The one cause that is recorded of several at once. */
+/* The cause that is recorded if there are several at once. */
 static uint8_t main_cause(uint8_t causes)
 {
-	static const uint8_t order[] = { RESET_POWER_ON, RESET_BROWN_OUT, RESET_WATCHDOG };
-	for (size_t i = 0; i < ARRAY_SIZE(order); i++)
-		if (causes & order[i])
-			return order[i];
+	static const uint8_t causes_by_rank[] = { RESET_POWER_ON, RESET_BROWN_OUT, RESET_WATCHDOG };
+	for (size_t i = 0; i < ARRAY_SIZE(causes_by_rank); i++)
+		if (causes & causes_by_rank[i])
+			return causes_by_rank[i];
 	return RESET_EXTERNAL;
 }
 
-void reset_note(struct reset *reset, uint8_t cause, uint64_t now)
+void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 {
-	cause &= ~RESET_HOLD;
-	if (cause) {
+	causes &= ~RESET_HOLD;
+	if (causes) {
 		struct reset_event *event = list_push(&reset->events);
-		*event = (struct reset_event){ now, main_cause(cause) };
+		*event = (struct reset_event){ now, main_cause(causes) };
 	}
-	if (cause & RESET_POWER_ON)
-		reset->flags = RESET_POWER_ON;
-	else if (cause && !reset->data_sheet)
-		reset->flags = cause; /* stock simavr forgets the others */
+	if (causes & RESET_POWER_ON)
+		reset->mcusr = RESET_POWER_ON;
+	else if (causes && !reset->data_sheet)
+		reset->mcusr = causes; /* stock simavr forgets the earlier ones */
 	else
-		reset->flags |= cause;
+		reset->mcusr |= causes;
 	if (reset->boot_loader)
-		reset->flags = 0;
+		reset->mcusr = 0;
 }
 
-void reset_show(const struct reset *reset)
+void reset_restore_mcusr(const struct reset *reset)
 {
-	reset->avr->data[REG_MCUSR] = reset->flags;
+	reset->avr->data[REG_MCUSR] = reset->mcusr;
 }
 
-/* xorshift64* */
+/* Returns a byte of the generator xorshift64*. */
 static uint8_t next_noise(struct reset *reset)
 {
-	reset->noise ^= reset->noise >> 12;
-	reset->noise ^= reset->noise << 25;
-	reset->noise ^= reset->noise >> 27;
-	return reset->noise * UINT64_C(0x2545f4914f6cdd1d) >> 56;
+	reset->noise_state ^= reset->noise_state >> 12;
+	reset->noise_state ^= reset->noise_state << 25;
+	reset->noise_state ^= reset->noise_state >> 27;
+	return reset->noise_state * UINT64_C(0x2545f4914f6cdd1d) >> 56;
 }
 
 void reset_fill_sram(struct reset *reset)
 {
 	avr_t *avr = reset->avr;
 	for (uint32_t address = 0; address <= avr->ramend; address++)
-		if (address < REGISTERS || address >= CHIP_SRAM)
+		if (address < REGISTER_COUNT || address >= CHIP_SRAM_START)
 			avr->data[address] = next_noise(reset);
-	memcpy(reset->sram, avr->data, avr->ramend + 1);
+	memcpy(reset->initial_sram, avr->data, avr->ramend + 1);
 }
 
-uint16_t reset_first_used(const struct reset *reset, uint16_t from)
+uint16_t reset_first_changed(const struct reset *reset, uint16_t from)
 {
 	uint16_t address = from;
 	const avr_t *avr = reset->avr;
-	while (address <= avr->ramend && avr->data[address] == reset->sram[address])
+	while (address <= avr->ramend && avr->data[address] == reset->initial_sram[address])
 		address++;
 	return address;
 }

@@ -1,9 +1,8 @@
-/* Resets by the ATmega328P's data sheet, chapter 11: pending requests, and the
- * causes in MCUSR.
+/* Resets by the ATmega328P's data sheet, chapter 11: pending requests, the causes in MCUSR, and
+ * the SRAM at power-on.
  *
- * A part requests a reset or a power cut here; restart.c carries it
- * out between two instructions. simavr 1.6 has the watchdog's reset only and
- * forgets all other causes.
+ * A part requests a reset or a power cut here; restart.c carries it out between two
+ * instructions. simavr 1.6 has only the watchdog's reset, and MCUSR keeps only the last cause.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -11,11 +10,11 @@
 
 #include "list.h"
 
-/* Bits of MCUSR. Kept in step with `ResetCause` in src/reset.rs. */
+/* Bits of MCUSR. Must match `ResetCause` in src/reset.rs. */
 enum reset_cause {
 	RESET_POWER_ON = 1 << 0, RESET_EXTERNAL = 1 << 1, RESET_BROWN_OUT = 1 << 2,
 	RESET_WATCHDOG = 1 << 3,
-	RESET_HOLD = 1 << 7, /* no cause: the supply is too low, the reset lasts */
+	RESET_HOLD = 1 << 7, /* not in MCUSR: the supply is too low and holds the chip in reset */
 };
 
 struct reset_event { uint64_t cycle; uint8_t cause; };
@@ -23,25 +22,26 @@ struct reset_event { uint64_t cycle; uint8_t cause; };
 struct reset {
 	avr_t *avr;
 	bool data_sheet;
-	bool boot_loader;      /* one that has cleared MCUSR when the firmware starts */
-	uint8_t asked;         /* causes of the requested reset, 0: none */
-	bool cut_asked;        /* a power cut is requested */
-	uint8_t flags;         /* MCUSR, which simavr does not keep */
-	uint64_t noise;        /* state of the generator that fills the SRAM */
-	uint8_t *sram;         /* the SRAM as power-on left it */
-	struct list events;    /* struct reset_event, power-on included */
+	bool boot_loader;         /* a boot loader clears MCUSR before the firmware starts */
+	uint8_t requested_causes; /* causes of the requested reset, 0: none is requested */
+	bool power_cut_requested;
+	uint8_t mcusr;            /* MCUSR, which simavr's reset clears */
+	uint64_t noise_state;     /* state of the random generator whose output fills the SRAM */
+	uint8_t *initial_sram;    /* the data space as power-on left it */
+	struct list events;       /* all resets, power-on included: struct reset_event */
 };
 
 void reset_attach(struct reset *reset, avr_t *avr, bool data_sheet);
-void reset_ask(struct reset *reset, enum reset_cause cause);
-void reset_ask_power_cut(struct reset *reset);
-/* Stops simavr's timers, which would continue after its reset. */
+void reset_request(struct reset *reset, enum reset_cause cause);
+void reset_request_power_cut(struct reset *reset);
+/* Stops Timer0, Timer1 and Timer2, which would continue after simavr's reset. */
 void reset_stop_timers(const struct reset *reset);
-/* Adds a cause to the previous ones. */
-void reset_note(struct reset *reset, uint8_t cause, uint64_t now);
-/* MCUSR, which simavr's reset clears. */
-void reset_show(const struct reset *reset);
-/* Fills registers r0 to r31 and the SRAM with noise, as at power-on. */
+/* Records a reset, and adds its causes to `mcusr`. */
+void reset_record(struct reset *reset, uint8_t causes, uint64_t now);
+/* Writes `mcusr` to the register, which simavr's reset has cleared. */
+void reset_restore_mcusr(const struct reset *reset);
+/* Fills r0 to r31 and the SRAM with noise, as power-on does. */
 void reset_fill_sram(struct reset *reset);
-/* The first SRAM address from `from` on that does not contain its noise any more. */
-uint16_t reset_first_used(const struct reset *reset, uint16_t from);
+/* The first SRAM address from `from` on that no longer contains its noise: the lowest address
+ * that the stack has reached, if static data ends at `from`. */
+uint16_t reset_first_changed(const struct reset *reset, uint16_t from);

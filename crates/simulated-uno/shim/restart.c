@@ -1,66 +1,66 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "restart.h"
 
-static void pins_and_timers_off(struct uno *uno)
+static void release_pins_and_stop_timers(struct uno *uno)
 {
 	recorder_release_pins(&uno->recorder);
 	reset_stop_timers(&uno->reset);
 }
 
-void restart(struct uno *uno, uint8_t cause)
+void restart(struct uno *uno, uint8_t causes)
 {
-	uno->reset.asked = 0;
-	pins_and_timers_off(uno);
-	if (cause & RESET_POWER_ON)
+	uno->reset.requested_causes = 0;
+	release_pins_and_stop_timers(uno);
+	if (causes & RESET_POWER_ON)
 		reset_fill_sram(&uno->reset);
-	if (cause & RESET_WATCHDOG)
-		uno->resets++;
-	/* First, since the watchdog's own reset reads WDRF. */
-	reset_note(&uno->reset, cause, uno->avr->cycle);
+	if (causes & RESET_WATCHDOG)
+		uno->watchdog_resets++;
+	/* Before avr_reset, since watchdog_reset reads WDRF. */
+	reset_record(&uno->reset, causes, uno->avr->cycle);
 	avr_reset(uno->avr);
-	reset_show(&uno->reset);
+	reset_restore_mcusr(&uno->reset);
 }
 
-bool restart_if_asked(struct uno *uno)
+bool restart_if_requested(struct uno *uno)
 {
-	if (uno->reset.cut_asked) {
+	if (uno->reset.power_cut_requested) {
 		restart_cut_power(uno);
 		return true;
 	}
-	if (!uno->reset.asked)
+	if (!uno->reset.requested_causes)
 		return false;
-	restart(uno, uno->reset.asked);
+	restart(uno, uno->reset.requested_causes);
 	return true;
 }
 
-bool restart_wait(struct uno *uno, uint64_t until)
+bool restart_wait_for_supply(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	uint64_t next = avr_cycle_timer_process(avr);
-	if (uno->reset.asked || uno->reset.cut_asked)
+	if (uno->reset.requested_causes || uno->reset.power_cut_requested)
 		return true;
 	uint64_t left = until - avr->cycle;
 	avr->cycle += next < left ? next : left;
 	return true;
 }
 
-void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal)
+void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run)
 {
-	pins_and_timers_off(uno);
-	uno->resets++;
-	reset_note(&uno->reset, RESET_WATCHDOG, uno->avr->cycle);
+	release_pins_and_stop_timers(uno);
+	uno->watchdog_resets++;
+	reset_record(&uno->reset, RESET_WATCHDOG, uno->avr->cycle);
 	uno->avr->run(uno->avr);
-	uno->avr->run = normal;
-	reset_show(&uno->reset);
+	uno->avr->run = normal_run;
+	reset_restore_mcusr(&uno->reset);
 }
 
 void restart_cut_power(struct uno *uno)
 {
-	uno->reset.cut_asked = false;
-	uno->reset.asked = 0;
-	uno->off = true;
+	uno->reset.power_cut_requested = false;
+	uno->reset.requested_causes = 0;
+	uno->powered_off = true;
 	eeprom_tear(&uno->eeprom);
-	pins_and_timers_off(uno);
+	release_pins_and_stop_timers(uno);
 }
 
 void restart_catch_up(struct uno *uno)
@@ -68,6 +68,6 @@ void restart_catch_up(struct uno *uno)
 	avr_t *avr = uno->avr;
 	if (uno->now <= avr->cycle)
 		return;
-	uno->asleep += uno->now - avr->cycle;
+	uno->asleep_cycles += uno->now - avr->cycle;
 	avr->cycle = uno->now;
 }

@@ -6,15 +6,19 @@
 
 #include "board.h"
 
-/* Resets the chip now; `cause` is one or more of enum reset_cause. */
-void restart(struct uno *uno, uint8_t cause);
-/* Carries out the reset or power cut that a part has requested. True if there was one. */
-bool restart_if_asked(struct uno *uno);
-/* The supply holds the chip in reset: time passes, nothing else. */
-bool restart_wait(struct uno *uno, uint64_t until);
-/* `normal`: simavr's run callback before its watchdog changed it. */
-void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal);
-/* From now on nothing runs until the power is restored. */
+/* Resets the chip now. `causes`: one or more bits of enum reset_cause; 0: none is recorded. */
+void restart(struct uno *uno, uint8_t causes);
+/* Carries out the reset or power cut that a part has requested. Returns true if there was
+ * one. */
+bool restart_if_requested(struct uno *uno);
+/* Advances the clock to the next simavr timer or to `until` while the supply holds the chip
+ * in reset. Returns true. */
+bool restart_wait_for_supply(struct uno *uno, uint64_t until);
+/* Carries out the reset that stock simavr's watchdog requests by replacing avr->run.
+ * `normal_run`: the callback that was there before. */
+void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run);
+/* Switches the power off: nothing runs until it is restored. */
 void restart_cut_power(struct uno *uno);
-/* Advances simavr's clock to the time reached, before the board is changed from outside. */
+/* Advances simavr's clock to the current cycle. To be called before the board is changed from
+ * outside. */
 void restart_catch_up(struct uno *uno);

@@ -5,24 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAME_BITS 10.0   /* start, eight data, stop */
-#define SAMPLED_BITS 9.5  /* a receiver is done in the middle of the stop bit */
+#define FRAME_BITS 10.0   /* start bit, eight data bits, stop bit */
+#define SAMPLED_BITS 9.5  /* a receiver has read a byte in the middle of its stop bit */
 
 static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *param);
 
-static bool next_byte(struct sender *sender, struct line_byte *byte)
+static bool take_next_byte(struct sender *sender, struct line_byte *byte)
 {
 	const struct line_byte *queue = sender->queue.items;
-	if (sender->next < sender->queue.count) {
-		*byte = queue[sender->next++];
-		if (sender->next == sender->queue.count)
-			sender->next = sender->queue.count = 0;
+	if (sender->next_index < sender->queue.count) {
+		*byte = queue[sender->next_index++];
+		if (sender->next_index == sender->queue.count)
+			sender->next_index = sender->queue.count = 0;
 		return true;
 	}
 	if (!sender->flood_length)
 		return false;
-	*byte = (struct line_byte){ .value = sender->flood[sender->flood_next] };
-	sender->flood_next = (sender->flood_next + 1) % sender->flood_length;
+	*byte = (struct line_byte){ .value = sender->flood_bytes[sender->flood_position] };
+	sender->flood_position = (sender->flood_position + 1) % sender->flood_length;
 	return true;
 }
 
@@ -31,12 +31,13 @@ static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *para
 	struct sender *sender = param;
 	sender->busy = false;
 	const struct receiver *receiver = &sender->receiver;
-	uint8_t received = receiver->byte(receiver->param, sender->byte, sender->cycles_per_bit);
+	uint8_t received = receiver->receive_byte(receiver->param, sender->current_byte,
+	                                          sender->cycles_per_bit);
 	serial_bytes_push(&sender->delivered, avr->cycle, received);
-	/* Always check again when the line is free: a byte queued meanwhile starts
-	 * then. */
-	uint64_t wait = chip_cycles_until(avr, ceil(sender->line_free));
-	avr_cycle_timer_register(avr, wait, begin_byte, sender);
+	/* Check again when the line is free, even if the queue is empty now: a byte queued
+	 * until then starts at that cycle. */
+	uint64_t cycles_to_free_line = chip_cycles_until(avr, ceil(sender->line_free_at));
+	avr_cycle_timer_register(avr, cycles_to_free_line, begin_byte, sender);
 	return 0;
 }
 
@@ -44,28 +45,28 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 {
 	struct sender *sender = param;
 	const struct receiver *receiver = &sender->receiver;
-	if (sender->busy || !next_byte(sender, &sender->byte))
+	if (sender->busy || !take_next_byte(sender, &sender->current_byte))
 		return 0;
 	/* Fractions of a cycle carry over, so the rate is right in the long run. */
-	double start = sender->line_free > when - 1.0 ? sender->line_free : when;
-	double frame = FRAME_BITS * sender->cycles_per_bit;
+	double start = sender->line_free_at > when - 1.0 ? sender->line_free_at : when;
+	double frame_cycles = FRAME_BITS * sender->cycles_per_bit;
 	sender->busy = true;
-	sender->sent++;
-	sender->line_free = start + receiver->frame_cycles(receiver->param, frame);
-	receiver->start_bit(receiver->param);
+	sender->sent_count++;
+	sender->line_free_at = start + receiver->frame_cycles(receiver->param, frame_cycles);
+	receiver->on_start_bit(receiver->param);
 	uint64_t end = ceil(start + SAMPLED_BITS * sender->cycles_per_bit);
 	avr_cycle_timer_register(avr, chip_cycles_until(avr, end), end_byte, sender);
 	return 0;
 }
 
-/* Starts to send if there is something to send and the line is free. */
-static void start(struct sender *sender, uint64_t now)
+/* Schedules the next byte if there is one and none is on the line or scheduled. */
+static void schedule_next_byte(struct sender *sender, uint64_t now)
 {
 	avr_t *avr = sender->avr;
-	bool empty = sender->next == sender->queue.count && !sender->flood_length;
+	bool empty = sender->next_index == sender->queue.count && !sender->flood_length;
 	if (empty || sender->busy || avr_cycle_timer_status(avr, begin_byte, sender))
 		return;
-	uint64_t free_at = ceil(sender->line_free);
+	uint64_t free_at = ceil(sender->line_free_at);
 	uint64_t begin = now > avr->cycle ? now : avr->cycle;
 	if (free_at > begin)
 		begin = free_at;
@@ -74,7 +75,11 @@ static void start(struct sender *sender, uint64_t now)
 
 void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud)
 {
-	*sender = (struct sender){ .avr = avr, .receiver = receiver, .queue.size = sizeof(struct line_byte) };
+	*sender = (struct sender){
+		.avr = avr,
+		.receiver = receiver,
+		.queue.item_size = sizeof(struct line_byte),
+	};
 	serial_bytes_init(&sender->delivered);
 	sender_set_baud(sender, baud);
 }
@@ -82,7 +87,7 @@ void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, 
 void sender_reset(struct sender *sender, uint64_t now)
 {
 	sender->busy = false;
-	start(sender, now);
+	schedule_next_byte(sender, now);
 }
 
 void sender_set_baud(struct sender *sender, double baud)
@@ -90,32 +95,32 @@ void sender_set_baud(struct sender *sender, double baud)
 	sender->cycles_per_bit = CHIP_FREQUENCY / baud;
 }
 
-void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_low,
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_bit_low,
                  uint64_t now)
 {
 	for (size_t i = 0; i < length; i++) {
 		struct line_byte *last = list_push(&sender->queue);
-		*last = (struct line_byte){ bytes[i], stop_low };
+		*last = (struct line_byte){ bytes[i], stop_bit_low };
 	}
-	start(sender, now);
+	schedule_next_byte(sender, now);
 }
 
 void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
 {
-	free(sender->flood);
-	sender->flood = NULL;
+	free(sender->flood_bytes);
+	sender->flood_bytes = NULL;
 	sender->flood_length = length;
-	sender->flood_next = 0;
+	sender->flood_position = 0;
 	if (!length)
 		return;
-	sender->flood = malloc(length);
-	if (!sender->flood)
+	sender->flood_bytes = malloc(length);
+	if (!sender->flood_bytes)
 		abort();
-	memcpy(sender->flood, bytes, length);
-	start(sender, now);
+	memcpy(sender->flood_bytes, bytes, length);
+	schedule_next_byte(sender, now);
 }
 
-size_t sender_unsent(const struct sender *sender)
+size_t sender_unsent_count(const struct sender *sender)
 {
-	return sender->queue.count - sender->next + sender->busy;
+	return sender->queue.count - sender->next_index + sender->busy;
 }

@@ -8,25 +8,26 @@ static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
 	serial_bytes_push(stock->transmitted, cycle, value);
 }
 
-/* Stock simavr takes 11 bits for a frame: sent at the true rate, a long stream
- * would overflow its 64 bytes, which no UNO has. So bytes are sent no faster than it reads. */
-static double frame_cycles(void *param, double frame)
+/* Stock simavr takes 11 bits for a frame. At the sender's true rate, a long stream would
+ * overflow its receive buffer of 64 bytes, so the sender sends no faster than simavr
+ * receives. */
+static double frame_cycles(void *param, double sender_frame_cycles)
 {
 	const struct stock_uart *stock = param;
-	double least = stock->uart->cycles_per_byte;
-	return least < frame ? frame : least;
+	double min_cycles = stock->uart->cycles_per_byte;
+	return min_cycles < sender_frame_cycles ? sender_frame_cycles : min_cycles;
 }
 
-static void start_bit(void *param)
+static void on_start_bit(void *param)
 {
 }
 
-static uint8_t receive(void *param, struct line_byte byte, double cycles_per_bit)
+static uint8_t receive_byte(void *param, struct line_byte byte, double cycles_per_bit)
 {
 	const struct stock_uart *stock = param;
-	uint32_t input = byte.value | (byte.stop_low ? UART_INPUT_FE : 0);
+	uint32_t input = byte.value | (byte.stop_bit_low ? UART_INPUT_FE : 0);
 	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, input);
-	return byte.stop_low ? 0xff : byte.value;
+	return byte.stop_bit_low ? 0xff : byte.value;
 }
 
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
@@ -45,5 +46,5 @@ void stock_uart_attach(struct stock_uart *stock, const struct instruction *instr
 
 struct receiver stock_uart_receiver(struct stock_uart *stock)
 {
-	return (struct receiver){ stock, frame_cycles, start_bit, receive };
+	return (struct receiver){ stock, frame_cycles, on_start_bit, receive_byte };
 }

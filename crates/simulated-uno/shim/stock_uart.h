@@ -11,13 +11,13 @@
 #include "list.h"
 
 struct stock_uart {
-	avr_uart_t *uart;                       /* simavr's */
+	avr_uart_t *uart;                       /* simavr's USART0 */
 	const struct instruction *instruction;
-	struct serial_bytes *transmitted;       /* the record of its bytes */
+	struct serial_bytes *transmitted;       /* record of the bytes that it transmits */
 };
 
-/* Switches off simavr's waits and echo, and collects what it transmits. */
+/* Switches off simavr's pauses and its echo to stdout, and records the transmitted bytes. */
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
                        struct serial_bytes *transmitted);
-/* The receiver for the sender's cable. */
+/* Returns the UART as the receiver at the end of the sender's cable. */
 struct receiver stock_uart_receiver(struct stock_uart *stock);

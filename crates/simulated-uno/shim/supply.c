@@ -1,85 +1,89 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "supply.h"
 
-#define NOMINAL 5000.0
-#define BROWN_OUT 2700.0      /* VBOT of the UNO's fuses, BODLEVEL = 101 (29.5) */
-#define HYSTERESIS 50.0       /* VHYST */
-#define POWER_ON_RISING 1400.0  /* VPOT, typical */
-#define POWER_ON_FALLING 1300.0
-#define LEAST_OPERATING 1800.0  /* below it an EEPROM operation is not completed */
+#define NOMINAL_MV 5000.0
+#define BROWN_OUT_MV 2700.0        /* VBOT with the UNO's fuses, BODLEVEL = 101 (29.5) */
+#define HYSTERESIS_MV 50.0         /* VHYST */
+#define POWER_ON_RISING_MV 1400.0  /* VPOT, typical: a rising supply releases the power-on reset */
+#define POWER_ON_FALLING_MV 1300.0 /* VPOT, typical: a falling supply causes the power-on reset */
+#define MIN_OPERATING_MV 1800.0    /* below this, an EEPROM operation is torn */
 
 double supply_mv(const struct supply *supply, uint64_t cycle)
 {
-	if (cycle >= supply->end)
-		return supply->to;
-	double done = (double)(cycle - supply->start) / (double)(supply->end - supply->start);
-	return supply->from + (supply->to - supply->from) * done;
+	if (cycle >= supply->ramp_end)
+		return supply->to_mv;
+	double ramp_cycles = (double)(supply->ramp_end - supply->ramp_start);
+	double elapsed_share = (double)(cycle - supply->ramp_start) / ramp_cycles;
+	return supply->from_mv + (supply->to_mv - supply->from_mv) * elapsed_share;
 }
 
-/* "VBOT- = VBOT - VHYST/2" (11.5) */
-static double hold_below(const struct supply *supply)
+/* The voltage below which the supply holds the chip in reset: "VBOT- = VBOT - VHYST/2"
+ * (11.5). */
+static double hold_below_mv(const struct supply *supply)
 {
-	return supply->brown_out > 0 ? supply->brown_out - HYSTERESIS / 2 : POWER_ON_FALLING;
+	return supply->brown_out_mv > 0 ? supply->brown_out_mv - HYSTERESIS_MV / 2 : POWER_ON_FALLING_MV;
 }
 
-static double release_above(const struct supply *supply)
+/* The voltage above which the supply releases the chip: "VBOT+ = VBOT + VHYST/2" (11.5). */
+static double release_above_mv(const struct supply *supply)
 {
-	return supply->brown_out > 0 ? supply->brown_out + HYSTERESIS / 2 : POWER_ON_RISING;
+	return supply->brown_out_mv > 0 ? supply->brown_out_mv + HYSTERESIS_MV / 2 : POWER_ON_RISING_MV;
 }
 
-/* First cycle after now at which the line is beyond `level`; 0: never. */
-static uint64_t crossing(const struct supply *supply, double level)
+/* The first cycle after now at which the ramp is beyond `level_mv`; 0: never. */
+static uint64_t crossing_cycle(const struct supply *supply, double level_mv)
 {
-	double slope = supply->to - supply->from;
-	double part = (level - supply->from) / slope;
-	if (!(part >= 0 && part < 1))
+	double change_mv = supply->to_mv - supply->from_mv;
+	double share = (level_mv - supply->from_mv) / change_mv;
+	if (!(share >= 0 && share < 1))
 		return 0;
-	uint64_t cycle = supply->start + (uint64_t)(part * (supply->end - supply->start)) + 1;
+	uint64_t ramp_cycles = supply->ramp_end - supply->ramp_start;
+	uint64_t cycle = supply->ramp_start + (uint64_t)(share * ramp_cycles) + 1;
 	return cycle > supply->avr->cycle ? cycle : 0;
 }
 
 static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param);
 
-/* Checks the supply again when the line crosses the next level. */
+/* Schedules a check of the supply at the cycle at which the ramp crosses the next level. */
 static void schedule(struct supply *supply)
 {
-	const double levels[] = {
-		hold_below(supply), release_above(supply), LEAST_OPERATING, POWER_ON_FALLING,
+	const double levels_mv[] = {
+		hold_below_mv(supply), release_above_mv(supply), MIN_OPERATING_MV, POWER_ON_FALLING_MV,
 	};
-	uint64_t next = 0;
-	for (size_t i = 0; i < ARRAY_SIZE(levels); i++) {
-		uint64_t cycle = crossing(supply, levels[i]);
-		if (cycle && (!next || cycle < next))
-			next = cycle;
+	uint64_t next_check = 0;
+	for (size_t i = 0; i < ARRAY_SIZE(levels_mv); i++) {
+		uint64_t cycle = crossing_cycle(supply, levels_mv[i]);
+		if (cycle && (!next_check || cycle < next_check))
+			next_check = cycle;
 	}
 	avr_t *avr = supply->avr;
 	avr_cycle_timer_cancel(avr, check_supply, supply);
-	if (next && supply->data_sheet)
-		avr_cycle_timer_register(avr, next - avr->cycle, check_supply, supply);
+	if (next_check && supply->data_sheet)
+		avr_cycle_timer_register(avr, next_check - avr->cycle, check_supply, supply);
 }
 
-static void apply(struct supply *supply, double mv)
+static void apply_voltage(struct supply *supply, double mv)
 {
-	if (mv < LEAST_OPERATING)
+	if (mv < MIN_OPERATING_MV)
 		eeprom_tear(supply->eeprom);
-	if (mv < POWER_ON_FALLING)
-		supply->lost = true;
-	if (!supply->held && mv < hold_below(supply)) {
-		supply->held = true;
-		reset_ask(supply->reset, RESET_HOLD);
-	} else if (supply->held && mv > release_above(supply)) {
-		supply->held = false;
-		reset_ask(supply->reset, supply->lost ? RESET_POWER_ON : RESET_BROWN_OUT);
-		supply->lost = false;
+	if (mv < POWER_ON_FALLING_MV)
+		supply->sram_lost = true;
+	if (!supply->holds_reset && mv < hold_below_mv(supply)) {
+		supply->holds_reset = true;
+		reset_request(supply->reset, RESET_HOLD);
+	} else if (supply->holds_reset && mv > release_above_mv(supply)) {
+		supply->holds_reset = false;
+		reset_request(supply->reset, supply->sram_lost ? RESET_POWER_ON : RESET_BROWN_OUT);
+		supply->sram_lost = false;
 	}
 }
 
-/* Resets or releases the chip by the present voltage. */
+/* Holds the chip in reset or releases it, by the present voltage. */
 static void update(struct supply *supply, uint64_t now)
 {
 	if (!supply->data_sheet)
 		return;
-	apply(supply, supply_mv(supply, now));
+	apply_voltage(supply, supply_mv(supply, now));
 	schedule(supply);
 }
 
@@ -89,11 +93,11 @@ static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *
 	return 0;
 }
 
-static avr_cycle_count_t cut(avr_t *avr, avr_cycle_count_t when, void *param)
+static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct supply *supply = param;
-	supply->cut_at = 0;
-	reset_ask_power_cut(supply->reset);
+	supply->power_cut_at = 0;
+	reset_request_power_cut(supply->reset);
 	return 0;
 }
 
@@ -104,9 +108,9 @@ void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
 		.avr = avr,
 		.reset = reset,
 		.eeprom = eeprom,
-		.from = NOMINAL,
-		.to = NOMINAL,
-		.brown_out = BROWN_OUT,
+		.from_mv = NOMINAL_MV,
+		.to_mv = NOMINAL_MV,
+		.brown_out_mv = BROWN_OUT_MV,
 		.data_sheet = data_sheet,
 	};
 }
@@ -114,49 +118,50 @@ void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
 void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles)
 {
 	avr_t *avr = supply->avr;
-	supply->from = supply_mv(supply, now);
-	supply->to = mv;
-	supply->start = now;
-	supply->end = now + cycles;
+	supply->from_mv = supply_mv(supply, now);
+	supply->to_mv = mv;
+	supply->ramp_start = now;
+	supply->ramp_end = now + cycles;
 	avr->vcc = avr->avcc = avr->aref = mv; /* read by stock simavr's ADC */
 	update(supply, now);
 }
 
 void supply_set_brown_out(struct supply *supply, double mv, uint64_t now)
 {
-	supply->brown_out = mv;
+	supply->brown_out_mv = mv;
 	update(supply, now);
 }
 
-static void arm_cut(struct supply *supply)
+static void arm_power_cut(struct supply *supply)
 {
 	avr_t *avr = supply->avr;
-	avr_cycle_timer_cancel(avr, cut, supply);
-	if (supply->cut_at)
-		avr_cycle_timer_register(avr, chip_cycles_until(avr, supply->cut_at), cut, supply);
+	avr_cycle_timer_cancel(avr, cut_power, supply);
+	if (supply->power_cut_at)
+		avr_cycle_timer_register(avr, chip_cycles_until(avr, supply->power_cut_at), cut_power,
+		                         supply);
 }
 
-void supply_cut_at(struct supply *supply, uint64_t cycle)
+void supply_schedule_power_cut(struct supply *supply, uint64_t cycle)
 {
-	supply->cut_at = cycle;
-	arm_cut(supply);
+	supply->power_cut_at = cycle;
+	arm_power_cut(supply);
 }
 
 bool supply_may_reset(const struct supply *supply)
 {
-	return supply->cut_at || supply->avr->cycle < supply->end;
+	return supply->power_cut_at || supply->avr->cycle < supply->ramp_end;
 }
 
 void supply_reset(struct supply *supply)
 {
 	schedule(supply);
-	arm_cut(supply);
+	arm_power_cut(supply);
 }
 
 void supply_power_on(struct supply *supply)
 {
-	supply->held = supply->lost = false;
+	supply->holds_reset = supply->sram_lost = false;
 	double mv = supply_mv(supply, supply->avr->cycle);
-	if (supply->data_sheet && mv < release_above(supply))
-		supply->held = supply->lost = true;
+	if (supply->data_sheet && mv < release_above_mv(supply))
+		supply->holds_reset = supply->sram_lost = true;
 }

@@ -1,5 +1,5 @@
-/* The supply voltage, VCC and AVCC in one as on a UNO, and the resets by it: brown-out
- * (data sheet 11.5) and power-on (11.3).
+/* The supply voltage, for both VCC and AVCC as on a UNO, and the resets that it causes:
+ * brown-out (data sheet 11.5) and power-on (11.3).
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -12,25 +12,30 @@ struct supply {
 	avr_t *avr;
 	struct reset *reset;
 	struct eeprom *eeprom;
-	double from, to;         /* mV, a straight line from `start` to `end` */
-	uint64_t start, end;
-	double brown_out;        /* mV, 0: the fuse is off */
+	double from_mv;          /* voltage until cycle `ramp_start` */
+	double to_mv;            /* voltage from cycle `ramp_end` on; it changes linearly between */
+	uint64_t ramp_start, ramp_end;
+	double brown_out_mv;     /* brown-out level, 0: brown-out detection is off */
 	bool data_sheet;
-	bool held;               /* the supply holds the chip in reset */
-	bool lost;               /* the supply has been too low for the SRAM */
-	uint64_t cut_at;         /* cycle at which the power is cut, 0: never */
+	bool holds_reset;        /* the supply is too low and holds the chip in reset */
+	bool sram_lost;          /* the supply has been too low for the SRAM to keep its contents */
+	uint64_t power_cut_at;   /* cycle at which the power is cut, 0: never */
 };
 
 void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
                    struct eeprom *eeprom, bool data_sheet);
+/* The voltage at a cycle, from the start of the last ramp on. */
 double supply_mv(const struct supply *supply, uint64_t cycle);
-/* A straight line from now on, `cycles` long. */
+/* Changes the voltage linearly to `mv` within `cycles` from now. */
 void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles);
+/* Sets the brown-out level, 0: off. */
 void supply_set_brown_out(struct supply *supply, double mv, uint64_t now);
-void supply_cut_at(struct supply *supply, uint64_t cycle);
+/* Makes the power fail at a cycle, 0: never. */
+void supply_schedule_power_cut(struct supply *supply, uint64_t cycle);
 /* True while a ramp of the supply or a power cut can still reset the chip. */
 bool supply_may_reset(const struct supply *supply);
-/* simavr's reset drops its timers. */
+/* To be called after simavr's reset, which drops all timers: sets those of the supply again. */
 void supply_reset(struct supply *supply);
-/* The power is restored after a cut: sets `held` by the present voltage. */
+/* To be called when the power is restored after a cut: sets `holds_reset` by the present
+ * voltage. */
 void supply_power_on(struct supply *supply);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "timer1.h"
 
-static const uint16_t low_bytes[4] = { REG_TCNT1L, REG_ICR1L, REG_OCR1AL, REG_OCR1BL };
+static const uint16_t low_byte_registers[4] = { REG_TCNT1L, REG_ICR1L, REG_OCR1AL, REG_OCR1BL };
 
 static void write_high(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
@@ -13,11 +13,11 @@ static void write_low(avr_t *avr, avr_io_addr_t address, uint8_t value, void *pa
 	struct timer1 *timer1 = param;
 	avr->data[address + 1] = timer1->temp;
 	for (int i = 0; i < 4; i++) {
-		if (low_bytes[i] != address)
+		if (low_byte_registers[i] != address)
 			continue;
-		const struct write_hook *before = &timer1->write_low[i];
-		if (before->call)
-			before->call(avr, address, value, before->param);
+		const struct write_hook *stock_hook = &timer1->stock_writes_low[i];
+		if (stock_hook->callback)
+			stock_hook->callback(avr, address, value, stock_hook->param);
 		else
 			avr->data[address] = value;
 	}
@@ -26,7 +26,7 @@ static void write_low(avr_t *avr, avr_io_addr_t address, uint8_t value, void *pa
 static uint8_t read_count_low(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	struct timer1 *timer1 = param;
-	uint8_t low = timer1->read_count.call(avr, address, timer1->read_count.param);
+	uint8_t low = timer1->stock_read_count.callback(avr, address, timer1->stock_read_count.param);
 	timer1->temp = avr->data[address + 1];
 	return low;
 }
@@ -45,10 +45,10 @@ static uint8_t read_temp(avr_t *avr, avr_io_addr_t address, void *param)
 void timer1_attach(struct timer1 *timer1, avr_t *avr)
 {
 	for (int i = 0; i < 4; i++) {
-		timer1->write_low[i] = hook_write(avr, low_bytes[i], write_low, timer1);
-		hook_write(avr, low_bytes[i] + 1, write_high, timer1);
+		timer1->stock_writes_low[i] = hook_write(avr, low_byte_registers[i], write_low, timer1);
+		hook_write(avr, low_byte_registers[i] + 1, write_high, timer1);
 	}
-	timer1->read_count = hook_read(avr, REG_TCNT1L, read_count_low, timer1);
+	timer1->stock_read_count = hook_read(avr, REG_TCNT1L, read_count_low, timer1);
 	hook_read(avr, REG_TCNT1L + 1, read_temp, timer1);
 	hook_read(avr, REG_ICR1L, read_capture_low, timer1);
 	hook_read(avr, REG_ICR1L + 1, read_temp, timer1);

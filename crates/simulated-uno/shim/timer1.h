@@ -1,5 +1,5 @@
-/* Timer1's 16-bit registers by the data sheet (16.3): a high byte goes through
- * TEMP, one byte that they all share. simavr 1.6 stores it at once.
+/* Timer1's 16-bit registers by the data sheet (16.3): a high byte is read and written through
+ * TEMP, a byte that all these registers share. simavr 1.6 stores a high byte at once.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -8,9 +8,9 @@
 #include "chip.h"
 
 struct timer1 {
-	uint8_t temp;
-	struct write_hook write_low[4]; /* simavr's, which TEMP goes before */
-	struct read_hook read_count;
+	uint8_t temp;                          /* TEMP */
+	struct write_hook stock_writes_low[4]; /* simavr's callbacks for the low bytes */
+	struct read_hook stock_read_count;     /* simavr's callback for TCNT1L */
 };
 
 void timer1_attach(struct timer1 *timer1, avr_t *avr);

@@ -1,8 +1,8 @@
-/* One simulated UNO: its parts put together, and the hot loop.
+/* One simulated UNO: connects its parts, and runs the loop that executes instructions.
  *
- * The loop never waits for the wall clock, and stops at a cycle, not at a
- * simavr event: while the CPU sleeps, simulated time may be ahead of
- * avr->cycle, so a run cut into pieces gives the same bits as one long run.
+ * The loop never waits for the wall clock. A run ends at the requested cycle, even if the CPU
+ * sleeps and simavr's next event is later: then uno->now is ahead of avr->cycle. So several
+ * short runs have exactly the result of one long run.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -18,18 +18,20 @@
 #include "board.h"
 #include "restart.h"
 
-#define SLICE 256  /* most cycles simavr runs on its own: a run ends this exactly */
+/* The largest number of cycles that simavr runs without returning to the loop. A run may end
+ * that much too late. */
+#define MAX_SLICE_CYCLES 256
 
 static void on_log(avr_t *avr, const int level, const char *format, va_list args)
 {
 	struct uno *uno = avr ? avr->custom.data : NULL;
 	if (uno && level <= LOG_ERROR)
-		vsnprintf(uno->message, sizeof uno->message, format, args);
+		vsnprintf(uno->error_message, sizeof uno->error_message, format, args);
 }
 
-/* simavr polls D2 and D3 on every cycle while they are low, in case the
- * firmware wants a level interrupt. D3 is a servo here: switch that off. */
-static void no_level_polling(avr_t *avr)
+/* simavr polls D2 and D3 on every cycle while they are low, in case the firmware wants a level
+ * interrupt. This switches the polling off, which is slow. */
+static void disable_level_polling(avr_t *avr)
 {
 	avr_extint_set_strict_lvl_trig(avr, 0, 0);
 	avr_extint_set_strict_lvl_trig(avr, 1, 0);
@@ -38,7 +40,7 @@ static void no_level_polling(avr_t *avr)
 static void on_reset(struct avr_io_t *io)
 {
 	struct uno *uno = (struct uno *)((char *)io - offsetof(struct uno, io));
-	no_level_polling(uno->avr);
+	disable_level_polling(uno->avr);
 	handlers_reset(&uno->handlers);
 	call_timer_reset(&uno->call_timer);
 	if (uno->data_sheet) {
@@ -46,7 +48,7 @@ static void on_reset(struct avr_io_t *io)
 		usart_reset(&uno->usart);
 		eeprom_reset(&uno->eeprom);
 		adc_reset(&uno->adc);
-		if (!uno->supply.held)
+		if (!uno->supply.holds_reset)
 			watchdog_reset(&uno->watchdog);
 	}
 	supply_reset(&uno->supply);
@@ -58,7 +60,7 @@ void uno_set_logger(void)
 	avr_global_logger_set(on_log);
 }
 
-/* Puts `io` last in simavr's chain, so that our reset has the final word. */
+/* Appends `io` to simavr's list of parts, so that our reset runs after all others. */
 static void join_reset_chain(avr_t *avr, avr_io_t *io)
 {
 	io->kind = "simulated-uno";
@@ -70,8 +72,8 @@ static void join_reset_chain(avr_t *avr, avr_io_t *io)
 	*link = io;
 }
 
-/* simavr stops at an address beyond SRAM, but only after it has stored there:
- * give it all 64 KiB that an AVR can address. */
+/* simavr reports a store beyond SRAM as a crash, but only after it has stored there. So give
+ * it all 64 KiB that an AVR can address. */
 static void widen_data_space(avr_t *avr)
 {
 	size_t size = avr->ramend + 1;
@@ -137,8 +139,8 @@ void uno_free(struct uno *uno)
 	};
 	for (size_t i = 0; i < ARRAY_SIZE(lists); i++)
 		free(lists[i]->items);
-	free(uno->sender.flood);
-	free(uno->reset.sram);
+	free(uno->sender.flood_bytes);
+	free(uno->reset.initial_sram);
 	free(uno);
 }
 
@@ -150,46 +152,46 @@ bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t addr
 	return true;
 }
 
-void uno_power_on(struct uno *uno, uint32_t code_end, uint16_t data_end)
+void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end)
 {
 	uno->avr->codeend = code_end;
 	uno->data_end = data_end;
 }
 
-uint16_t uno_stack_low(const struct uno *uno)
+uint16_t uno_lowest_stack_address(const struct uno *uno)
 {
-	return reset_first_used(&uno->reset, uno->data_end);
+	return reset_first_changed(&uno->reset, uno->data_end);
 }
 
 static void run_instructions(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	if (uno->call_timer.on) {
+	if (uno->call_timer.enabled) {
 		call_timer_check(&uno->call_timer);
 		avr->run_cycle_limit = 1;
-	} else if (disturbance_waits(&uno->disturbance)) {
+	} else if (disturbance_is_active(&uno->disturbance)) {
 		avr->run_cycle_limit = 1;
 	} else {
 		uint64_t left = until > avr->cycle ? until - avr->cycle : 1;
-		avr->run_cycle_limit = left < SLICE ? left : SLICE;
+		avr->run_cycle_limit = left < MAX_SLICE_CYCLES ? left : MAX_SLICE_CYCLES;
 	}
-	/* The count that simavr set with the old limit may reach past `until`. */
+	/* The count that simavr computed with the old limit may reach beyond `until`. */
 	if (avr->run_cycle_count > avr->run_cycle_limit)
 		avr->run_cycle_count = avr->run_cycle_limit;
 	instruction_run(&uno->instruction);
 }
 
-/* Sleeps until simavr's next timer. False if `until` comes first. Stock simavr
- * wakes a cycle late. */
-static bool sleep_cycles(struct uno *uno, uint64_t cycles, uint64_t until)
+/* Sleeps for `cycles`, until simavr's next timer. Returns false if `until` comes first. In
+ * the stock fidelity, the CPU wakes a cycle late, as in simavr. */
+static bool sleep_until_timer(struct uno *uno, uint64_t cycles, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	cycles += uno->data_sheet ? 0 : 1;
 	if (avr->cycle + cycles > until)
 		return false;
 	avr->cycle += cycles;
-	uno->asleep += cycles;
-	uno->interrupts.slept = true;
+	uno->asleep_cycles += cycles;
+	uno->interrupts.ends_sleep = true;
 	return true;
 }
 
@@ -199,13 +201,13 @@ static void service_interrupts(struct uno *uno)
 	if (!uno->data_sheet) {
 		if (avr->interrupt_state)
 			avr_service_interrupts(avr);
-	} else if (avr->interrupt_state || uno->interrupts.recheck) {
+	} else if (avr->interrupt_state || uno->interrupts.needs_check) {
 		if (interrupts_serve(&uno->interrupts))
-			avr_cycle_timer_process(avr); /* entering took time */
+			avr_cycle_timer_process(avr); /* the entry into the handler took time */
 	}
 }
 
-/* Asleep with interrupts off: only a reset ends this. */
+/* True if the sleeping CPU has interrupts off and no reset can wake it. */
 static bool is_halted(const struct uno *uno)
 {
 	if (uno->avr->sreg[S_I])
@@ -214,46 +216,50 @@ static bool is_halted(const struct uno *uno)
 	       !(watchdog_may_reset(&uno->watchdog) || supply_may_reset(&uno->supply));
 }
 
-/* simavr lets an enabled interrupt wake a CPU that has interrupts off. */
+/* Keeps the CPU asleep if interrupts are off: simavr lets an interrupt with its enable bit
+ * set wake it. */
 static void stay_asleep(avr_t *avr)
 {
 	if (avr->state == cpu_Running && !avr->sreg[S_I])
 		avr->state = cpu_Sleeping;
 }
 
-static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
+/* Executes a few instructions, or advances the clock while the CPU cannot execute any. Returns
+ * false if the power is off or nothing happens before cycle `until`. `normal_run`: avr->run as long
+ * as stock simavr's watchdog does not request a reset. */
+static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	if (restart_if_asked(uno))
-		return !uno->off;
-	if (uno->supply.held)
-		return restart_wait(uno, until);
+	if (restart_if_requested(uno))
+		return !uno->powered_off;
+	if (uno->supply.holds_reset)
+		return restart_wait_for_supply(uno, until);
 	if (avr->state == cpu_Sleeping)
 		disturbance_serve(&uno->disturbance);
-	if (avr->state == cpu_Running && disturbance_stalls(&uno->disturbance)) {
-		disturbance_wait(&uno->disturbance, until);
+	if (avr->state == cpu_Running && disturbance_stalls_main(&uno->disturbance)) {
+		disturbance_advance_stall(&uno->disturbance, until);
 	} else if (avr->state == cpu_Running) {
-		uno->interrupts.slept = false;
-		/* One more turn of simavr's order: instruction, timers, interrupts. */
+		uno->interrupts.ends_sleep = false;
+		/* simavr's own order: instruction, timers, interrupts. */
 		run_instructions(uno, until);
 	}
-	bool asleep = avr->state == cpu_Sleeping;
-	uint64_t sleep = avr_cycle_timer_process(avr);
-	if (avr->run != normal) { /* stock simavr's watchdog asks for a reset this way */
-		restart_by_stock_watchdog(uno, normal);
+	bool was_asleep = avr->state == cpu_Sleeping;
+	uint64_t cycles_to_timer = avr_cycle_timer_process(avr);
+	if (avr->run != normal_run) { /* stock simavr's watchdog requests a reset */
+		restart_by_stock_watchdog(uno, normal_run);
 		return true;
 	}
-	if (asleep)
+	if (was_asleep)
 		stay_asleep(avr);
 	if (avr->state == cpu_Sleeping) {
 		if (is_halted(uno)) {
 			avr->state = cpu_Done;
 			return true;
 		}
-		if (!sleep_cycles(uno, sleep, until))
+		if (!sleep_until_timer(uno, cycles_to_timer, until))
 			return false;
 		if (uno->data_sheet) {
-			avr_cycle_timer_process(avr); /* fires now the timer that woke it */
+			avr_cycle_timer_process(avr); /* fires the timer that is due now */
 			stay_asleep(avr);
 		}
 	}
@@ -262,38 +268,39 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 	return true;
 }
 
-enum stop uno_run(struct uno *uno, uint64_t until)
+enum stop_reason uno_run(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	avr_run_t normal = avr->run;
+	avr_run_t normal_run = avr->run;
 	uno->transmitted.line_ended = false;
-	while (avr->cycle < until && !uno->off) {
+	while (avr->cycle < until && !uno->powered_off) {
 		if (avr->state != cpu_Running && avr->state != cpu_Sleeping)
 			break;
-		if (!step(uno, normal, until))
+		if (!step(uno, normal_run, until))
 			break;
 		if (uno->transmitted.line_ended && uno->stop_at_line)
 			break;
 	}
-	restart_if_asked(uno); /* by the last cycle */
-	bool line = uno->transmitted.line_ended && uno->stop_at_line;
+	restart_if_requested(uno); /* requested in the last cycle */
+	bool line_ended = uno->transmitted.line_ended && uno->stop_at_line;
 	bool alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
-	/* Asleep and nothing due: the time is `until` though simavr lags. */
-	bool lags = alive && !line && !uno->off && avr->cycle < until;
+	/* The CPU sleeps and nothing is due before `until`: that is the current cycle, ahead
+	 * of simavr's. */
+	bool lags = alive && !line_ended && !uno->powered_off && avr->cycle < until;
 	uno->now = lags ? until : avr->cycle;
-	if (uno->off)
+	if (uno->powered_off)
 		return STOP_OFF;
 	if (avr->state == cpu_Done)
 		return STOP_HALTED;
 	if (!alive)
 		return STOP_CRASHED;
-	return line ? STOP_LINE : STOP_TIME;
+	return line_ended ? STOP_LINE : STOP_TIME;
 }
 
-uint64_t uno_asleep(const struct uno *uno)
+uint64_t uno_asleep_cycles(const struct uno *uno)
 {
 	bool lags = uno->now > uno->avr->cycle;
-	return uno->asleep + (lags ? uno->now - uno->avr->cycle : 0);
+	return uno->asleep_cycles + (lags ? uno->now - uno->avr->cycle : 0);
 }
 
 void uno_time_calls(struct uno *uno, bool on, uint32_t entry)
@@ -301,9 +308,9 @@ void uno_time_calls(struct uno *uno, bool on, uint32_t entry)
 	call_timer_set(&uno->call_timer, on, entry);
 }
 
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_low)
+void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_bit_low)
 {
-	sender_send(&uno->sender, bytes, length, stop_low, uno->now);
+	sender_send(&uno->sender, bytes, length, stop_bit_low, uno->now);
 }
 
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
@@ -311,13 +318,13 @@ void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 	sender_flood(&uno->sender, bytes, length, uno->now);
 }
 
-void uno_hold(struct uno *uno, uint64_t cycles)
+void uno_block_interrupts(struct uno *uno, uint64_t cycles)
 {
 	avr_t *avr = uno->avr;
-	uno->disturbance.held = cycles;
+	uno->disturbance.blocked_cycles = cycles;
 	if (avr->state != cpu_Sleeping)
-		return; /* in the middle of something: when interrupts are on */
-	uno->asleep += uno->now - avr->cycle;
+		return; /* served by the loop, as soon as interrupts are enabled */
+	uno->asleep_cycles += uno->now - avr->cycle;
 	avr->cycle = uno->now;
 	disturbance_serve(&uno->disturbance);
 	uno->now = avr->cycle;
@@ -340,16 +347,16 @@ void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
 
 void uno_set_baud(struct uno *uno, double baud) { sender_set_baud(&uno->sender, baud); }
 uint32_t uno_cycles_per_bit(const struct uno *uno) { return usart_cycles_per_bit(uno->avr); }
-uint8_t uno_sampled(uint8_t byte, double ratio) { return usart_sampled(byte, ratio); }
+uint8_t uno_sample_byte(uint8_t byte, double ratio) { return usart_sample_byte(byte, ratio); }
 void uno_stop_at_line(struct uno *uno, bool on) { uno->stop_at_line = on; }
-size_t uno_unsent(const struct uno *uno) { return sender_unsent(&uno->sender); }
-uint64_t uno_sent(const struct uno *uno) { return uno->sender.sent; }
+size_t uno_unsent_count(const struct uno *uno) { return sender_unsent_count(&uno->sender); }
+uint64_t uno_sent_count(const struct uno *uno) { return uno->sender.sent_count; }
 uint64_t uno_now(const struct uno *uno) { return uno->now; }
 uint32_t uno_pc(const struct uno *uno) { return uno->avr->pc; }
-uint64_t uno_resets(const struct uno *uno) { return uno->resets; }
-uint64_t uno_overruns(const struct uno *uno) { return uno->usart.overruns; }
-uint32_t uno_levels(const struct uno *uno) { return uno->recorder.levels; }
-const char *uno_message(const struct uno *uno) { return uno->message; }
+uint64_t uno_watchdog_resets(const struct uno *uno) { return uno->watchdog_resets; }
+uint64_t uno_overrun_count(const struct uno *uno) { return uno->usart.overrun_count; }
+uint32_t uno_pin_levels(const struct uno *uno) { return uno->recorder.levels; }
+const char *uno_error_message(const struct uno *uno) { return uno->error_message; }
 const uint8_t *uno_data(const struct uno *uno) { return uno->avr->data; }
 uint32_t uno_data_size(const struct uno *uno) { return uno->avr->ramend + 1; }
 const struct vector_use *uno_vectors(const struct uno *uno) { return uno->handlers.vectors; }

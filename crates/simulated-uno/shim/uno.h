@@ -9,49 +9,75 @@
 
 struct uno;
 
-/* The reason for the end of a run. Kept in step with `Stop` in src/ffi.rs. */
-enum stop { STOP_TIME, STOP_LINE, STOP_HALTED, STOP_CRASHED, STOP_OFF };
+/* The reason for the end of a run. Must match `StopReason` in src/ffi.rs. */
+enum stop_reason {
+	STOP_TIME,    /* the requested cycle is reached */
+	STOP_LINE,    /* the firmware has sent a line feed */
+	STOP_HALTED,  /* the CPU sleeps, and nothing can wake it */
+	STOP_CRASHED, /* invalid instruction or address; see uno_error_message */
+	STOP_OFF,     /* the power has been cut */
+};
 
+/* Directs simavr's error messages to the uno that they concern. To be called once. */
 void uno_set_logger(void);
-/* `pins`: the pins whose edges are recorded, bit n = Arduino pin n. */
+/* `data_sheet`: true for the data-sheet fidelity, simavr corrected by the data sheet; false
+ * for the stock fidelity, simavr as it is. `pins`: the pins whose edges are recorded, bit n =
+ * Arduino pin n. `baud`: the sender's rate. */
 struct uno *uno_new(bool data_sheet, uint32_t pins, double baud);
 void uno_free(struct uno *uno);
-/* Puts `size` bytes into flash. False if they do not fit. */
+/* Copies `size` bytes into flash at a byte address. Returns false if they do not fit. */
 bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t address);
-/* Ends loading: `code_end` bytes of flash are code, static data ends at
- * `data_end`. */
-void uno_power_on(struct uno *uno, uint32_t code_end, uint16_t data_end);
-/* Runs until cycle `until`, or the end of the firmware's next line. */
-enum stop uno_run(struct uno *uno, uint64_t until);
+/* To be called after the last uno_load: flash contains code up to byte address `code_end`, and
+ * static data ends before data address `data_end`. */
+void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end);
+/* Runs until cycle `until`, or until another of the reasons applies. */
+enum stop_reason uno_run(struct uno *uno, uint64_t until);
+/* On: a run ends when the firmware has sent a complete line. */
 void uno_stop_at_line(struct uno *uno, bool on);
-/* Times the calls of the function at byte address `entry` from now on. */
+/* Starts or stops timing the calls of the function at byte address `entry`. */
 void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
-/* `stop_low`: with the line low where each stop bit should be. */
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_low);
+/* Queues bytes for the serial line. `stop_bit_low`: the line is low where each stop bit
+ * should be. */
+void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_bit_low);
+/* Sends `bytes` repeatedly whenever the queue is empty; length 0 ends the flood. */
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length);
+/* Sets the sender's rate. */
 void uno_set_baud(struct uno *uno, double baud);
+/* The length of a bit of the chip's USART, as its registers set it. */
 uint32_t uno_cycles_per_bit(const struct uno *uno);
-uint8_t uno_sampled(uint8_t byte, double ratio);
-/* A foreign interrupt of so many cycles, now or when interrupts are on next. */
-void uno_hold(struct uno *uno, uint64_t cycles);
-/* Main executes nothing before cycle `until`; interrupts are served. */
+/* See usart_sample_byte. */
+uint8_t uno_sample_byte(uint8_t byte, double ratio);
+/* Blocks the CPU and its interrupts for `cycles`, at once or as soon as interrupts are enabled:
+ * see disturbance.h. */
+void uno_block_interrupts(struct uno *uno, uint64_t cycles);
+/* The main program executes nothing before cycle `until`; interrupts are served. */
 void uno_stall_main(struct uno *uno, uint64_t until);
-/* Writes a data address as `sts` would. */
+/* Writes to a data address as the instruction `sts` would. */
 void uno_poke(struct uno *uno, uint16_t address, uint8_t value);
-size_t uno_unsent(const struct uno *uno);
-uint64_t uno_sent(const struct uno *uno);
+/* The number of queued bytes that have not arrived at the uno. */
+size_t uno_unsent_count(const struct uno *uno);
+/* The number of bytes put on the line towards the uno, floods included. */
+uint64_t uno_sent_count(const struct uno *uno);
+/* The current cycle. */
 uint64_t uno_now(const struct uno *uno);
-/* Cycles asleep up to now, the unfinished sleep included. */
-uint64_t uno_asleep(const struct uno *uno);
+/* The cycles that the CPU has slept until now, an unfinished sleep included. */
+uint64_t uno_asleep_cycles(const struct uno *uno);
+/* The byte address in flash of the next instruction. */
 uint32_t uno_pc(const struct uno *uno);
-uint64_t uno_resets(const struct uno *uno);
-uint64_t uno_overruns(const struct uno *uno);
-uint32_t uno_levels(const struct uno *uno);
-/* Lowest SRAM address that the stack has ever touched. */
-uint16_t uno_stack_low(const struct uno *uno);
-const char *uno_message(const struct uno *uno);
+/* The number of resets by the watchdog. */
+uint64_t uno_watchdog_resets(const struct uno *uno);
+/* The number of bytes that the chip's USART has lost. */
+uint64_t uno_overrun_count(const struct uno *uno);
+/* The recorded pins that are high, bit n = Arduino pin n. */
+uint32_t uno_pin_levels(const struct uno *uno);
+/* The lowest SRAM address that the stack has reached since power-on. */
+uint16_t uno_lowest_stack_address(const struct uno *uno);
+/* The last error that simavr logged; empty if none. */
+const char *uno_error_message(const struct uno *uno);
+/* The data space: registers r0 to r31, I/O registers and SRAM. */
 const uint8_t *uno_data(const struct uno *uno);
 uint32_t uno_data_size(const struct uno *uno);
+/* CHIP_VECTOR_COUNT items, by vector number. */
 const struct vector_use *uno_vectors(const struct uno *uno);
 struct list *uno_edges(struct uno *uno);             /* struct edge */
 struct list *uno_marks(struct uno *uno);             /* struct mark */
@@ -59,32 +85,45 @@ struct list *uno_transmitted(struct uno *uno);       /* struct serial_byte */
 struct list *uno_received(struct uno *uno);          /* struct serial_byte */
 struct list *uno_calls(struct uno *uno);             /* struct call */
 
-/* EEPROM, supply, ADC, contacts and resets: chip_access.c. */
-void uno_reset(struct uno *uno); /* the RESET pin */
+/* The functions below are in chip_access.c. */
+
+/* Pulls the RESET pin low for an instant. */
+void uno_reset(struct uno *uno);
+/* Cuts the power and restores it at once. */
 void uno_power_cycle(struct uno *uno);
+/* Simulates the effects of a boot loader: MCUSR is zero when the firmware starts. */
 void uno_set_boot_loader(struct uno *uno, bool on);
-void uno_set_noise(struct uno *uno, uint64_t seed);
-bool uno_held_in_reset(const struct uno *uno);
+/* Chooses the noise that the next power-on leaves in the SRAM. */
+void uno_set_noise_seed(struct uno *uno, uint64_t seed);
+/* True while the supply is too low for the chip to run. */
+bool uno_is_held_in_reset(const struct uno *uno);
 struct list *uno_reset_events(struct uno *uno);      /* struct reset_event */
 uint8_t *uno_eeprom(struct uno *uno);                /* 1024 bytes */
 struct list *uno_eeprom_operations(struct uno *uno); /* struct eeprom_operation */
-/* The bits of a torn byte that are one though they should not be yet, or still
- * are though they should no longer. */
+/* Sets the bits that a torn byte has in addition to those of its old value (power cut while
+ * it is erased) or of its new value (power cut while it is written). */
 void uno_set_torn_ones(struct uno *uno, uint8_t ones);
 void uno_cut_power_at(struct uno *uno, uint64_t cycle);
-/* In the first EEPROM operation to come after `skip` others. */
-void uno_cut_power_in_operation(struct uno *uno, uint64_t skip, bool in_write);
-/* Takes back a cut that has not happened. */
-void uno_keep_power(struct uno *uno);
-double uno_supply(const struct uno *uno);
+/* Cuts the power in an EEPROM operation, after `skip_count` others have begun. `in_write`: in
+ * its write phase, not in its erase phase. */
+void uno_cut_power_in_operation(struct uno *uno, uint64_t skip_count, bool in_write);
+/* Cancels every power cut that has not happened yet. */
+void uno_cancel_power_cut(struct uno *uno);
+/* The present supply voltage, mV. */
+double uno_supply_mv(const struct uno *uno);
+/* Changes the supply voltage linearly to `mv` within `cycles`. */
 void uno_ramp_supply(struct uno *uno, double mv, uint64_t cycles);
+/* Sets the brown-out level; 0 disables brown-out detection. */
 void uno_set_brown_out(struct uno *uno, double mv);
+/* Sets the voltage of the bandgap reference. */
 void uno_set_bandgap(struct uno *uno, double mv);
+/* Sets the voltage at the analogue pin of this ADC channel. */
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
-/* A contact between ground and the pin of this bit of the port whose PIN register this is. */
+/* Closes or opens a contact between ground and bit `bit` of the port whose PIN register has this
+ * data address. */
 void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed);
 
-/* Boot loader and flash: boot.c. */
-/* From now on a reset starts the program at this byte address (BOOTRST). */
-void uno_boot_at(struct uno *uno, uint32_t address);
+/* Makes every reset, and the present start, begin at this byte address in flash, as the fuse
+ * BOOTRST does. */
+void uno_set_boot_address(struct uno *uno, uint32_t address);
 uint8_t *uno_flash(struct uno *uno);                 /* 32768 bytes */

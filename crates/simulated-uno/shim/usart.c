@@ -13,7 +13,8 @@ enum { /* UCSR0B */
 
 #define DATA_BITS 8
 #define FRAME_BITS 10
-#define BAUD_TOLERANCE 0.045 /* a frame's last sample leaves its bit beyond this */
+/* The largest relative error of the rate at which the last sample still is inside the stop bit. */
+#define BAUD_TOLERANCE 0.045
 
 uint32_t usart_cycles_per_bit(const avr_t *avr)
 {
@@ -21,56 +22,56 @@ uint32_t usart_cycles_per_bit(const avr_t *avr)
 	return (ubrr + 1) * (avr->data[REG_UCSR0A] & U2X ? 8 : 16);
 }
 
-uint8_t usart_sampled(uint8_t byte, double ratio)
+uint8_t usart_sample_byte(uint8_t byte, double ratio)
 {
 	uint32_t line = 1u << (DATA_BITS + 1) | (uint32_t)byte << 1; /* stop bit, data, start bit */
 	uint8_t sampled = 0;
 	for (int bit = 0; bit < DATA_BITS; bit++) {
-		double at = (bit + 1.5) * ratio;
-		if (at >= FRAME_BITS || line >> (int)at & 1)
+		double position = (bit + 1.5) * ratio;
+		if (position >= FRAME_BITS || line >> (int)position & 1)
 			sampled |= 1 << bit;
 	}
 	return sampled;
 }
 
-/* Brings RXC, FE and DOR in step with the receive buffer. */
-static void show_receiver(struct usart *usart)
+/* Sets RXC, FE and DOR as the receive buffer requires. */
+static void update_receive_flags(struct usart *usart)
 {
 	avr_t *avr = usart->avr;
-	uint8_t *a = &avr->data[REG_UCSR0A];
-	*a &= ~(RXC | FE | DOR);
-	if (usart->count && usart->received[0].frame_error)
-		*a |= FE;
+	uint8_t *status = &avr->data[REG_UCSR0A];
+	*status &= ~(RXC | FE | DOR);
+	if (usart->received_count && usart->received[0].frame_error)
+		*status |= FE;
 	if (usart->overrun)
-		*a |= DOR;
-	if (usart->count) {
+		*status |= DOR;
+	if (usart->received_count) {
 		avr_raise_interrupt(avr, &usart->vectors->rxc); /* sets RXC */
-		*a |= RXC; /* also when it is pending already */
+		*status |= RXC; /* also if the interrupt was already pending */
 	}
 }
 
-static void start_bit(void *param)
+static void on_start_bit(void *param)
 {
 	struct usart *usart = param;
-	if (usart->count < RECEIVED)
+	if (usart->received_count < RECEIVE_CAPACITY)
 		return;
-	usart->count--; /* the incoming byte overwrites the shift register */
+	usart->received_count--; /* the incoming byte overwrites the shift register */
 	usart->overrun = true;
-	usart->overruns++;
-	show_receiver(usart);
+	usart->overrun_count++;
+	update_receive_flags(usart);
 }
 
-static uint8_t receive(void *param, struct line_byte byte, double sender_cycles_per_bit)
+static uint8_t receive_byte(void *param, struct line_byte byte, double sender_cycles_per_bit)
 {
 	struct usart *usart = param;
 	const avr_t *avr = usart->avr;
 	if (!(avr->data[REG_UCSR0B] & RXEN))
 		return byte.value;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
-	bool frame_error = byte.stop_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
-	uint8_t value = usart_sampled(byte.value, ratio);
-	usart->received[usart->count++] = (struct received){ value, frame_error };
-	show_receiver(usart);
+	bool frame_error = byte.stop_bit_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
+	uint8_t value = usart_sample_byte(byte.value, ratio);
+	usart->received[usart->received_count++] = (struct received){ value, frame_error };
+	update_receive_flags(usart);
 	return frame_error ? 0xff : value;
 }
 
@@ -78,30 +79,30 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 {
 	struct usart *usart = param;
 	uint8_t byte = usart->received[0].value;
-	if (!usart->count)
+	if (!usart->received_count)
 		return byte;
-	usart->count--;
-	for (int i = 0; i < usart->count; i++)
+	usart->received_count--;
+	for (int i = 0; i < usart->received_count; i++)
 		usart->received[i] = usart->received[i + 1];
 	usart->overrun = false;
 	usart->vectors->rxc.pending = 0;
-	interrupts_changed(usart->interrupts);
-	show_receiver(usart);
+	interrupts_request_check(usart->interrupts);
+	update_receive_flags(usart);
 	avr->data[REG_UDR0] = byte;
 	return byte;
 }
 
-static avr_cycle_count_t sent(avr_t *avr, avr_cycle_count_t when, void *param)
+static avr_cycle_count_t finish_frame(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct usart *usart = param;
-	serial_bytes_push(usart->transmitted, when, usart->transmitting);
-	if (usart->next_full) {
-		usart->transmitting = usart->next;
-		usart->next_full = false;
+	serial_bytes_push(usart->transmitted, when, usart->sent_byte);
+	if (usart->has_waiting_byte) {
+		usart->sent_byte = usart->waiting_byte;
+		usart->has_waiting_byte = false;
 		avr_raise_interrupt(avr, &usart->vectors->udrc);
 		return when + FRAME_BITS * usart_cycles_per_bit(avr);
 	}
-	usart->busy = false;
+	usart->is_sending = false;
 	avr_raise_interrupt(avr, &usart->vectors->txc);
 	return 0;
 }
@@ -109,15 +110,16 @@ static avr_cycle_count_t sent(avr_t *avr, avr_cycle_count_t when, void *param)
 static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
 	struct usart *usart = param;
-	if (!(avr->data[REG_UCSR0B] & TXEN) || usart->next_full)
-		return; /* ignored by the transmitter */
-	if (!usart->busy) {
-		usart->busy = true;
-		usart->transmitting = value;
-		avr_cycle_timer_register(avr, FRAME_BITS * usart_cycles_per_bit(avr), sent, usart);
+	if (!(avr->data[REG_UCSR0B] & TXEN) || usart->has_waiting_byte)
+		return; /* the transmitter ignores the byte */
+	if (!usart->is_sending) {
+		usart->is_sending = true;
+		usart->sent_byte = value;
+		avr_cycle_timer_register(avr, FRAME_BITS * usart_cycles_per_bit(avr), finish_frame,
+		                         usart);
 	} else {
-		usart->next = value;
-		usart->next_full = true;
+		usart->waiting_byte = value;
+		usart->has_waiting_byte = true;
 		avr->data[REG_UCSR0A] &= ~UDRE;
 		usart->vectors->udrc.pending = 0;
 	}
@@ -126,12 +128,12 @@ static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *para
 static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
 	struct usart *usart = param;
-	uint8_t *a = &avr->data[REG_UCSR0A];
+	uint8_t *status = &avr->data[REG_UCSR0A];
 	if (value & TXC) {
-		*a &= ~TXC;
+		*status &= ~TXC;
 		usart->vectors->txc.pending = 0;
 	}
-	*a = (*a & ~(U2X | MPCM)) | (value & (U2X | MPCM));
+	*status = (*status & ~(U2X | MPCM)) | (value & (U2X | MPCM));
 }
 
 static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
@@ -139,22 +141,22 @@ static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *p
 	struct usart *usart = param;
 	avr->data[addr] = value;
 	if (!(value & RXEN)) {
-		usart->count = 0;
+		usart->received_count = 0;
 		usart->overrun = false;
-		show_receiver(usart);
+		update_receive_flags(usart);
 	}
-	interrupts_changed(usart->interrupts); /* enabling an interrupt whose flag is up fires it */
+	interrupts_request_check(usart->interrupts); /* an interrupt enabled while its flag is set fires */
 }
 
-/* The frame is as long as the sender makes it. */
-static double frame_cycles(void *param, double frame)
+/* The receiver does not slow the sender down. */
+static double frame_cycles(void *param, double sender_frame_cycles)
 {
-	return frame;
+	return sender_frame_cycles;
 }
 
 struct receiver usart_receiver(struct usart *usart)
 {
-	return (struct receiver){ usart, frame_cycles, start_bit, receive };
+	return (struct receiver){ usart, frame_cycles, on_start_bit, receive_byte };
 }
 
 void usart_reset(struct usart *usart)
@@ -165,9 +167,9 @@ void usart_reset(struct usart *usart)
 		.vectors = usart->vectors,
 		.interrupts = usart->interrupts,
 		.transmitted = usart->transmitted,
-		.overruns = usart->overruns,
+		.overrun_count = usart->overrun_count,
 	};
-	avr_cycle_timer_cancel(avr, sent, usart);
+	avr_cycle_timer_cancel(avr, finish_frame, usart);
 	avr->data[REG_UCSR0A] = UDRE;
 	avr->data[REG_UCSR0B] = 0;
 	avr->data[REG_UCSR0C] = 0x06;

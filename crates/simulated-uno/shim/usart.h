@@ -1,9 +1,9 @@
 /* USART0 of the ATmega328P by its data sheet, chapter 20.
  *
- * simavr 1.6 keeps 64 received bytes and counts 11 bits a frame, which hides
- * every overrun. Here: 10-bit frames at the rate the registers say now, two
- * received bytes and a third in the shift register, the third lost when a
- * fourth begins (DOR), and a transmit buffer of one byte.
+ * simavr 1.6 keeps 64 received bytes and takes 11 bits for a frame, so that an overrun never
+ * happens. Here a frame has 10 bits at the rate that the registers set at present. Two received
+ * bytes wait in the buffer and a third in the shift register; the third is lost when a fourth
+ * begins (DOR). The transmitter has a buffer of one byte.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -14,31 +14,34 @@
 #include "interrupts.h"
 #include "sender.h"
 
-#define RECEIVED 3 /* two in the buffer, one in the shift register */
+#define RECEIVE_CAPACITY 3 /* bytes: two in the buffer, one in the shift register */
 
 struct usart {
 	avr_t *avr;
-	avr_uart_t *vectors;        /* simavr's USART0, for its interrupt vectors */
+	avr_uart_t *vectors;              /* simavr's USART0, for its interrupt vectors */
 	struct interrupts *interrupts;
-	struct serial_bytes *transmitted;
-	struct received { uint8_t value; bool frame_error; } received[RECEIVED];
-	uint8_t count;              /* bytes in `received` */
-	bool overrun;
-	uint8_t transmitting, next;
-	bool busy, next_full;
-	uint64_t overruns;          /* bytes lost since power-on */
+	struct serial_bytes *transmitted; /* record of the bytes that the chip has sent */
+	struct received { uint8_t value; bool frame_error; } received[RECEIVE_CAPACITY];
+	uint8_t received_count;           /* number of bytes in `received` */
+	bool overrun;                     /* DOR: a byte was lost after UDR0 was last read */
+	uint8_t sent_byte;                /* byte in the transmit shift register */
+	uint8_t waiting_byte;             /* byte in the transmit buffer */
+	bool is_sending;                  /* the transmit shift register is in use */
+	bool has_waiting_byte;            /* the transmit buffer is full */
+	uint64_t overrun_count;           /* number of bytes lost so far; resets keep it */
 };
 
-/* Replaces simavr's handlers of USART0's registers. */
+/* Replaces simavr's callbacks for USART0's registers. */
 void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t *vectors,
                   struct serial_bytes *transmitted);
 void usart_reset(struct usart *usart);
-/* The receiver for the sender's cable. */
+/* Returns the USART as the receiver at the end of the sender's cable. */
 struct receiver usart_receiver(struct usart *usart);
 
-/* The length of a bit by the present registers. */
+/* The length of a bit, as the registers set it at present. */
 uint32_t usart_cycles_per_bit(const avr_t *avr);
-/* The byte that a receiver reads from a sender of another rate: it samples each data bit in its
- * middle, counted from the edge of the start bit. `ratio`: length of the receiver's bit divided
- * by the sender's. The line is high after the frame, as in a pause between bytes. */
-uint8_t usart_sampled(uint8_t byte, double ratio);
+/* Returns the byte that a receiver reads from a sender with another baud rate. The receiver
+ * samples the line in the middle of each of its own data bits, counted from the edge of the
+ * start bit. `ratio`: length of the receiver's bit divided by that of the sender's bit. After
+ * the frame the line is high, as in a pause between bytes. */
+uint8_t usart_sample_byte(uint8_t byte, double ratio);

@@ -6,17 +6,18 @@ enum { /* WDTCSR */
 	WDP = WDP3 | 7,
 };
 
-#define OSCILLATOR 128000u
-#define SHORTEST 2048u /* oscillator cycles, WDP = 0 */
-#define LONGEST_WDP 9  /* those above are reserved */
-#define CHANGE_CYCLES 4
+#define OSCILLATOR_HZ 128000u
+#define SHORTEST_PERIOD 2048u /* with WDP = 0, in cycles of the oscillator */
+#define MAX_WDP 9 /* higher values are reserved */
+#define CHANGE_CYCLES 4 /* length of the window for a change, after WDCE is set */
 
-static uint64_t period(uint8_t control)
+/* The time-out in CPU cycles, given WDTCSR. */
+static uint64_t period_cycles(uint8_t control)
 {
 	unsigned wdp = (control & WDP3) >> 2 | (control & 7);
-	if (wdp > LONGEST_WDP)
-		wdp = LONGEST_WDP;
-	return ((uint64_t)SHORTEST << wdp) * (CHIP_FREQUENCY / OSCILLATOR);
+	if (wdp > MAX_WDP)
+		wdp = MAX_WDP;
+	return ((uint64_t)SHORTEST_PERIOD << wdp) * (CHIP_FREQUENCY / OSCILLATOR_HZ);
 }
 
 static bool is_on(uint8_t control)
@@ -24,39 +25,40 @@ static bool is_on(uint8_t control)
 	return control & (WDE | WDIE);
 }
 
-static avr_cycle_count_t time_out(avr_t *avr, avr_cycle_count_t when, void *param)
+static avr_cycle_count_t on_time_out(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct watchdog *watchdog = param;
 	uint8_t control = avr->data[REG_WDTCSR];
 	/* "If the interrupt is not executed before the next time-out, a System
 	 * Reset will be applied" (11.9.2). */
 	if ((control & WDE) && (!(control & WDIE) || (control & WDIF))) {
-		reset_ask(watchdog->reset, RESET_WATCHDOG);
+		reset_request(watchdog->reset, RESET_WATCHDOG);
 		return 0;
 	}
 	avr_raise_interrupt(avr, &watchdog->stock->watchdog);
-	watchdog->since = when;
-	return when + period(control);
+	watchdog->counter_start = when;
+	return when + period_cycles(control);
 }
 
 static void schedule(struct watchdog *watchdog)
 {
 	avr_t *avr = watchdog->avr;
 	uint8_t control = avr->data[REG_WDTCSR];
-	avr_cycle_timer_cancel(avr, time_out, watchdog);
+	avr_cycle_timer_cancel(avr, on_time_out, watchdog);
 	if (!is_on(control))
 		return;
-	uint64_t due = watchdog->since + period(control);
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, due), time_out, watchdog);
+	uint64_t due = watchdog->counter_start + period_cycles(control);
+	avr_cycle_timer_register(avr, chip_cycles_until(avr, due), on_time_out, watchdog);
 }
 
-/* Called by simavr for everything that it asks of its parts. */
+/* Called by simavr with each request to its parts; `wdr` is one of them. Returns -1 for the
+ * others. */
 static int on_request(avr_io_t *io, uint32_t request, void *param)
 {
 	if (request != AVR_IOCTL_WATCHDOG_RESET)
 		return -1;
 	struct watchdog *watchdog = (struct watchdog *)io;
-	watchdog->since = watchdog->avr->cycle + 1; /* `wdr` ends with this cycle */
+	watchdog->counter_start = watchdog->avr->cycle + 1; /* `wdr` ends with this cycle */
 	schedule(watchdog);
 	return 0;
 }
@@ -66,34 +68,33 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	struct watchdog *watchdog = param;
 	uint64_t cycle = instruction_effect_cycle(watchdog->instruction);
 	uint8_t old = avr->data[address];
-	bool change = cycle <= watchdog->change_until && !(value & WDCE);
+	bool may_change = cycle <= watchdog->change_window_end && !(value & WDCE);
 	uint8_t control = (value & WDIE) | (old & WDIF & ~value);
-	control |= (change ? value : old) & WDP;
-	control |= (change ? value : value | old) & WDE;
-	if (watchdog->reset->flags & RESET_WATCHDOG)
+	control |= (may_change ? value : old) & WDP;
+	control |= (may_change ? value : value | old) & WDE;
+	if (watchdog->reset->mcusr & RESET_WATCHDOG)
 		control |= WDE; /* "WDE is overridden by WDRF in MCUSR" (11.9.2) */
 	if ((value & WDCE) && (value & WDE))
-		watchdog->change_until = cycle + CHANGE_CYCLES;
+		watchdog->change_window_end = cycle + CHANGE_CYCLES;
 	avr->data[address] = control;
 	if (!(control & WDIF))
-		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle counts */
+		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle sets WDIF again */
 	if (!is_on(old))
-		watchdog->since = cycle;
+		watchdog->counter_start = cycle;
 	schedule(watchdog);
-	interrupts_changed(watchdog->interrupts);
+	interrupts_request_check(watchdog->interrupts);
 }
 
 static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	const struct watchdog *watchdog = param;
 	uint8_t value = avr->data[address];
-	return avr->cycle < watchdog->change_until ? value | WDCE : value & ~WDCE;
+	return avr->cycle < watchdog->change_window_end ? value | WDCE : value & ~WDCE;
 }
 
-/* "Executing the corresponding interrupt vector will clear WDIE and WDIF
- * automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2),
- * for WDE and WDIE set. simavr clears WDIE in interrupt mode, too, unless it
- * finds WDIF cleared. */
+/* If WDE and WDIE are set, "Executing the corresponding interrupt vector will clear WDIE and
+ * WDIF automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2). simavr
+ * would clear WDIE in interrupt mode, too, but not if it finds WDIF cleared. */
 static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
 {
 	struct watchdog *watchdog = param;
@@ -114,7 +115,7 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 		.reset = reset,
 		.stock = (avr_watchdog_t *)chip_part(avr, "watchdog"),
 	};
-	avr_register_io(avr, &watchdog->io); /* before simavr's own */
+	avr_register_io(avr, &watchdog->io); /* goes before simavr's own watchdog */
 	hook_write(avr, REG_WDTCSR, write_control, watchdog);
 	hook_read(avr, REG_WDTCSR, read_control, watchdog);
 	avr_irq_register_notify(watchdog->stock->watchdog.irq + AVR_INT_IRQ_RUNNING, on_vector,
@@ -124,9 +125,9 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 void watchdog_reset(struct watchdog *watchdog)
 {
 	avr_t *avr = watchdog->avr;
-	watchdog->change_until = 0;
-	watchdog->since = avr->cycle;
-	avr->data[REG_WDTCSR] = watchdog->reset->flags & RESET_WATCHDOG ? WDE : 0;
+	watchdog->change_window_end = 0;
+	watchdog->counter_start = avr->cycle;
+	avr->data[REG_WDTCSR] = watchdog->reset->mcusr & RESET_WATCHDOG ? WDE : 0;
 	schedule(watchdog);
 }
 

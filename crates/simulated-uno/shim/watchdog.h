@@ -14,20 +14,20 @@
 #include "reset.h"
 
 struct watchdog {
-	avr_io_t io;           /* our place in simavr's list: `wdr` comes to it */
+	avr_io_t io;                /* our entry in simavr's list of parts, which receives `wdr` */
 	avr_t *avr;
 	const struct instruction *instruction;
 	struct interrupts *interrupts;
 	struct reset *reset;
-	avr_watchdog_t *stock; /* simavr's, for its interrupt vector */
-	uint64_t since;        /* cycle at which the counter was zero */
-	uint64_t change_until; /* last cycle of the timed sequence's window */
+	avr_watchdog_t *stock;      /* simavr's watchdog, for its interrupt vector */
+	uint64_t counter_start;     /* cycle at which the counter was last zero */
+	uint64_t change_window_end; /* last cycle at which WDE and WDP may change, after WDCE is set */
 };
 
 /* Replaces simavr's watchdog. */
 void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
                      struct interrupts *interrupts, struct reset *reset);
-/* After a reset: on if WDRF is set. */
+/* To be called after a reset: switches the watchdog on if WDRF is set, else off. */
 void watchdog_reset(struct watchdog *watchdog);
-/* True if it will reset the chip unless the firmware acts. */
+/* True if the watchdog will reset the chip unless the firmware acts. */
 bool watchdog_may_reset(const struct watchdog *watchdog);

@@ -16,28 +16,29 @@ use crate::Image;
 /// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
 ///
 /// # Panics
-/// If avr-gcc is missing, or if it rejects the program: then with avr-gcc's own message.
+/// If avr-gcc is missing. If avr-gcc rejects the program: with avr-gcc's own message.
 #[must_use]
-pub fn c(source: &str) -> Image {
+pub fn compile_c(source: &str) -> Image {
     build(source, "c", &["-O2", "-std=gnu11"])
 }
 
-/// Assembles a complete program. Nothing else is linked, so the first instruction is at flash address 0. The
-/// C preprocessor handles the source, so it includes headers with `#include`, not with `.include`.
+/// Assembles a complete program. Nothing else is linked, so the first instruction is at flash address 0. The source
+/// passes through the C preprocessor, so it includes headers with `#include`, not with `.include`. `$` separates
+/// instructions on a line.
 ///
 /// # Panics
-/// See [`c`].
+/// See [`compile_c`].
 #[must_use]
-pub fn assembler(source: &str) -> Image {
-    assembler_at(0, source)
+pub fn assemble(source: &str) -> Image {
+    assemble_at(0, source)
 }
 
-/// Assembles a program as [`assembler`] does, with its first instruction at a byte address in flash.
+/// Assembles a program as [`assemble`] does, with its first instruction at a byte address in flash.
 ///
 /// # Panics
-/// See [`c`].
+/// See [`compile_c`].
 #[must_use]
-pub fn assembler_at(address: u16, source: &str) -> Image {
+pub fn assemble_at(address: u16, source: &str) -> Image {
     let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}\n");
     let section_start = format!("-Wl,--section-start=.text={address:#x}");
     build(
@@ -73,7 +74,7 @@ pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) -> Result<(), Strin
 }
 
 fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let input = folder.path().join(format!("program.{extension}"));
     let output = folder.path().join("program.elf");
     std::fs::write(&input, source).expect("the source is written");

@@ -5,15 +5,15 @@ use crate::ffi;
 use crate::{FLASH_SIZE, Fidelity, Image, Uno};
 
 impl Uno {
-    /// Returns a board with only a boot loader in its flash, at the moment of power-on. The boot reset vector (fuse
-    /// BOOTRST) is the loader's first byte.
+    /// Returns a board with only a boot loader in its flash, at the moment of power-on. Every reset starts the chip at
+    /// the boot loader's first byte, as the fuse BOOTRST does.
     #[must_use]
     pub fn with_boot_loader(loader: Image, fidelity: Fidelity) -> Self {
         let start = loader.code_start();
         let uno = Self::with_image(loader, fidelity);
         // SAFETY: `raw` is valid and ours alone, see `Uno`; `Image` has checked that its code,
         // and so its start, is inside flash.
-        unsafe { ffi::uno_boot_at(uno.raw, start) }
+        unsafe { ffi::uno_set_boot_address(uno.raw, start) }
         uno
     }
 
@@ -41,6 +41,6 @@ impl Uno {
     /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow for as long as the
     /// UNO runs.
     pub(crate) fn forget_received(&mut self) {
-        self.clear(ffi::uno_received);
+        self.clear_items(ffi::uno_received);
     }
 }

@@ -1,8 +1,8 @@
 //! The EEPROM, and power failures while it is written.
 //!
 //! Programming a byte takes 3.4 ms. If a firmware loses power during that time, it must find either its old or its
-//! new settings at the next start. So a test can cut the power during any byte and choose the bits that remain in
-//! that byte.
+//! new settings at the next start. To check this, a test can cut the power while any byte is programmed, and choose the
+//! bits that are set in that byte afterwards.
 
 use crate::Uno;
 use crate::ffi;
@@ -35,10 +35,10 @@ pub struct EepromOperation {
     /// The kind of the operation.
     pub mode: EepromMode,
     /// The byte's value before the operation.
-    pub old: u8,
+    pub old_value: u8,
     /// The byte's value after the operation. While the operation is in progress: the value that the byte will have
     /// if the power does not fail.
-    pub new: u8,
+    pub new_value: u8,
     /// True if the power failed during the operation.
     pub is_torn: bool,
 }
@@ -76,29 +76,33 @@ impl Uno {
     /// The programming operations started so far; always empty with [`Fidelity::Stock`](crate::Fidelity).
     #[must_use]
     pub fn eeprom_operations(&self) -> Vec<EepromOperation> {
-        self.list(ffi::uno_eeprom_operations)
+        self.copy_items(ffi::uno_eeprom_operations)
     }
 
     /// Makes the power fail once. The run ends with [`State::Off`](crate::State), and every pin is low.
     /// [`Uno::power_cycle`] restores the power.
     ///
-    /// `ones` chooses the value that remains in the byte of an operation in progress. During the erase phase, zeros
-    /// of the old value become ones one after another: the byte is `old | ones`. During the write phase, ones
-    /// become zeros: the byte is `new | ones`, or `old & (new | ones)` in [`EepromMode::WriteOnly`]. So `ones` = 0
-    /// gives the value at the first instant of the erase phase and at the last instant of the write phase; 0xff gives
-    /// the value at the last instant of the erase phase and at the first instant of the write phase.
+    /// `ones` chooses the value that remains in the byte of an operation in progress, whose old value is `old` and
+    /// whose data is `new`. During the erase phase, zeros of the old value become ones one after another: the byte is
+    /// `old | ones`. During the write phase, ones become zeros: the byte is `new | ones`, or `old & (new | ones)` in
+    /// [`EepromMode::WriteOnly`]. So `ones` = 0 gives the value at the first instant of the erase phase and at the last
+    /// instant of the write phase; 0xff gives the value at the last instant of the erase phase and at the first instant
+    /// of the write phase.
     ///
     /// With [`Fidelity::Stock`](crate::Fidelity), only [`PowerCut::AtCycle`] has an effect, and it never tears a
     /// byte.
     pub fn cut_power(&mut self, cut: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number until
-        // then.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps numbers.
         unsafe {
             match cut {
                 PowerCut::AtCycle(cycle) => ffi::uno_cut_power_at(self.raw, cycle.max(1)),
-                PowerCut::InErase(skip) => ffi::uno_cut_power_in_operation(self.raw, skip, false),
-                PowerCut::InWrite(skip) => ffi::uno_cut_power_in_operation(self.raw, skip, true),
+                PowerCut::InErase(skip_count) => {
+                    ffi::uno_cut_power_in_operation(self.raw, skip_count, false)
+                }
+                PowerCut::InWrite(skip_count) => {
+                    ffi::uno_cut_power_in_operation(self.raw, skip_count, true)
+                }
             }
         }
     }
@@ -107,7 +111,7 @@ impl Uno {
     pub fn cancel_power_cut(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim forgets what
         // `cut_power` has set.
-        unsafe { ffi::uno_keep_power(self.raw) }
+        unsafe { ffi::uno_cancel_power_cut(self.raw) }
     }
 
     /// Sets the bits that remain set in a byte after a power failure other than [`Uno::cut_power`]: a supply below

@@ -14,31 +14,41 @@ pub struct RawUno {
 #[repr(C)]
 pub struct RawList {
     pub items: *mut c_void,
+    /// The number of items in use.
     pub count: usize,
-    pub room: usize,
-    pub size: usize,
+    /// The number of items for which memory is allocated.
+    pub capacity: usize,
+    /// The size of an item, bytes.
+    pub item_size: usize,
 }
 
-/// `struct vector_use` of the shim: the entries and the cycles of an interrupt vector.
+/// `struct vector_use` of the shim: statistics of an interrupt vector.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct RawVector {
+pub struct RawVectorUse {
+    /// The number of times that the interrupt was served.
     pub entries: u64,
+    /// The cycles spent in its handler.
     pub cycles: u64,
 }
 
-/// The number of interrupt vectors, `CHIP_VECTORS` of the shim.
-pub const VECTORS: usize = 26;
+/// The number of interrupt vectors, `CHIP_VECTOR_COUNT` of the shim.
+pub const VECTOR_COUNT: usize = 26;
 
-/// `enum stop` of the shim: the reason why a run has ended.
+/// `enum stop_reason` of the shim: the reason for the end of a run.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Eq)]
-#[expect(dead_code, reason = "the shim makes these values")]
-pub enum Stop {
+#[expect(dead_code, reason = "only the shim makes these values")]
+pub enum StopReason {
+    /// The requested cycle is reached.
     Time,
+    /// The firmware has sent a line feed.
     Line,
+    /// The CPU sleeps, and nothing can wake it.
     Halted,
+    /// The firmware has executed an invalid instruction or used an invalid address.
     Crashed,
+    /// The power has been cut.
     Off,
 }
 
@@ -47,33 +57,33 @@ unsafe extern "C" {
     pub fn uno_new(data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
     pub fn uno_free(uno: *mut RawUno);
     pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
-    pub fn uno_power_on(uno: *mut RawUno, code_end: u32, data_end: u16);
-    pub fn uno_boot_at(uno: *mut RawUno, address: u32);
+    pub fn uno_finish_loading(uno: *mut RawUno, code_end: u32, data_end: u16);
+    pub fn uno_set_boot_address(uno: *mut RawUno, address: u32);
     pub fn uno_flash(uno: *mut RawUno) -> *mut u8;
-    pub fn uno_run(uno: *mut RawUno, until: u64) -> Stop;
+    pub fn uno_run(uno: *mut RawUno, until: u64) -> StopReason;
     pub fn uno_stop_at_line(uno: *mut RawUno, on: bool);
     pub fn uno_time_calls(uno: *mut RawUno, on: bool, entry: u32);
-    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, stop_low: bool);
+    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, stop_bit_low: bool);
     pub fn uno_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
     pub fn uno_cycles_per_bit(uno: *const RawUno) -> u32;
-    pub fn uno_sampled(byte: u8, ratio: f64) -> u8;
-    pub fn uno_hold(uno: *mut RawUno, cycles: u64);
+    pub fn uno_sample_byte(byte: u8, ratio: f64) -> u8;
+    pub fn uno_block_interrupts(uno: *mut RawUno, cycles: u64);
     pub fn uno_stall_main(uno: *mut RawUno, until: u64);
     pub fn uno_poke(uno: *mut RawUno, address: u16, value: u8);
-    pub fn uno_unsent(uno: *const RawUno) -> usize;
-    pub fn uno_sent(uno: *const RawUno) -> u64;
+    pub fn uno_unsent_count(uno: *const RawUno) -> usize;
+    pub fn uno_sent_count(uno: *const RawUno) -> u64;
     pub fn uno_now(uno: *const RawUno) -> u64;
-    pub fn uno_asleep(uno: *const RawUno) -> u64;
+    pub fn uno_asleep_cycles(uno: *const RawUno) -> u64;
     pub fn uno_pc(uno: *const RawUno) -> u32;
-    pub fn uno_resets(uno: *const RawUno) -> u64;
-    pub fn uno_overruns(uno: *const RawUno) -> u64;
-    pub fn uno_levels(uno: *const RawUno) -> u32;
-    pub fn uno_stack_low(uno: *const RawUno) -> u16;
-    pub fn uno_message(uno: *const RawUno) -> *const c_char;
+    pub fn uno_watchdog_resets(uno: *const RawUno) -> u64;
+    pub fn uno_overrun_count(uno: *const RawUno) -> u64;
+    pub fn uno_pin_levels(uno: *const RawUno) -> u32;
+    pub fn uno_lowest_stack_address(uno: *const RawUno) -> u16;
+    pub fn uno_error_message(uno: *const RawUno) -> *const c_char;
     pub fn uno_data(uno: *const RawUno) -> *const u8;
     pub fn uno_data_size(uno: *const RawUno) -> u32;
-    pub fn uno_vectors(uno: *const RawUno) -> *const RawVector;
+    pub fn uno_vectors(uno: *const RawUno) -> *const RawVectorUse;
     pub fn uno_edges(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_transmitted(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
@@ -82,16 +92,16 @@ unsafe extern "C" {
     pub fn uno_reset(uno: *mut RawUno);
     pub fn uno_power_cycle(uno: *mut RawUno);
     pub fn uno_set_boot_loader(uno: *mut RawUno, on: bool);
-    pub fn uno_set_noise(uno: *mut RawUno, seed: u64);
-    pub fn uno_held_in_reset(uno: *const RawUno) -> bool;
+    pub fn uno_set_noise_seed(uno: *mut RawUno, seed: u64);
+    pub fn uno_is_held_in_reset(uno: *const RawUno) -> bool;
     pub fn uno_reset_events(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_eeprom(uno: *mut RawUno) -> *mut u8;
     pub fn uno_eeprom_operations(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_set_torn_ones(uno: *mut RawUno, ones: u8);
     pub fn uno_cut_power_at(uno: *mut RawUno, cycle: u64);
-    pub fn uno_cut_power_in_operation(uno: *mut RawUno, skip: u64, in_write: bool);
-    pub fn uno_keep_power(uno: *mut RawUno);
-    pub fn uno_supply(uno: *const RawUno) -> f64;
+    pub fn uno_cut_power_in_operation(uno: *mut RawUno, skip_count: u64, in_write: bool);
+    pub fn uno_cancel_power_cut(uno: *mut RawUno);
+    pub fn uno_supply_mv(uno: *const RawUno) -> f64;
     pub fn uno_ramp_supply(uno: *mut RawUno, mv: f64, cycles: u64);
     pub fn uno_set_brown_out(uno: *mut RawUno, mv: f64);
     pub fn uno_set_bandgap(uno: *mut RawUno, mv: f64);

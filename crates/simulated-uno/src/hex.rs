@@ -5,7 +5,7 @@ use ihex::Record;
 use crate::image::{FLASH_SIZE, Image, LoadError};
 
 impl Image {
-    /// Reads Intel HEX. The format has neither symbols nor static data, so
+    /// Reads Intel HEX. The format has neither symbols nor the size of static data, so
     /// [`Image::static_ram`] is 0 and no function has a name.
     ///
     /// # Errors
@@ -27,14 +27,14 @@ impl Image {
                     append(&mut segments, base + u64::from(offset), value)?;
                 }
                 Record::EndOfFile if segments.is_empty() => return Err(LoadError::Empty),
-                Record::EndOfFile => return Ok(Self::of_segments(segments)),
+                Record::EndOfFile => return Ok(Self::from_segments(segments)),
                 Record::ExtendedLinearAddress(upper) => base = u64::from(upper) << 16,
                 Record::ExtendedSegmentAddress(segment) => base = u64::from(segment) << 4,
                 // Ignored: the chip starts at address 0.
                 Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
             }
         }
-        Err(LoadError::HexCut)
+        Err(LoadError::HexTruncated)
     }
 }
 

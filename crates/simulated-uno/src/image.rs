@@ -62,7 +62,7 @@ pub enum LoadError {
     },
     /// The HEX file has no end record, so lines may be missing.
     #[error("the HEX file has no end record: only a part of it is there")]
-    HexCut,
+    HexTruncated,
 }
 
 /// A named address in flash or SRAM.
@@ -204,9 +204,9 @@ impl Image {
         })
     }
 
-    /// Returns an image that consists of these segments, all inside flash.
+    /// Returns an image that consists of these segments, all of which are inside flash.
     #[cfg(feature = "hex")]
-    pub(crate) fn of_segments(segments: Vec<(u32, Vec<u8>)>) -> Self {
+    pub(crate) fn from_segments(segments: Vec<(u32, Vec<u8>)>) -> Self {
         Self {
             segments,
             symbols: Vec::new(),
@@ -254,12 +254,13 @@ impl Image {
         self.unique_symbol(path, |symbol| symbol.is_function)
     }
 
-    /// The data address of the only variable whose path ends with `path`, such as `pulses::LATE`. `None` if no
+    /// The data address of the only variable whose path ends with `path`, such as `pulses::LATE_EDGES`. `None` if no
     /// variable has such a path, or if several at different addresses have.
     #[must_use]
     pub fn variable(&self, path: &str) -> Option<u16> {
-        let in_data = |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
-        let symbol = self.unique_symbol(path, in_data)?;
+        let is_in_data_space =
+            |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
+        let symbol = self.unique_symbol(path, is_in_data_space)?;
         Some((symbol.address - DATA_SPACE) as u16)
     }
 
@@ -286,7 +287,7 @@ impl Image {
     }
 
     /// Writes bytes to the start of a range of flash and removes everything else that the image has in the range.
-    /// So data of a compiled program can be exchanged without compiling it again.
+    /// With this, the data of a compiled program can be exchanged without compiling it again.
     ///
     /// # Errors
     /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for the bytes.

@@ -1,17 +1,17 @@
-//! An Arduino UNO for tests: an ATmega328P at 16 MHz on libsimavr, with an
-//! oscilloscope on its pins and a sender on its serial line.
+//! An Arduino UNO for tests: an ATmega328P at 16 MHz, simulated by libsimavr, with an oscilloscope on its pins and a
+//! sender on its serial line.
 //!
 //! A firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show
 //! its stack, and cannot run faster than real time. In the simulation, time is a number of CPU cycles that
 //! passes as fast as the host can compute, and the same firmware with the same input gives the same edges to the
 //! cycle. Only [`Port`] runs in real time, for programs that expect a board on USB.
 //!
-//! Not suitable for other chips than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI or the
-//! analogue comparator, or to measure currents and noise. README.md has the reasons.
+//! Not suitable for chips other than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI or the
+//! analogue comparator, or for measurements of currents and noise. README.md has the reasons.
 //!
 //! ```
 //! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};
-//! let blink = avr_gcc::c("
+//! let blink = avr_gcc::compile_c("
 //!     #include <avr/io.h>
 //!     int main(void) {
 //!         DDRB = 1 << 5;
@@ -24,20 +24,20 @@
 //! }
 //! ```
 //!
-//! README.md has more examples, and every correction of simavr with its section of the
-//! data sheet. [`Uno::load`] loads a compiled firmware from its file.
+//! README.md has more examples, and lists every correction of simavr with its section of the data sheet.
+//! [`Uno::load`] loads a compiled firmware from its file.
 //!
 //! Several [`Uno`]s may run at once on as many threads: the only state that libsimavr keeps outside an instance is
 //! the logger, which is set once.
 
-#![allow(unsafe_code)] // It calls C; the docs of `Uno` justify all of it.
+#![allow(unsafe_code)] // for the calls of C; the docs of `Uno` justify them
 
 mod adc;
 #[cfg(feature = "avr-gcc")]
 pub mod avr_gcc;
 mod boot;
 mod contact;
-mod disturb;
+mod disturbance;
 mod eeprom;
 mod ffi;
 #[cfg(feature = "hex")]
@@ -62,10 +62,10 @@ pub use eeprom::{EEPROM_SIZE, EepromMode, EepromOperation, PowerCut};
 pub use image::{FLASH_SIZE, Image, LoadError, SRAM_END, SRAM_START, Symbol};
 pub use pin::{Edge, Pin, Pulse, most_pins_high, pulses};
 #[cfg(target_os = "linux")]
-pub use port::{Background, Port};
+pub use port::{BackgroundPort, Port};
 #[cfg(target_os = "linux")]
-pub use radio::{Air, Radio};
-pub use reset::{Reset, ResetCause};
+pub use radio::{Radio, RadioLink};
+pub use reset::{ResetCause, ResetEvent};
 pub use traces::{Call, Mark, SerialByte, VectorUse, vector_name};
 pub use uno::{Fidelity, State, Uno};
 #[cfg(target_os = "linux")]

@@ -29,8 +29,7 @@ impl Pin {
         Self(A0 + n)
     }
 
-    /// The pin with Arduino's number `n`: 0 to 13 are D0 to D13, 14 to 19 are A0
-    /// to A5.
+    /// The pin with Arduino's number `n`: 0 to 13 are D0 to D13, 14 to 19 are A0 to A5.
     ///
     /// # Panics
     /// If the UNO has no such pin (`n` > 19).
@@ -56,8 +55,8 @@ impl std::fmt::Display for Pin {
     }
 }
 
-/// A change of a pin's level. Its cycle is the one in which the instruction that stores to the port register ends,
-/// for every kind of store instruction and for rising and falling edges.
+/// A change of a pin's level. It is stamped with the last cycle of the instruction that stores to the port register,
+/// for every kind of store instruction and for rising and falling edges alike.
 // `struct edge` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -66,8 +65,8 @@ pub struct Edge {
     pub cycle: u64,
     /// The pin that changed.
     pub pin: Pin,
-    /// True for a rising edge.
-    pub high: bool,
+    /// True for a rising edge, false for a falling edge.
+    pub is_rising: bool,
 }
 
 /// A span of time during which a pin is high.
@@ -79,13 +78,13 @@ pub struct Pulse {
     pub width: u64,
 }
 
-/// Returns the complete pulses of one pin: those whose rising and falling edge are among the edges.
+/// Returns the complete pulses of a pin: those whose rising and falling edges are both among `edges`.
 #[must_use]
 pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
     let mut rise_cycle = None;
     let mut pulses = Vec::new();
     for edge in edges.iter().filter(|edge| edge.pin == pin) {
-        if edge.high {
+        if edge.is_rising {
             rise_cycle = Some(edge.cycle);
         } else if let Some(start) = rise_cycle.take() {
             pulses.push(Pulse {
@@ -104,10 +103,10 @@ pub fn most_pins_high(edges: &[Edge]) -> u32 {
     let mut largest_count = 0;
     let mut edges = edges.to_vec();
     // At equal cycles, falling edges come first, so that consecutive pulses do not overlap.
-    edges.sort_by_key(|edge| (edge.cycle, edge.high));
+    edges.sort_by_key(|edge| (edge.cycle, edge.is_rising));
     for edge in edges {
         let bit = 1u32 << edge.pin.number();
-        if edge.high {
+        if edge.is_rising {
             levels |= bit;
         } else {
             levels &= !bit;

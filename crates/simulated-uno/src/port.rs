@@ -1,12 +1,11 @@
-//! A simulated UNO that other programs can use like a board on USB: at a serial port, in
-//! real time.
+//! A simulated UNO that other programs can use like a board on USB: at a serial port, in real time.
 //!
 //! avrdude, a terminal program or a host tool expects a chip that runs in real time. Here the chip's time follows
 //! real time, and bytes go through a pseudo terminal such as /dev/pts/3. Opening the pseudo terminal resets the chip,
 //! as the DTR line of a USB cable does on a UNO.
 //!
 //! The baud rate that a program sets at the port is the baud rate of the line, 115200 until a program sets it. If it
-//! differs from the chip's baud rate, both sides read other bytes than were sent.
+//! differs from the chip's baud rate, each side reads bytes that the other has not sent.
 //!
 //! Two things differ from a cable. A second opening resets the chip only if all programs had closed the port. And
 //! toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for device`.
@@ -50,7 +49,8 @@ const MAX_UNREAD_BYTES: usize = 1 << 16;
 pub struct Port {
     pty: Pty,
     /// The chip's bytes that wait for room in the pseudo terminal.
-    unread: Vec<u8>,
+    unread_bytes: Vec<u8>,
+    /// True if a program had the port open at the last check.
     is_open: bool,
     /// The radio module between the port and the chip; `None` for a cable.
     radio: Option<Radio>,
@@ -67,7 +67,7 @@ impl Port {
     pub fn new() -> io::Result<Self> {
         Ok(Self {
             pty: Pty::new()?,
-            unread: Vec::new(),
+            unread_bytes: Vec::new(),
             is_open: false,
             radio: None,
             anchor: None,
@@ -77,7 +77,7 @@ impl Port {
     /// Puts a radio module between the port and the chip. Then opening the port does not reset the chip, and the baud
     /// rate is that of the module.
     #[must_use]
-    pub fn by_radio(mut self, radio: Radio) -> Self {
+    pub fn with_radio(mut self, radio: Radio) -> Self {
         self.radio = Some(radio);
         self
     }
@@ -94,16 +94,16 @@ impl Port {
         self.is_open
     }
 
-    /// Runs `uno` in real time for `time` of the wall clock, and passes bytes between `uno` and the program that has
-    /// the port open. A chip that has halted or crashed does nothing until the next opening of the port resets it.
+    /// Runs `uno` in real time for `duration` of the wall clock, and passes bytes between `uno` and the program that
+    /// has the port open. A chip that has halted or crashed does nothing until the next opening of the port resets it.
     ///
     /// The caller should regularly take the edges ([`Uno::take_edges`]): those of four servos take 6400 more bytes of
     /// memory every second. The bytes of the serial line are not kept.
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
-    pub fn serve(&mut self, uno: &mut Uno, time: Duration) -> io::Result<()> {
-        let end = Instant::now() + time;
+    pub fn serve(&mut self, uno: &mut Uno, duration: Duration) -> io::Result<()> {
+        let end = Instant::now() + duration;
         while Instant::now() < end {
             self.tick(uno)?;
             thread::sleep(TICK);
@@ -111,7 +111,7 @@ impl Port {
         Ok(())
     }
 
-    /// Serves the port on its own thread until [`Background::stop`]. Calls `watch` with the UNO every millisecond;
+    /// Serves the port on its own thread until [`BackgroundPort::stop`]. Calls `watch` with the UNO every millisecond;
     /// `watch` should take the UNO's edges and must not block.
     ///
     /// # Errors
@@ -120,12 +120,12 @@ impl Port {
         mut self,
         mut uno: Uno,
         mut watch: impl FnMut(&mut Uno) + Send + 'static,
-    ) -> io::Result<Background> {
+    ) -> io::Result<BackgroundPort> {
         let path = self.path().to_owned();
-        let stop = Arc::new(AtomicBool::new(false));
-        let thread_stop = Arc::clone(&stop);
+        let stop_requested = Arc::new(AtomicBool::new(false));
+        let thread_stop_requested = Arc::clone(&stop_requested);
         let serve = move || {
-            while !thread_stop.load(Ordering::Relaxed) {
+            while !thread_stop_requested.load(Ordering::Relaxed) {
                 self.tick(&mut uno)?;
                 watch(&mut uno);
                 thread::sleep(TICK);
@@ -134,14 +134,19 @@ impl Port {
         };
         let name = "simulated UNO".to_owned();
         let thread = thread::Builder::new().name(name).spawn(serve)?;
-        Ok(Background { path, stop, thread })
+        Ok(BackgroundPort {
+            path,
+            stop_requested,
+            thread,
+        })
     }
 
+    /// Passes bytes both ways and lets the chip catch up with the wall clock; to be called every [`TICK`].
     fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
         let port_state = self.pty.poll_state()?;
         self.is_open = port_state.is_open;
         if port_state.was_opened {
-            self.unread.clear();
+            self.unread_bytes.clear();
             if self.radio.is_none() {
                 uno.take_transmitted();
                 uno.reset();
@@ -152,7 +157,7 @@ impl Port {
             None => self.pty.baud()?,
         };
         uno.set_baud(baud);
-        let room = MAX_UNSENT_BYTES.saturating_sub(uno.unsent());
+        let room = MAX_UNSENT_BYTES.saturating_sub(uno.bytes_unsent());
         let mut bytes = [0; MAX_UNSENT_BYTES];
         let read_count = self.pty.read(&mut bytes[..room])?;
         match &mut self.radio {
@@ -176,10 +181,10 @@ impl Port {
         };
         // The program at the port may have closed it meanwhile, so check again.
         if self.is_open && self.pty.is_open()? {
-            self.unread.extend(arrived_bytes);
-            self.unread.truncate(MAX_UNREAD_BYTES);
-            let written_count = self.pty.write(&self.unread)?;
-            self.unread.drain(..written_count);
+            self.unread_bytes.extend(arrived_bytes);
+            self.unread_bytes.truncate(MAX_UNREAD_BYTES);
+            let written_count = self.pty.write(&self.unread_bytes)?;
+            self.unread_bytes.drain(..written_count);
         }
         Ok(())
     }
@@ -189,8 +194,8 @@ impl Port {
     fn target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
-        let due_cycle = anchor_cycle + cycles_of(now - anchor_time);
-        let max_cycle = cycle + cycles_of(MAX_CATCH_UP);
+        let due_cycle = anchor_cycle + cycles_in(now - anchor_time);
+        let max_cycle = cycle + cycles_in(MAX_CATCH_UP);
         if due_cycle > max_cycle {
             self.anchor = Some((now, max_cycle));
         }
@@ -198,20 +203,21 @@ impl Port {
     }
 }
 
-fn cycles_of(time: Duration) -> u64 {
+/// Returns the number of the chip's cycles in a duration.
+fn cycles_in(time: Duration) -> u64 {
     (time.as_nanos() * u128::from(FREQUENCY) / 1_000_000_000) as u64
 }
 
-/// A thread that serves a port and its UNO. If this value is dropped without [`Background::stop`], the thread
-/// continues until the program ends.
+/// A port and its UNO, served by a thread of their own. If this value is dropped without [`BackgroundPort::stop`], the
+/// thread continues until the program ends.
 #[derive(Debug)]
-pub struct Background {
+pub struct BackgroundPort {
     path: PathBuf,
-    stop: Arc<AtomicBool>,
+    stop_requested: Arc<AtomicBool>,
     thread: JoinHandle<io::Result<Uno>>,
 }
 
-impl Background {
+impl BackgroundPort {
     /// The file that other programs open, such as /dev/pts/3.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -226,7 +232,7 @@ impl Background {
     /// # Panics
     /// If `watch` panicked.
     pub fn stop(self) -> io::Result<Uno> {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop_requested.store(true, Ordering::Relaxed);
         match self.thread.join() {
             Ok(result) => result,
             Err(panic) => std::panic::resume_unwind(panic),

@@ -26,12 +26,12 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 
 /// The baud rate until a program sets another one.
 const DEFAULT_BAUD: u32 = 115_200;
-/// The longest time from the fork to the exec of a new process, on a busy machine.
+/// The longest time from the fork to the exec of a new process on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
 /// The port's state, and its changes since the last check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Look {
+pub(crate) struct PortState {
     /// True while a program has the port open.
     pub(crate) is_open: bool,
     /// True if the port has been opened after it was closed.
@@ -41,8 +41,11 @@ pub(crate) struct Look {
 /// A pseudo terminal. It exists until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Pty {
-    ours: File,
-    open_events: OwnedFd,
+    /// This program's end of the pseudo terminal.
+    our_end: File,
+    /// The inotify instance that reports each opening and closing of the port.
+    event_queue: OwnedFd,
+    /// The port: the end that other programs open.
     path: PathBuf,
     /// True if the port was open at the last check.
     was_open: bool,
@@ -58,22 +61,22 @@ impl Pty {
     /// Fails if the system has no pseudo terminals left, or no /dev/pts. Fails with [`ErrorKind::TimedOut`] if a
     /// program that was started meanwhile keeps the port open.
     pub(crate) fn new() -> io::Result<Self> {
-        let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
-        unlockpt(&ours)?;
-        rustix::io::ioctl_fionbio(&ours, true)?;
-        let name = ptsname(&ours, Vec::new())?;
+        let our_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+        unlockpt(&our_end)?;
+        rustix::io::ioctl_fionbio(&our_end, true)?;
+        let name = ptsname(&our_end, Vec::new())?;
         let path = PathBuf::from(name.to_string_lossy().into_owned());
         // The system reports that no program has the port open only after it was opened and closed once. The
         // settings persist after the closing.
-        let theirs = open_other_end(&path, OFlags::RDWR)?;
-        let mut settings = tcgetattr(&theirs)?;
+        let other_end = open_other_end(&path, OFlags::RDWR)?;
+        let mut settings = tcgetattr(&other_end)?;
         settings.make_raw();
         settings.set_speed(DEFAULT_BAUD)?;
-        tcsetattr(&theirs, OptionalActions::Now, &settings)?;
-        drop(theirs);
-        let ours = File::from(ours);
+        tcsetattr(&other_end, OptionalActions::Now, &settings)?;
+        drop(other_end);
+        let our_end = File::from(our_end);
         // No other program knows the port's name yet.
-        if !wait_until(|| Ok(!is_open(&ours)?))? {
+        if !wait_until(|| Ok(!is_open(&our_end)?))? {
             let message = "a program that was started meanwhile keeps the new port open";
             return Err(io::Error::new(ErrorKind::TimedOut, message));
         }
@@ -81,8 +84,8 @@ impl Pty {
         let watched_events = WatchFlags::OPEN | WatchFlags::CLOSE;
         inotify::add_watch(&open_events, &path, watched_events)?;
         Ok(Self {
-            ours,
-            open_events,
+            our_end,
+            event_queue: open_events,
             path,
             was_open: false,
             may_be_reopened: false,
@@ -98,11 +101,11 @@ impl Pty {
     ///
     /// # Errors
     /// Fails if the system is out of memory.
-    pub(crate) fn poll_state(&mut self) -> io::Result<Look> {
+    pub(crate) fn poll_state(&mut self) -> io::Result<PortState> {
         let was_open = self.was_open;
         let (mut was_closed, mut was_opened) = (!was_open || self.may_be_reopened, false);
         let mut has_close_event = false;
-        self.events(|event| {
+        self.read_events(|event| {
             if event.contains(ReadFlags::OPEN) {
                 was_opened |= was_closed;
             } else {
@@ -114,14 +117,14 @@ impl Pty {
         was_opened |= is_port_open && !was_open;
         // Unread bytes are discarded only if all programs have closed the port, not if another still has it open.
         if was_open && (was_opened || !is_port_open) {
-            self.drop_unread()?;
+            self.discard_unread()?;
             let is_port_still_open = self.is_open()?;
             was_opened |= is_port_still_open && !is_port_open;
             is_port_open = is_port_still_open;
         }
         self.was_open = is_port_open;
         self.may_be_reopened = has_close_event && is_port_open && !was_opened;
-        Ok(Look {
+        Ok(PortState {
             is_open: is_port_open,
             was_opened,
         })
@@ -132,12 +135,13 @@ impl Pty {
     /// # Errors
     /// Fails if the system is out of memory.
     pub(crate) fn is_open(&self) -> io::Result<bool> {
-        is_open(&self.ours)
+        is_open(&self.our_end)
     }
 
-    fn events(&self, mut on_event: impl FnMut(ReadFlags)) -> io::Result<()> {
+    /// Calls `on_event` with each opening and closing of the port since the last call.
+    fn read_events(&self, mut on_event: impl FnMut(ReadFlags)) -> io::Result<()> {
         let mut buffer = [MaybeUninit::uninit(); 512];
-        let mut events = inotify::Reader::new(&self.open_events, &mut buffer);
+        let mut events = inotify::Reader::new(&self.event_queue, &mut buffer);
         loop {
             match events.next() {
                 Ok(event) => on_event(event.events()),
@@ -148,31 +152,31 @@ impl Pty {
     }
 
     /// Discards the bytes that the last program has not read, so that the next program does not get them.
-    fn drop_unread(&self) -> io::Result<()> {
+    fn discard_unread(&self) -> io::Result<()> {
         // The port cannot be opened while a program has exclusive use of it. Such a program has itself discarded
         // the bytes that it found.
-        let Ok(theirs) = open_other_end(&self.path, OFlags::RDONLY) else {
-            return self.events(|_anything| {});
+        let Ok(other_end) = open_other_end(&self.path, OFlags::RDONLY) else {
+            return self.read_events(|_anything| {});
         };
-        tcflush(&theirs, QueueSelector::IFlush)?;
-        drop(theirs);
+        tcflush(&other_end, QueueSelector::IFlush)?;
+        drop(other_end);
         // A port that was opened only for reading closes without CLOSE_WRITE, which distinguishes this opening from
         // a program's. If the port is open at the end, a program has opened it.
         let mut was_closed = false;
         wait_until(|| {
-            self.events(|event| was_closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
+            self.read_events(|event| was_closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
             Ok(was_closed || !self.is_open()?)
         })?;
-        self.events(|_rest| {})
+        self.read_events(|_rest| {})
     }
 
-    /// The baud rate that a program has set last.
+    /// The baud rate that the last program has set.
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn baud(&self) -> io::Result<f64> {
         // Linux returns the settings that programs have made at the port. Speed 0 means "hang up".
-        Ok(match tcgetattr(&self.ours)?.output_speed() {
+        Ok(match tcgetattr(&self.our_end)?.output_speed() {
             0 => f64::from(DEFAULT_BAUD),
             baud => f64::from(baud),
         })
@@ -183,7 +187,7 @@ impl Pty {
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self.ours.read(buffer) {
+        match self.our_end.read(buffer) {
             // EIO: no program has the port open, and nothing is left to read.
             Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
             result => bytes_or_zero(result),
@@ -195,12 +199,13 @@ impl Pty {
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        bytes_or_zero(self.ours.write(bytes))
+        bytes_or_zero(self.our_end.write(bytes))
     }
 }
 
-fn is_open(ours: &File) -> io::Result<bool> {
-    let mut fds = [PollFd::new(ours, PollFlags::IN)];
+/// True if a program has the port open at this moment.
+fn is_open(our_end: &File) -> io::Result<bool> {
+    let mut fds = [PollFd::new(our_end, PollFlags::IN)];
     poll(&mut fds, Some(&Timespec::default()))?;
     Ok(!fds[0].revents().contains(PollFlags::HUP))
 }
@@ -217,6 +222,7 @@ fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<boo
     Ok(true)
 }
 
+/// Opens the port as another program does.
 fn open_other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
     let flags = access | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
     rustix::fs::open(path, flags, Mode::empty())

@@ -7,9 +7,9 @@
 //! resets the chip.
 //!
 //! ```no_run
-//! # use simulated_uno::{Air, Fidelity, Radio, Uno};
+//! # use simulated_uno::{Fidelity, Radio, RadioLink, Uno};
 //! let mut uno = Uno::load("firmware.elf", Fidelity::DataSheet)?;
-//! let mut radio = Radio::new(Air::default());
+//! let mut radio = Radio::new(RadioLink::default());
 //! radio.write(b"status\n", uno.cycle());
 //! for _ms in 0..500 {
 //!     uno.run_ms(1);
@@ -24,21 +24,21 @@ use crate::serial::sample_byte;
 use crate::{CYCLES_PER_MS, Uno};
 
 /// The largest number of bytes in a packet.
-const PACKET_BYTES: usize = 20;
+const MAX_PACKET_BYTES: usize = 20;
 /// The time that a packet travels, ms.
 const DELAY_MS: std::ops::Range<f64> = 7.5..100.0;
 /// The longest time for which a module collects the chip's bytes for a packet, ms.
-const GATHERING_MS: u64 = 20;
+const MAX_GATHERING_MS: u64 = 20;
 /// The time between the end of a link and its next beginning, ms.
 const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 
-/// Properties of the radio link between a module and a phone.
+/// The properties of a radio module and of its link to a phone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Air {
+pub struct RadioLink {
     /// The baud rate of the module's serial line.
     pub baud: f64,
     /// The share of packets that are lost, 0 to 1.
-    pub loss: f64,
+    pub packet_loss: f64,
     /// The mean duration of a link, ms; 0 if the link never ends.
     pub mean_link_ms: u64,
     /// True if the module sends `OK+CONN` and `OK+LOST` to the chip when the link begins and ends.
@@ -47,12 +47,12 @@ pub struct Air {
     pub seed: u64,
 }
 
-impl Default for Air {
+impl Default for RadioLink {
     /// A module with its factory settings, and a phone in the same room.
     fn default() -> Self {
         Self {
             baud: 9600.0,
-            loss: 0.01,
+            packet_loss: 0.01,
             mean_link_ms: 20_000,
             reports_link: true,
             seed: 0,
@@ -62,24 +62,26 @@ impl Default for Air {
 
 /// The packets on their way in one direction.
 #[derive(Debug, Default)]
-struct Flight {
+struct PacketQueue {
     /// The packets in order, each with the cycle at which it arrives.
     packets: VecDeque<(u64, Vec<u8>)>,
 }
 
-impl Flight {
-    fn send(&mut self, bytes: &[u8], now: u64, air: Air, random: &mut fastrand::Rng) {
-        for packet in bytes.chunks(PACKET_BYTES) {
+impl PacketQueue {
+    /// Sends bytes in packets, each with a random delay; some are lost.
+    fn send(&mut self, bytes: &[u8], now: u64, link: RadioLink, random: &mut fastrand::Rng) {
+        for packet in bytes.chunks(MAX_PACKET_BYTES) {
             let delay_ms = DELAY_MS.start + random.f64() * (DELAY_MS.end - DELAY_MS.start);
-            let last_due = self.packets.back().map_or(0, |(due_cycle, _)| *due_cycle);
-            let due_cycle = last_due.max(now + (delay_ms * CYCLES_PER_MS as f64) as u64);
-            if random.f64() >= air.loss {
+            let last_due_cycle = self.packets.back().map_or(0, |(due_cycle, _)| *due_cycle);
+            let due_cycle = last_due_cycle.max(now + (delay_ms * CYCLES_PER_MS as f64) as u64);
+            if random.f64() >= link.packet_loss {
                 self.packets.push_back((due_cycle, packet.to_vec()));
             }
         }
     }
 
-    fn arrive(&mut self, now: u64) -> Vec<u8> {
+    /// Removes and returns the bytes that have arrived by now.
+    fn take_arrived(&mut self, now: u64) -> Vec<u8> {
         let mut bytes = Vec::new();
         while self
             .packets
@@ -96,8 +98,8 @@ impl Flight {
         bytes
     }
 
-    /// Interrupts the transmission: some bytes of the next packet arrive and are returned, the other packets are
-    /// lost.
+    /// Ends the transmission: returns the bytes of the next packet that still arrive, a random number. All other bytes
+    /// are lost.
     fn take_remains(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
         let mut next_packet = packets.into_iter().next().unwrap_or_default().1;
@@ -109,65 +111,66 @@ impl Flight {
 /// A radio module and its link to a phone.
 #[derive(Debug)]
 pub struct Radio {
-    air: Air,
+    link: RadioLink,
     random: fastrand::Rng,
-    to_uno: Flight,
-    to_phone: Flight,
+    to_uno: PacketQueue,
+    to_phone: PacketQueue,
     /// The chip's bytes that wait until a packet is full, and the cycle from which they have waited.
     gathered: (Vec<u8>, u64),
     /// The cycle at which the link ends or, while there is no link, begins again; `None` if that never happens.
-    next_change: Option<u64>,
-    is_in_reach: bool,
+    next_link_change: Option<u64>,
+    is_linked: bool,
+    /// True if the phone has moved out of range for good.
     has_left: bool,
 }
 
 impl Radio {
     /// Returns a module with a link to a phone.
     #[must_use]
-    pub fn new(air: Air) -> Self {
+    pub fn new(link: RadioLink) -> Self {
         let mut radio = Self {
-            air,
-            random: fastrand::Rng::with_seed(air.seed),
-            to_uno: Flight::default(),
-            to_phone: Flight::default(),
+            link,
+            random: fastrand::Rng::with_seed(link.seed),
+            to_uno: PacketQueue::default(),
+            to_phone: PacketQueue::default(),
             gathered: (Vec::new(), 0),
-            next_change: None,
-            is_in_reach: true,
+            next_link_change: None,
+            is_linked: true,
             has_left: false,
         };
-        radio.next_change = radio.next_link_end(0);
+        radio.next_link_change = radio.next_link_end(0);
         radio
     }
 
     /// True while the link exists.
     #[must_use]
-    pub fn is_in_reach(&self) -> bool {
-        self.is_in_reach
+    pub fn is_linked(&self) -> bool {
+        self.is_linked
     }
 
     /// The baud rate of the module's serial line.
     #[must_use]
     pub fn baud(&self) -> f64 {
-        self.air.baud
+        self.link.baud
     }
 
     /// Sends the phone's bytes to the chip, beginning at the cycle `now`. Without a link, the bytes are lost.
     pub fn write(&mut self, bytes: &[u8], now: u64) {
-        if self.is_in_reach {
-            self.to_uno.send(bytes, now, self.air, &mut self.random);
+        if self.is_linked {
+            self.to_uno.send(bytes, now, self.link, &mut self.random);
         }
     }
 
     /// Ends the link permanently at the cycle `now`: the phone moves out of range.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
-        self.next_change = self.is_in_reach.then_some(now);
+        self.next_link_change = self.is_linked.then_some(now);
     }
 
-    /// Takes the bytes that the UNO has transmitted, sends the UNO those that have arrived from the phone, and
-    /// returns those that have arrived at the phone. Must be called every millisecond of the chip's time.
+    /// Takes the bytes that the UNO has transmitted, sends the bytes from the phone that have arrived to the UNO, and
+    /// returns the bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
-        uno.set_baud(self.air.baud);
+        uno.set_baud(self.link.baud);
         let sent_bytes: Vec<u8> = uno
             .take_transmitted()
             .iter()
@@ -182,7 +185,7 @@ impl Radio {
     /// Returns the bytes as the module reads them at its own baud rate, if the chip sends `sent_bytes` at `chip_baud`.
     #[must_use]
     pub fn received_bytes(&self, sent_bytes: &[u8], chip_baud: f64) -> Vec<u8> {
-        let ratio = chip_baud / self.air.baud;
+        let ratio = chip_baud / self.link.baud;
         sent_bytes
             .iter()
             .map(|byte| sample_byte(*byte, ratio))
@@ -192,11 +195,11 @@ impl Radio {
     /// Takes the bytes that the module has received from the chip, and returns the bytes that have
     /// arrived by now at the chip and at the phone.
     pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
-        if self.next_change.is_some_and(|change| change <= now) {
+        if self.next_link_change.is_some_and(|change| change <= now) {
             return self.toggle_link(now);
         }
-        let to_uno = self.to_uno.arrive(now);
-        if !self.is_in_reach {
+        let to_uno = self.to_uno.take_arrived(now);
+        if !self.is_linked {
             return [to_uno, Vec::new()];
         }
         let (bytes, gathering_start) = &mut self.gathered;
@@ -204,36 +207,39 @@ impl Radio {
             *gathering_start = now;
         }
         bytes.extend(received);
-        if bytes.len() >= PACKET_BYTES || now >= *gathering_start + GATHERING_MS * CYCLES_PER_MS {
+        if bytes.len() >= MAX_PACKET_BYTES
+            || now >= *gathering_start + MAX_GATHERING_MS * CYCLES_PER_MS
+        {
             let bytes = std::mem::take(bytes);
-            self.to_phone.send(&bytes, now, self.air, &mut self.random);
+            self.to_phone.send(&bytes, now, self.link, &mut self.random);
         }
-        [to_uno, self.to_phone.arrive(now)]
+        [to_uno, self.to_phone.take_arrived(now)]
     }
 
     /// Ends the link or begins it again. Returns the bytes that still arrive at the chip and at the phone.
     fn toggle_link(&mut self, now: u64) -> [Vec<u8>; 2] {
-        self.is_in_reach = !self.is_in_reach;
+        self.is_linked = !self.is_linked;
         let mut to_uno = self.to_uno.take_remains(&mut self.random);
-        if self.air.reports_link {
-            to_uno.extend(if self.is_in_reach {
+        if self.link.reports_link {
+            to_uno.extend(if self.is_linked {
                 b"OK+CONN"
             } else {
                 b"OK+LOST"
             });
         }
-        if self.is_in_reach {
-            self.next_change = self.next_link_end(now);
+        if self.is_linked {
+            self.next_link_change = self.next_link_end(now);
             return [to_uno, Vec::new()];
         }
         self.gathered.0.clear();
         let return_cycle = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
-        self.next_change = (!self.has_left).then_some(return_cycle);
+        self.next_link_change = (!self.has_left).then_some(return_cycle);
         [to_uno, self.to_phone.take_remains(&mut self.random)]
     }
 
+    /// Returns the cycle at which a link that begins now ends; `None` if links never end.
     fn next_link_end(&mut self, now: u64) -> Option<u64> {
-        let max_cycles = 2 * self.air.mean_link_ms * CYCLES_PER_MS;
+        let max_cycles = 2 * self.link.mean_link_ms * CYCLES_PER_MS;
         (max_cycles > 0).then(|| now + self.random.u64(..max_cycles))
     }
 }

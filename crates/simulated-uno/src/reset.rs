@@ -22,7 +22,7 @@ pub enum ResetCause {
 // `struct reset_event` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
-pub struct Reset {
+pub struct ResetEvent {
     /// The cycle at which the program restarted.
     pub cycle: u64,
     /// The cause of the reset.
@@ -37,8 +37,8 @@ impl Uno {
     ///
     /// The chip's start-up delay (65 ms on a UNO) is not simulated.
     pub fn reset(&mut self) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim resets the chip at
-        // any moment between two runs, and this is one.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim may reset the chip at any moment between two runs,
+        // as here.
         unsafe { ffi::uno_reset(self.raw) }
         if self.state != State::Off {
             self.state = State::Alive;
@@ -68,12 +68,12 @@ impl Uno {
     /// continues the sequence.
     pub fn set_noise_seed(&mut self, seed: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
-        unsafe { ffi::uno_set_noise(self.raw, seed) }
+        unsafe { ffi::uno_set_noise_seed(self.raw, seed) }
     }
 
     /// All starts of the program so far, including the first power-on.
     #[must_use]
-    pub fn reset_events(&self) -> Vec<Reset> {
-        self.list(ffi::uno_reset_events)
+    pub fn reset_events(&self) -> Vec<ResetEvent> {
+        self.copy_items(ffi::uno_reset_events)
     }
 }

@@ -5,12 +5,12 @@ use crate::{FREQUENCY, Uno, ffi};
 
 impl Uno {
     /// The sender's default baud rate; [`Uno::set_baud`] changes it.
-    pub const BAUD: f64 = 115_200.0;
+    pub const DEFAULT_BAUD: f64 = 115_200.0;
 
-    /// Runs until the UNO has sent a complete line, for at most `limit` cycles. Returns false if the limit has passed
-    /// or the firmware has stopped.
-    pub fn run_until_line(&mut self, limit: u64) -> bool {
-        self.run_to(self.cycle() + limit, true)
+    /// Runs until the UNO has sent a complete line, for at most `max_cycles`. Returns false if the UNO has sent no
+    /// complete line by then or the firmware has stopped.
+    pub fn run_until_line(&mut self, max_cycles: u64) -> bool {
+        self.run_to(self.cycle() + max_cycles, true)
     }
 
     /// Queues bytes for the serial line. They are sent back to back at the baud rate, even if the firmware does not
@@ -80,16 +80,16 @@ impl Uno {
 
     /// The number of queued bytes that have not arrived at the UNO yet.
     #[must_use]
-    pub fn unsent(&self) -> usize {
+    pub fn bytes_unsent(&self) -> usize {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_unsent(self.raw) }
+        unsafe { ffi::uno_unsent_count(self.raw) }
     }
 
     /// The number of bytes sent to the UNO so far, including those of a flood.
     #[must_use]
     pub fn bytes_sent(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_sent(self.raw) }
+        unsafe { ffi::uno_sent_count(self.raw) }
     }
 
     /// The number of bytes lost because the firmware read UDR0 too late. Always 0 with
@@ -97,30 +97,30 @@ impl Uno {
     #[must_use]
     pub fn overruns(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_overruns(self.raw) }
+        unsafe { ffi::uno_overrun_count(self.raw) }
     }
 
     /// The bytes transmitted by the UNO since power-on or the last [`Uno::take_transmitted`].
     #[must_use]
     pub fn transmitted(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_transmitted)
+        self.copy_items(ffi::uno_transmitted)
     }
 
     /// Removes and returns the bytes that the UNO has transmitted since power-on or the last call.
     pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
-        self.take(ffi::uno_transmitted)
+        self.take_items(ffi::uno_transmitted)
     }
 
     /// All bytes that have arrived at the UNO, including those lost by an overrun, each with the cycle at which it
     /// was complete. A byte with a framing error is 0xff.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_received)
+        self.copy_items(ffi::uno_received)
     }
 }
 
 /// Returns the byte that a receiver reads if its bits are `ratio` times as long as the sender's.
 pub(crate) fn sample_byte(byte: u8, ratio: f64) -> u8 {
     // SAFETY: the shim computes with two numbers.
-    unsafe { ffi::uno_sampled(byte, ratio) }
+    unsafe { ffi::uno_sample_byte(byte, ratio) }
 }

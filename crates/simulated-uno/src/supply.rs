@@ -11,7 +11,7 @@ impl Uno {
     #[must_use]
     pub fn supply_mv(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim computes a number.
-        unsafe { ffi::uno_supply(self.raw) }
+        unsafe { ffi::uno_supply_mv(self.raw) }
     }
 
     /// Sets the supply voltage, mV, from this cycle on.
@@ -55,6 +55,6 @@ impl Uno {
     #[must_use]
     pub fn is_held_in_reset(&self) -> bool {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a flag.
-        unsafe { ffi::uno_held_in_reset(self.raw) }
+        unsafe { ffi::uno_is_held_in_reset(self.raw) }
     }
 }

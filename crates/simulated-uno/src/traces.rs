@@ -31,24 +31,24 @@ pub struct Mark {
 #[repr(C)]
 pub struct Call {
     /// Cycle of the first instruction.
-    pub enter: u64,
+    pub enter_cycle: u64,
     /// Cycle after the return.
-    pub leave: u64,
-    /// Cycles of the interrupts during the call, including entry and `reti`.
-    pub interrupted: u64,
+    pub leave_cycle: u64,
+    /// Cycles of the interrupts during the call, including their entry and `reti`.
+    pub interrupt_cycles: u64,
 }
 
 impl Call {
     /// Cycles from the first instruction to the return, including interrupts.
     #[must_use]
     pub fn cycles(&self) -> u64 {
-        self.leave - self.enter
+        self.leave_cycle - self.enter_cycle
     }
 
     /// Cycles from the first instruction to the return, without interrupts.
     #[must_use]
     pub fn own_cycles(&self) -> u64 {
-        self.cycles() - self.interrupted
+        self.cycles() - self.interrupt_cycles
     }
 }
 

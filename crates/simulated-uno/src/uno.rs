@@ -12,10 +12,10 @@ use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 /// The model of the chip: stock simavr, or simavr with corrections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Fidelity {
-    /// Stock simavr 1.6: entering an interrupt takes no time, received bytes are never lost, 16-bit registers
-    /// cannot be torn.
+    /// Stock simavr 1.6: entry into an interrupt takes no time, received bytes are never lost, the two bytes of a
+    /// 16-bit register do not share a TEMP byte.
     Stock,
-    /// Corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte receive
+    /// simavr corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte receive
     /// buffer with overrun, 10-bit frames, Timer1's TEMP byte, interrupt flags that are cleared one by one; EEPROM,
     /// ADC, watchdog, resets and brown-out with their times and limits.
     #[default]
@@ -42,20 +42,18 @@ pub enum State {
 
 /// A simulated Arduino UNO with a firmware in its flash.
 ///
-/// The argument for all `unsafe` of this package: `raw` comes from the shim's constructor and is
-/// freed only in `drop`, and nothing outside this struct keeps a copy. So it is valid wherever
-/// there is a `self`. Functions of the shim that take it as `const` only read and may be
-/// called with `&self`, since no other thread can have one ([`Uno`] is not `Sync`); functions
-/// that change something are called with `&mut self`.
+/// The argument for all `unsafe` of this package: the pointer `raw` comes from the shim's constructor and is freed only
+/// in `drop`, and nothing outside this struct keeps a copy. So `raw` is valid wherever there is a `self`. Functions of
+/// the shim that take a `const` pointer only read. They may be called with `&self`, since no other thread can have a
+/// reference to the same `Uno` ([`Uno`] is not `Sync`). Functions that change something are called with `&mut self`.
 pub struct Uno {
     pub(crate) raw: *mut RawUno,
     image: Image,
     pub(crate) state: State,
 }
 
-// SAFETY: an instance owns all that its pointer reaches; libsimavr's only
-// shared mutable state, the logger, is set once and reaches the instance
-// through the avr_t that it is given.
+// SAFETY: an instance owns everything that its pointer reaches. The only mutable state that instances of libsimavr
+// share is the logger, which is set once and finds the instance through the avr_t in its argument.
 unsafe impl Send for Uno {}
 
 impl Uno {
@@ -73,17 +71,21 @@ impl Uno {
     #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
         static LOGGER: Once = Once::new();
-        let pins = 0xf_fffc;
+        let recorded_pins = 0xf_fffc;
         // SAFETY: the shim's constructor aborts rather than return null; each
         // segment is inside flash, checked by `Image` and again by the shim.
         let raw = unsafe {
             LOGGER.call_once(|| ffi::uno_set_logger());
-            let raw = ffi::uno_new(fidelity == Fidelity::DataSheet, pins, Self::BAUD);
+            let raw = ffi::uno_new(
+                fidelity == Fidelity::DataSheet,
+                recorded_pins,
+                Self::DEFAULT_BAUD,
+            );
             for (address, bytes) in &image.segments {
                 let fits = ffi::uno_load(raw, bytes.as_ptr(), bytes.len() as u32, *address);
-                assert!(fits, "an image's segments are inside flash");
+                assert!(fits, "every segment of an image is inside flash");
             }
-            ffi::uno_power_on(raw, image.code_end(), image.data_end());
+            ffi::uno_finish_loading(raw, image.code_end(), image.data_end());
             raw
         };
         Self {
@@ -135,15 +137,15 @@ impl Uno {
         self.run_cycles(ms * CYCLES_PER_MS)
     }
 
-    /// Runs until the predicate holds; checks the predicate every `step` cycles. Returns true if it holds, and false
-    /// if `limit` cycles have passed or the firmware has stopped.
+    /// Runs until the predicate holds; checks the predicate every `check_interval` cycles. Returns true if the
+    /// predicate holds, and false if `max_cycles` have passed or the firmware has stopped.
     pub fn run_until(
         &mut self,
-        limit: u64,
-        step: u64,
+        max_cycles: u64,
+        check_interval: u64,
         mut predicate: impl FnMut(&Self) -> bool,
     ) -> bool {
-        let end = self.cycle() + limit;
+        let end = self.cycle() + max_cycles;
         loop {
             if predicate(self) {
                 return true;
@@ -151,26 +153,28 @@ impl Uno {
             if self.cycle() >= end || self.state != State::Alive {
                 return false;
             }
-            self.run_until_cycle(end.min(self.cycle() + step));
+            self.run_until_cycle(end.min(self.cycle() + check_interval));
         }
     }
 
+    /// Runs until the cycle `end_cycle` or, if `stop_at_line`, until the firmware has sent a complete line. Returns
+    /// true if a line has ended the run.
     pub(crate) fn run_to(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim stops at any cycle,
-        // and every value that it returns is one of `Stop`.
+        // and every value that it returns is one of `StopReason`.
         let stop_reason = unsafe {
             ffi::uno_stop_at_line(self.raw, stop_at_line);
             ffi::uno_run(self.raw, end_cycle)
         };
         match stop_reason {
-            ffi::Stop::Time => {}
-            ffi::Stop::Line => return true,
-            ffi::Stop::Halted => self.state = State::Halted,
-            ffi::Stop::Off => self.state = State::Off,
-            ffi::Stop::Crashed => {
+            ffi::StopReason::Time => {}
+            ffi::StopReason::Line => return true,
+            ffi::StopReason::Halted => self.state = State::Halted,
+            ffi::StopReason::Off => self.state = State::Off,
+            ffi::StopReason::Crashed => {
                 // SAFETY: `raw` is valid, see `Uno`. The message is inside the instance and
                 // ends with a NUL, and nothing changes it while it is copied.
-                let message = unsafe { CStr::from_ptr(ffi::uno_message(self.raw)) };
+                let message = unsafe { CStr::from_ptr(ffi::uno_error_message(self.raw)) };
                 self.state = State::Crashed {
                     pc: self.pc(),
                     message: message.to_string_lossy().trim().to_owned(),
@@ -183,12 +187,12 @@ impl Uno {
     /// The edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
     #[must_use]
     pub fn edges(&self) -> Vec<Edge> {
-        self.list(ffi::uno_edges)
+        self.copy_items(ffi::uno_edges)
     }
 
     /// Removes and returns the edges recorded since power-on or the last call.
     pub fn take_edges(&mut self) -> Vec<Edge> {
-        self.take(ffi::uno_edges)
+        self.take_items(ffi::uno_edges)
     }
 
     /// The complete pulses of a pin among [`Uno::edges`].
@@ -201,24 +205,24 @@ impl Uno {
     #[must_use]
     pub fn is_high(&self, pin: Pin) -> bool {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        let levels = unsafe { ffi::uno_levels(self.raw) };
+        let levels = unsafe { ffi::uno_pin_levels(self.raw) };
         levels & (1 << pin.number()) != 0
     }
 
     /// The firmware's stores to GPIOR0 since power-on or the last [`Uno::take_marks`].
     #[must_use]
     pub fn marks(&self) -> Vec<Mark> {
-        self.list(ffi::uno_marks)
+        self.copy_items(ffi::uno_marks)
     }
 
     /// Removes and returns the marks recorded since power-on or the last call.
     pub fn take_marks(&mut self) -> Vec<Mark> {
-        self.take(ffi::uno_marks)
+        self.take_items(ffi::uno_marks)
     }
 
     /// Runs for `cycles` and times every call of the function at byte address `entry` in flash (see
-    /// [`Image::symbol`]). Slower than [`Uno::run_cycles`], because it checks every instruction. Recursive calls
-    /// count as part of the outermost one.
+    /// [`Image::symbol`]). Slower than [`Uno::run_cycles`], because it checks every instruction. A recursive call
+    /// counts as part of the outermost call.
     pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim compares `entry`
         // with the program counter and never follows it.
@@ -226,14 +230,14 @@ impl Uno {
         self.run_cycles(cycles);
         // SAFETY: as above.
         unsafe { ffi::uno_time_calls(self.raw, false, 0) };
-        self.take(ffi::uno_calls)
+        self.take_items(ffi::uno_calls)
     }
 
     /// The number of cycles since power-on in which the CPU slept.
     #[must_use]
     pub fn asleep_cycles(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_asleep(self.raw) }
+        unsafe { ffi::uno_asleep_cycles(self.raw) }
     }
 
     /// The number of cycles since power-on in which the CPU did not sleep.
@@ -246,26 +250,26 @@ impl Uno {
     #[must_use]
     pub fn watchdog_resets(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_resets(self.raw) }
+        unsafe { ffi::uno_watchdog_resets(self.raw) }
     }
 
     /// The largest size of the stack since power-on, bytes. At power-on, SRAM contains noise; a byte counts as used
     /// once it differs from that noise.
     #[must_use]
     pub fn stack_used(&self) -> u16 {
-        SRAM_END - self.stack_low()
+        SRAM_END - self.lowest_stack_address()
     }
 
     /// The smallest free space between the stack and static data since power-on, bytes.
     #[must_use]
     pub fn stack_spare(&self) -> u16 {
-        self.stack_low() - self.image.data_end()
+        self.lowest_stack_address() - self.image.data_end()
     }
 
     /// The lowest SRAM address that the stack has reached.
-    fn stack_low(&self) -> u16 {
+    fn lowest_stack_address(&self) -> u16 {
         // SAFETY: `raw` is valid, see `Uno`; the shim looks through the chip's own SRAM.
-        unsafe { ffi::uno_stack_low(self.raw) }
+        unsafe { ffi::uno_lowest_stack_address(self.raw) }
     }
 
     /// The byte address in flash of the next instruction.
@@ -290,19 +294,19 @@ impl Uno {
     /// Statistics of every interrupt that has been served at least once.
     #[must_use]
     pub fn interrupts(&self) -> Vec<VectorUse> {
-        // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTORS` items inside the
+        // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTOR_COUNT` items inside the
         // instance, and nothing runs while they are borrowed.
         let vectors =
-            unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTORS) };
-        let served = vectors
+            unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTOR_COUNT) };
+        let served_vectors = vectors
             .iter()
             .enumerate()
-            .filter(|(_, raw)| raw.entries > 0);
-        served
-            .map(|(vector, raw)| VectorUse {
+            .filter(|(_, raw_use)| raw_use.entries > 0);
+        served_vectors
+            .map(|(vector, raw_use)| VectorUse {
                 vector: vector as u8,
-                entries: raw.entries,
-                cycles: raw.cycles,
+                entries: raw_use.entries,
+                cycles: raw_use.cycles,
             })
             .collect()
     }
@@ -314,13 +318,13 @@ impl Uno {
     }
 
     /// Copies the items of one of the shim's lists.
-    pub(crate) fn list<Item: Copy>(&self, list_of: ListOf) -> Vec<Item> {
+    pub(crate) fn copy_items<Item: Copy>(&self, list_getter: ListGetter) -> Vec<Item> {
         // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
         // the shim keeps in it, whose size is compared; `count` items of it are filled in,
         // and nothing runs while they are copied.
         unsafe {
-            let list = &*list_of(self.raw);
-            assert_eq!(list.size, size_of::<Item>());
+            let list = &*list_getter(self.raw);
+            assert_eq!(list.item_size, size_of::<Item>());
             match list.count {
                 0 => Vec::new(),
                 count => std::slice::from_raw_parts(list.items.cast(), count).to_vec(),
@@ -329,21 +333,22 @@ impl Uno {
     }
 
     /// Removes and returns the items of one of the shim's lists.
-    pub(crate) fn take<Item: Copy>(&mut self, list_of: ListOf) -> Vec<Item> {
-        let items = self.list(list_of);
-        self.clear(list_of);
+    pub(crate) fn take_items<Item: Copy>(&mut self, list_getter: ListGetter) -> Vec<Item> {
+        let items = self.copy_items(list_getter);
+        self.clear_items(list_getter);
         items
     }
 
-    pub(crate) fn clear(&mut self, list_of: ListOf) {
+    /// Empties one of the shim's lists.
+    pub(crate) fn clear_items(&mut self, list_getter: ListGetter) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
         // the shim writes after its `count`, so that 0 empties it.
-        unsafe { (*list_of(self.raw)).count = 0 }
+        unsafe { (*list_getter(self.raw)).count = 0 }
     }
 }
 
 /// A function of the shim that returns one of its lists.
-type ListOf = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
+type ListGetter = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
 
 impl Drop for Uno {
     fn drop(&mut self) {

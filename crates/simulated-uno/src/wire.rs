@@ -1,7 +1,7 @@
 //! A wire with two senders, such as the UNO's D0 where a radio module shares it with USB.
 //!
-//! The wire is high while no sender pulls it low. If both send at once, their bits mix, and the receiver reads bytes
-//! that neither has sent, some without a stop bit. Pass the bytes that the receiver reads to
+//! The wire is high while no sender pulls it low. If both send at once, a bit is high only if both bits are high, and
+//! the receiver reads bytes that neither has sent, some without a stop bit. Pass the bytes that the receiver reads to
 //! [`Uno::send`](crate::Uno::send) and [`Uno::send_with_framing_error`](crate::Uno::send_with_framing_error).
 
 use std::collections::VecDeque;
@@ -12,27 +12,29 @@ use crate::FREQUENCY;
 const FRAME_BITS: f64 = 10.0;
 /// The time from the start of a byte to the middle of its stop bit, at which a receiver has read the byte; in bits.
 const STOP_BIT_MIDDLE: f64 = 9.5;
-/// Number of bytes of each sender that are searched for edges: more than the fastest sender sends while the slowest
+/// The number of bytes of each sender that are searched for edges: more than the fastest sender sends while the slowest
 /// receiver reads one byte.
-const NEAR_BYTES: usize = 16;
+const SEARCHED_BYTES_PER_SENDER: usize = 16;
 
 /// A byte on the wire.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     /// The cycle at which the byte's start bit begins.
-    start: f64,
+    start_cycle: f64,
     /// Duration of a bit, cycles.
-    bit: f64,
+    bit_cycles: f64,
     byte: u8,
 }
 
 impl Frame {
-    fn end(&self) -> f64 {
-        self.start + FRAME_BITS * self.bit
+    /// Returns the cycle at which the stop bit ends.
+    fn end_cycle(&self) -> f64 {
+        self.start_cycle + FRAME_BITS * self.bit_cycles
     }
 
+    /// True if the sender leaves the wire high at this cycle.
     fn is_high(&self, cycle: f64) -> bool {
-        let index = ((cycle - self.start) / self.bit).floor();
+        let index = ((cycle - self.start_cycle) / self.bit_cycles).floor();
         let bits = 1u32 << 9 | u32::from(self.byte) << 1;
         !(0.0..FRAME_BITS).contains(&index) || bits >> index as u32 & 1 == 1
     }
@@ -42,9 +44,9 @@ impl Frame {
 #[derive(Debug)]
 pub struct Wire {
     /// Duration of a bit of each sender, cycles.
-    bits: [f64; 2],
+    bit_cycles: [f64; 2],
     /// The bytes of each sender that may still be read, in order.
-    talkers: [VecDeque<Frame>; 2],
+    frames: [VecDeque<Frame>; 2],
     /// The cycle from which the receiver waits for the next start bit.
     idle_from: f64,
 }
@@ -54,21 +56,21 @@ impl Wire {
     #[must_use]
     pub fn new(rates: [f64; 2]) -> Self {
         Self {
-            bits: rates.map(|baud| FREQUENCY as f64 / baud),
-            talkers: [VecDeque::new(), VecDeque::new()],
+            bit_cycles: rates.map(|baud| FREQUENCY as f64 / baud),
+            frames: [VecDeque::new(), VecDeque::new()],
             idle_from: f64::NEG_INFINITY,
         }
     }
 
     /// Queues bytes of a sender, 0 or 1, which sends them back to back from the cycle `now` on.
-    pub fn write(&mut self, talker: usize, bytes: &[u8], now: u64) {
-        let bit = self.bits[talker];
+    pub fn write(&mut self, sender: usize, bytes: &[u8], now: u64) {
+        let bit_cycles = self.bit_cycles[sender];
         for byte in bytes {
-            let free_cycle = self.talkers[talker].back().map_or(0.0, Frame::end);
-            let start = free_cycle.max(now as f64);
-            self.talkers[talker].push_back(Frame {
-                start,
-                bit,
+            let free_cycle = self.frames[sender].back().map_or(0.0, Frame::end_cycle);
+            let start_cycle = free_cycle.max(now as f64);
+            self.frames[sender].push_back(Frame {
+                start_cycle,
+                bit_cycles,
                 byte: *byte,
             });
         }
@@ -77,39 +79,48 @@ impl Wire {
     /// Returns the bytes that a receiver of this baud rate has read since the last call, until the cycle `now`;
     /// `None` for a byte without a stop bit.
     pub fn receive(&mut self, now: u64, baud: f64) -> Vec<Option<u8>> {
-        let bit = FREQUENCY as f64 / baud;
-        let mut received = Vec::new();
-        while let Some(start) = self.next_fall() {
-            let end = start + STOP_BIT_MIDDLE * bit;
-            if end > now as f64 {
+        let bit_cycles = FREQUENCY as f64 / baud;
+        let mut received_bytes = Vec::new();
+        while let Some(start_cycle) = self.next_falling_edge() {
+            let end_cycle = start_cycle + STOP_BIT_MIDDLE * bit_cycles;
+            if end_cycle > now as f64 {
                 break;
             }
-            let is_bit_high = |index: u8| self.is_high(start + (f64::from(index) + 1.5) * bit);
+            let is_bit_high =
+                |index: u8| self.is_high(start_cycle + (f64::from(index) + 1.5) * bit_cycles);
             let byte = (0..8).fold(0, |byte, index| {
                 byte | u8::from(is_bit_high(index)) << index
             });
-            received.push(is_bit_high(8).then_some(byte));
-            self.idle_from = end;
-            for talker in &mut self.talkers {
-                while talker.front().is_some_and(|frame| frame.end() <= end) {
-                    talker.pop_front();
+            received_bytes.push(is_bit_high(8).then_some(byte));
+            self.idle_from = end_cycle;
+            for sender_frames in &mut self.frames {
+                while sender_frames
+                    .front()
+                    .is_some_and(|frame| frame.end_cycle() <= end_cycle)
+                {
+                    sender_frames.pop_front();
                 }
             }
         }
-        received
+        received_bytes
     }
 
     /// Returns the next cycle at which the wire changes from high to low; `None` if the senders have no further
     /// bytes.
-    fn next_fall(&self) -> Option<f64> {
+    fn next_falling_edge(&self) -> Option<f64> {
         let edges = self.pending_frames().flat_map(|frame| {
-            (0..9).map(|index| (frame.start + f64::from(index) * frame.bit, frame.bit))
+            (0..9).map(|index| {
+                (
+                    frame.start_cycle + f64::from(index) * frame.bit_cycles,
+                    frame.bit_cycles,
+                )
+            })
         });
         edges
             .filter(|(cycle, _)| *cycle > self.idle_from)
-            .filter(|(cycle, bit)| {
-                // Samples on both sides of the edge, since the sums are rounded.
-                let margin = bit / 100.0;
+            .filter(|(cycle, bit_cycles)| {
+                // The samples lie on both sides of the edge, since the sums are rounded.
+                let margin = bit_cycles / 100.0;
                 self.is_high(cycle - margin) && !self.is_high(cycle + margin)
             })
             .map(|(cycle, _)| cycle)
@@ -118,11 +129,12 @@ impl Wire {
 
     /// Returns the bytes that may be on the wire while the receiver reads its next byte.
     fn pending_frames(&self) -> impl Iterator<Item = &Frame> {
-        self.talkers
+        self.frames
             .iter()
-            .flat_map(|talker| talker.iter().take(NEAR_BYTES))
+            .flat_map(|sender_frames| sender_frames.iter().take(SEARCHED_BYTES_PER_SENDER))
     }
 
+    /// True if the wire is high at this cycle.
     fn is_high(&self, cycle: f64) -> bool {
         self.pending_frames().all(|frame| frame.is_high(cycle))
     }
@@ -137,8 +149,8 @@ mod tests {
 
     fn receive_all(writes: &[(usize, &[u8], u64)]) -> Vec<Option<u8>> {
         let mut wire = Wire::new([115_200.0; 2]);
-        for (talker, bytes, cycle) in writes {
-            wire.write(*talker, bytes, *cycle);
+        for (sender, bytes, cycle) in writes {
+            wire.write(*sender, bytes, *cycle);
         }
         wire.receive(1_000_000, 115_200.0)
     }
@@ -150,9 +162,9 @@ mod tests {
     #[test]
     fn a_single_sender_is_read_correctly() {
         let all_bytes: Vec<u8> = (0..=255).collect();
-        for talker in [0, 1] {
+        for sender in [0, 1] {
             assert_eq!(
-                receive_all(&[(talker, &all_bytes, 70)]),
+                receive_all(&[(sender, &all_bytes, 70)]),
                 bytes_without_errors(&all_bytes)
             );
         }
@@ -180,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_that_begins_in_anothers_stop_bit_takes_that_away() {
+    fn a_byte_has_no_stop_bit_if_the_other_sender_begins_in_it() {
         let writes: [(usize, &[u8], u64); 2] = [(0, &[0xff], 0), (1, &[0x0f], BYTE_CYCLES - 138)];
         assert_eq!(receive_all(&writes)[0], None);
     }
@@ -188,15 +200,15 @@ mod tests {
     #[test]
     fn each_sender_is_read_only_at_its_own_rate() {
         let rates = [9_600.0, 57_600.0];
-        for (talker, rate) in rates.into_iter().enumerate() {
+        for (sender, rate) in rates.into_iter().enumerate() {
             let mut wire = Wire::new(rates);
-            wire.write(talker, b"status\n", 500);
+            wire.write(sender, b"status\n", 500);
             assert_eq!(
                 wire.receive(500 + 70 * (16_000_000 / rate as u64), rate),
                 bytes_without_errors(b"status\n")
             );
-            wire.write(talker, b"status\n", 1_000_000);
-            let read_bytes = wire.receive(2_000_000, rates[1 - talker]);
+            wire.write(sender, b"status\n", 1_000_000);
+            let read_bytes = wire.receive(2_000_000, rates[1 - sender]);
             assert!(
                 !read_bytes.is_empty() && !read_bytes.contains(&Some(b'\n')),
                 "{read_bytes:?}"
@@ -205,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_byte_at_a_slow_receiver_is_one_of_its_bits() {
+    fn a_zero_byte_shorter_than_one_bit_of_the_receiver_is_read_as_0xff() {
         let mut wire = Wire::new([115_200.0; 2]);
         // Twelve bits of the sender last as long as one bit of the receiver. So the sender's whole byte lies within
         // the receiver's start bit.

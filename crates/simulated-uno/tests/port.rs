@@ -13,11 +13,11 @@ use std::time::{Duration, Instant};
 use lizard_time_limit::LIMIT;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use simulated_uno::avr_gcc;
-use simulated_uno::{Background, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
+use simulated_uno::{BackgroundPort, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
 
 /// Program that sends `<r` at reset, then answers every byte with that byte plus one. D9 is high from reset on. Each
 /// start is marked with the number of starts since power-on, from a variable that a reset does not clear.
-const ECHO: &str = r#"
+const ECHO_PROGRAM: &str = r#"
     #include <avr/io.h>
     static volatile unsigned char starts __attribute__((section(".noinit")));
     static void put(unsigned char byte) {
@@ -38,28 +38,33 @@ const ECHO: &str = r#"
         }
     }"#;
 
-/// The compiled program [`ECHO`]. [`echo_uno`] compiles it before a test opens its port.
-static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::c(ECHO));
+/// The compiled [`ECHO_PROGRAM`]. The first use, in [`echo_uno`], compiles it, before the test opens its port.
+static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::compile_c(ECHO_PROGRAM));
 
 fn echo_uno() -> Uno {
     Uno::with_image(IMAGE.clone(), Fidelity::DataSheet)
 }
 
-fn serve_board() -> Background {
+fn serve_board() -> BackgroundPort {
     let mut uno = echo_uno();
     uno.run_ms(1);
-    let port = Port::new().expect("a pseudo terminal");
-    port.in_background(uno, |_| {}).expect("a thread")
+    let port = Port::new().expect("a pseudo terminal is free");
+    port.in_background(uno, |_| {})
+        .expect("a thread can be started")
 }
 
-fn stop_board(board: Background) -> Uno {
+fn stop_board(board: BackgroundPort) -> Uno {
     let uno = LIMIT.within("the end of the port's thread", || board.stop());
     uno.expect("the port had no error")
 }
 
 fn open(path: &Path) -> File {
     let mut options = OpenOptions::new();
-    options.read(true).write(true).open(path).expect("it opens")
+    options
+        .read(true)
+        .write(true)
+        .open(path)
+        .expect("the port can be opened")
 }
 
 fn read_text(port: &File, count: usize) -> String {
@@ -67,11 +72,11 @@ fn read_text(port: &File, count: usize) -> String {
 }
 
 fn read_bytes(port: &File, count: usize) -> Vec<u8> {
-    let mut port = port.try_clone().expect("a cloned handle");
+    let mut port = port.try_clone().expect("the handle can be cloned");
     let description = format!("{count} bytes from the chip");
     LIMIT.within(&description, move || {
         let mut bytes = vec![0; count];
-        port.read_exact(&mut bytes).expect("bytes arrive");
+        port.read_exact(&mut bytes).expect("the port can be read");
         bytes
     })
 }
@@ -81,36 +86,39 @@ fn serve(port: &mut Port, uno: &mut Uno, ms: u64) {
     let end_cycle = uno.cycle() + ms * CYCLES_PER_MS;
     LIMIT.expect("the chip's time to pass", || {
         let step = Duration::from_millis(5);
-        port.serve(uno, step).expect("it is served");
+        port.serve(uno, step).expect("the port has no error");
         uno.cycle() >= end_cycle
     });
 }
 
-fn marks(uno: &Uno) -> Vec<u8> {
+fn mark_values(uno: &Uno) -> Vec<u8> {
     uno.marks().iter().map(|mark| mark.value).collect()
 }
 
 #[test]
-fn bytes_pass_both_ways_as_they_are() {
+fn bytes_pass_unchanged_in_both_directions() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
     // Bytes that a terminal would remove or change: CR, LF, interrupt, end of file, delete.
-    port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
+    port.write_all(b"\r\n\x03\x04\x7f")
+        .expect("the port accepts bytes");
     assert_eq!(read_text(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
     stop_board(board);
 }
 
 #[test]
-fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
+fn at_another_baud_rate_than_the_chips_other_bytes_are_read() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
-    let mut settings = tcgetattr(&port).expect("its settings");
-    settings.set_speed(57_600).expect("a speed");
-    tcsetattr(&port, OptionalActions::Now, &settings).expect("settings accepted");
-    port.write_all(b"0").expect("it takes bytes");
+    let mut settings = tcgetattr(&port).expect("the port has settings");
+    settings
+        .set_speed(57_600)
+        .expect("57 600 baud is a valid speed");
+    tcsetattr(&port, OptionalActions::Now, &settings).expect("the port accepts settings");
+    port.write_all(b"0").expect("the port accepts bytes");
     // The chip reads 0, as tests/data_sheet/serial.rs explains, and sends 1. The host samples that byte at half the
     // chip's baud rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle
     // line.
@@ -128,7 +136,11 @@ fn every_opening_resets_the_chip_however_short_the_pause_before() {
         drop(port);
     }
     let uno = stop_board(board);
-    assert_eq!(marks(&uno), [1, 2, 3, 4, 5, 6], "power-on and five resets");
+    assert_eq!(
+        mark_values(&uno),
+        [1, 2, 3, 4, 5, 6],
+        "power-on and five resets"
+    );
 }
 
 #[test]
@@ -139,24 +151,34 @@ fn a_second_program_does_not_reset_the_chip() {
     let second_port = open(board.path());
     std::thread::sleep(Duration::from_millis(10));
     drop(second_port);
-    port.write_all(b"a").expect("it takes bytes");
+    port.write_all(b"a").expect("the port accepts bytes");
     assert_eq!(read_text(&port, 1), "b");
     let uno = stop_board(board);
-    assert_eq!(marks(&uno), [1, 2]);
+    assert_eq!(mark_values(&uno), [1, 2]);
 }
 
 #[test]
 fn output_while_the_port_is_closed_is_lost() {
     let mut uno = echo_uno();
-    let mut port = Port::new().expect("a pseudo terminal");
+    let mut port = Port::new().expect("a pseudo terminal is free");
     serve(&mut port, &mut uno, 20);
     let mut program_port = open(port.path());
     serve(&mut port, &mut uno, 20);
     assert!(port.is_open());
-    assert_eq!(read_text(&program_port, 2), "<r", "of the reset alone");
-    program_port.write_all(b"a").expect("it takes bytes");
+    assert_eq!(
+        read_text(&program_port, 2),
+        "<r",
+        "only the output of the reset is left"
+    );
+    program_port
+        .write_all(b"a")
+        .expect("the port accepts bytes");
     serve(&mut port, &mut uno, 20);
-    assert_eq!(read_text(&program_port, 1), "b", "and nothing before it");
+    assert_eq!(
+        read_text(&program_port, 1),
+        "b",
+        "no earlier output comes before the answer"
+    );
     drop(program_port);
     serve(&mut port, &mut uno, 20);
     assert!(!port.is_open());
@@ -165,24 +187,30 @@ fn output_while_the_port_is_closed_is_lost() {
 #[test]
 fn unread_output_is_dropped_before_the_next_program_opens_the_port() {
     let mut uno = echo_uno();
-    let mut port = Port::new().expect("a pseudo terminal");
+    let mut port = Port::new().expect("a pseudo terminal is free");
     serve(&mut port, &mut uno, 20);
     let mut first_port = open(port.path());
     serve(&mut port, &mut uno, 20);
     assert_eq!(read_text(&first_port, 2), "<r");
-    first_port.write_all(b"abc").expect("it takes bytes");
+    first_port
+        .write_all(b"abc")
+        .expect("the port accepts bytes");
     serve(&mut port, &mut uno, 20);
     drop(first_port);
     serve(&mut port, &mut uno, 20);
     let second_port = open(port.path());
     serve(&mut port, &mut uno, 20);
-    assert_eq!(read_text(&second_port, 2), "<r", "not bcd, the echo of abc");
+    assert_eq!(
+        read_text(&second_port, 2),
+        "<r",
+        "the echo of abc, bcd, is not left"
+    );
 }
 
 #[test]
 fn the_chip_keeps_time_with_the_wall_clock() {
     let mut uno = echo_uno();
-    let mut port = Port::new().expect("a pseudo terminal");
+    let mut port = Port::new().expect("a pseudo terminal is free");
     let start = Instant::now();
     serve(&mut port, &mut uno, 100);
     let wall_seconds = start.elapsed().as_secs_f64();
@@ -205,5 +233,5 @@ fn a_reset_makes_the_pins_low_and_keeps_time_and_memory() {
     assert_eq!(uno.ms().floor(), 1.0);
     uno.run_ms(1);
     assert!(uno.is_high(Pin::d(9)));
-    assert_eq!(marks(&uno), [1, 2]);
+    assert_eq!(mark_values(&uno), [1, 2]);
 }

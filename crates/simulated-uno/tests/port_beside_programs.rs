@@ -10,7 +10,7 @@ use simulated_uno::avr_gcc;
 use simulated_uno::{Fidelity, Port, Uno};
 
 /// Program that sends `<r` at reset.
-const HELLO: &str = r#"
+const HELLO_PROGRAM: &str = r#"
     #include <avr/io.h>
     static void put(unsigned char byte) {
         while (!(UCSR0A & 1 << UDRE0)) {}
@@ -23,7 +23,7 @@ const HELLO: &str = r#"
     }"#;
 
 /// Shell script that opens the port in its argument, reads two bytes and closes it.
-const READER: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
+const READER_SCRIPT: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
 /// The smallest number of openings, and the smallest number of other programs started during them.
 const MIN_OPENINGS: usize = 150;
@@ -34,35 +34,37 @@ static IS_OVER: AtomicBool = AtomicBool::new(false);
 fn start_programs() {
     while !IS_OVER.load(Ordering::Relaxed) {
         let output = LIMIT.output(&mut Command::new("true"), b"");
-        assert!(output.expect("it ends").status.success());
+        assert!(output.expect("`true` runs").status.success());
         STARTED_COUNT.fetch_add(1, Ordering::Relaxed);
     }
 }
 
 #[test]
 fn every_opening_by_another_program_resets_the_chip_once() {
-    let uno = Uno::with_image(avr_gcc::c(HELLO), Fidelity::DataSheet);
+    let uno = Uno::with_image(avr_gcc::compile_c(HELLO_PROGRAM), Fidelity::DataSheet);
     let starters = [(); 3].map(|()| thread::spawn(start_programs));
-    let port = Port::new().expect("a pseudo terminal");
-    let board = port.in_background(uno, |_| {}).expect("a thread");
+    let port = Port::new().expect("a pseudo terminal is free");
+    let board = port
+        .in_background(uno, |_| {})
+        .expect("a thread can be started");
     let mut openings = 0;
     while openings < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
         let are_all_running = starters.iter().all(|starter| !starter.is_finished());
         assert!(are_all_running, "no more programs are started");
         openings += 1;
         let mut reader = Command::new("bash");
-        reader.args(["-c", READER]).arg(board.path());
-        let output = LIMIT.output(&mut reader, b"").expect("the chip answers");
+        reader.args(["-c", READER_SCRIPT]).arg(board.path());
+        let output = LIMIT.output(&mut reader, b"").expect("the script ends");
         let output_text = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output_text, "<r", "opening {openings}");
     }
     IS_OVER.store(true, Ordering::Relaxed);
     for starter in starters {
         let result = LIMIT.within("the end of the other programs", || starter.join());
-        result.expect("they are well");
+        result.expect("the thread does not panic");
     }
     let uno = LIMIT.within("the end of the port's thread", || board.stop());
-    let reset_count = uno.expect("the port was well").reset_events().len();
+    let reset_count = uno.expect("the port had no error").reset_events().len();
     assert_eq!(
         reset_count,
         1 + openings,

@@ -7,8 +7,8 @@ use std::process::{Command, Output};
 use lizard_time_limit::LIMIT;
 use simulated_uno::avr_gcc;
 
-/// Program that answers every line with `got` and the line's first letter.
-const ECHO: &str = r#"
+/// Program that sends `ready` at its start and answers every line with `got` and the line's first letter.
+const ECHO_PROGRAM: &str = r#"
     #include <avr/io.h>
     static void put(const char *text) {
         for (; *text; text++) { while (!(UCSR0A & 1 << UDRE0)) {} UDR0 = *text; }
@@ -26,7 +26,7 @@ const ECHO: &str = r#"
     }"#;
 
 /// Program that sets D9 high for exactly 16 000 cycles, 1 ms, then low for at least 47 999.
-const PULSES: &str = "
+const PULSES_PROGRAM: &str = "
     #include <avr/io.h>
     int main(void) {
         DDRB = 2;
@@ -36,17 +36,17 @@ const PULSES: &str = "
         }
     }";
 
-fn run(file: &Path, arguments: &[&str]) -> Output {
+fn run_program(file: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_simulated-uno"));
     command.arg(file).args(arguments);
-    LIMIT.output(&mut command, b"").expect("it runs")
+    LIMIT.output(&mut command, b"").expect("simulated-uno runs")
 }
 
 /// Compiles a source and returns the paths of its ELF and Intel HEX files.
 fn compile(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     let [c, elf, hex] = ["program.c", "program.elf", "program.hex"].map(|name| folder.join(name));
-    fs::write(&c, source).expect("it is written");
-    avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf).expect("it compiles");
+    fs::write(&c, source).expect("the file can be written");
+    avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf).expect("the source compiles");
     let mut objcopy = Command::new("avr-objcopy");
     objcopy
         .args(["-O", "ihex", "-R", ".eeprom"])
@@ -59,22 +59,22 @@ fn compile(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
 
 /// Compiles a source and runs `simulated-uno` with its Intel HEX file.
 fn run_source(source: &str, arguments: &[&str]) -> Output {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let [_, hex] = compile(folder.path(), source);
-    run(&hex, arguments)
+    run_program(&hex, arguments)
 }
 
 fn text_of(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("it is UTF-8")
+    String::from_utf8(bytes.to_vec()).expect("the output is UTF-8")
 }
 
 #[test]
 fn a_hex_file_and_its_elf_give_the_same_pulses() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [elf, hex] = compile(folder.path(), PULSES);
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
+    let [elf, hex] = compile(folder.path(), PULSES_PROGRAM);
     // Intel HEX does not contain the size of the static data, so the report omits the memory.
     for (file, reports_memory) in [(elf, true), (hex, false)] {
-        let output = run(&file, &["--ms", "100"]);
+        let output = run_program(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");
         let output_text = text_of(&output.stdout);
         let row: Vec<&str> = output_text
@@ -93,7 +93,7 @@ fn a_hex_file_and_its_elf_give_the_same_pulses() {
             reports_memory,
             "{output_text}"
         );
-        let period: f64 = row[4].parse().expect("a number");
+        let period: f64 = row[4].parse().expect("the period is a number");
         assert!((4000.0..4001.0).contains(&period), "{output_text}");
         assert!(
             output_text.contains("awake 100.0 %") && output_text.contains("It runs on."),
@@ -104,7 +104,7 @@ fn a_hex_file_and_its_elf_give_the_same_pulses() {
 
 #[test]
 fn every_pulse_is_listed_if_asked_for() {
-    let output = run_source(PULSES, &["--ms", "10", "--pulses"]);
+    let output = run_source(PULSES_PROGRAM, &["--ms", "10", "--pulses"]);
     let output_text = text_of(&output.stdout);
     let rows = output_text.lines().filter(|line| line.starts_with("D9"));
     let widths: Vec<&str> = rows
@@ -114,16 +114,16 @@ fn every_pulse_is_listed_if_asked_for() {
 }
 
 #[test]
-fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
+fn lines_are_sent_at_their_times_and_answers_are_printed_with_their_times() {
     for extra_arguments in [&["--stock"][..], &[]] {
         let mut arguments = vec!["--ms", "60", "--say", "40:stop", "--say", "20:walk"];
         arguments.extend(extra_arguments);
-        let output = run_source(ECHO, &arguments);
+        let output = run_source(ECHO_PROGRAM, &arguments);
         let output_text = text_of(&output.stdout);
         let lines: Vec<(f64, &str)> = output_text
             .lines()
             .filter_map(|line| line.split_once(" ms  "))
-            .map(|(ms, text)| (ms.trim().parse().expect("a time"), text))
+            .map(|(ms, text)| (ms.trim().parse().expect("the time is a number"), text))
             .collect();
         let texts: Vec<&str> = lines.iter().map(|line| line.1).collect();
         assert_eq!(
@@ -142,27 +142,27 @@ fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
 }
 
 #[test]
-fn each_fault_is_reported_in_a_message() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+fn a_bad_file_or_argument_is_reported_with_its_exit_code() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let file = folder.path().join("half.hex");
-    fs::write(&file, ":02000000FFCF30\n").expect("it is written");
-    let cut_output = run(&file, &[]);
+    fs::write(&file, ":02000000FFCF30\n").expect("the file can be written");
+    let cut_output = run_program(&file, &[]);
     assert_eq!(cut_output.status.code(), Some(1));
     let error = text_of(&cut_output.stderr);
     assert!(
         error.ends_with("no end record: only a part of it is there\n"),
         "{error}"
     );
-    let missing_output = run(&folder.path().join("none.hex"), &[]);
+    let missing_output = run_program(&folder.path().join("none.hex"), &[]);
     assert_eq!(missing_output.status.code(), Some(1));
     assert!(text_of(&missing_output.stderr).contains("none.hex"));
-    let wrong_output = run(&file, &["--say", "walk"]);
+    let wrong_output = run_program(&file, &["--say", "walk"]);
     assert_eq!(wrong_output.status.code(), Some(2));
     assert!(text_of(&wrong_output.stderr).contains("as in 500:walk"));
 }
 
 #[test]
-fn a_crash_is_reported_and_ends_with_1() {
+fn a_crash_is_reported_and_ends_with_exit_code_1() {
     let output = run_source("int main(void) { *(volatile char *)0x0fff = 1; }", &[]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let output_text = text_of(&output.stdout);
@@ -173,8 +173,8 @@ fn a_crash_is_reported_and_ends_with_1() {
 }
 
 #[test]
-fn the_text_of_a_program_cannot_command_the_terminal() {
-    let source = ECHO.replace("ready\\r\\n", "\\033[2Jblank\\n");
+fn control_characters_of_a_program_are_escaped() {
+    let source = ECHO_PROGRAM.replace("ready\\r\\n", "\\033[2Jblank\\n");
     let output_text = text_of(&run_source(&source, &["--ms", "5"]).stdout);
     assert!(output_text.contains("\\u{1b}[2Jblank"), "{output_text}");
     assert!(!output_text.contains('\u{1b}'), "{output_text}");

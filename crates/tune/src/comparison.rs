@@ -49,7 +49,7 @@ impl Comparison {
     /// Simulates both gaits on the judge's robots, at paces at which their fastest servos turn at `rate` (deg/s).
     pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found_gait: &BuiltGait) -> Self {
         // At another pace the gait covers the same distance, so only its period changes.
-        let pace_factor = gait.audit().peak.speed / rate;
+        let pace_factor = gait.audit().peak_speed.speed / rate;
         let (given, given_speeds) = Figures::of(judge, gait, pace_factor);
         let (tuned, tuned_speeds) = Figures::of(judge, found_gait.gait(), 1.0);
         let faster = tuned_speeds
@@ -93,8 +93,8 @@ impl Figures {
         let figures = Self {
             name: gait.name().to_owned(),
             period,
-            rate: audit.peak.speed / pace_factor,
-            margin: (Check::name(least_margin.what), least_margin.value),
+            rate: audit.peak_speed.speed / pace_factor,
+            margin: (Check::name(least_margin.check), least_margin.value),
             predicted: judge.goal().progress(&judge.cycle(gait)) / period,
             sg90: judge.speed_on_robot(gait, period),
             speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),

@@ -1,6 +1,6 @@
 //! The goal of a gait: to walk straight, or to turn on the spot.
 
-use lizard_robot::servo::LEGS;
+use lizard_robot::servo::LEG_NAMES;
 use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
@@ -8,11 +8,11 @@ use thiserror::Error;
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 fn is_left(servo: usize) -> bool {
-    LEGS[servo].starts_with('L')
+    LEG_NAMES[servo].starts_with('L')
 }
 
 fn is_front(servo: usize) -> bool {
-    LEGS[servo].ends_with('F')
+    LEG_NAMES[servo].ends_with('F')
 }
 
 /// The error for a gait that has no goal; contains the gait's name.
@@ -51,7 +51,7 @@ impl Goal {
     /// between the pads.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
         let name_of_gait = || gait.name().to_owned();
-        let movement = gait.predict(&ground.rigid());
+        let movement = gait.predict(&ground.with_rigid_drive());
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
             return Err(GoalError::Undecided(name_of_gait()));
         };

@@ -37,7 +37,7 @@ impl BuiltGait {
                 period,
                 ..bars.clone()
             };
-            let table = bars.table();
+            let table = bars.to_toml();
             let robot = robot.with_gait(&table).ok()?;
             Some(Self { robot, table })
         };
@@ -95,7 +95,7 @@ impl BuiltGait {
 
     /// Speed of the fastest servo, deg/s.
     fn peak(&self) -> f64 {
-        self.gait().audit().peak.speed
+        self.gait().audit().peak_speed.speed
     }
 }
 

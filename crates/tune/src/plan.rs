@@ -150,7 +150,7 @@ mod tests {
     fn a_plan_is_written_as_robot_toml_reads_it() {
         let table_of = |kind, goal, name: &str, period, parameters: &[f64]| {
             let bars = planned(kind, space_of(goal), name, parameters);
-            Bars { period, ..bars }.table()
+            Bars { period, ..bars }.to_toml()
         };
         assert_eq!(
             table_of(

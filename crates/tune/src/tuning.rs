@@ -144,9 +144,9 @@ fn servo_speed(
     requested: Option<f64>,
 ) -> Result<f64, TuningError> {
     let Some(rate) = requested else {
-        return Ok(gait.audit().peak.speed);
+        return Ok(gait.audit().peak_speed.speed);
     };
-    let max_rate = robot.pace().gait_slew;
+    let max_rate = robot.speed_limits().gait_slew;
     if (MIN_SERVO_SPEED..=max_rate).contains(&rate) {
         return Ok(rate);
     }

@@ -49,7 +49,7 @@ impl Variation {
         let feet = ground.feet;
         let ground = Ground {
             feet: Feet {
-                mount: feet.mount + draw_within((-MOUNT, MOUNT)),
+                mount_angle: feet.mount_angle + draw_within((-MOUNT, MOUNT)),
                 hip_forward: feet.hip_forward + draw_within((-HIPS, HIPS)),
                 hip_side: {
                     let shift = draw_within((-HIPS, HIPS));
@@ -58,13 +58,13 @@ impl Variation {
                 ..feet
             },
             body: Body {
-                centre: ground
+                mass_centre: ground
                     .body
-                    .centre
+                    .mass_centre
                     .map(|position| position + draw_within((-CENTRE, CENTRE))),
                 ..ground.body
             },
-            friction: ground.friction * draw_within(FRICTION),
+            friction_coefficient: ground.friction_coefficient * draw_within(FRICTION),
             drive: Drive {
                 kind: match ground.drive.kind {
                     DriveKind::Rigid => DriveKind::Rigid,
@@ -84,7 +84,7 @@ impl Variation {
         );
         let stance = Stance {
             stiffness: ground.stance.stiffness * draw_within(LEAF),
-            twist: ground.stance.twist + ground.stance.level * draw_within((-1.0, 1.0)),
+            twist: ground.stance.twist + ground.stance.twist_error * draw_within((-1.0, 1.0)),
             ..ground.stance
         };
         Self {
@@ -115,7 +115,7 @@ impl Variation {
     /// Simulates two cycles of a gait frame by frame with these servos, and returns the movement in the second. All
     /// later cycles repeat the second.
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
-        let mut sweeps = gait.sweeps(gait.phase(0.0));
+        let mut sweeps = gait.sweeps(gait.phase_at(0.0));
         let targets_at = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
         if let ServoModel::Motors(motors) = model {
             let mut walker = Walker::with_unevenness(self.ground, sweeps, self.pads, self.ratio);
@@ -124,7 +124,7 @@ impl Variation {
                 for (_, phase) in gait.frames().skip(1) {
                     walker.drive(targets_at(phase).map(Some), FRAME, &motors);
                 }
-                walker.place().seen_from(start_place)
+                walker.place().travel_from(start_place)
             };
             run_cycle();
             return run_cycle();
@@ -148,14 +148,14 @@ impl Variation {
         let mut walker = Walker::with_unevenness(self.ground, start_sweeps, self.pads, self.ratio);
         if can_lag {
             first_cycle.into_iter().for_each(|sweeps| {
-                walker.step(sweeps);
+                walker.move_to(sweeps);
             });
         }
         let start_place = walker.place();
         for (_, phase) in gait.frames() {
-            walker.step(advance(phase));
+            walker.move_to(advance(phase));
         }
-        walker.place().seen_from(start_place)
+        walker.place().travel_from(start_place)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The positions of all joints, for pictures of the robot.
 
-use lizard_contact::FORWARD;
+use lizard_contact::FORWARD_TURN_SIGN;
 use lizard_kinematics::{End, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
 
@@ -45,8 +45,8 @@ impl Shape {
             arms,
             ends: End::ALL.map(|end| solution.point(end)),
             legs: std::array::from_fn(|i| {
-                let leg_angle = robot.servos()[i].neutral + FORWARD[i] * legs[i];
-                robot.legs()[i].at(angles[i], leg_angle)
+                let leg_angle = robot.servos()[i].neutral + FORWARD_TURN_SIGN[i] * legs[i];
+                robot.legs()[i].place_at(angles[i], leg_angle)
             }),
         }
     }
@@ -61,7 +61,7 @@ mod tests {
     }
 
     fn shape(robot: &Robot, legs: [f64; 4]) -> Shape {
-        Shape::of(robot, robot.neutral().into(), legs).expect("neutral closes")
+        Shape::of(robot, robot.neutral_pose().into(), legs).expect("neutral closes")
     }
 
     #[test]
@@ -83,12 +83,16 @@ mod tests {
     #[test]
     fn a_leg_that_lags_leaves_its_servo_and_opens_its_strut() {
         let robot = paper();
-        let strut_length_of = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
+        let strut_length_of =
+            |leg: LegPlace| (leg.strut_anchors[1] - leg.strut_anchors[0]).length();
         let [rigid_shape, lagging_shape] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
         for i in 0..4 {
             let (rigid_leg, lagging_leg) = (rigid_shape.legs[i], lagging_shape.legs[i]);
             assert_eq!(rigid_leg.pivots, lagging_leg.pivots);
-            assert_eq!(rigid_leg.strut[0], lagging_leg.strut[0], "the servo stands");
+            assert_eq!(
+                rigid_leg.strut_anchors[0], lagging_leg.strut_anchors[0],
+                "the servo stands"
+            );
             assert!((strut_length_of(rigid_leg) - robot.legs()[i].strut_length).abs() < 1e-9);
             assert!(
                 (strut_length_of(lagging_leg) - strut_length_of(rigid_leg)).abs() > 1.5,

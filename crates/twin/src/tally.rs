@@ -77,7 +77,7 @@ impl Tally {
 
     /// The movement of the body, seen from its start.
     pub fn travel(&self) -> Travel {
-        self.end.seen_from(self.begin)
+        self.end.travel_from(self.begin)
     }
 
     /// Duration of the frames, s.

@@ -1,6 +1,6 @@
 //! Simulation of a robot that its servo pulses move over a floor, frame by frame.
 
-use lizard_contact::{FORWARD, Ground, Place, Walker};
+use lizard_contact::{FORWARD_TURN_SIGN, Ground, Place, Walker};
 use lizard_kinematics::wrap;
 use lizard_robot::{CheckedGait, Robot};
 
@@ -60,10 +60,10 @@ impl Twin {
         let slip = match self.model {
             ServoModel::Motors(motors) => {
                 let forward_targets =
-                    std::array::from_fn(|i| targets[i].map(|target| FORWARD[i] * target));
+                    std::array::from_fn(|i| targets[i].map(|target| FORWARD_TURN_SIGN[i] * target));
                 let slip = self.walker.drive(forward_targets, FRAME, &motors);
-                let servo_sweeps = self.walker.servos();
-                self.sweeps = std::array::from_fn(|i| FORWARD[i] * servo_sweeps[i]);
+                let servo_sweeps = self.walker.servo_sweeps();
+                self.sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * servo_sweeps[i]);
                 slip
             }
             ServoModel::Ideal | ServoModel::Unloaded(_) => {
@@ -78,7 +78,7 @@ impl Twin {
                         _ => target,
                     };
                 }
-                self.walker.step(self.leg_sweeps())
+                self.walker.move_to(self.leg_sweeps())
             }
         };
         let errors =
@@ -96,11 +96,11 @@ impl Twin {
             angles,
             rates: std::array::from_fn(|i| (self.sweeps[i] - sweeps_before[i]) / FRAME),
             errors,
-            lag: self.walker.lag(),
+            lag: self.walker.lags(),
             feet: ground
                 .feet
-                .positions(self.walker.legs())
-                .map(|foot| place.on_floor(foot)),
+                .positions(self.walker.leg_sweeps())
+                .map(|foot| place.to_floor(foot)),
             slip: slip.slid_distances,
             loads: slip.loads.map(|share| share * mean_load),
             margins: solution.map(|solution| solution.margins),
@@ -125,7 +125,7 @@ impl Twin {
 
     /// The present sweeps of the legs, deg, foot forward positive. A leg may lag behind its servo.
     pub fn legs(&self) -> [f64; 4] {
-        self.walker.legs()
+        self.walker.leg_sweeps()
     }
 
     /// The present model of the floor, the pads and the drive of the legs.
@@ -170,6 +170,6 @@ impl Twin {
 
     /// The sweeps that the legs would have without lag, deg, foot forward positive.
     fn leg_sweeps(&self) -> [f64; 4] {
-        std::array::from_fn(|i| FORWARD[i] * self.sweeps[i])
+        std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i])
     }
 }

@@ -159,7 +159,7 @@ fn a_cycle_is_the_sum_of_its_frames() {
         );
         assert_eq!(
             twin.angles(),
-            <[f64; 4]>::from(robot.neutral()),
+            <[f64; 4]>::from(robot.neutral_pose()),
             "it stands"
         );
     }

@@ -17,14 +17,14 @@ pub trait Board {
     fn write(&mut self, bytes: &[u8]) -> impl Future<Output = Result<(), BoardError>>;
 
     /// Fills `bytes`, and reads no more: further bytes may be for another reader. Returns the number of bytes that have
-    /// arrived within the time.
+    /// arrived within the time limit.
     ///
     /// # Errors
     /// Fails if the connection is gone.
     fn read(
         &mut self,
         bytes: &mut [u8],
-        time: Duration,
+        time_limit: Duration,
     ) -> impl Future<Output = Result<usize, BoardError>>;
 
     /// Waits for the given time and discards all bytes received until then.

@@ -1,4 +1,4 @@
-//! The chips of boards, identified by their signatures. An image for one chip runs on no other.
+//! The chips of boards, identified by their signatures. An image for one type of chip runs on no other type.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ impl Chip {
     /// The chip of a UNO.
     pub const ATMEGA328P: Self = Self([0x1e, 0x95, 0x0f]);
 
-    /// The chip's name; `None` if boards like a UNO do not have this chip.
+    /// The chip's name; `None` for a chip that boards like a UNO do not have.
     fn name(self) -> Option<&'static str> {
         Some(match self.0 {
             [0x1e, 0x95, 0x0f] => "an ATmega328P",

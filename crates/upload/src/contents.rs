@@ -7,22 +7,22 @@ use std::fmt;
 
 use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::numbers::section::{Region, START};
+use lizard_core::numbers::section::{Region, START_ADDRESS};
 
 use crate::image::{BLANK, Image, PAGE_BYTES, Page};
 
-/// The code at address 0 during an upload, alone in its page: `rjmp .-2`, a jump to itself.
+/// The code at address 0 during an upload, with nothing else in its page: `rjmp .-2`, a jump to itself.
 pub(super) const IDLE_JUMP: [u8; 2] = [0xff, 0xcf];
 
 /// The address of a robot's section.
-const ROBOT_ADDRESS: usize = START as usize;
+const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
 /// The contents of a board's flash, compared with an image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FlashContents {
     /// The program in flash.
     pub program: Program,
-    /// The robot's section after the code; it means something only to lizard firmware.
+    /// The robot's section after the code. Only lizard firmware uses it.
     pub robot: RobotInFlash,
     /// True if flash holds the image already.
     pub has_image: bool,
@@ -33,18 +33,18 @@ pub struct FlashContents {
 pub enum Program {
     /// No program, as on a new chip.
     Blank,
-    /// An incomplete program: an upload was not finished, and the chip does nothing.
+    /// An incomplete program, which does nothing: an upload was not finished.
     Incomplete,
     /// The firmware of a lizard.
     Lizard {
         /// The version mark in the code.
         mark: Mark,
-        /// True if the code differs from the code to be written, even with the same version.
+        /// True if the code differs from the code of the image, even if the versions are equal.
         is_different: bool,
     },
     /// A program that is not lizard firmware.
     Other {
-        /// The size up to the last byte that is not blank; `None` if only the first page was read.
+        /// The size in bytes up to the last one that is not blank; `None` if only the first page was read.
         bytes: Option<usize>,
     },
 }
@@ -61,16 +61,16 @@ pub enum RobotInFlash {
 }
 
 impl FlashContents {
-    /// Compares `flash`, from address 0 to the boot loader, with an image. For an image that is
-    /// a robot alone, only the first page and the robot's pages were read.
+    /// Compares `flash`, from address 0 to the boot loader, with an image. If the image is a robot
+    /// alone, only the first page and the robot's pages of `flash` need to be valid.
     pub fn compare(flash: &[u8], image: &Image) -> Self {
         let pages = image.pages();
-        let is_there = |page: &&Page| flash[page.range()] == page.bytes;
-        let code = pages.iter().filter(|page| page.address < ROBOT_ADDRESS);
+        let is_in_flash = |page: &&Page| flash[page.range()] == page.bytes;
+        let code_pages = pages.iter().filter(|page| page.address < ROBOT_ADDRESS);
         let program = match Mark::find(flash) {
             Some(mark) => Program::Lizard {
                 mark,
-                is_different: !code.clone().all(|page| is_there(&page)),
+                is_different: !code_pages.clone().all(|page| is_in_flash(&page)),
             },
             None if flash[..2] == IDLE_JUMP && is_blank(&flash[2..PAGE_BYTES]) => {
                 Program::Incomplete
@@ -79,16 +79,16 @@ impl FlashContents {
             None if image.is_robot_alone() => Program::Other { bytes: None },
             None => match flash.iter().rposition(|&byte| byte != BLANK) {
                 None => Program::Blank,
-                Some(last) => Program::Other {
-                    bytes: Some(last + 1),
+                Some(last_address) => Program::Other {
+                    bytes: Some(last_address + 1),
                 },
             },
         };
-        // Other programs do not use the robot's section, so it counts only with lizard firmware.
+        // Other programs do not use the robot's section, so only lizard firmware with this section has the image.
         let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
-        let has_image = has_code && pages.iter().all(|page| is_there(&page));
+        let has_image = has_code && pages.iter().all(|page| is_in_flash(&page));
         let robot = match robot_in(flash) {
-            Some(robot) => RobotInFlash::Named(label(&robot)),
+            Some(robot) => RobotInFlash::Named(robot_label(&robot)),
             None if is_blank(&flash[ROBOT_ADDRESS..ROBOT_ADDRESS + PAGE_BYTES]) => {
                 RobotInFlash::None
             }
@@ -103,7 +103,7 @@ impl FlashContents {
 }
 
 /// A robot's name and hash, as printed in the firmware's banner.
-pub fn label(robot: &Robot) -> String {
+pub fn robot_label(robot: &Robot) -> String {
     let name: String = robot.robot_name().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())
 }
@@ -130,7 +130,7 @@ impl fmt::Display for FlashContents {
             }
             Program::Lizard { mark, is_different } => {
                 let [major, minor, patch] = mark.version;
-                if is_different && mark == Mark::OWN {
+                if is_different && mark == Mark::THIS_FIRMWARE {
                     f.write_str("another build of ")?;
                 }
                 write!(f, "lizard {major}.{minor}.{patch}")?;
@@ -154,68 +154,81 @@ mod tests {
     use crate::upload::tests::{CODE, robot};
 
     #[test]
-    fn flash_is_blank_or_has_an_incomplete_or_another_program() {
-        let image = Image::new(vec![1, 2, 3]).expect("it fits");
-        let text = |changes: &[(usize, u8)]| {
+    fn blank_flash_half_a_program_and_another_program_are_told_apart() {
+        let image = Image::new(vec![1, 2, 3]).expect("the image fits");
+        let description_after = |changes: &[(usize, u8)]| {
             let mut flash = vec![0xff; BOOT_ADDRESS];
             for (address, byte) in changes {
                 flash[*address] = *byte;
             }
             FlashContents::compare(&flash, &image).to_string()
         };
-        assert_eq!(text(&[]), "the board has no program");
+        assert_eq!(description_after(&[]), "the board has no program");
         assert_eq!(
-            text(&[(1, 0xcf), (0x1000, 7)]),
+            description_after(&[(1, 0xcf), (0x1000, 7)]),
             "the board has half a program, which does nothing"
         );
         assert_eq!(
-            text(&[(0, 1), (1, 2), (2, 4)]),
+            description_after(&[(0, 1), (1, 2), (2, 4)]),
             "the board has another program, of 3 bytes"
         );
         assert_eq!(
-            text(&[(0, 1), (0x1fff, 7)]),
+            description_after(&[(0, 1), (0x1fff, 7)]),
             "the board has another program, of 8192 bytes"
         );
     }
 
     #[test]
-    fn a_lizard_is_named_with_its_robot() {
+    fn lizard_firmware_is_described_with_its_version_and_its_robot() {
         let [paper, large] = ["paper", "large"].map(robot);
-        let whole = |robot: &Robot| Image::firmware(CODE, &robot.section()).expect("it fits");
-        let image = whole(&paper);
-        let alone = Image::robot_alone(paper.section()).expect("it fits");
+        let firmware_image =
+            |robot: &Robot| Image::firmware(CODE, &robot.section()).expect("the image fits");
+        let image = firmware_image(&paper);
+        let robot_alone_image = Image::robot_alone(paper.section()).expect("the robot fits");
         let mut flash = image.bytes().to_vec();
         flash.resize(BOOT_ADDRESS, 0xff);
-        let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
-        let describe = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
-        let text = |flash: &[u8], image: &Image| FlashContents::compare(flash, image).to_string();
+        let lizard_description = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
+        let robot_description = |robot: &Robot| {
+            format!(
+                "{lizard_description} robot {}",
+                robot_label(robot.firmware())
+            )
+        };
+        let description =
+            |flash: &[u8], image: &Image| FlashContents::compare(flash, image).to_string();
         assert_eq!(
-            text(&flash, &image),
-            format!("{} already", describe(&paper))
+            description(&flash, &image),
+            format!("{} already", robot_description(&paper))
         );
         assert_eq!(
-            text(&flash, &alone),
-            format!("{} already", describe(&paper))
+            description(&flash, &robot_alone_image),
+            format!("{} already", robot_description(&paper))
         );
-        let other = whole(&large);
-        assert_eq!(text(&flash, &other), describe(&paper));
+        let large_image = firmware_image(&large);
+        assert_eq!(description(&flash, &large_image), robot_description(&paper));
         // A sketch that is shorter than the firmware: the robot's section is still there.
         let mut sketch = flash.clone();
         sketch[..1000].fill(0x95);
-        assert_eq!(text(&sketch, &alone), "the board has another program");
+        assert_eq!(
+            description(&sketch, &robot_alone_image),
+            "the board has another program"
+        );
         let mut damaged = flash.clone();
         damaged[ROBOT_ADDRESS + 100] ^= 1;
         assert_eq!(
-            text(&damaged, &image),
-            format!("{lizard} with a damaged robot")
+            description(&damaged, &image),
+            format!("{lizard_description} with a damaged robot")
         );
         damaged[ROBOT_ADDRESS..].fill(0xff);
-        assert_eq!(text(&damaged, &image), format!("{lizard} without a robot"));
-        let mut build = flash;
-        build[0x1000] ^= 1;
         assert_eq!(
-            text(&build, &image),
-            describe(&paper).replace("has ", "has another build of ")
+            description(&damaged, &image),
+            format!("{lizard_description} without a robot")
+        );
+        let mut other_build = flash;
+        other_build[0x1000] ^= 1;
+        assert_eq!(
+            description(&other_build, &image),
+            robot_description(&paper).replace("has ", "has another build of ")
         );
     }
 }

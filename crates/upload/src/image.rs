@@ -1,14 +1,14 @@
 //! An image for the flash of a UNO: code and robot section, or a robot section alone.
 //!
-//! Flash is written in pages. Its last 512 bytes hold the boot loader, which writes all other
-//! pages and cannot write itself. So an image ends before the boot loader.
+//! Flash is written in pages. The boot loader in its last 512 bytes writes all other pages but
+//! cannot write itself, so an image ends before it.
 
 use std::ops::Range;
 
 use ihex::Record;
-use lizard_core::numbers::section::START;
+use lizard_core::numbers::section::START_ADDRESS;
 
-/// Bytes of a page, which the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
+/// Number of bytes of a page, which the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
 pub const PAGE_BYTES: usize = 128;
 /// The address of a UNO's boot loader.
 pub const BOOT_ADDRESS: usize = 0x7e00;
@@ -18,23 +18,23 @@ pub const NANO_BOOT_ADDRESS: usize = 0x7800;
 /// The value of an erased byte of flash.
 pub const BLANK: u8 = 0xff;
 
-/// Data bytes in a line of Intel HEX, as avr-objcopy writes them.
+/// Number of data bytes in a line of Intel HEX, as avr-objcopy writes it.
 const LINE_BYTES: usize = 16;
 
 /// The firmware with its robot, or a robot alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     /// Address of the first byte, at the beginning of a page.
-    start: usize,
+    start_address: usize,
     bytes: Vec<u8>,
 }
 
 /// The address of a robot's section.
-const ROBOT_ADDRESS: usize = START as usize;
+const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
 const _: () = assert!(
     ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES),
-    "code and robot share no page"
+    "the robot's section begins with a page"
 );
 
 /// A page of flash that an image fills completely or in part.
@@ -46,7 +46,7 @@ pub struct Page {
     pub bytes: [u8; PAGE_BYTES],
 }
 
-/// The reason why bytes are no valid image.
+/// The reason why bytes are not a valid image.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
     /// There is no code at address 0, where the chip starts.
@@ -60,7 +60,7 @@ pub enum ImageError {
     TooLong(usize),
     /// A line is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
-    Line {
+    InvalidLine {
         /// The line's number, counted from 1.
         line: usize,
         /// The error of the Intel HEX reader.
@@ -71,7 +71,7 @@ pub enum ImageError {
     NoEnd,
     /// Two lines give different values to the same address.
     #[error("line {line} gives another value to address {address:#06x}")]
-    Twice {
+    Conflict {
         /// The line's number, counted from 1.
         line: usize,
         /// The address in flash.
@@ -82,7 +82,7 @@ pub enum ImageError {
         "line {line} is for address {address:#06x}; the boot loader, which is never written, \
          begins at {BOOT_ADDRESS:#06x}"
     )]
-    BootLoader {
+    InBootLoader {
         /// The line's number, counted from 1.
         line: usize,
         /// The address of the line's last byte.
@@ -98,8 +98,11 @@ impl Image {
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
-            1..=BOOT_ADDRESS => Ok(Self { start: 0, bytes }),
-            long => Err(ImageError::TooLong(long)),
+            1..=BOOT_ADDRESS => Ok(Self {
+                start_address: 0,
+                bytes,
+            }),
+            length => Err(ImageError::TooLong(length)),
         }
     }
 
@@ -126,7 +129,7 @@ impl Image {
             ROBOT_ADDRESS => Err(ImageError::NoRobot),
             end if end > BOOT_ADDRESS => Err(ImageError::TooLong(end)),
             _ => Ok(Self {
-                start: ROBOT_ADDRESS,
+                start_address: ROBOT_ADDRESS,
                 bytes: section,
             }),
         }
@@ -134,7 +137,7 @@ impl Image {
 
     /// True if the image has no code.
     pub fn is_robot_alone(&self) -> bool {
-        self.start == ROBOT_ADDRESS
+        self.start_address == ROBOT_ADDRESS
     }
 
     /// Reads Intel HEX.
@@ -144,28 +147,28 @@ impl Image {
     /// or reaches into the boot loader.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
         let mut flash = vec![None; BOOT_ADDRESS];
-        let mut base = 0;
-        let mut ended = false;
+        let mut base_address = 0;
+        let mut has_ended = false;
         for (index, record) in text.lines().map(str::trim).enumerate() {
             let line = index + 1;
-            if record.is_empty() || ended {
+            if record.is_empty() || has_ended {
                 continue;
             }
             let record = Record::from_record_string(record)
-                .map_err(|reason| ImageError::Line { line, reason })?;
+                .map_err(|reason| ImageError::InvalidLine { line, reason })?;
             match record {
                 Record::Data { offset, value } => {
-                    let start = base + usize::from(offset);
+                    let start = base_address + usize::from(offset);
                     put_record(&mut flash, start, &value, line)?;
                 }
-                Record::EndOfFile => ended = true,
-                Record::ExtendedLinearAddress(upper) => base = usize::from(upper) << 16,
-                Record::ExtendedSegmentAddress(segment) => base = usize::from(segment) << 4,
+                Record::EndOfFile => has_ended = true,
+                Record::ExtendedLinearAddress(upper) => base_address = usize::from(upper) << 16,
+                Record::ExtendedSegmentAddress(segment) => base_address = usize::from(segment) << 4,
                 // Ignored: the chip always starts at address 0.
                 Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
             }
         }
-        if !ended {
+        if !has_ended {
             return Err(ImageError::NoEnd);
         }
         if flash[0].is_none() {
@@ -184,13 +187,13 @@ impl Image {
         let mut records = Vec::new();
         for (index, line) in self.bytes.chunks(LINE_BYTES).enumerate() {
             records.push(Record::Data {
-                offset: (self.start + index * LINE_BYTES) as u16,
+                offset: (self.start_address + index * LINE_BYTES) as u16,
                 value: line.to_vec(),
             });
         }
         records.push(Record::EndOfFile);
         let text = ihex::create_object_file_representation(&records);
-        text.expect("short lines and one end")
+        text.expect("the lines are short and one end record follows them")
     }
 
     /// The image's bytes as flash holds them, from first to last.
@@ -200,7 +203,7 @@ impl Image {
 
     /// The address after the last byte.
     pub fn end(&self) -> usize {
-        self.start + self.bytes.len()
+        self.start_address + self.bytes.len()
     }
 
     /// The image's pages in the order of their addresses.
@@ -208,7 +211,7 @@ impl Image {
         let page = |(index, part): (usize, &[u8])| {
             let mut bytes = [BLANK; PAGE_BYTES];
             bytes[..part.len()].copy_from_slice(part);
-            let address = self.start + index * PAGE_BYTES;
+            let address = self.start_address + index * PAGE_BYTES;
             Page { address, bytes }
         };
         self.bytes
@@ -226,6 +229,7 @@ impl Page {
     }
 }
 
+/// Puts the bytes of a line's record into `flash`, from address `start` on.
 fn put_record(
     flash: &mut [Option<u8>],
     start: usize,
@@ -233,16 +237,16 @@ fn put_record(
     line: usize,
 ) -> Result<(), ImageError> {
     let end = start + bytes.len();
-    let Some(target) = flash.get_mut(start..end) else {
+    let Some(destination) = flash.get_mut(start..end) else {
         let address = end - 1;
-        return Err(ImageError::BootLoader { line, address });
+        return Err(ImageError::InBootLoader { line, address });
     };
-    for (index, (target, byte)) in target.iter_mut().zip(bytes).enumerate() {
-        if target.is_some_and(|target| target != *byte) {
+    for (index, (cell, byte)) in destination.iter_mut().zip(bytes).enumerate() {
+        if cell.is_some_and(|earlier_byte| earlier_byte != *byte) {
             let address = start + index;
-            return Err(ImageError::Twice { line, address });
+            return Err(ImageError::Conflict { line, address });
         }
-        *target = Some(*byte);
+        *cell = Some(*byte);
     }
     Ok(())
 }
@@ -257,37 +261,40 @@ mod tests {
 :0400100001020304E2\n\
 :00000001FF\n";
 
-    fn complaint(text: &str) -> String {
+    fn error_message(text: &str) -> String {
         Image::from_hex(text)
-            .expect_err("it is not an image")
+            .expect_err("the text is not an image")
             .to_string()
     }
 
     #[test]
-    fn a_hex_file_is_bytes_from_address_0_and_blank_where_it_has_none() {
-        let image = Image::from_hex(HEX).expect("it is an image");
+    fn an_image_from_hex_begins_at_address_0_and_is_blank_in_the_gaps() {
+        let image = Image::from_hex(HEX).expect("the text is an image");
         assert_eq!(image.bytes().len(), 20);
         assert_eq!(image.bytes()[..3], [0x0c, 0x94, 0x34]);
         assert_eq!(image.bytes()[16..], [1, 2, 3, 4]);
-        let apart = HEX.replace(":0400100001020304E2", ":026E0000AABB2B");
-        let image = Image::from_hex(&apart).expect("it is an image");
+        let hex_with_gap = HEX.replace(":0400100001020304E2", ":026E0000AABB2B");
+        let image = Image::from_hex(&hex_with_gap).expect("the text is an image");
         assert_eq!(image.bytes().len(), 0x6e02);
         assert!(image.bytes()[16..0x6e00].iter().all(|&byte| byte == 0xff));
         assert_eq!(image.bytes()[0x6e00..], [0xaa, 0xbb]);
     }
 
     #[test]
-    fn an_image_is_the_same_after_the_way_through_a_hex_file() {
+    fn an_image_written_as_hex_and_read_back_is_the_same() {
         let bytes: Vec<u8> = (0..1000).map(|at| (at * 7) as u8).collect();
-        let image = Image::new(bytes).expect("it fits");
+        let image = Image::new(bytes).expect("the image fits");
         let text = image.to_hex();
         assert_eq!(Image::from_hex(&text), Ok(image));
-        assert_eq!(Image::from_hex(HEX).expect("an image").to_hex(), HEX);
+        assert_eq!(
+            Image::from_hex(HEX).expect("the text is an image").to_hex(),
+            HEX
+        );
     }
 
     #[test]
     fn a_partly_filled_page_is_blank_after_the_image() {
-        let image = Image::new(vec![5; 130]).expect("it fits");
+        let image = Image::new(vec![5; 130]).expect("the image fits");
         let pages = image.pages();
         assert_eq!([pages[0].address, pages[1].address], [0, 128]);
         assert_eq!(pages.len(), 2);
@@ -297,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_robot_alone_is_at_its_place_and_ends_before_the_boot_loader() {
-        let robot = Image::robot_alone(vec![5; 130]).expect("it fits");
+        let robot = Image::robot_alone(vec![5; 130]).expect("the image fits");
         let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
         assert_eq!(addresses, [0x6e00, 0x6e80]);
         assert_eq!(robot.end(), 0x6e82);
@@ -310,7 +317,7 @@ mod tests {
 
     #[test]
     fn an_image_that_does_not_fit_is_refused_with_its_size() {
-        let error = Image::new(vec![0; 32_257]).expect_err("too long");
+        let error = Image::new(vec![0; 32_257]).expect_err("the image is too long");
         assert_eq!(
             error.to_string(),
             "the firmware has 32257 bytes; 32256 fit before the boot loader"
@@ -320,38 +327,42 @@ mod tests {
     }
 
     #[test]
-    fn a_hex_file_that_is_wrong_is_refused_with_its_line() {
-        let second = |line: &str| complaint(&HEX.replacen(":0400100001020304E2", line, 1));
+    fn a_wrong_line_of_a_hex_file_is_refused_with_its_number() {
+        let error_with_second_line =
+            |line: &str| error_message(&HEX.replacen(":0400100001020304E2", line, 1));
         assert!(
-            second(":0400100001020304E3").starts_with("line 2 is not Intel HEX: invalid check")
+            error_with_second_line(":0400100001020304E3")
+                .starts_with("line 2 is not Intel HEX: invalid check")
         );
-        assert!(second("<html>").starts_with("line 2 is not Intel HEX: missing start"));
+        assert!(
+            error_with_second_line("<html>").starts_with("line 2 is not Intel HEX: missing start")
+        );
         assert_eq!(
-            second(":010004009566\n"),
+            error_with_second_line(":010004009566\n"),
             "line 2 gives another value to address 0x0004"
         );
         assert_eq!(
-            second(":027DFF0001027F"),
+            error_with_second_line(":027DFF0001027F"),
             "line 2 is for address 0x7e00; the boot loader, which is never written, begins at \
              0x7e00"
         );
-        // In a file for a larger chip, beyond the first 64 KiB.
+        // A file for a larger chip has data beyond the first 64 KiB.
         assert_eq!(
-            second(":020000040001F9\n:0100000005FA"),
+            error_with_second_line(":020000040001F9\n:0100000005FA"),
             "line 3 is for address 0x10000; the boot loader, which is never written, begins at \
              0x7e00"
         );
     }
 
     #[test]
-    fn half_a_hex_file_is_refused() {
-        let half = HEX.lines().take(2).collect::<Vec<_>>().join("\n");
+    fn a_hex_file_without_its_end_or_without_code_at_address_0_is_refused() {
+        let hex_without_end = HEX.lines().take(2).collect::<Vec<_>>().join("\n");
         assert_eq!(
-            complaint(&half),
+            error_message(&hex_without_end),
             "the HEX file has no end: only a part of it is there"
         );
         assert_eq!(
-            complaint(":0100100005EA\n:00000001FF"),
+            error_message(":0100100005EA\n:00000001FF"),
             "there is no code at address 0, where the chip starts"
         );
     }

@@ -4,12 +4,13 @@
 //! no checksums, and a cable pulled during an upload leaves flash partly written. So [`upload`] reads the flash first,
 //! writes only pages that differ, reads all of them back, and writes the page at which the program starts last.
 //!
-//! The crate knows no port and no clock: a [`Board`] is a serial line with time limits, of this machine or of a
-//! browser. Its functions are `async`, since a browser cannot wait; where reads block, any executor will do.
+//! The crate does not access ports or clocks itself: a [`Board`] is a serial line with time limits, which this machine
+//! or a browser provides. Its functions are `async`, since a browser must not block; where reads block, any executor
+//! will do.
 //!
 //! # When not to use it
-//! It writes an ATmega328P whose boot loader speaks STK500, version 1. Boards with other chips, programmers at the
-//! pins, fuses and the EEPROM are work for avrdude.
+//! It writes only the flash of an ATmega328P whose boot loader speaks STK500, version 1. Use avrdude for other chips,
+//! for programmers that are wired to the chip's pins, and for fuses and the EEPROM.
 #![deny(unsafe_code)]
 #![warn(clippy::missing_errors_doc)]
 
@@ -23,8 +24,8 @@ mod upload;
 
 pub use board::{Board, BoardError};
 pub use chip::Chip;
-pub use contents::{FlashContents, Program, RobotInFlash, label, robot_in};
+pub use contents::{FlashContents, Program, RobotInFlash, robot_in, robot_label};
 pub use image::{BLANK, BOOT_ADDRESS, Image, ImageError, NANO_BOOT_ADDRESS, PAGE_BYTES, Page};
-pub use loader::{Kind, Loader, LoaderError};
-pub use target::{Model, Target, TooLong};
+pub use loader::{Loader, LoaderError, LoaderKind};
+pub use target::{ImageTooLong, Model, Target};
 pub use upload::{Event, FlashState, PageCounts, Step, UploadError, identify, upload};

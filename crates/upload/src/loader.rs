@@ -5,7 +5,8 @@
 //! that it does not understand make it start that program at once; then only another reset starts the boot loader
 //! again. Commands and answers have no checksums, so written pages must be read back.
 //!
-//! There are two such boot loaders. Only the speed at which a board answers shows which one it has: see [`Kind`].
+//! There are two such boot loaders. Only the baud rate at which a board answers shows which one it has: see
+//! [`LoaderKind`].
 //!
 //! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, the UNO's loader, and
 //! ATmegaBOOT_168.c, the Nano's until 2018, for the times and for the features that they leave out.
@@ -15,6 +16,7 @@ use std::time::Duration;
 use crate::board::{Board, BoardError};
 use crate::image::{BOOT_ADDRESS, NANO_BOOT_ADDRESS, PAGE_BYTES};
 
+// Answers, the end of a command, and commands, with their codes in AVR061.
 const OK: u8 = 0x10;
 const IN_SYNC: u8 = 0x14;
 const CRC_EOP: u8 = 0x20;
@@ -26,25 +28,25 @@ const READ_PAGE: u8 = 0x74;
 const READ_SIGNATURE: u8 = 0x75;
 /// The memory type in commands that read or write a page.
 const FLASH: u8 = b'F';
-/// Largest number of requests to synchronise ("calls") after one reset.
+/// Largest number of calls, which are requests to synchronise, after one reset.
 const MAX_CALLS: usize = 5;
-/// Largest number of bytes before the answer to a call: about as many as the line carries in the time for a call.
+/// Largest number of other bytes before the answer to a call: about as many as the line carries in [`CALL_TIME`].
 const MAX_STRAY_BYTES: usize = 1300;
 
 /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its receiver, and
 /// half a command makes it give up.
 const BLINK_TIME: Duration = Duration::from_millis(400);
-/// Time for each byte of the answer to a call.
+/// Time limit for each byte of the answer to a call.
 const CALL_TIME: Duration = Duration::from_millis(110);
 /// Time after the first answer in which late answers to earlier calls are discarded.
 const DRAIN_TIME: Duration = Duration::from_millis(40);
-/// Time for an answer to any other command. Writing a page takes about 20 ms, but a busy machine may pass the bytes on
-/// a second later.
+/// Time limit for the answer to any other command. Writing a page takes about 20 ms, but a busy machine may deliver the
+/// answer a second later.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
 
 /// A kind of boot loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum LoaderKind {
     /// The boot loader of UNOs, and of Nanos since 2018.
     Optiboot,
     /// The boot loader of older Nanos and of many copies of them. It starts the program 1.5 s after the last byte,
@@ -52,8 +54,8 @@ pub enum Kind {
     AtmegaBoot,
 }
 
-impl Kind {
-    /// The speed of the serial line.
+impl LoaderKind {
+    /// The baud rate of the serial line.
     pub fn baud(self) -> u32 {
         match self {
             Self::Optiboot => 115_200,
@@ -62,7 +64,7 @@ impl Kind {
     }
 
     /// The address of the loader's first byte in flash.
-    pub fn start(self) -> usize {
+    pub fn start_address(self) -> usize {
         match self {
             Self::Optiboot => BOOT_ADDRESS,
             Self::AtmegaBoot => NANO_BOOT_ADDRESS,
@@ -85,7 +87,7 @@ pub enum LoaderError {
 }
 
 impl LoaderError {
-    /// True if another reset may help.
+    /// True if the command may succeed after another reset.
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Silent | Self::Garbled)
     }
@@ -122,7 +124,7 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// Returns [`LoaderError::Silent`] if no loader answers, and another [`LoaderError`] if the connection fails.
-    pub async fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
+    pub async fn call(&mut self, kind: LoaderKind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud()).await?;
         // The last output of the program that ran before the reset also arrives in this time.
         self.board.discard(BLINK_TIME).await?;
@@ -139,9 +141,9 @@ impl<B: Board> Loader<B> {
     ///
     /// # Errors
     /// See [`LoaderError`].
-    pub async fn signature(&mut self) -> Result<[u8; 3], LoaderError> {
+    pub async fn read_signature(&mut self) -> Result<[u8; 3], LoaderError> {
         let mut signature = [0; 3];
-        self.command(&[READ_SIGNATURE], &mut signature).await?;
+        self.send_command(&[READ_SIGNATURE], &mut signature).await?;
         Ok(signature)
     }
 
@@ -152,7 +154,7 @@ impl<B: Board> Loader<B> {
     pub async fn read_page(&mut self, address: usize) -> Result<[u8; PAGE_BYTES], LoaderError> {
         self.set_address(address).await?;
         let mut page = [0; PAGE_BYTES];
-        self.command(&[READ_PAGE, 0, PAGE_BYTES as u8, FLASH], &mut page)
+        self.send_command(&[READ_PAGE, 0, PAGE_BYTES as u8, FLASH], &mut page)
             .await?;
         Ok(page)
     }
@@ -167,8 +169,8 @@ impl<B: Board> Loader<B> {
         page: &[u8; PAGE_BYTES],
     ) -> Result<(), LoaderError> {
         self.set_address(address).await?;
-        let head = [PROGRAM_PAGE, 0, PAGE_BYTES as u8, FLASH];
-        self.command(&[head.as_slice(), page].concat(), &mut [])
+        let header = [PROGRAM_PAGE, 0, PAGE_BYTES as u8, FLASH];
+        self.send_command(&[header.as_slice(), page].concat(), &mut [])
             .await
     }
 
@@ -177,22 +179,22 @@ impl<B: Board> Loader<B> {
     /// # Errors
     /// See [`LoaderError`].
     pub async fn leave(&mut self) -> Result<(), LoaderError> {
-        self.command(&[LEAVE], &mut []).await
+        self.send_command(&[LEAVE], &mut []).await
     }
 
     /// Sets the address of the next page. The protocol counts it in words of two bytes.
     async fn set_address(&mut self, address: usize) -> Result<(), LoaderError> {
         let [low, high] = ((address / 2) as u16).to_le_bytes();
-        self.command(&[LOAD_ADDRESS, low, high], &mut []).await
+        self.send_command(&[LOAD_ADDRESS, low, high], &mut []).await
     }
 
-    /// Sends a command, and fills `answer` with the bytes between the answer's [`IN_SYNC`] and its [`OK`].
-    async fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
+    /// Sends a command, and fills `answer` with the bytes between [`IN_SYNC`] and [`OK`].
+    async fn send_command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write(&[bytes, &[CRC_EOP]].concat()).await?;
-        let mut read = vec![0; answer.len() + 2];
-        let count = self.board.read(&mut read, ANSWER_TIME).await?;
-        match read.as_slice() {
-            _ if count < read.len() => Err(LoaderError::Silent),
+        let mut received = vec![0; answer.len() + 2];
+        let count = self.board.read(&mut received, ANSWER_TIME).await?;
+        match received.as_slice() {
+            _ if count < received.len() => Err(LoaderError::Silent),
             [IN_SYNC, between @ .., OK] => {
                 answer.copy_from_slice(between);
                 Ok(())
@@ -201,19 +203,19 @@ impl<B: Board> Loader<B> {
         }
     }
 
-    /// Waits for [`IN_SYNC`] followed by [`OK`], after any other bytes. Returns false if nothing arrives in time, or too
-    /// many other bytes do.
+    /// Waits for [`IN_SYNC`] followed by [`OK`], after any other bytes. Returns false if nothing arrives in time, or
+    /// too many other bytes arrive.
     async fn wait_for_sync(&mut self) -> Result<bool, LoaderError> {
-        let mut last = 0;
+        let mut previous_byte = 0;
         for _ in 0..MAX_STRAY_BYTES {
             let mut byte = [0];
             if self.board.read(&mut byte, CALL_TIME).await? == 0 {
                 return Ok(false);
             }
-            if [last, byte[0]] == [IN_SYNC, OK] {
+            if [previous_byte, byte[0]] == [IN_SYNC, OK] {
                 return Ok(true);
             }
-            last = byte[0];
+            previous_byte = byte[0];
         }
         Ok(false)
     }

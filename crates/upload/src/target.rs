@@ -1,15 +1,15 @@
 //! The model of a board, and the part of flash that is free for an image.
 //!
-//! An Arduino Nano has the UNO's chip and runs the UNO's firmware, but its boot section has 2 KB (Arduino's
-//! boards.txt: high fuse 0xDA), a UNO's 512 bytes, and the chip starts at the first byte of that section. Code
-//! written into it would be started as if it were a boot loader, and only a programmer at the pins could repair
-//! that. No boot loader reports its fuses. An old Nano is recognised by its speed; a newer one talks like a UNO,
-//! and only its USB chip may tell.
+//! An Arduino Nano has the UNO's chip and runs the UNO's firmware. But its boot section has 2 KB (Arduino's
+//! boards.txt: high fuse 0xDA), where that of a UNO has 512 bytes, and the chip starts at the first byte of that
+//! section. Code written into it would be started as if it were a boot loader, and only a programmer wired to the
+//! pins could repair that. Boot loaders do not report the fuses. An old Nano is recognised by its baud rate; a newer
+//! one answers like a UNO, and at most its USB chip distinguishes it.
 
 use crate::image::{BOOT_ADDRESS, Image, NANO_BOOT_ADDRESS};
-use crate::loader::Kind;
+use crate::loader::LoaderKind;
 
-/// A board that a user names.
+/// A model of board, as named by the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Model {
@@ -31,19 +31,19 @@ pub struct Target {
 /// The error for an image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT_ADDRESS} before its boot section{}. \
-         Nothing was written", .end, if *.in_doubt {
+         Nothing was written", .end_address, if *.in_doubt {
     "; this board may be one, because of its USB chip"
 } else {
     ". Gaits can be left out of robot.toml until it fits"
 })]
-pub struct TooLong {
+pub struct ImageTooLong {
     /// The address after the image's last byte.
-    end: usize,
+    end_address: usize,
     /// True if the board may also be a UNO.
     in_doubt: bool,
 }
 
-impl TooLong {
+impl ImageTooLong {
     /// True if the board may also be a UNO, which has room.
     pub fn is_in_doubt(self) -> bool {
         self.in_doubt
@@ -52,10 +52,10 @@ impl TooLong {
 
 impl Target {
     /// The boot loaders that the board may have, in the order in which they are called.
-    pub fn loaders(self) -> &'static [Kind] {
+    pub fn loaders(self) -> &'static [LoaderKind] {
         match self.model {
-            Some(Model::Uno) => &[Kind::Optiboot],
-            Some(Model::Nano) | None => &[Kind::Optiboot, Kind::AtmegaBoot],
+            Some(Model::Uno) => &[LoaderKind::Optiboot],
+            Some(Model::Nano) | None => &[LoaderKind::Optiboot, LoaderKind::AtmegaBoot],
         }
     }
 
@@ -63,8 +63,8 @@ impl Target {
     ///
     /// # Errors
     /// Fails if the board has too little room, or may have too little.
-    pub fn check_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
-        let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
+    pub fn check_room(self, image: &Image, loader: LoaderKind) -> Result<(), ImageTooLong> {
+        let is_nano = self.model == Some(Model::Nano) || loader == LoaderKind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
         let room = if is_nano || in_doubt {
             NANO_BOOT_ADDRESS
@@ -73,7 +73,10 @@ impl Target {
         };
         let end = image.end();
         if end > room {
-            return Err(TooLong { end, in_doubt });
+            return Err(ImageTooLong {
+                end_address: end,
+                in_doubt,
+            });
         }
         Ok(())
     }

@@ -2,8 +2,8 @@
 //!
 //! A cable may be pulled at any moment, and the chip then starts whatever is in flash; half a program may drive the
 //! servos anywhere. So, before code is changed, the page where the program starts is replaced by a loop that does
-//! nothing: pins then stay inputs, and servos get no pulses. The other pages are written and read back, and that
-//! first page is written last.
+//! nothing: pins then stay inputs, and servos get no pulses. Then the other pages are written and read back,
+//! and finally the first page is written.
 //!
 //! A robot alone is written in the same way: the first page of its section is blanked first, and written last. The
 //! firmware then finds either a valid robot or none; without one it reports a fault and moves no servo. Since the
@@ -17,20 +17,20 @@ use std::fmt;
 use std::ops::Range;
 
 use lizard_core::numbers::mark::Mark;
-use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START};
+use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START_ADDRESS};
 
 use crate::board::Board;
 use crate::chip::Chip;
 use crate::contents::{FlashContents, IDLE_JUMP, Program};
 use crate::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page};
-use crate::loader::{Kind, Loader, LoaderError};
-use crate::target::{Target, TooLong};
+use crate::loader::{Loader, LoaderError, LoaderKind};
+use crate::target::{ImageTooLong, Target};
 
-/// Largest number of attempts, each after a reset. They alternate between the speeds of the boot loaders until one
+/// Largest number of attempts, each after a reset. They alternate between the baud rates of the boot loaders until one
 /// answers.
-const ATTEMPTS: usize = 4;
+const MAX_ATTEMPTS: usize = 4;
 /// Index of the page where a robot's section begins.
-const ROBOT_PAGE: usize = START as usize / PAGE_BYTES;
+const ROBOT_PAGE_INDEX: usize = START_ADDRESS as usize / PAGE_BYTES;
 
 /// The operation on pages that is in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,16 +48,16 @@ pub enum Step {
 pub enum Event<'a> {
     /// The board's flash has been read; reported once.
     Found(FlashContents),
-    /// The number of finished pages of a step, and of all its pages.
+    /// The step in progress, the number of pages that it has finished, and the number of all its pages.
     Progress(Step, usize, usize),
     /// The board is reset for another attempt.
     Retry {
         /// The reason for another attempt.
-        trouble: &'a LoaderError,
+        error: &'a LoaderError,
         /// The boot loader that was called.
-        called: Kind,
+        called_kind: LoaderKind,
         /// The boot loader that is called next.
-        next: Kind,
+        next_kind: LoaderKind,
     },
 }
 
@@ -75,9 +75,9 @@ pub struct PageCounts {
 pub enum UploadError {
     /// No boot loader answers.
     #[error(
-        "no boot loader answers. Is it a UNO or a Nano? Has another program this port open? Is something \
+        "no boot loader answers. Is it a UNO or a Nano? Does another program have this port open? Is something \
          wired to D0 or D1? Where USB does not reset the board, press its reset button just after \
-         you have begun again"
+         you have started the upload again"
     )]
     NoLoader,
     /// The chip is not that of a UNO.
@@ -88,25 +88,25 @@ pub enum UploadError {
     NoLizard(FlashContents),
     /// The image is a robot alone, but the board's code reads another format.
     #[error(
-        "{found}, whose robots are of format {}; this robot is of format {FORMAT}: write the \
+        "{contents}, whose robots are of format {}; this robot is of format {FORMAT}: write the \
          firmware, too. Nothing was written",
         mark.format
     )]
     Format {
         /// The contents of the board's flash.
-        found: FlashContents,
-        /// The version mark of its code.
+        contents: FlashContents,
+        /// The version mark of the board's code.
         mark: Mark,
     },
     /// The image reaches into the boot section.
     #[error(transparent)]
-    TooLong(#[from] TooLong),
-    /// A byte still has another value after it was written twice.
+    TooLong(#[from] ImageTooLong),
+    /// A byte of flash still has another value after it was written twice.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
-         {read:#04x}. The flash is worn out, or the supply too weak. {left}"
+         {read:#04x}. The flash is worn out, or the supply too weak. {flash_state}"
     )]
-    NotKept {
+    ByteNotKept {
         /// The address of the byte.
         address: usize,
         /// The byte that was written.
@@ -114,15 +114,15 @@ pub enum UploadError {
         /// The byte that was read back.
         read: u8,
         /// The state of flash now.
-        left: FlashState,
+        flash_state: FlashState,
     },
     /// The connection failed.
-    #[error("{trouble}. {left}")]
-    Broken {
+    #[error("{error}. {flash_state}")]
+    ConnectionFailed {
         /// The error of the boot loader.
-        trouble: LoaderError,
+        error: LoaderError,
         /// The state of flash now.
-        left: FlashState,
+        flash_state: FlashState,
     },
 }
 
@@ -173,60 +173,60 @@ pub async fn upload<B: Board>(
         has_reported: false,
         flash_state: FlashState::Unchanged,
     };
-    let mut written = vec![false; BOOT_ADDRESS / PAGE_BYTES];
+    let mut is_page_written = vec![false; BOOT_ADDRESS / PAGE_BYTES];
     let mut loaders = target.loaders().iter().copied().cycle();
-    let mut kind = Kind::Optiboot;
+    let mut kind = LoaderKind::Optiboot;
     for attempt in 1.. {
         if !upload.has_answered {
             kind = loaders.next().unwrap_or(kind);
         }
-        let trouble = match upload.attempt(kind, &mut written).await {
+        let error = match upload.attempt(kind, &mut is_page_written).await {
             Ok(()) => break,
             Err(AttemptError::UploadFailed(error)) => return Err(error),
-            Err(AttemptError::Loader(trouble)) => trouble,
+            Err(AttemptError::Loader(error)) => error,
         };
-        if attempt == ATTEMPTS || !trouble.is_transient() {
-            return Err(upload.upload_error(trouble));
+        if attempt == MAX_ATTEMPTS || !error.is_transient() {
+            return Err(upload.upload_error(error));
         }
         let next = match upload.has_answered {
             true => kind,
             false => loaders.clone().next().unwrap_or(kind),
         };
         (upload.report)(Event::Retry {
-            trouble: &trouble,
-            called: kind,
-            next,
+            error: &error,
+            called_kind: kind,
+            next_kind: next,
         });
     }
-    let pages = image.pages().len();
-    let written = written.into_iter().filter(|done| *done).count();
+    let page_count = image.pages().len();
+    let written = is_page_written.into_iter().filter(|done| *done).count();
     Ok(PageCounts {
         written,
-        kept: pages - written,
+        kept: page_count - written,
     })
 }
 
-/// Resets a board and returns the kind of its boot loader; then starts the program in flash.
+/// Resets a board, calls its boot loader, starts the program in flash, and returns the kind of the boot loader.
 ///
 /// # Errors
 /// Fails if no boot loader answers, the chip is not that of a UNO, or the connection fails.
-pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<Kind, UploadError> {
-    let failed = |trouble| UploadError::Broken {
-        trouble,
-        left: FlashState::Unchanged,
+pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<LoaderKind, UploadError> {
+    let connection_error = |error| UploadError::ConnectionFailed {
+        error,
+        flash_state: FlashState::Unchanged,
     };
     for &kind in Target::default().loaders() {
         match loader.call(kind).await {
             Ok(()) => {
-                let chip = Chip(loader.signature().await.map_err(failed)?);
+                let chip = Chip(loader.read_signature().await.map_err(connection_error)?);
                 let _ = loader.leave().await;
                 return match chip {
                     Chip::ATMEGA328P => Ok(kind),
                     chip => Err(UploadError::Chip(chip)),
                 };
             }
-            Err(trouble) if trouble.is_transient() => {}
-            Err(trouble) => return Err(failed(trouble)),
+            Err(error) if error.is_transient() => {}
+            Err(error) => return Err(connection_error(error)),
         }
     }
     Err(UploadError::NoLoader)
@@ -241,8 +241,8 @@ enum AttemptError {
 }
 
 impl From<LoaderError> for AttemptError {
-    fn from(trouble: LoaderError) -> Self {
-        Self::Loader(trouble)
+    fn from(error: LoaderError) -> Self {
+        Self::Loader(error)
     }
 }
 
@@ -262,40 +262,49 @@ struct Upload<'a, B> {
 impl<B: Board> Upload<'_, B> {
     /// Makes one attempt, from the reset to the start of the program. Marks the pages that it
     /// writes.
-    async fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), AttemptError> {
+    async fn attempt(
+        &mut self,
+        kind: LoaderKind,
+        is_page_written: &mut [bool],
+    ) -> Result<(), AttemptError> {
         self.loader.call(kind).await?;
         self.has_answered = true;
-        let chip = Chip(self.loader.signature().await?);
+        let chip = Chip(self.loader.read_signature().await?);
         if chip != Chip::ATMEGA328P {
             return Err(AttemptError::UploadFailed(UploadError::Chip(chip)));
         }
         let room = self.target.check_room(self.image, kind);
         room.map_err(|error| AttemptError::UploadFailed(error.into()))?;
-        let flash = self.read_flash(kind.start()).await?;
-        let mut goal = self.image.pages();
-        goal.retain(|page| flash[page.range()] != page.bytes);
-        if !goal.is_empty() {
-            for page in &goal {
-                written[page.address / PAGE_BYTES] = true;
+        let flash = self.read_flash(kind.start_address()).await?;
+        let mut pages_to_write = self.image.pages();
+        pages_to_write.retain(|page| flash[page.range()] != page.bytes);
+        if !pages_to_write.is_empty() {
+            for page in &pages_to_write {
+                is_page_written[page.address / PAGE_BYTES] = true;
             }
             // The first page had other contents meanwhile, so it is written again.
-            written[self.first_page().address / PAGE_BYTES] = true;
-            self.write_pages(goal, &flash).await?;
+            is_page_written[self.first_page().address / PAGE_BYTES] = true;
+            self.write_pages(pages_to_write, &flash).await?;
         }
         // An error does not matter: everything is written, and the program starts after a second in any case.
         let _ = self.loader.leave().await;
         Ok(())
     }
 
-    /// The page that makes the others effective: that of address 0, or the first of the robot's
-    /// section.
+    /// The page without which the others have no effect: that of address 0, or the first page of
+    /// the robot's section.
     fn first_page(&self) -> Page {
         let mut pages = self.image.pages();
         pages.swap_remove(0)
     }
 
-    /// Writes pages. Blanks or idles the image's first page before the others, and writes it last.
-    async fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), AttemptError> {
+    /// Writes pages. Before the others, fills the image's first page with the loop that does nothing or, for a robot
+    /// alone, with blank bytes; writes this page last.
+    async fn write_pages(
+        &mut self,
+        mut pages_to_write: Vec<Page>,
+        flash: &[u8],
+    ) -> Result<(), AttemptError> {
         let first = self.first_page();
         let mut placeholder = [BLANK; PAGE_BYTES];
         if self.image.is_robot_alone() {
@@ -304,26 +313,31 @@ impl<B: Board> Upload<'_, B> {
             self.flash_state = FlashState::HalfProgram;
             placeholder[..IDLE_JUMP.len()].copy_from_slice(&IDLE_JUMP);
         }
-        goal.retain(|page| page.address != first.address);
-        if !goal.is_empty() && flash[first.range()] != placeholder {
+        pages_to_write.retain(|page| page.address != first.address);
+        if !pages_to_write.is_empty() && flash[first.range()] != placeholder {
             self.write_page(first.address, &placeholder).await?;
         }
-        self.write(&goal).await?;
-        self.write(&[first]).await
+        self.write_and_verify(&pages_to_write).await?;
+        self.write_and_verify(&[first]).await
     }
 
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
     /// the code and the pages of the old and the new robot.
-    async fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, AttemptError> {
+    async fn read_flash(&mut self, boot_address: usize) -> Result<Vec<u8>, AttemptError> {
         let mut flash = vec![BLANK; BOOT_ADDRESS];
         if self.image.is_robot_alone() {
-            self.read(&mut flash, 0..1).await?;
-            self.read(&mut flash, ROBOT_PAGE..ROBOT_PAGE + 1).await?;
-            let end = self.image.end().max(end_of_robot(&flash, boot));
-            self.read(&mut flash, ROBOT_PAGE + 1..end.div_ceil(PAGE_BYTES))
+            self.read_pages(&mut flash, 0..1).await?;
+            self.read_pages(&mut flash, ROBOT_PAGE_INDEX..ROBOT_PAGE_INDEX + 1)
+                .await?;
+            let end = self
+                .image
+                .end()
+                .max(robot_end_address(&flash, boot_address));
+            self.read_pages(&mut flash, ROBOT_PAGE_INDEX + 1..end.div_ceil(PAGE_BYTES))
                 .await?;
         } else {
-            self.read(&mut flash, 0..boot / PAGE_BYTES).await?;
+            self.read_pages(&mut flash, 0..boot_address / PAGE_BYTES)
+                .await?;
         }
         let contents = FlashContents::compare(&flash, self.image);
         if self.image.is_robot_alone() {
@@ -341,27 +355,29 @@ impl<B: Board> Upload<'_, B> {
         let contents = contents.clone();
         Err(AttemptError::UploadFailed(match contents.program {
             Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
-            Program::Lizard { mark, .. } => UploadError::Format {
-                found: contents,
-                mark,
-            },
+            Program::Lizard { mark, .. } => UploadError::Format { contents, mark },
             _ => UploadError::NoLizard(contents),
         }))
     }
 
-    async fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), AttemptError> {
+    /// Reads pages, by their indices, into `flash`, and reports the progress.
+    async fn read_pages(
+        &mut self,
+        flash: &mut [u8],
+        pages: Range<usize>,
+    ) -> Result<(), AttemptError> {
         let page_count = pages.len();
         for (done, page) in pages.enumerate() {
             let address = page * PAGE_BYTES;
-            let read = self.loader.read_page(address).await?;
-            flash[address..address + PAGE_BYTES].copy_from_slice(&read);
+            let page_bytes = self.loader.read_page(address).await?;
+            flash[address..address + PAGE_BYTES].copy_from_slice(&page_bytes);
             (self.report)(Event::Progress(Step::Reading, done + 1, page_count));
         }
         Ok(())
     }
 
     /// Writes pages and reads them back. A page that does not read back as written is written once more.
-    async fn write(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
+    async fn write_and_verify(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
         for (done, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes).await?;
             (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
@@ -372,12 +388,12 @@ impl<B: Board> Upload<'_, B> {
                 self.write_page(page.address, &page.bytes).await?;
                 read_back = self.loader.read_page(page.address).await?;
             }
-            if let Some(offset) = difference(&read_back, &page.bytes) {
-                return Err(AttemptError::UploadFailed(UploadError::NotKept {
+            if let Some(offset) = first_difference(&read_back, &page.bytes) {
+                return Err(AttemptError::UploadFailed(UploadError::ByteNotKept {
                     address: page.address + offset,
                     written: page.bytes[offset],
                     read: read_back[offset],
-                    left: self.flash_state,
+                    flash_state: self.flash_state,
                 }));
             }
             (self.report)(Event::Progress(Step::Verifying, done + 1, pages.len()));
@@ -397,24 +413,25 @@ impl<B: Board> Upload<'_, B> {
         Ok(self.loader.write_page(address, bytes).await?)
     }
 
-    fn upload_error(&self, trouble: LoaderError) -> UploadError {
-        match trouble {
+    /// The error of the upload after the last attempt has failed.
+    fn upload_error(&self, error: LoaderError) -> UploadError {
+        match error {
             LoaderError::Silent if !self.has_answered => UploadError::NoLoader,
-            trouble => UploadError::Broken {
-                trouble,
-                left: self.flash_state,
+            error => UploadError::ConnectionFailed {
+                error,
+                flash_state: self.flash_state,
             },
         }
     }
 }
 
-/// Returns the end address of the robot in flash by its header, or its start address if the header is not valid.
-/// Needs only the first page of the robot.
-fn end_of_robot(flash: &[u8], boot: usize) -> usize {
-    let start = usize::from(START);
+/// Returns the end address of the robot in flash according to its header, or its start address if the header is not
+/// valid. Needs only the first page of the robot.
+fn robot_end_address(flash: &[u8], boot_address: usize) -> usize {
+    let start = usize::from(START_ADDRESS);
     let header: Header = Region::new(&flash[start..]).read(0);
     let end = start + usize::from(header.length);
-    if header.magic == MAGIC && end <= boot {
+    if header.magic == MAGIC && end <= boot_address {
         end
     } else {
         start
@@ -422,7 +439,7 @@ fn end_of_robot(flash: &[u8], boot: usize) -> usize {
 }
 
 /// Index of the first byte in which two pages differ; `None` if they are equal.
-fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
+fn first_difference(a: &[u8], b: &[u8]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }
 

@@ -8,7 +8,7 @@ use lizard_host::patrol::PATROL;
 use lizard_host::session::Session;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
-use simulated_uno::{Air, Radio, Uno, Wire};
+use simulated_uno::{Radio, RadioLink, Uno, Wire};
 
 use super::record::{MS, Record, Span};
 use super::setup;
@@ -38,15 +38,15 @@ pub struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     /// Begins a drive with a person who has just connected.
-    pub fn new(air: Air, robot: &'a Robot) -> Self {
+    pub fn new(link: RadioLink, robot: &'a Robot) -> Self {
         let start = Instant::now();
         Self {
             robot,
-            radio: Radio::new(air),
-            wire: Wire::new([air.baud; 2]),
+            radio: Radio::new(link),
+            wire: Wire::new([link.baud; 2]),
             session: Session::new(start, true, false).with_person(),
             start,
-            random: Rng::with_seed(air.seed),
+            random: Rng::with_seed(link.seed),
             text: String::new(),
             locked: 0,
             has_left: false,
@@ -85,7 +85,7 @@ impl<'a> Drive<'a> {
             return;
         }
         self.talk(now, record);
-        if self.radio.is_in_reach() {
+        if self.radio.is_linked() {
             match record.radio_spans.last_mut() {
                 Some(span) if span.end + 2 * MS > now => span.end = now,
                 _ => record.radio_spans.push(Span {

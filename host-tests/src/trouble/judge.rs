@@ -22,7 +22,7 @@ const BYTE_CYCLES: u64 = 1_360;
 /// Returns the limits for a scenario's robot.
 fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
     let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
-    let pace = robot.pace();
+    let pace = robot.speed_limits();
     let max_speed = pace.slew.max(pace.gait_slew);
     let mentions = |text: &str| {
         let mut steps = scenario.steps.iter();
@@ -362,7 +362,7 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
 fn check_led(record: &Record) -> Result<(), String> {
     let led_edges = record.edges.iter().filter(|edge| edge.pin == LED);
     let led_edges: Vec<(Time, bool)> = led_edges
-        .map(|edge| (edge.cycle as Time, edge.high))
+        .map(|edge| (edge.cycle as Time, edge.is_rising))
         .collect();
     let shown_code_of = |exchange: &'_ Exchange| {
         let cycle = exchange.answer.as_ref()?.cycle;

@@ -4,7 +4,9 @@
 use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
 use lizard_rules::Pulse;
-use simulated_uno::{CYCLES_PER_MS, Edge, EepromOperation, Pin, Reset, ResetCause, State, pulses};
+use simulated_uno::{
+    CYCLES_PER_MS, Edge, EepromOperation, Pin, ResetCause, ResetEvent, State, pulses,
+};
 
 /// CPU cycles in a millisecond.
 pub const MS: u64 = CYCLES_PER_MS;
@@ -102,7 +104,7 @@ pub struct Record {
     /// The cycles at which bytes arrived at the board.
     pub bytes: Vec<u64>,
     /// Every start of the program.
-    pub starts: Vec<Reset>,
+    pub starts: Vec<ResetEvent>,
     /// Every write of the EEPROM.
     pub written: Vec<EepromOperation>,
     /// The supply voltages in mV, each with the cycle from which it applied.
@@ -212,7 +214,7 @@ impl Record {
     #[must_use]
     pub fn has_found_rate(&self, cycle: u64) -> bool {
         let radio_start = self.radio_spans.first().map_or(cycle, |link| link.start);
-        let forgets_rate = |start: &&Reset| {
+        let forgets_rate = |start: &&ResetEvent| {
             let is_reset = matches!(start.cause, ResetCause::PowerOn | ResetCause::External);
             is_reset && start.cycle < cycle
         };

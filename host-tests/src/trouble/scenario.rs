@@ -6,11 +6,11 @@ mod troubles;
 use std::fmt;
 
 use fastrand::Rng;
-use lizard_core::numbers::rate::Rate;
+use lizard_core::numbers::rate::BaudRate;
 use lizard_host::patrol::PATROL;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
-use simulated_uno::{Air, CYCLES_PER_MS};
+use simulated_uno::{CYCLES_PER_MS, RadioLink};
 
 use super::activity::Activity;
 use super::setup;
@@ -269,7 +269,7 @@ impl<'a> Script<'a> {
 
     /// Presses an input for a random time, which may be too short to count, or until the end of the scenario.
     fn press(&mut self) {
-        let inputs: Vec<(&str, u8)> = self.robot.inputs().each().collect();
+        let inputs: Vec<(&str, u8)> = self.robot.inputs().named_pins().collect();
         let Some((_, pin)) = self.rng.choice(&inputs).copied() else {
             return;
         };
@@ -286,15 +286,18 @@ impl<'a> Script<'a> {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
         }
-        let rate = *self.rng.choice(&Rate::ALL).unwrap_or(&Rate::Fastest);
-        let air = Air {
+        let rate = *self
+            .rng
+            .choice(&BaudRate::ALL)
+            .unwrap_or(&BaudRate::Fastest);
+        let link = RadioLink {
             baud: f64::from(rate.baud()),
-            loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
+            packet_loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
             mean_link_ms: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
             reports_link: self.rng.bool(),
             seed: self.rng.u64(..),
         };
-        self.steps.push(Step::Drive(air));
+        self.steps.push(Step::Drive(link));
         self.is_driven = true;
         self.drive_on();
     }

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
-use lizard_core::console::line::MAX_BYTES;
+use lizard_core::console::line::MAX_LINE_BYTES;
 use lizard_core::console::word::Effect;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::lines::LineReader;
@@ -116,7 +116,7 @@ impl Stage<'_> {
                 self.record_events();
             }
             Step::Supply(mv) => self.set_supply(f64::from(*mv)),
-            Step::Drive(air) => self.drive = Some(Drive::new(*air, self.robot)),
+            Step::Drive(link) => self.drive = Some(Drive::new(*link, self.robot)),
             Step::Leave => {
                 if let Some(drive) = &mut self.drive {
                     drive.leave(now);
@@ -258,7 +258,7 @@ impl Stage<'_> {
         }
         let edges = self.uno.take_edges();
         for (latest, pin) in self.latest.iter_mut().zip(self.pins) {
-            let is_rise = |edge: &&Edge| edge.high && edge.pin == pin;
+            let is_rise = |edge: &&Edge| edge.is_rising && edge.pin == pin;
             *latest = edges
                 .iter()
                 .rev()
@@ -320,7 +320,7 @@ impl Stage<'_> {
 
 /// Makes the record of a received line from its bytes and the cycle at which its line end arrived.
 fn record_of_line(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
-    let is_whole = bytes.len() <= MAX_BYTES && bytes.is_ascii();
+    let is_whole = bytes.len() <= MAX_LINE_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
     Received {

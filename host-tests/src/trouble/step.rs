@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use simulated_uno::{Air, CYCLES_PER_MS, CYCLES_PER_US};
+use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, RadioLink};
 
 /// One step of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ pub enum Step {
     /// connects a good one.
     Weak(bool),
     /// Lets a person begin to drive by radio. The scenario's own lines go over the cable.
-    Drive(Air),
+    Drive(RadioLink),
     /// Lets the person who drives leave with the phone, which ends the drive.
     Leave,
     /// Closes the contact at the pin with this Arduino number if true; opens it if false.
@@ -54,13 +54,13 @@ impl fmt::Display for Step {
             Self::PowerCycle => write!(f, "cut the power and restore it"),
             Self::Supply(mv) => write!(f, "supply {mv} mV"),
             Self::Weak(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
-            Self::Drive(air) => write!(
+            Self::Drive(link) => write!(
                 f,
                 "a person drives by radio at {} baud: {:.0} % of the packets are lost, the link holds for {} ms{}",
-                air.baud,
-                100.0 * air.loss,
-                air.mean_link_ms,
-                if air.reports_link {
+                link.baud,
+                100.0 * link.packet_loss,
+                link.mean_link_ms,
+                if link.reports_link {
                     ", and says so"
                 } else {
                     ""

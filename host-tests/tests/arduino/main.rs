@@ -25,7 +25,7 @@ fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
     let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
     let first_cycle = edges.first().expect("there are edges").cycle;
-    let relative_edge_of = |edge: &Edge| (edge.cycle - first_cycle, edge.pin, edge.high);
+    let relative_edge_of = |edge: &Edge| (edge.cycle - first_cycle, edge.pin, edge.is_rising);
     edges.iter().map(relative_edge_of).collect()
 }
 

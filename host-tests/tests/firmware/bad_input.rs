@@ -8,9 +8,9 @@ use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::kept::recorded_pulses;
-use crate::rate::ask_until_answered;
-use crate::{boot_standing, end_flood, lines};
+use crate::baud_rate::ask_until_answered;
+use crate::measurements::recorded_pulses;
+use crate::{boot_standing, end_flood, random_lines};
 
 /// Bytes that the serial line carries in a second.
 const BYTES_PER_SECOND: usize = 11_520;
@@ -19,7 +19,7 @@ const BYTES_PER_SECOND: usize = 11_520;
 const FLOOD_SECONDS: u64 = 15;
 
 /// Sends bytes for the duration of a flood, and checks the pulses every second.
-fn send_and_check(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
+fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
@@ -42,9 +42,13 @@ fn send_and_check(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBe
         }
         bench.uno.take_edges();
     }
-    assert_eq!(bench.uno.reset_events().len(), 1, "no reset");
+    assert_eq!(
+        bench.uno.reset_events().len(),
+        1,
+        "the only reset is power-on"
+    );
     // Wait for the bytes that are still queued, in the sender and in the robot.
-    while bench.uno.unsent() > 0 {
+    while bench.uno.bytes_unsent() > 0 {
         bench.run_ms(1000);
     }
     end_flood(&mut bench);
@@ -62,23 +66,24 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     let firmware = robot().firmware();
     let contents = bench.uno.eeprom();
     let mut settings = Settings::of(firmware);
-    let outcome = copies::load(firmware, &Eeprom::with(contents), &mut settings);
+    let outcome = copies::load(firmware, &Eeprom::with_bytes(contents), &mut settings);
     assert!(
         matches!(outcome, SavedState::Latest | SavedState::Blank),
         "{outcome:?}"
     );
+    // The bytes beyond the saved data stay blank.
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));
     let operations = bench.uno.eeprom_operations();
-    println!("{} operations of the EEPROM", operations.len());
-    let distances = operations
+    println!("{} EEPROM operations", operations.len());
+    let intervals = operations
         .windows(2)
         .map(|pair| pair[1].cycle - pair[0].cycle);
-    assert!(distances.min().is_none_or(|distance| distance > 3 * 16_000));
+    assert!(intervals.min().is_none_or(|distance| distance > 3 * 16_000));
 }
 
 #[test]
 fn random_bytes_at_full_rate_do_no_harm_to_the_running_image() {
-    let bench = send_and_check(|rng| {
+    let bench = flood_and_check_pulses(|rng| {
         let random_byte = |rng: &mut Rng| if rng.u8(..24) == 0 { b'\n' } else { rng.u8(..) };
         (0..256).map(|_| random_byte(rng)).collect()
     });
@@ -86,9 +91,9 @@ fn random_bytes_at_full_rate_do_no_harm_to_the_running_image() {
 }
 
 #[test]
-fn lines_that_are_nearly_right_at_full_rate_do_no_harm_to_the_running_image() {
-    let bench = send_and_check(|rng| {
-        let mut line = lines::nearly_valid_line(rng);
+fn nearly_valid_lines_at_full_rate_do_no_harm_to_the_running_image() {
+    let bench = flood_and_check_pulses(|rng| {
+        let mut line = random_lines::nearly_valid_line(rng);
         line.push(b'\n');
         line
     });

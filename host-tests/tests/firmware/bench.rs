@@ -1,11 +1,12 @@
 //! Tests of the bench itself, on a small program that answers lines and drives four servos as the firmware does.
 
-use lizard_host_tests::{FRAME, FirmwareBench, avr_gcc::c, bench_of};
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c, bench_of};
 use simulated_uno::{Fidelity, Uno};
 
-/// Program with slots of 4 ms in a busy loop. A1 to A4 get 1000, 1200, 1400, 1600 us, and one microsecond more in
-/// each frame. `r` stops the pulses, `?` prints an answer with information before it. No interrupts.
-const SERVOS: &str = r##"
+/// Program with slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400 and
+/// 1600 us wide, and one microsecond wider in each frame. `r` stops the pulses; `?` prints an answer with information
+/// before it.
+const SERVO_PROGRAM: &str = r##"
     #include <avr/io.h>
     static void write(const char *text) {
         while (*text) { while (!(UCSR0A & 0x20)) {} UDR0 = *text++; }
@@ -40,7 +41,10 @@ const SERVOS: &str = r##"
     }"##;
 
 fn bench() -> FirmwareBench {
-    bench_of(Uno::with_image(c(SERVOS), Fidelity::DataSheet))
+    bench_of(Uno::with_image(
+        compile_c(SERVO_PROGRAM),
+        Fidelity::DataSheet,
+    ))
 }
 
 #[test]
@@ -58,12 +62,12 @@ fn the_answer_to_a_line_is_distinguished_from_the_information_before_it() {
 
 #[test]
 #[should_panic(expected = "no answer to \"x\"")]
-fn silence_is_a_failure() {
+fn a_line_without_an_answer_is_a_failure() {
     bench().say("x");
 }
 
 #[test]
-fn frames_hold_one_pulse_of_each_servo() {
+fn each_frame_holds_one_pulse_of_each_servo() {
     let mut bench = bench();
     bench.run_ms(100);
     let mut frames = bench.run_for_frames(10);
@@ -81,21 +85,23 @@ fn frames_hold_one_pulse_of_each_servo() {
         }
     }
     for pair in frames.windows(2) {
-        assert_eq!(pair[1].start - pair[0].start, FRAME);
+        assert_eq!(pair[1].start - pair[0].start, FRAME_CYCLES);
     }
 }
 
 #[test]
 fn a_function_of_the_program_is_timed_by_its_name() {
     let mut bench = bench_of(Uno::with_image(
-        c("#include <avr/io.h>
+        compile_c(
+            "#include <avr/io.h>
             __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }
-            int main(void) { for (;;) work(); }"),
+            int main(void) { for (;;) work(); }",
+        ),
         Fidelity::DataSheet,
     ));
     let calls = bench.time_calls("work", 10);
     assert!(calls.len() > 100);
-    // The delay and the `ret`.
+    // 1000 cycles of delay and 4 of `ret`.
     assert!(
         calls.iter().all(|call| call.cycles() == 1004),
         "{:?}",
@@ -104,7 +110,7 @@ fn a_function_of_the_program_is_timed_by_its_name() {
 }
 
 #[test]
-#[should_panic(expected = "no one function walk")]
+#[should_panic(expected = "no function walk")]
 fn a_function_that_does_not_exist_is_a_failure() {
     bench().time_calls("walk", 1);
 }

@@ -1,14 +1,14 @@
 //! Tests of the servo settings, measured at the pins, and of the settings that survive a loss of power.
 
-use lizard_host::sim::frame::FRAME;
+use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::robot;
 use simulated_uno::{Fidelity, PowerCut, State};
 
-use crate::kept::{
+use crate::measurements::{
     CYCLES_PER_MS, assert_no_leap, assert_no_leap_at, measure_widths, power_cycle,
     read_calibration, recorded_pulses, run_for_pulses, slew_limit,
 };
-use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
     Status, boot_standing, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
 };
@@ -24,8 +24,9 @@ fn gain() -> f64 {
     robot().servos()[0].us_per_degree
 }
 
+/// Asserts that a pulse width is the expected one within the rounding of angles, cycles.
 fn assert_near(width: u64, expected: u64, message: &str) {
-    // An angle has steps of 0.0055 deg and is typed with two decimals.
+    // An angle is stored in steps of 0.0055 deg and sent with two decimals.
     assert!(
         width.abs_diff(expected) <= 4,
         "{message}: {width}, {expected}"
@@ -39,7 +40,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         let trim = [20, 10, 5, 2]
             .into_iter()
             .find(|trim| bench.say(&format!("trim 1 {trim}")) == format!("ok trim 1 {trim}"))
-            .expect("a trim that suits the gaits");
+            .expect("some trim suits the gaits");
         bench.say("trim 1 0");
         bench.run_ms(500);
         bench.uno.take_edges();
@@ -52,9 +53,9 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
                 .windows(2)
                 .any(|p| p[0].width.abs_diff(p[1].width) + 6 > slew_limit(0))
                 || trim < 10,
-            "as fast as it may"
+            "no change reaches the slew limit"
         );
-        let last_width = pulses[0].last().expect("a pulse").width;
+        let last_width = pulses[0].last().expect("A1 has a pulse").width;
         assert_near(
             last_width,
             calibrated_width(trim.into(), gain(), 0.0),
@@ -69,10 +70,10 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
 }
 
 #[test]
-fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
+fn a_new_scale_or_direction_shows_in_the_pulses_within_half_a_second() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
-        let gain_size = gain().abs();
+        let gain_magnitude = gain().abs();
         bench.say(&pose_command([5.0, 0.0, 0.0, 0.0]));
         bench.run_ms(1000);
         assert_near(
@@ -80,7 +81,7 @@ fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
             calibrated_width(0.0, gain(), 5.0),
             "before",
         );
-        let scale = gain_size + 1.25;
+        let scale = gain_magnitude + 1.25;
         assert_eq!(
             bench.say(&format!("scale 1 {scale:.2}")),
             format!("ok scale 1 {scale:.2}")
@@ -108,18 +109,18 @@ fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
 }
 
 #[test]
-fn a_limit_ends_the_travel_of_poses_and_may_not_cut_off_a_gait() {
+fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let neutral = robot().servos()[0].neutral;
     let calibration_before = read_calibration(&mut bench);
     let too_narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
-    if robot().gaits().iter().any(|gait| gait.moves()) {
+    if robot().gaits().iter().any(|gait| gait.has_movement()) {
         let refusal = bench.say(&too_narrow_line);
         assert!(refusal.starts_with("err 3 "), "{refusal}");
         assert_eq!(
             read_calibration(&mut bench),
             calibration_before,
-            "nothing has changed"
+            "a refused line has changed the calibration"
         );
     }
     let narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
@@ -129,7 +130,7 @@ fn a_limit_ends_the_travel_of_poses_and_may_not_cut_off_a_gait() {
 }
 
 #[test]
-fn saved_settings_shape_the_pulses_after_the_next_power_on() {
+fn saved_settings_apply_from_the_first_pulse_after_power_on() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         bench.say("trim 1 1.5");
@@ -152,13 +153,13 @@ fn saved_settings_shape_the_pulses_after_the_next_power_on() {
             !notes[notes.len() - 12..]
                 .iter()
                 .any(|line| line.text.contains("calibration:")),
-            "a valid memory causes no notice"
+            "a note about the calibration although the memory is valid"
         );
     });
 }
 
 #[test]
-fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
+fn load_factory_and_power_on_discard_unsaved_settings() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let factory_calibration = read_calibration(&mut bench);
     let refusal = bench.say("load");
@@ -191,24 +192,30 @@ fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
 #[test]
 fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
     run_in_both_simulations(|fidelity| {
-        let mut walk = ReferenceRun::start_walking(fidelity);
+        let mut run = ReferenceRun::start_walking(fidelity);
         for n in 1..=6 {
-            walk.bench.say(&format!("deadman {}", 50_000 + 257 * n));
-            walk.bench.send("save");
+            run.bench.say(&format!("deadman {}", 50_000 + 257 * n));
+            run.bench.send("save");
             for _ in 0..40 {
-                walk.bench.uno.send(b" ");
-                walk.bench.run_ms(3);
+                run.bench.uno.send(b" ");
+                run.bench.run_ms(3);
             }
-            walk.bench.run_ms(150);
-            let lines = walk.bench.lines();
-            assert_eq!(lines.last().expect("an answer").text, "ok save");
+            run.bench.run_ms(150);
+            let lines = run.bench.lines();
+            assert_eq!(
+                lines.last().expect("the robot has answered").text,
+                "ok save"
+            );
         }
-        let operations = walk.bench.uno.eeprom_operations();
-        if walk.is_by_the_data_sheet() {
+        let operations = run.bench.uno.eeprom_operations();
+        if run.is_data_sheet_simulation() {
             assert!(operations.len() > 6 * 6, "{}", operations.len());
         }
         for operation in &operations {
-            assert_ne!(operation.old, operation.new, "only bytes that differ");
+            assert_ne!(
+                operation.old_value, operation.new_value,
+                "only bytes that differ"
+            );
         }
         for pair in operations.windows(2) {
             assert!(
@@ -216,8 +223,8 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
                 "one at a time"
             );
         }
-        assert_eq!(walk.late_edge_count(), 0);
-        let status = Status::of(&mut walk.bench);
+        assert_eq!(run.late_edge_count(), 0);
+        let status = Status::of(&mut run.bench);
         assert_eq!(status.number("rx_lost"), 0.0);
     });
 }
@@ -225,25 +232,25 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
 #[test]
 fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
     run_in_both_simulations(|fidelity| {
-        let mut walk = ReferenceRun::start_walking(fidelity);
-        walk.bench.say("deadman 54321");
-        let start = walk.next_frame();
-        let operations_before = walk.bench.uno.eeprom_operations().len();
-        walk.bench.send("save");
+        let mut run = ReferenceRun::start_walking(fidelity);
+        run.bench.say("deadman 54321");
+        let start = run.next_frame();
+        let operations_before = run.bench.uno.eeprom_operations().len();
+        run.bench.send("save");
         // The serial line stays busy, since the main loop reads no byte until it has saved.
         for _ in 0..14 {
-            walk.bench.uno.send(b" \t ");
-            walk.run_to(walk.bench.uno.cycle() + FRAME);
+            run.bench.uno.send(b" \t ");
+            run.run_to(run.bench.uno.cycle() + FRAME_CYCLES);
         }
-        walk.run_to(start + 40 * FRAME - SLOT_CYCLES / 2);
-        let frames = walk.frames_since(start);
+        run.run_to(start + 40 * FRAME_CYCLES - SLOT_CYCLES / 2);
+        let frames = run.frames_since(start);
         assert!(frames.len() >= 40);
         for (frame, expected) in frames {
             assert_eq!(frame.all_widths(), Some(expected), "{frame:?}");
         }
-        assert_eq!(walk.late_edge_count(), 0);
-        if walk.is_by_the_data_sheet() {
-            assert!(walk.bench.uno.eeprom_operations().len() > operations_before + 40);
+        assert_eq!(run.late_edge_count(), 0);
+        if run.is_data_sheet_simulation() {
+            assert!(run.bench.uno.eeprom_operations().len() > operations_before + 40);
         }
     });
 }
@@ -265,7 +272,12 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
             assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
         }
         bench.run_ms(300);
-        let last_line = bench.lines().last().expect("a note").text.clone();
+        let last_line = bench
+            .lines()
+            .last()
+            .expect("the robot has printed a note")
+            .text
+            .clone();
         assert_eq!(last_line, format!("# boot: {gait}"));
         assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
         power_cycle(&mut bench);
@@ -287,7 +299,7 @@ fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
 }
 
 #[test]
-fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
+fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         let rest_widths = order_nearby_pose(&mut bench);
@@ -300,7 +312,11 @@ fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
             assert_eq!(pulses[servo][0].width, rest_widths[servo]);
             if servo > 0 {
                 let distance = pulses[servo][0].start - pulses[servo - 1][0].start;
-                assert_eq!(distance, 5 * FRAME + SLOT_CYCLES, "a tenth of a second");
+                assert_eq!(
+                    distance,
+                    5 * FRAME_CYCLES + SLOT_CYCLES,
+                    "a tenth of a second"
+                );
             }
         }
         assert_no_leap(&pulses);
@@ -325,11 +341,11 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
     let operations_before = bench.uno.eeprom_operations().len();
     bench.say("rest");
     bench.run_ms(400);
-    let count = bench.uno.eeprom_operations().len() - operations_before;
-    assert!(count > 10, "{count}");
-    let mut poses = [0, 0];
-    for operation in 0..count as u64 {
-        for (ones, is_in_write) in [(0, true), (0x5a, true), (0x33, false)] {
+    let operation_count = bench.uno.eeprom_operations().len() - operations_before;
+    assert!(operation_count > 10, "{operation_count}");
+    let mut pose_counts = [0, 0];
+    for operation in 0..operation_count as u64 {
+        for (stuck_bits, is_in_write) in [(0, true), (0x5a, true), (0x33, false)] {
             bench.uno.set_eeprom(&blank_eeprom);
             power_cycle(&mut bench);
             bench.run_ms(500);
@@ -339,7 +355,7 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
             } else {
                 PowerCut::InErase(operation)
             };
-            bench.uno.cut_power(cut, ones);
+            bench.uno.cut_power(cut, stuck_bits);
             bench.say("rest");
             bench.uno.run_ms(400);
             assert_eq!(*bench.uno.state(), State::Off);
@@ -348,10 +364,13 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
             let first_widths = recorded_pulses(&bench).map(|pulses| pulses[0].width);
             assert!(
                 first_widths == rest_widths || first_widths == neutral_widths(),
-                "byte {operation}, {ones:02x}: {first_widths:?}"
+                "byte {operation}, {stuck_bits:02x}: {first_widths:?}"
             );
-            poses[usize::from(first_widths == rest_widths)] += 1;
+            pose_counts[usize::from(first_widths == rest_widths)] += 1;
         }
     }
-    assert!(poses[0] > poses[1] && poses[1] > 0, "{poses:?}");
+    assert!(
+        pose_counts[0] > pose_counts[1] && pose_counts[1] > 0,
+        "{pose_counts:?}"
+    );
 }

@@ -13,10 +13,10 @@ use crate::{
 
 /// Largest rounding error of a printed angle, deg: half a step each of the two printed decimals, of the pulse width
 /// and of the neutral angle.
-const MAX_PRINT_ERROR: f64 = 0.005 + 0.0032 + 0.0028;
+const MAX_PRINT_ERROR_DEG: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
-fn half_a_second_after_power_on_there_is_a_banner_and_after_one_an_answer() {
+fn the_banner_and_an_answer_come_within_a_second_of_power_on() {
     run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::boot_with(fidelity);
         let hash = robot().firmware().hash();
@@ -58,7 +58,7 @@ fn case_and_blanks_do_not_matter() {
     // Tries the gait with the most words in its name.
     let mut gaits = gait_commands();
     gaits.sort_by_key(|gait| gait.split(' ').count());
-    let gait = gaits.pop().expect("stand at least");
+    let gait = gaits.pop().expect("every robot has `stand`");
     let typed_gait = gait.to_uppercase().replacen(' ', "   \t", 1);
     assert!(
         bench.say(&format!(" {typed_gait} ")).starts_with("ok "),
@@ -160,7 +160,7 @@ fn stricter_limits(strictness: f64) -> Limits {
 }
 
 #[test]
-fn every_refusal_has_its_code_and_changes_nothing() {
+fn every_refused_line_gets_its_error_code_and_changes_nothing() {
     let refused_lines = [
         ("gallop", 1),
         ("standing", 1),
@@ -240,7 +240,7 @@ fn while_the_servos_rest_only_stand_moves_them() {
 }
 
 #[test]
-fn help_names_every_gait_and_every_command() {
+fn help_names_every_gait_and_the_main_commands() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     for line in ["help", "?"] {
         let (notes, answer) = bench.ask(line);
@@ -268,17 +268,17 @@ fn status_agrees_with_the_pulses() {
         let status = Status::of(&mut bench);
         let sent_angles = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
             .angles
-            .expect("four pulses");
+            .expect("each servo has a pulse");
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent_angles).enumerate() {
             assert!(
-                (printed - sent).abs() <= MAX_PRINT_ERROR,
+                (printed - sent).abs() <= MAX_PRINT_ERROR_DEG,
                 "{servo}: {printed} and {sent}"
             );
         }
         let solution = robot()
             .lizard()
             .solve(&sent_angles.into())
-            .expect("a safe pose");
+            .expect("the pose is safe");
         let margin = solution.margins.min().1;
         assert!((status.number("margin") - margin).abs() <= 0.0025);
         assert_eq!(status.text("gait"), "stop");
@@ -293,12 +293,12 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(3000); // the move to the gait's first pose
     let gait_name = first_moving_gait();
-    let gait = robot().gait(&gait_name).expect("a gait");
-    let mut last_sample: Option<(u64, Status)> = None;
+    let gait = robot().gait(&gait_name).expect("the robot has this gait");
+    let mut previous_sample: Option<(u64, Status)> = None;
     for _ in 0..20 {
         bench.run_for_frames(0); // up to the start of the next frame
         let sample = (bench.uno.cycle(), Status::of(&mut bench));
-        if let Some((cycle, status_before)) = last_sample {
+        if let Some((cycle, status_before)) = previous_sample {
             let frames = (sample.0 - cycle) as f64 * 50.0 / FREQUENCY as f64;
             let counted_frames = sample.1.number("frames") - status_before.number("frames");
             assert_eq!(counted_frames, frames.round());
@@ -316,7 +316,7 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
                 "{phase_change} in {frames} frames"
             );
         }
-        last_sample = Some(sample);
+        previous_sample = Some(sample);
         bench.run_ms(470);
     }
 }
@@ -337,22 +337,22 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
             .map(|line| line.text.clone())
             .collect();
         assert!((10..=11).contains(&lines.len()), "{lines:?}");
-        let mut last_frame = None;
+        let mut previous_frame = None;
         for line in &lines {
-            let rest = line.strip_prefix("# t=").expect("a report");
-            let (frame_number, pose) = rest.split_once(" pose=").expect("a pose");
-            let frame_number: u64 = frame_number.parse().expect("a frame");
+            let rest = line.strip_prefix("# t=").expect("the line is a report");
+            let (frame_number, pose) = rest.split_once(" pose=").expect("a report has a pose");
+            let frame_number: u64 = frame_number.parse().expect("the frame is a number");
             assert!(
-                last_frame.is_none_or(|last_frame| frame_number == last_frame + 7),
+                previous_frame.is_none_or(|previous| frame_number == previous + 7),
                 "{lines:?}"
             );
-            last_frame = Some(frame_number);
+            previous_frame = Some(frame_number);
             let printed_angles = parse_angles(pose);
-            let is_sent = sent_frames.iter().any(|frame| {
-                let angles = frame.angles.expect("four pulses");
-                (0..4).all(|i| (printed_angles[i] - angles[i]).abs() <= MAX_PRINT_ERROR)
+            let was_sent = sent_frames.iter().any(|frame| {
+                let angles = frame.angles.expect("each servo has a pulse");
+                (0..4).all(|i| (printed_angles[i] - angles[i]).abs() <= MAX_PRINT_ERROR_DEG)
             });
-            assert!(is_sent, "{line} was never sent");
+            assert!(was_sent, "{line} was never sent");
         }
         assert_eq!(bench.say("watch 0"), "ok watch 0");
         let line_count = bench.lines().len();
@@ -362,15 +362,15 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
 }
 
 #[test]
-fn half_speed_takes_twice_the_time() {
+fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.run_ms(3000); // the move to the gait's first pose
         let gait_name = first_moving_gait();
-        let gait = robot().gait(&gait_name).expect("a gait");
+        let gait = robot().gait(&gait_name).expect("the robot has this gait");
         // The pace is a multiple of 1/1024, so a pace of 10 % has an error of up to half a percent.
         let frame_count = (gait.period() * FRAMES_PER_SECOND as f64).ceil() as u64;
-        let max_step_deg = robot().pace().gait_slew / FRAMES_PER_SECOND as f64;
+        let max_step_deg = robot().speed_limits().gait_slew / FRAMES_PER_SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
         for (percent, factor) in [(100, 1), (50, 2), (10, 10)] {
             let line = format!("speed {percent}");
@@ -380,8 +380,8 @@ fn half_speed_takes_twice_the_time() {
             let sent_widths = widths(&bench.run_for_frames(2 * cycle_frames));
             let (first_cycle, second_cycle) = sent_widths.split_at(cycle_frames as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
-                // Allows half a percent of a cycle, and the part of a frame by which a cycle is no whole number of
-                // frames.
+                // Allows half a percent of a gait cycle, and one frame, since a gait cycle need not be a whole number
+                // of frames.
                 let frame_step = 16.0 * servo.us_per_degree.abs() * max_step_deg;
                 let max_error = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame_step
                     + frame_step
@@ -390,11 +390,11 @@ fn half_speed_takes_twice_the_time() {
                     let error = first_widths[i].abs_diff(second_widths[i]) as f64;
                     assert!(
                         error <= max_error,
-                        "{percent} %: {error} cycles after a cycle"
+                        "{percent} %: {error} clock cycles apart after a gait cycle"
                     );
                 }
             }
-            // In a cycle, each leg makes its whole sweep at any speed.
+            // In a gait cycle, each leg makes its whole sweep at any speed.
             let first_servo_widths = || first_cycle.iter().map(|widths| widths[0]);
             spans.push(
                 first_servo_widths().max().unwrap_or(0) - first_servo_widths().min().unwrap_or(0),

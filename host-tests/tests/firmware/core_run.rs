@@ -1,18 +1,18 @@
 //! Comparison of the core on the AVR and on the host, bit for bit, with random commands for ten minutes.
-//! `LIZARD_MINUTES=2` shortens it to try many robots.
+//! `LIZARD_MINUTES=2` shortens the run, so that many robots can be tried.
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME, first_cycle, group_frames, servo_pins};
+use lizard_host::sim::frame::{FRAME_CYCLES, first_cycle, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Status, boot_standing, comparable_line, for_each};
+use crate::{Status, boot_standing, comparable_line, for_each_in_parallel};
 
 /// Cycles that one byte takes on the serial line, rounded up.
 const CYCLES_PER_BYTE: u64 = 1400;
 
-/// Returns the last cycle that is compared.
+/// Returns the cycle at which the comparison ends.
 fn end_cycle() -> u64 {
     60 * minutes() * FREQUENCY
 }
@@ -30,7 +30,7 @@ fn random_line(rng: &mut Rng) -> String {
     match rng.u64(..20) {
         0..7 => rng
             .choice(robot().gaits())
-            .expect("stand at least")
+            .expect("every robot has `stand`")
             .name()
             .replace('-', " "),
         7..9 => pose_near(rng, 15.0),
@@ -56,40 +56,40 @@ fn random_line(rng: &mut Rng) -> String {
 /// Sends lines until a second before the end. Each line ends at a random time within a frame, at least a
 /// millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous one.
 fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) -> u32 {
-    let mut count = 0;
+    let mut sent_count = 0;
     let mut writing_cycles = 0;
     // A frame's tick comes one slot before A1's pulse.
-    let tick_cycle = first_rise - FRAME / 5;
+    let tick_cycle = first_rise - FRAME_CYCLES / 5;
     while bench.uno.cycle() < end_cycle() - FREQUENCY {
         let line = random_line(rng);
         let sending_cycles = (line.len() as u64 + 1) * CYCLES_PER_BYTE;
         let wait_cycles = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
         let earliest_cycle = bench.uno.cycle() + writing_cycles + wait_cycles + sending_cycles;
-        let frame = (earliest_cycle - tick_cycle).div_ceil(FRAME);
+        let frame = (earliest_cycle - tick_cycle).div_ceil(FRAME_CYCLES);
         let cycles_in_frame = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
         bench
             .uno
-            .run_until_cycle(tick_cycle + frame * FRAME + cycles_in_frame - sending_cycles);
+            .run_until_cycle(tick_cycle + frame * FRAME_CYCLES + cycles_in_frame - sending_cycles);
         bench.say(&line);
-        count += 1;
+        sent_count += 1;
         // The main loop reads no input while it stores or erases the pose of a rest.
         writing_cycles = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
-    count
+    sent_count
 }
 
 #[test]
-fn random_commands_give_the_same_widths_on_the_avr_and_here() {
+fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host() {
     let cases = [
         (Fidelity::Stock, 1),
         (Fidelity::DataSheet, 2),
         (Fidelity::DataSheet, 3),
     ];
-    for_each(&cases, |&(fidelity, seed)| {
+    for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut bench = boot_standing(fidelity);
         let pins = servo_pins(robot());
-        let is_rise = |edge: &&simulated_uno::Edge| edge.pin == pins[0] && edge.high;
+        let is_rise = |edge: &&simulated_uno::Edge| edge.pin == pins[0] && edge.is_rising;
         let first_rise = bench
             .uno
             .edges()
@@ -97,7 +97,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
             .find(is_rise)
             .expect("the robot stands")
             .cycle;
-        let sent_lines = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
+        let sent_line_count = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
         let status = Status::of(&mut bench);
         assert_eq!(
             (status.number("late"), status.number("rx_lost")),
@@ -105,15 +105,15 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         );
 
         bench.uno.run_until_cycle(end_cycle());
-        let count = (bench.uno.cycle() - first_cycle(first_rise)) / FRAME;
-        let sent_frames = group_frames(&bench.uno.edges(), pins, first_rise, count);
+        let frame_count = (bench.uno.cycle() - first_cycle(first_rise)) / FRAME_CYCLES;
+        let sent_frames = group_frames(&bench.uno.edges(), pins, first_rise, frame_count);
         let commands = core_run::play(
             *robot().firmware(),
             &bench.uno.received_by_uno(),
             first_rise,
             sent_frames.len(),
         );
-        let mut poses = std::collections::HashSet::new();
+        let mut distinct_widths = std::collections::HashSet::new();
         for (n, (frame, expected)) in sent_frames.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
             assert_eq!(
@@ -121,31 +121,31 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
                 expected.map(u64::from),
                 "frame {n}, or the ELF is old"
             );
-            poses.insert(widths);
+            distinct_widths.insert(widths);
         }
         println!(
-            "{fidelity:?}: {sent_lines} lines, {count} frames, {} poses",
-            poses.len()
+            "{fidelity:?}: {sent_line_count} lines, {frame_count} frames, {} sets of widths",
+            distinct_widths.len()
         );
-        let (count, sent_lines, poses) = (count, u64::from(sent_lines), poses.len() as u64);
+        let counts = [
+            frame_count,
+            u64::from(sent_line_count),
+            distinct_widths.len() as u64,
+        ];
         let min_counts = [2_900, 100, 500].map(|minimum| minimum * minutes());
-        assert!(count > min_counts[0] && sent_lines > min_counts[1] && poses > min_counts[2]);
+        assert!((0..3).all(|i| counts[i] > min_counts[i]), "{counts:?}");
 
         // The answers also agree, except for the fault counters, which are 0 on the host. Reports are not compared,
         // since the frame in which one is printed also depends on the free space in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
         let comparable_of = |line: &'_ str| comparable_line(line, fidelity);
-        let expected = commands
-            .written
-            .lines()
-            .filter(is_answer)
-            .map(comparable_of);
+        let expected = commands.text.lines().filter(is_answer).map(comparable_of);
         let expected: Vec<String> = expected.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
         let answers: Vec<String> = lines.filter(is_answer).map(comparable_of).collect();
         // The UNO runs beyond the last complete frame, and may have answered once more.
         let extra_count = answers.len().saturating_sub(expected.len());
-        assert!(extra_count <= 1, "{extra_count} more");
+        assert!(extra_count <= 1, "{extra_count} answers more than expected");
         assert_eq!(answers[..answers.len() - extra_count], expected);
     });
 }

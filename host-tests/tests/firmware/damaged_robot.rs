@@ -1,4 +1,4 @@
-//! Tests of the firmware with anything but a valid robot section in the flash: it sends no pulse, and its console
+//! Tests of the firmware with a missing or damaged robot section in the flash: it sends no pulse, and its console
 //! and LED say why. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads the
 //! chip's flash, where no slice bound stops a read beyond the section.
 
@@ -6,14 +6,14 @@ use std::mem::offset_of;
 use std::ops::Range;
 
 use lizard_core::console::word::Word;
-use lizard_core::numbers::section::{Header, Numbers, SPACE, START, seal};
+use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS, write_checksum};
 use lizard_host::board::SimulatedBoard;
 use lizard_host::firmware::with_robot;
-use lizard_host_tests::{FRAME, FirmwareBench, rng, robot, root};
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, rng, robot, root};
 use lizard_robot::Robot;
 use simulated_uno::{Edge, Fidelity, Image, Pin};
 
-use crate::{first_moving_gait, for_each, pose_command, run_in_both_simulations};
+use crate::{first_moving_gait, for_each_in_parallel, pose_command, run_in_both_simulations};
 
 const MISSING_ROBOT_NOTE: &str = "# fault: no robot in the flash, write one";
 const OTHER_VERSION_NOTE: &str =
@@ -23,57 +23,57 @@ const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged, wr
 const LED: Pin = Pin::d(13);
 
 /// Bytes in the flash in place of a valid robot.
-struct Damage {
-    what: String,
+struct DamagedSection {
+    description: String,
     section: Vec<u8>,
     /// The only line that reports the damage.
-    printed: &'static str,
+    expected_note: &'static str,
 }
 
-impl std::fmt::Debug for Damage {
+impl std::fmt::Debug for DamagedSection {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.what)
+        f.write_str(&self.description)
     }
 }
 
 /// Returns the robot's section with a change.
 fn damage_section(
     description: impl Into<String>,
-    printed: &'static str,
+    expected_note: &'static str,
     change: impl FnOnce(&mut Vec<u8>),
-) -> Damage {
+) -> DamagedSection {
     let mut section = robot().section();
     change(&mut section);
-    Damage {
-        what: description.into(),
+    DamagedSection {
+        description: description.into(),
         section,
-        printed,
+        expected_note,
     }
 }
 
 /// Returns the robot's section with a change and a checksum that is correct for the changed bytes.
-fn damage_with_checksum(description: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
+fn damage_with_checksum(description: &str, change: impl FnOnce(&mut Vec<u8>)) -> DamagedSection {
     damage_section(description, DAMAGED_ROBOT_NOTE, |section| {
         change(section);
-        seal(section);
+        write_checksum(section);
     })
 }
 
 /// Writes a word into the numbers at a field's offset.
-fn put_word(section: &mut [u8], offset: usize, word: u16) {
+fn write_word(section: &mut [u8], offset: usize, word: u16) {
     let start = size_of::<Header>() + offset;
     section[start..start + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Returns damages that leave no section, a part of one, or a section for another version.
-fn missing_sections() -> Vec<Damage> {
-    let mut damages = vec![
+/// Returns sections that are missing, cut off, or for another version.
+fn missing_sections() -> Vec<DamagedSection> {
+    let mut sections = vec![
         damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
         damage_section("zeros", MISSING_ROBOT_NOTE, |section| {
-            *section = vec![0; SPACE.into()];
+            *section = vec![0; SPACE_BYTES.into()];
         }),
         damage_section("a program's noise", MISSING_ROBOT_NOTE, |section| {
-            *section = vec![0; SPACE.into()];
+            *section = vec![0; SPACE_BYTES.into()];
             rng(160).fill(section);
         }),
     ];
@@ -89,7 +89,7 @@ fn missing_sections() -> Vec<Damage> {
         (length - 30, DAMAGED_ROBOT_NOTE),
     ] {
         let description = format!("cut at byte {end}");
-        damages.push(damage_section(description, note, |section| {
+        sections.push(damage_section(description, note, |section| {
             section.truncate(end)
         }));
     }
@@ -99,7 +99,7 @@ fn missing_sections() -> Vec<Damage> {
         lizard_core::numbers::section::FORMAT + 1,
         0xffff,
     ] {
-        damages.push(damage_section(
+        sections.push(damage_section(
             format!("version {format}"),
             OTHER_VERSION_NOTE,
             |section| {
@@ -107,16 +107,16 @@ fn missing_sections() -> Vec<Damage> {
             },
         ));
     }
-    damages
+    sections
 }
 
-/// Returns damages of one flipped bit each: one for each field of the header, and one for each of forty parts of the
+/// Returns sections with one flipped bit each: one for each field of the header, and one for each of forty parts of the
 /// rest of the section.
-fn flipped_bits() -> Vec<Damage> {
+fn flipped_bits() -> Vec<DamagedSection> {
     let rng = &mut rng(161);
     let header_bytes = size_of::<Header>();
     let rest_bytes = robot().section().len() - header_bytes;
-    let stretches = (0..40)
+    let remaining_ranges = (0..40)
         .map(|n| header_bytes + n * rest_bytes / 40..header_bytes + (n + 1) * rest_bytes / 40);
     let fields: [Range<usize>; 7] = [
         offset_of!(Header, magic)..offset_of!(Header, format),
@@ -127,26 +127,30 @@ fn flipped_bits() -> Vec<Damage> {
         offset_of!(Header, hash)..offset_of!(Header, servo_hash),
         offset_of!(Header, servo_hash)..header_bytes,
     ];
-    let mut flip = |bytes: Range<usize>, printed| {
+    let mut flip = |bytes: Range<usize>, expected_note| {
         let (byte, bit) = (rng.usize(bytes), rng.u8(..8));
-        damage_section(format!("bit {bit} of byte {byte}"), printed, |section| {
-            section[byte] ^= 1 << bit;
-        })
+        damage_section(
+            format!("bit {bit} of byte {byte}"),
+            expected_note,
+            |section| {
+                section[byte] ^= 1 << bit;
+            },
+        )
     };
     let notes = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
         .into_iter()
         .chain([DAMAGED_ROBOT_NOTE; 5]);
-    let mut damages: Vec<Damage> = fields
+    let mut sections: Vec<DamagedSection> = fields
         .into_iter()
         .zip(notes)
         .map(|(range, note)| flip(range, note))
         .collect();
-    damages.extend(stretches.map(|range| flip(range, DAMAGED_ROBOT_NOTE)));
-    damages
+    sections.extend(remaining_ranges.map(|range| flip(range, DAMAGED_ROBOT_NOTE)));
+    sections
 }
 
 /// Returns sections whose checksum is right but whose content is wrong.
-fn wrong_sections() -> Vec<Damage> {
+fn invalid_sections() -> Vec<DamagedSection> {
     vec![
         damage_with_checksum("a servo on the serial line", |section| {
             section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
@@ -156,13 +160,16 @@ fn wrong_sections() -> Vec<Damage> {
             section[index] = section[index + 1];
         }),
         damage_with_checksum("a rail on a pin that measures nothing", |section| {
-            put_word(section, offset_of!(Numbers, rail), 20);
+            write_word(section, offset_of!(Numbers, rail_pin), 20);
         }),
-        damage_with_checksum("a neutral pulse that no servo bears", |section| {
-            put_word(section, offset_of!(Numbers, calibration), 60_000);
-        }),
+        damage_with_checksum(
+            "a neutral pulse that is too long for any servo",
+            |section| {
+                write_word(section, offset_of!(Numbers, calibration), 60_000);
+            },
+        ),
         damage_with_checksum("a travel on one side of neutral", |section| {
-            put_word(section, offset_of!(Numbers, calibration) + 4, 5);
+            write_word(section, offset_of!(Numbers, calibration) + 4, 5);
         }),
         damage_with_checksum("no cranks", |section| {
             let start = size_of::<Header>() + offset_of!(Numbers, ends);
@@ -178,21 +185,23 @@ fn wrong_sections() -> Vec<Damage> {
 }
 
 /// Returns a board with this damage in its flash, just powered on.
-fn boot_damaged_board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
+fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
-    let space = u32::from(START)..u32::from(START) + u32::from(SPACE);
-    image.replace(space, &damage.section).expect("it fits");
+    let space = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(SPACE_BYTES);
+    image
+        .replace(space, &damaged.section)
+        .expect("the section fits");
     FirmwareBench::with_board(SimulatedBoard::with_image(image, fidelity, robot()))
 }
 
 /// Checks that the firmware finds no robot, sends no pulse and reports the damage.
-fn assert_finds_no_robot(damage: &Damage) {
-    let bench = &mut boot_damaged_board(damage, Fidelity::DataSheet);
+fn assert_finds_no_robot(damaged: &DamagedSection) {
+    let bench = &mut boot_damaged_board(damaged, Fidelity::DataSheet);
     bench.run_ms(300);
     let banner = format!("# lizard {} without a robot", env!("CARGO_PKG_VERSION"));
     let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
     assert!(lines[0].starts_with(&banner), "{lines:?}");
-    assert_eq!(lines[1..], [damage.printed]);
+    assert_eq!(lines[1..], [damaged.expected_note]);
     // Only questions are answered, everything else is refused.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let other_words = Word::ALL.iter().filter(|word| !questions.contains(word));
@@ -226,9 +235,9 @@ fn assert_finds_no_robot(damage: &Damage) {
         .lines()
         .iter()
         .filter(|line| line.text.starts_with("# fault:"));
-    assert_eq!(fault_lines.count(), 1, "one line");
-    let moved_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
-    assert_eq!(moved_edge, None, "a pin besides the LED's");
+    assert_eq!(fault_lines.count(), 1, "the fault is reported once");
+    let other_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
+    assert_eq!(other_edge, None, "a pin besides the LED's");
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
@@ -240,27 +249,29 @@ fn assert_finds_no_robot(damage: &Damage) {
 
 #[test]
 fn without_a_complete_robot_there_is_no_pulse_and_the_console_says_why() {
-    for_each(&missing_sections(), assert_finds_no_robot);
+    for_each_in_parallel(&missing_sections(), assert_finds_no_robot);
 }
 
 #[test]
-fn a_bit_that_is_flipped_in_any_part_of_the_robot_ends_all_pulses() {
-    for_each(&flipped_bits(), assert_finds_no_robot);
+fn with_a_flipped_bit_in_any_part_of_the_robot_there_is_no_pulse() {
+    for_each_in_parallel(&flipped_bits(), assert_finds_no_robot);
 }
 
 #[test]
 fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
-    for_each(&wrong_sections(), assert_finds_no_robot);
+    for_each_in_parallel(&invalid_sections(), assert_finds_no_robot);
 }
 
-/// Checking the section is the only cost at the start that a compiled-in robot would not have.
+/// At the start, only the check of the section takes longer than for a robot compiled into the firmware.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
-    for_each(
+    for_each_in_parallel(
         &["grain", "large", "own-gaits", "paper", "unequal"],
         |name| {
-            let robot = Robot::load(root().join(format!("robots/{name}.toml"))).expect("a robot");
-            let image = with_robot(&FirmwareBench::elf(), &robot).expect("make firmware");
+            let robot = Robot::load(root().join(format!("robots/{name}.toml")))
+                .expect("the file describes a robot");
+            let image = with_robot(&FirmwareBench::elf(), &robot)
+                .expect("`make firmware` has built the ELF");
             let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
             let calls = FirmwareBench::with_board(board).time_calls("Robot::open", 200);
             let [call] = calls[..] else {
@@ -271,7 +282,7 @@ fn the_largest_section_is_checked_within_a_frame() {
                 "{name}: {section_bytes} bytes in {:.1} ms",
                 call.cycles() as f64 / 16_000.0
             );
-            assert!(call.cycles() < FRAME, "{name}: {call:?}");
+            assert!(call.cycles() < FRAME_CYCLES, "{name}: {call:?}");
         },
     );
 }
@@ -285,8 +296,8 @@ fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
         let led_edges: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
         // Durations of light and dark, in frames.
         let durations = led_edges.windows(2).map(|pair| {
-            let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME as f64;
-            (pair[0].high, frames.round() as u64)
+            let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME_CYCLES as f64;
+            (pair[0].is_rising, frames.round() as u64)
         });
         let durations: Vec<(bool, u64)> = durations.collect();
         let mut pattern = [(true, 8), (false, 8)].repeat(8);

@@ -1,16 +1,16 @@
 //! Tests of the faults that stop a motion: each has its own word in `status`, message and number of LED flashes.
 
-use lizard_host::sim::frame::FRAME;
+use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::kept::{count_flashes, measure_widths, recorded_pulses, run_for_pulses};
-use crate::walk::ReferenceRun;
+use crate::measurements::{count_flashes, measure_widths, recorded_pulses, run_for_pulses};
+use crate::reference_run::ReferenceRun;
 use crate::{Status, boot_and_command, first_moving_gait};
 
-/// Checks a fault's effects: nothing moves, `status` and exactly one line name it, and the LED flashes `code`
-/// times.
-fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: usize) {
+/// Checks the effects of a fault: nothing moves, `status` and exactly one line name the fault, and the LED flashes
+/// `flash_count` times between pauses.
+fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, flash_count: usize) {
     let status = Status::of(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
     let held_widths = measure_widths(bench);
@@ -22,7 +22,10 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: us
     assert_eq!(printed_lines.count(), 1, "{line}");
     let flashes = count_flashes(bench, 12);
     assert!(flashes.len() >= 3, "{flashes:?}");
-    assert!(flashes.iter().all(|count| *count == code), "{flashes:?}");
+    assert!(
+        flashes.iter().all(|count| *count == flash_count),
+        "{flashes:?}"
+    );
 }
 
 #[test]
@@ -57,7 +60,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
 }
 
 #[test]
-fn deadman_is_off_unless_set_and_leaves_a_robot_that_stands_alone() {
+fn deadman_is_off_unless_set_and_does_not_affect_a_standing_robot() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(70_000);
     assert_eq!(Status::of(&mut bench).text("fault"), "none");
@@ -73,39 +76,39 @@ fn deadman_is_off_unless_set_and_leaves_a_robot_that_stands_alone() {
 
 #[test]
 fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
-    let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
-    let rise = walk.next_frame();
-    walk.run_to(rise - 600);
-    walk.bench.uno.block_interrupts(700);
-    walk.run_to(rise + 2 * FRAME);
-    let pulses = recorded_pulses(&walk.bench);
+    let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
+    let rise = run.next_frame();
+    run.run_to(rise - 600);
+    run.bench.uno.block_interrupts(700);
+    run.run_to(rise + 2 * FRAME_CYCLES);
+    let pulses = recorded_pulses(&run.bench);
     assert!(
         pulses[0]
             .iter()
-            .all(|pulse| pulse.start < rise || pulse.start > rise + FRAME / 2),
+            .all(|pulse| pulse.start < rise || pulse.start > rise + FRAME_CYCLES / 2),
         "{:?}",
         pulses[0]
     );
     let message = "a pulse came late, stopped";
-    assert_stopped(&mut walk.bench, "late", message, 5);
-    assert_eq!(Status::of(&mut walk.bench).number("late"), 1.0);
+    assert_stopped(&mut run.bench, "late", message, 5);
+    assert_eq!(Status::of(&mut run.bench).number("late"), 1.0);
 }
 
 #[test]
 fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
     for byte in 0..4 {
-        let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
-        let guard_address = walk.address("lizard_stack_guard") + byte;
-        let byte_before = walk.bench.uno.peek(guard_address);
-        walk.bench.uno.poke(guard_address, byte_before ^ 0x10);
-        walk.bench.run_ms(100);
+        let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
+        let guard_address = run.address("lizard_stack_guard") + byte;
+        let byte_before = run.bench.uno.peek(guard_address);
+        run.bench.uno.poke(guard_address, byte_before ^ 0x10);
+        run.bench.run_ms(100);
         let message = "the stack has grown into the data, stopped";
-        assert_stopped(&mut walk.bench, "stack", message, 6);
+        assert_stopped(&mut run.bench, "stack", message, 6);
         // The data may be corrupt, so the robot does not move again.
-        walk.bench.say(&first_moving_gait());
-        walk.bench.run_ms(100);
-        let held_widths = measure_widths(&mut walk.bench);
-        walk.bench.run_ms(1000);
-        assert_eq!(measure_widths(&mut walk.bench), held_widths);
+        run.bench.say(&first_moving_gait());
+        run.bench.run_ms(100);
+        let held_widths = measure_widths(&mut run.bench);
+        run.bench.run_ms(1000);
+        assert_eq!(measure_widths(&mut run.bench), held_widths);
     }
 }

@@ -7,19 +7,19 @@ use lizard_host_tests::robot;
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, boot_standing, for_each};
+use crate::{FRAMES_PER_SECOND, boot_standing, for_each_in_parallel};
 
 /// Largest deviation of the gait tables from floating point that the project promises, deg.
-const MAX_TABLE_ERROR: f64 = 0.50;
+const MAX_TABLE_ERROR_DEG: f64 = 0.50;
+
 /// Returns the largest error from rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the
 /// neutral width.
 fn max_rounding_error() -> f64 {
-    let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
-    1.0 / 16.0 / finest.into_iter().fold(f64::INFINITY, f64::min)
+    let gains = robot().servos().map(|servo| servo.us_per_degree.abs());
+    1.0 / 16.0 / gains.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Number of frames in which a gait accelerates at its start, and the share of the full pace that each of these
-/// frames adds.
+/// Number of frames in which a gait accelerates at its start, and the share of full pace that each of them adds.
 const ACCELERATION: (usize, f64) = (7, 147.0 / 1024.0);
 
 /// Orders a gait one second after power-on and returns the servo angles of each frame from then on, deg.
@@ -30,8 +30,9 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let frames = bench.run_for_frames(
         (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64 + 3 * FRAMES_PER_SECOND,
     );
-    let angles_of =
-        |frame: lizard_host::sim::analysis::ServoFrame| frame.angles.expect("four pulses");
+    let angles_of = |frame: lizard_host::sim::analysis::ServoFrame| {
+        frame.angles.expect("each servo has a pulse")
+    };
     servo_frames_of(robot(), &frames)
         .into_iter()
         .map(angles_of)
@@ -41,8 +42,8 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
 /// Returns the phase of a gait this many frames after its start.
 fn phase_after(gait: &CheckedGait, frames: usize) -> f64 {
     let pace = |frame: usize| (frame as f64 * ACCELERATION.1).min(1.0);
-    let full_frames: f64 = (1..=frames).map(pace).sum();
-    gait.phase(full_frames / FRAMES_PER_SECOND as f64)
+    let frames_at_full_pace: f64 = (1..=frames).map(pace).sum();
+    gait.phase_at(frames_at_full_pace / FRAMES_PER_SECOND as f64)
 }
 
 /// Returns the angles of a gait frame by frame from its start, in floating point, deg.
@@ -77,7 +78,7 @@ fn find_gait_start(gait: &CheckedGait, float_angles: &[[f64; 4]], frames: &[[f64
 
 #[test]
 fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
-    for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             let frames = decode_angles(gait, *fidelity);
             let float_angles = expected_angles(gait, frames.len());
@@ -89,13 +90,13 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
                 frames.len() - start
             );
             assert!(
-                error <= MAX_TABLE_ERROR + max_rounding_error(),
+                error <= MAX_TABLE_ERROR_DEG + max_rounding_error(),
                 "{}: {error} deg",
                 gait.name()
             );
             // One frame earlier or later would exceed the bound, so the comparison can tell frames
             // apart.
-            if gait.moves() {
+            if gait.has_movement() {
                 assert!(error > 0.0, "{}: tables are rounded", gait.name());
                 // The first frame has no previous one.
                 let neighbours = [Some(start + 1), start.checked_sub(1)];
@@ -112,28 +113,28 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
 }
 
 #[test]
-fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
+fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
     let gaits: Vec<&str> = robot().gaits().iter().map(|gait| gait.name()).collect();
     let compared_count = AtomicUsize::new(0);
-    for_each(&gaits, |&name| {
-        let gait = robot().gait(name).expect("it is in robot.toml");
-        let expected = gait.predict(&robot().ground().rigid());
+    for_each_in_parallel(&gaits, |&name| {
+        let gait = robot().gait(name).expect("the gait is in robot.toml");
+        let expected = gait.predict(&robot().ground().with_rigid_drive());
         let (Some(forward), Some(turn)) = (expected.forward, expected.turn) else {
-            println!("{name:<10} depends on a tie");
+            println!("{name:<10} not compared: the prediction depends on a tie between feet");
             return;
         };
-        compared_count.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
+        compared_count.fetch_add(usize::from(gait.has_movement()), Ordering::Relaxed);
         let frames = decode_angles(gait, Fidelity::DataSheet);
         let float_angles = expected_angles(gait, frames.len());
         let start = find_gait_start(gait, &float_angles, &frames);
-        // Whole cycles, from the first frame at full pace that begins a cycle: two if a cycle is no whole number of
-        // frames.
+        // Whole cycles, from the first frame at full pace that begins a cycle: two if one cycle is not a whole
+        // number of frames.
         let cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
             1
         } else {
             2
         };
-        // If two cycles are no whole number of frames either, the missing part of a frame is negligible.
+        // If two cycles are not a whole number of frames either, the missing part of a frame is negligible.
         let frame_count = (f64::from(cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
         let phase_step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
         let first_frame = (start + ACCELERATION.0..frames.len())
@@ -146,7 +147,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
                 }
             })
             .expect("a cycle begins");
-        let movement = robot().travel(
+        let movement = robot().predict_travel(
             frames[first_frame..=first_frame + frame_count]
                 .iter()
                 .copied(),
@@ -156,7 +157,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
             movement.turn / f64::from(cycles),
         );
         println!("{name:<10} {measured_forward:7.2} mm {measured_turn:7.2} deg");
-        // The holding feet may depend on a tenth of a degree.
+        // A tenth of a degree may decide which feet hold.
         let scale = robot().lizard().links.l10 / 135.0;
         let max_error = (0.3 * scale).max(forward.abs() * 0.02);
         assert!(

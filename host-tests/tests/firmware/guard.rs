@@ -11,22 +11,22 @@ use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use lizard_proof::{STEPS_BAND, margin_band};
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each, neutral_widths};
+use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each_in_parallel, neutral_widths};
 
 /// Returns the largest error of the guard's slider position against floating point, mm.
-fn stroke_band() -> f64 {
-    let scales = Side::ALL.map(|side| robot().firmware().side(side).scale.bits);
+fn max_stroke_error() -> f64 {
+    let scales = Side::ALL.map(|side| robot().firmware().slider(side).scale.bits);
     STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
 }
 
 /// Returns the largest error of a margin that the guard computes, if the type-2 margins are at least `type2`.
-fn margin_error(type2: f64) -> f64 {
+fn max_margin_error(type2: f64) -> f64 {
     let ends = [
         (End::Head, kinematics::End::Head),
         (End::Tail, kinematics::End::Tail),
     ];
     let bands = ends.map(|(end, kinematic_end)| {
-        let step = 1.0 / f64::from(1 << robot().firmware().end(end).bars().scale().bits);
+        let step = 1.0 / f64::from(1 << robot().firmware().five_bar(end).bars().scale().bits);
         margin_band(&robot().lizard().end(kinematic_end), type2, step)
     });
     bands[0].max(bands[1])
@@ -35,7 +35,7 @@ fn margin_error(type2: f64) -> f64 {
 /// Returns the limits, made stricter by the guard's tolerance (`sign` = 1) or less strict (`sign` = -1).
 fn limits_with_tolerance(sign: f64) -> Limits {
     let limits = robot().limits();
-    let (margin, stroke) = (margin_error(limits.type2), stroke_band());
+    let (margin, stroke) = (max_margin_error(limits.type2), max_stroke_error());
     Limits {
         type2: limits.type2 + sign * margin,
         type1: limits.type1 + sign * margin,
@@ -78,6 +78,7 @@ fn random_far_pose(rng: &mut Rng) -> [f64; 4] {
     }
 }
 
+/// Returns the command for a pose, deg in the chassis frame.
 fn pose_line(angles: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles;
     format!("pose {a1} {a2} {a3} {a4}")
@@ -85,7 +86,7 @@ fn pose_line(angles: [f64; 4]) -> String {
 
 #[test]
 fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
-    for_each(&[20.0, 40.0, 80.0], |&max_deg| {
+    for_each_in_parallel(&[20.0, 40.0, 80.0], |&max_deg| {
         let mut rng = Rng::with_seed(max_deg as u64);
         let mut bench = boot_standing(Fidelity::DataSheet);
         let (mut accepted_count, mut refused_counts) = (0, [0; 2]);
@@ -116,13 +117,15 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
 /// one: `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1, ...`, `err 5 left
 /// slider is at 55.35 mm, ...`.
 fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
-    let (name, rest) = answer.split_once(" is ").expect("a name and a value");
+    let (name, rest) = answer
+        .split_once(" is ")
+        .expect("a refusal has a name and a value");
     if rest.starts_with("below 0.1, ") {
         return (&name[4..], None);
     }
     let value = rest.trim_start_matches("at ").split([',', ' ']).next();
     let value = value.and_then(|value| value.parse().ok());
-    (&name[4..], Some(value.expect("a number")))
+    (&name[4..], Some(value.expect("the value is a number")))
 }
 
 /// Returns the value of the named condition in floating point, and the guard's largest error of that value. The name
@@ -139,8 +142,8 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
         }
     };
     // Where the couplers are nearly in line, a rounding step of a length turns them by a large angle.
-    let tolerance_of_end = |end: usize| margin_error(margins.type2[end].max(0.05)) + 0.0005;
-    let stroke_tolerance = stroke_band() + 0.005;
+    let tolerance_of_end = |end: usize| max_margin_error(margins.type2[end].max(0.05)) + 0.0005;
+    let stroke_tolerance = max_stroke_error() + 0.005;
     let conditions = [
         (
             "4 type-2 margin of the head",
@@ -184,7 +187,7 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
 }
 
 #[test]
-fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
+fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = Rng::with_seed(3);
     let (mut named_count, mut unknown_count) = (0, 0);
@@ -204,8 +207,9 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
                 let head = head.forward(angles[0], angles[1]);
                 match head {
                     Ok(pose) if name.ends_with("head") && printed_value.is_some() => {
-                        let max_error = margin_error(pose.type2.max(0.05)) + 0.0005;
-                        let error = printed_value.expect("a number").abs() - pose.type2;
+                        let max_error = max_margin_error(pose.type2.max(0.05)) + 0.0005;
+                        let error =
+                            printed_value.expect("the value is a number").abs() - pose.type2;
                         assert!(
                             error.abs() <= max_error,
                             "{angles:?}: {answer}, {loop_error}"
@@ -213,9 +217,9 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
                     }
                     _ => {
                         assert!(name.starts_with("4 type-2"), "{angles:?}: {answer}");
-                        let is_small =
+                        let is_near_singularity =
                             printed_value.is_none_or(|printed_value| printed_value.abs() < 0.1);
-                        assert!(is_small, "{angles:?}: {answer}, {loop_error}");
+                        assert!(is_near_singularity, "{angles:?}: {answer}, {loop_error}");
                     }
                 }
                 unknown_count += 1;
@@ -248,13 +252,13 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
 }
 
 #[test]
-fn no_frame_breaks_a_limit_for_any_commands() {
+fn no_frame_breaks_a_limit_under_random_commands() {
     let cases = [
         (Fidelity::Stock, 21),
         (Fidelity::DataSheet, 22),
         (Fidelity::DataSheet, 23),
     ];
-    for_each(&cases, |&(fidelity, seed)| {
+    for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut rng = Rng::with_seed(seed);
         let mut bench = boot_standing(fidelity);
         let lines: Vec<String> = robot()
@@ -265,7 +269,7 @@ fn no_frame_breaks_a_limit_for_any_commands() {
         let mut frames = Vec::new();
         for _ in 0..150 {
             let line = if rng.u64(..3) == 0 {
-                rng.choice(&lines).expect("there are some").clone()
+                rng.choice(&lines).expect("every robot has a gait").clone()
             } else {
                 pose_line(random_far_pose(&mut rng))
             };
@@ -275,18 +279,20 @@ fn no_frame_breaks_a_limit_for_any_commands() {
         let lax_limits = limits_with_tolerance(-1.0);
         let sent_frames = servo_frames_of(robot(), &frames);
         for frame in &sent_frames {
-            let angles = frame.angles.expect("four pulses");
+            let angles = frame.angles.expect("each servo has a pulse");
             assert!(is_safe(angles, &lax_limits), "{frame:?}");
         }
         // No servo moves farther in a frame than the slew limits allow.
-        let pace = robot().pace();
-        let max_step_deg = pace.gait_slew.max(pace.slew) / 50.0;
+        let speed_limits = robot().speed_limits();
+        let max_step_deg = speed_limits.gait_slew.max(speed_limits.slew) / 50.0;
         for (pair, frame_pair) in sent_frames.windows(2).zip(frames.windows(2)) {
-            if frame_pair[1].start - frame_pair[0].start > lizard_host_tests::FRAME {
+            if frame_pair[1].start - frame_pair[0].start > lizard_host_tests::FRAME_CYCLES {
                 continue;
             }
-            let (angles_before, angles_after) =
-                (pair[0].angles.expect("four"), pair[1].angles.expect("four"));
+            let (angles_before, angles_after) = (
+                pair[0].angles.expect("each servo has a pulse"),
+                pair[1].angles.expect("each servo has a pulse"),
+            );
             for servo in 0..4 {
                 let step = (angles_after[servo] - angles_before[servo]).abs();
                 assert!(
@@ -361,24 +367,24 @@ fn assert_every_safe_pose_is_reached() {
 }
 
 #[test]
-fn a_path_that_breaks_a_limit_ends_before_that() {
+fn the_robot_stops_on_an_unsafe_path_before_it_breaks_a_limit() {
     let Some([from, to]) = poses_with_unsafe_path_between() else {
         assert_every_safe_pose_is_reached();
         return;
     };
-    for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         let mut bench = boot_standing(*fidelity);
         assert!(bench.say(&pose_line(from)).starts_with("ok pose"));
         bench.run_ms(5000);
         assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
-        let note = bench.next_line(5000).expect("the robot tells");
+        let note = bench.next_line(5000).expect("the robot prints a note");
         assert!(note.starts_with("# held in the last safe pose: "), "{note}");
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
         let held_angles = servo_frames_of(robot(), &frames)[0]
             .angles
-            .expect("four pulses");
+            .expect("each servo has a pulse");
         assert!(is_safe(held_angles, &limits_with_tolerance(-1.0)) && held_angles != from);
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");

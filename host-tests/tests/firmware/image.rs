@@ -18,8 +18,10 @@ fn functions_with(parts: &[&str]) -> Vec<String> {
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
     assert!(
-        paths.iter().any(|path| path.ends_with("Control::frame")),
-        "the ELF has its symbols"
+        paths
+            .iter()
+            .any(|path| path.ends_with("Control::compute_frame")),
+        "the ELF has no symbols"
     );
     paths
         .into_iter()
@@ -28,7 +30,7 @@ fn functions_with(parts: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn nothing_in_it_can_panic() {
+fn the_image_contains_no_panic_code() {
     let functions = functions_with(&[
         "panic",
         "rust_begin_unwind",
@@ -40,13 +42,13 @@ fn nothing_in_it_can_panic() {
 }
 
 #[test]
-fn nothing_in_it_uses_core_fmt() {
+fn the_image_does_not_contain_core_fmt() {
     let functions = functions_with(&["core::fmt", "Formatter", "Display", "Debug"]);
     assert!(functions.is_empty(), "{functions:?}");
 }
 
 #[test]
-fn nothing_in_it_is_floating_point() {
+fn the_image_contains_no_floating_point_routines() {
     // Routines of avr-libc and compiler-rt (__addsf3, __muldf3, __floatsisf, __fixunssfsi, __fp_split3 and similar
     // ones) and of libm.
     let image = image();
@@ -84,7 +86,7 @@ fn tables_and_messages_stay_in_flash() {
     let ram_contains = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
     let waves = robot().firmware().waves();
     for n in 0..waves.len() {
-        let wave = waves.get(n).expect("a waveform").load();
+        let wave = waves.get(n).expect("the waveform exists").load();
         for samples in wave.windows(6) {
             // A held leg gives a run of equal values, which RAM may contain by chance.
             if samples.iter().all(|sample| *sample == samples[0]) {
@@ -110,12 +112,12 @@ fn tables_and_messages_stay_in_flash() {
     }
     assert!(
         ram_contains(b"# lizard"),
-        "the banner is in RAM, from where it was sent"
+        "the banner, which was just sent, is not in RAM"
     );
 }
 
 #[test]
-fn no_interrupt_is_used_that_would_come_before_the_servos() {
+fn no_interrupt_of_higher_priority_than_the_servos_is_used() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     for line in ["walk", "help", "status", "rest", "stand"] {
         bench.say(line);
@@ -135,39 +137,39 @@ fn no_interrupt_is_used_that_would_come_before_the_servos() {
 }
 
 #[test]
-fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
-    let folder = tempfile::tempdir().expect("a folder");
+fn an_image_that_does_not_fit_is_refused_with_the_excess_and_the_largest_functions() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let changed_elf = folder.path().join("changed.elf");
     let image = image();
-    let code = image
+    let code_end = image
         .symbol("__code_end")
-        .expect("it is in the ELF")
+        .expect("the ELF has the symbol")
         .address;
     // The script takes the bounds of the robot's section from two symbols, so moving a symbol makes the code or
     // the robot too large.
-    let check_with = |symbol: &str, address: u64| {
+    let check_with_symbol = |symbol: &str, address: u64| {
         let status = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))
             .args(["--add-symbol", &format!("{symbol}={address:#x}")])
             .args([&FirmwareBench::elf(), &changed_elf])
             .status();
-        assert!(status.expect("avr-objcopy").success());
+        assert!(status.expect("avr-objcopy runs").success());
         let output = Command::new(root().join("scripts/size"))
             .arg("--check")
             .arg(&changed_elf)
             .output()
-            .expect("a shell");
+            .expect("scripts/size runs");
         assert!(output.stdout.is_empty());
-        let error_text = String::from_utf8(output.stderr).expect("a text");
+        let error_text = String::from_utf8(output.stderr).expect("the messages are UTF-8");
         (output.status.success(), error_text)
     };
-    assert_eq!(check_with("unused", 0), (true, String::new()));
-    let (is_accepted, message) = check_with("__robot_start", code - 300);
+    assert_eq!(check_with_symbol("unused", 0), (true, String::new()));
+    let (is_accepted, message) = check_with_symbol("__robot_start", code_end - 300);
     assert!(!is_accepted);
     let lines: Vec<&str> = message.lines().collect();
     let excess = format!(
-        "the firmware does not fit: its code has {code} bytes, 300 more than the {} in front",
-        code - 300
+        "the firmware does not fit: its code has {code_end} bytes, 300 more than the {} in front",
+        code_end - 300
     );
     assert!(lines[0].starts_with(&excess), "{message}");
     assert_eq!(lines.len(), 1 + 10, "{message}");
@@ -178,15 +180,15 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         sizes.is_sorted_by(|larger, smaller| larger.is_some() && larger >= smaller),
         "{message}"
     );
-    let has_frame = lines[1..3]
+    let names_frame_function = lines[1..3]
         .iter()
-        .any(|line| line.ends_with("::controller::frame"));
-    assert!(has_frame, "{message}");
+        .any(|line| line.ends_with("::controller::compute_frame"));
+    assert!(names_frame_function, "{message}");
     let start = image
         .symbol("__robot_start")
-        .expect("it is in the ELF")
+        .expect("the ELF has the symbol")
         .address;
-    let (is_accepted, message) = check_with("__robot_end", start + 300);
+    let (is_accepted, message) = check_with_symbol("__robot_end", start + 300);
     assert!(!is_accepted);
     assert!(message.starts_with("the robot does not fit: "), "{message}");
 }

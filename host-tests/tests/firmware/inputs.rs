@@ -9,7 +9,7 @@ use lizard_host_tests::{FirmwareBench, root};
 use lizard_robot::{Robot, Travel};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
-use crate::kept::{measure_widths, power_cycle, run_for_pulses};
+use crate::measurements::{measure_widths, power_cycle, run_for_pulses};
 use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 
 /// The input pins in docs/gaits.md.
@@ -30,22 +30,23 @@ fn robot() -> &'static Robot {
 
 /// Returns the paper's robot with the patrol of docs/gaits.md, its button and obstacle switch at these pins.
 fn patrol_robot_with_pins(button: &str, nose: &str) -> Robot {
-    let read = |file: &str| fs::read_to_string(root().join(file)).expect(file);
-    let docs = read("docs/gaits.md");
+    let read_file = |file: &str| fs::read_to_string(root().join(file)).expect(file);
+    let docs = read_file("docs/gaits.md");
     let blocks = docs
         .split("```toml\n")
         .filter_map(|block| block.split("```").next());
     let mut patrols = blocks.filter(|block| block.contains("[input.button]"));
-    let patrol = patrols.next().expect("it is there");
+    let patrol = patrols.next().expect("docs/gaits.md has a patrol");
     let patrol = patrol.replace("\"A1\"", &format!("\"{button}\""));
     let patrol = patrol.replace("\"A2\"", &format!("\"{nose}\""));
-    let text = format!("{}\n{patrol}", read("robots/paper.toml"));
-    Robot::parse(&text).expect("a robot")
+    let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
+    Robot::parse(&text).expect("the patrol suits the robot")
 }
 
 /// Returns a board with this robot, a second after power-on, with both contacts open.
 fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
-    let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot).expect("a banner");
+    let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot)
+        .expect("the firmware prints its banner");
     let mut bench = FirmwareBench::with_board(board);
     for pin in [BUTTON, NOSE] {
         bench.uno.set_contact(pin, false);
@@ -71,6 +72,7 @@ fn start_walking_patrol(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
+/// Closes a contact for `ms` milliseconds.
 fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, true);
     bench.run_ms(ms);
@@ -96,7 +98,7 @@ fn travel_of(frames: &[Frame]) -> Travel {
         let widths = frame.widths();
         std::array::from_fn(|i| servos[i].neutral + servos[i].sweep(widths[i] as f64 / 16.0))
     };
-    robot().travel(frames.iter().map(angles_of))
+    robot().predict_travel(frames.iter().map(angles_of))
 }
 
 /// True if the servos stand still for a second.
@@ -137,8 +139,11 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
             let mut frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
             bench.uno.set_contact(NOSE, false);
             frames.extend(bench.run_for_frames(6 * FRAMES_PER_SECOND));
-            let displacement = travel_of(&frames);
-            assert!(displacement.turn > 75.0, "it has turned: {displacement:?}");
+            let turn_travel = travel_of(&frames);
+            assert!(
+                turn_travel.turn > 75.0,
+                "the robot has not turned: {turn_travel:?}"
+            );
             assert!(read_notes(&mut bench, line_count).is_empty());
             // No second press is needed: the patrol waits only for the wall.
             bench.run_ms(2_500);
@@ -156,7 +161,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
 }
 
 #[test]
-fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
+fn a_stuck_button_or_too_short_a_press_starts_nothing() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_with_inputs(robot(), fidelity);
         bench.uno.set_contact(BUTTON, true);
@@ -176,7 +181,7 @@ fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
 }
 
 #[test]
-fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
+fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
     for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         type Event = fn(&mut FirmwareBench);
         let events: [(&str, Event); 5] = [
@@ -246,8 +251,8 @@ fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
 fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
     for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         let mut bench = start_patrol(Fidelity::DataSheet);
-        let calls = bench.time_calls("Control::frame", 4_000);
-        let cycles = calls.iter().map(|call| call.leave - call.enter);
+        let calls = bench.time_calls("Control::compute_frame", 4_000);
+        let cycles = calls.iter().map(|call| call.leave_cycle - call.enter_cycle);
         let mean_cycles = cycles.sum::<u64>() / calls.len() as u64;
         println!("{mean_cycles} cycles a frame");
         assert!(

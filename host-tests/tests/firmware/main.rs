@@ -1,12 +1,11 @@
-//! Tests of the firmware's own ELF on a simulated UNO: of its answers, its pulses, its contents and its
-//! costs.
+//! Tests of the firmware's ELF on a simulated UNO: its answers, its pulses, its contents and its costs.
 //!
 //! Every claim about pulses and the serial line is tested twice, on stock simavr
 //! and on simavr corrected by the data sheet. The two differ in interrupt latency
 //! and in the serial receiver, so a claim that holds in both depends on neither.
 //!
-//! The ELF is built by `make firmware`. If it is older than the sources, it differs from the core
-//! that these tests are built with, and they fail.
+//! `make firmware` builds the ELF. If the ELF is older than the sources, it differs from the core that
+//! these tests contain, and they fail.
 
 use std::collections::HashMap;
 use std::thread;
@@ -16,7 +15,9 @@ use lizard_host_tests::{FirmwareBench, Frame, robot};
 use simulated_uno::Fidelity;
 
 mod bad_input;
+mod baud_rate;
 mod bench;
+mod blocked_interrupts;
 mod calibration;
 mod console;
 mod core_run;
@@ -27,27 +28,25 @@ mod every_cycle;
 mod faults;
 mod gaits;
 mod guard;
-mod held_up;
 mod image;
 mod inputs;
-mod kept;
 mod led;
-mod line;
-mod lines;
+mod measurements;
 mod no_pulse;
 mod other_robots;
 mod power_cut;
 mod power_up;
 mod pulses;
-mod rate;
+mod random_lines;
+mod reference_run;
 mod same_pulses;
 mod serial;
+mod serial_settings;
 mod slow_main;
 mod stock_simavr;
 mod stopping;
 mod supply;
 mod ten_minutes;
-mod walk;
 mod watchdog;
 
 /// Frames in a second.
@@ -72,20 +71,20 @@ fn comparable_line(line: &str, fidelity: Fidelity) -> String {
 
 /// Runs a test on stock simavr and on corrected simavr in parallel.
 fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
-    for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         test(*fidelity)
     });
 }
 
-/// Runs a test for every case, each on a thread of its own.
-fn for_each<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
+/// Runs a test for every case, each case on its own thread.
+fn for_each_in_parallel<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
     thread::scope(|scope| {
         let handles: Vec<_> = cases
             .iter()
             .map(|case| (case, scope.spawn(|| test(case))))
             .collect();
         for (case, handle) in handles {
-            assert!(handle.join().is_ok(), "it fails for {case:?}");
+            assert!(handle.join().is_ok(), "the test fails for {case:?}");
         }
     });
 }
@@ -155,28 +154,32 @@ fn widths(frames: &[Frame]) -> Vec<[u64; 4]> {
 struct Status(HashMap<String, String>);
 
 impl Status {
+    /// Asks the robot for its status.
     fn of(bench: &mut FirmwareBench) -> Self {
         let answer = bench.say("status");
         let pairs = answer.strip_prefix("ok gait=").map(|_| &answer[3..]);
         let pairs = pairs.unwrap_or_else(|| panic!("no answer to status: {answer}"));
         let split_pair = |pair: &str| {
-            let (key, value) = pair.split_once('=').expect("key=value");
+            let (key, value) = pair.split_once('=').expect("a pair is key=value");
             (key.to_owned(), value.to_owned())
         };
         Self(pairs.split(' ').map(split_pair).collect())
     }
 
+    /// Returns the value of a key as text.
     fn text(&self, key: &str) -> &str {
         let value = self.0.get(key);
         value.unwrap_or_else(|| panic!("status has no {key}"))
     }
 
+    /// Returns the value of a key as a number.
     fn number(&self, key: &str) -> f64 {
         self.text(key)
             .parse()
             .unwrap_or_else(|_| panic!("{key}={}", self.text(key)))
     }
 
+    /// Returns the servo angles, deg.
     fn pose(&self) -> [f64; 4] {
         parse_angles(self.text("pose"))
     }
@@ -186,7 +189,7 @@ impl Status {
 fn parse_angles(list: &str) -> [f64; 4] {
     let angles: Vec<f64> = list
         .split(',')
-        .map(|angle| angle.parse().expect("a number"))
+        .map(|angle| angle.parse().expect("an angle is a number"))
         .collect();
-    angles.try_into().expect("four angles")
+    angles.try_into().expect("a pose has four angles")
 }

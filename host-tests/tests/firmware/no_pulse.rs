@@ -1,75 +1,82 @@
-//! Tests that some pulses never occur: pulses too wide or too narrow for a slot, and any rising edge
-//! after `pulses::ALLOWED` is cleared, which ends the pulses for good.
+//! Tests that no pulse is sent if its width does not fit into a slot, or once the firmware has cleared
+//! `pulses::ALLOWED_PINS`, which disallows pulses for good.
 
-use lizard_host::sim::frame::FRAME;
+use lizard_host::sim::frame::FRAME_CYCLES;
 
-use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{Status, neutral_widths, run_in_both_simulations};
 
-/// Widths that fit into a slot, cycles.
-const WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
+/// Pulse widths that fit into a slot, cycles.
+const SLOT_WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 #[test]
-fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
+fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
     run_in_both_simulations(|fidelity| {
-        let mut walk = ReferenceRun::start_standing(fidelity);
+        let mut run = ReferenceRun::start_standing(fidelity);
         // `FRAMES` holds two sets of four widths, two bytes each. A3's width is the third of each set.
-        let frames_address = walk.address("pulses::FRAMES");
-        let a3_addresses = [frames_address + 4, frames_address + 12];
+        let frames_address = run.address("pulses::FRAMES");
+        let a3_width_addresses = [frames_address + 4, frames_address + 12];
         let widths = [
             1, 219, 220, 221, 999, 1_000, 1_001, 30_000, 62_999, 63_000, 63_001, 63_780, 63_781,
             63_999, 64_000, 65_315, 65_535,
         ];
         for width in widths {
-            let start = walk.next_frame();
-            // This is after the frame's widths are handed over and before A3's slot is planned.
-            walk.run_to(start + 2_000);
-            for (address, index) in a3_addresses.into_iter().flat_map(|a| [(a, 0), (a + 1, 1)]) {
-                let byte_before = u16::from(walk.bench.uno.peek(address));
+            let start = run.next_frame();
+            // At this time, the frame's widths have been handed over and A3's slot is not yet planned.
+            run.run_to(start + 2_000);
+            for (address, index) in a3_width_addresses
+                .into_iter()
+                .flat_map(|a| [(a, 0), (a + 1, 1)])
+            {
+                let byte_before = u16::from(run.bench.uno.peek(address));
                 let neutral_byte = (neutral_widths()[2] as u16).to_le_bytes()[index];
-                assert_eq!(byte_before, u16::from(neutral_byte), "where A3's width is");
-                walk.bench.uno.poke(address, u16::to_le_bytes(width)[index]);
+                assert_eq!(
+                    byte_before,
+                    u16::from(neutral_byte),
+                    "the address of A3's width is wrong"
+                );
+                run.bench.uno.poke(address, u16::to_le_bytes(width)[index]);
             }
-            walk.run_to(start + FRAME - SLOT_CYCLES / 2);
-            let (frame, expected_widths) = walk.frames_since(start)[0];
-            let expected = WIDTHS.contains(&width).then_some(u64::from(width));
+            run.run_to(start + FRAME_CYCLES - SLOT_CYCLES / 2);
+            let (frame, expected_widths) = run.frames_since(start)[0];
+            let expected = SLOT_WIDTHS.contains(&width).then_some(u64::from(width));
             assert_eq!(frame.widths[2], expected, "{width}");
             for servo in [0, 1, 3] {
                 assert_eq!(frame.widths[servo], Some(expected_widths[servo]), "{width}");
             }
-            walk.bench.run_ms(40);
+            run.bench.run_ms(40);
         }
-        assert_eq!(walk.late_edge_count(), 0);
+        assert_eq!(run.late_edge_count(), 0);
     });
 }
 
 #[test]
-fn after_the_switch_only_the_pulse_under_way_ends_and_the_tick_goes_on() {
+fn once_pulses_are_disallowed_the_current_one_ends_no_other_begins_and_the_ticks_go_on() {
     run_in_both_simulations(|fidelity| {
-        // Moments in every part of a frame: before, in and after each pulse.
+        // The moments lie in every part of a frame: before, in and after each pulse.
         for n in 0..40 {
-            let mut walk = ReferenceRun::start_standing(fidelity);
-            let start = walk.next_frame();
-            walk.run_to(start + n * FRAME / 40 + 777);
-            let switch_cycle = walk.bench.uno.cycle();
-            let switch_address = walk.address("pulses::ALLOWED");
-            walk.bench.uno.poke(switch_address, 0);
-            let frames_before = Status::of(&mut walk.bench).number("frames");
-            walk.bench.run_ms(1000);
-            for edge in crate::pulses::servo_edges(&walk.bench) {
+            let mut run = ReferenceRun::start_standing(fidelity);
+            let start = run.next_frame();
+            run.run_to(start + n * FRAME_CYCLES / 40 + 777);
+            let clear_cycle = run.bench.uno.cycle();
+            let allowed_address = run.address("pulses::ALLOWED_PINS");
+            run.bench.uno.poke(allowed_address, 0);
+            let frames_before = Status::of(&mut run.bench).number("frames");
+            run.bench.run_ms(1000);
+            for edge in crate::pulses::servo_edges(&run.bench) {
                 // One cycle of tolerance, for a store that is already executing.
                 assert!(
-                    !edge.high || edge.cycle <= switch_cycle + 1,
+                    !edge.is_rising || edge.cycle <= clear_cycle + 1,
                     "{n}: {edge:?}"
                 );
             }
-            for (pin, neutral) in walk.bench.pins().into_iter().zip(neutral_widths()) {
-                for pulse in walk.bench.uno.pulses(pin) {
+            for (pin, neutral) in run.bench.pins().into_iter().zip(neutral_widths()) {
+                for pulse in run.bench.uno.pulses(pin) {
                     assert_eq!(pulse.width, neutral, "{n}: {pin}");
                 }
-                assert!(!walk.bench.uno.is_high(pin), "{n}: {pin}");
+                assert!(!run.bench.uno.is_high(pin), "{n}: {pin}");
             }
-            let ticks = Status::of(&mut walk.bench).number("frames") - frames_before;
+            let ticks = Status::of(&mut run.bench).number("frames") - frames_before;
             assert!((50.0..=52.0).contains(&ticks), "{ticks} ticks in a second");
         }
     });

@@ -1,17 +1,17 @@
-//! Tests with random robots: no frame is late with any pins, directions and gaits.
+//! Tests with robots that have random pins, directions and gaits: no frame is late or wrong.
 
 use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::longest_step;
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::FRAME;
+use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host::sim::tour;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
 use lizard_host_tests::{FirmwareBench, rng};
 use lizard_robot::Robot;
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, for_each};
+use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
 /// Lines that move no servo, each sent at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
@@ -24,17 +24,17 @@ fn robot_count() -> u64 {
 
 /// Walks a gait for two seconds under a flood of serial input, and asserts that each frame has the widths
 /// that the core computes for it.
-fn assert_in_time(robot: &Robot, gait: &str, flood: &str, message: &str) {
+fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, message: &str) {
     let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
-    let mut bench = FirmwareBench::with_board(board.expect("the firmware"));
+    let mut bench = FirmwareBench::with_board(board.expect("`make firmware` has built the ELF"));
     bench.run_ms(1000);
-    let first_rise = bench.first_pulse().expect("it stands");
+    let first_rise = bench.first_pulse_cycle().expect("the robot stands");
     bench.say("watch 1");
     bench.say(&gait.replace('-', " "));
     let received_count = bench.uno.received_by_uno().len();
     bench.uno.flood(flood.as_bytes());
     let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-    let frames_before = ((sent_frames[0].start - first_rise) / FRAME) as usize;
+    let frames_before = ((sent_frames[0].start - first_rise) / FRAME_CYCLES) as usize;
     let received = &bench.uno.received_by_uno()[..received_count];
     let commands = core_run::play(
         *robot.firmware(),
@@ -53,12 +53,12 @@ fn assert_in_time(robot: &Robot, gait: &str, flood: &str, message: &str) {
 }
 
 #[test]
-fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
-    for_each(&[0, 1], |half| {
-        for number in (*half..robot_count()).step_by(2) {
+fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
+    for_each_in_parallel(&[0, 1], |parity| {
+        for number in (*parity..robot_count()).step_by(2) {
             let mut rng = rng(2_000 + number);
             let (text, mut robot) = random_robot(&mut rng);
-            // A third of the robots gets many gaits with short names, another third many with long names.
+            // A third of the robots get many gaits with short names, another third many with long names.
             match number % 3 {
                 1 => robot = with_many_gaits(&text, 10),
                 2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
@@ -68,25 +68,25 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
             let gaits = tour::moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
-                assert_in_time(&robot, gait, flood, &message);
+                assert_frames_exact(&robot, gait, flood, &message);
             }
         }
     });
 }
 
 #[test]
-fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
+fn the_longest_step_of_main_stays_within_its_bound_however_many_gaits_there_are() {
     /// Cycles of the longest command, `factory`, not counting the search for a gait.
     const MAX_OTHER_COMMAND_CYCLES: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
-    let lengths = [10, 24, MAX_NAME_BYTES];
-    for robot in lengths
+    let name_lengths = [10, 24, MAX_NAME_BYTES];
+    for robot in name_lengths
         .map(|length| with_many_gaits(&text, length))
         .iter()
         .chain([&robot])
     {
-        let cycles = longest_step(&FirmwareBench::elf(), robot).expect("it runs");
-        let search_cycles = robot.longest_search();
+        let cycles = longest_step(&FirmwareBench::elf(), robot).expect("the measurement runs");
+        let search_cycles = robot.max_search_cycles();
         println!(
             "{} gaits: {cycles} cycles of {search_cycles}",
             robot.gaits().len()

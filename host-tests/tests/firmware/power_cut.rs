@@ -1,5 +1,5 @@
-//! Tests of the saved settings: with power cuts during a save, at every byte and with every torn value of that
-//! byte, and with bits that flip over the years.
+//! Tests of the saved settings after power cuts during a save, at every byte and with every torn value of that
+//! byte, and after bit flips in the EEPROM.
 
 use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
@@ -8,12 +8,16 @@ use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
 
 use crate::boot_standing;
-use crate::kept::{power_cycle, read_calibration};
+use crate::measurements::{power_cycle, read_calibration};
 
 /// Loads the settings of an EEPROM as the core does.
-fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
+fn load_settings(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot().firmware());
-    let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
+    let outcome = copies::load(
+        robot().firmware(),
+        &Eeprom::with_bytes(*contents),
+        &mut settings,
+    );
     settings.set_save_number(0);
     (settings, outcome)
 }
@@ -61,22 +65,29 @@ impl UnsavedBoard {
 }
 
 #[test]
-fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new() {
+fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
     let mut board = UnsavedBoard::new();
     let mut contents = board.saved_eeprom;
     let operations = board.save();
     let contents_after = board.bench.uno.eeprom();
-    let [old, new] = [contents, contents_after].map(|contents| load(&contents).0);
+    let [old, new] = [contents, contents_after].map(|contents| load_settings(&contents).0);
     assert_ne!(old, new);
     assert!(operations.len() > 10);
-    let (mut outcome_counts, mut image_count) = ([0, 0], 0u64);
+    let (mut outcome_counts, mut torn_count) = ([0, 0], 0u64);
     for operation in &operations {
-        assert_eq!(contents[usize::from(operation.address)], operation.old);
-        for ones in 0..=255u8 {
-            for torn_byte in [operation.old | ones, operation.new | ones] {
+        assert_eq!(
+            contents[usize::from(operation.address)],
+            operation.old_value
+        );
+        // In a torn byte, some bits are 1 that are 0 in its old or its new value.
+        for stuck_bits in 0..=255u8 {
+            for torn_byte in [
+                operation.old_value | stuck_bits,
+                operation.new_value | stuck_bits,
+            ] {
                 let mut contents = contents;
                 contents[usize::from(operation.address)] = torn_byte;
-                let (settings, outcome) = load(&contents);
+                let (settings, outcome) = load_settings(&contents);
                 let is_new = settings == new;
                 assert!(
                     is_new || settings == old,
@@ -84,29 +95,29 @@ fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new()
                 );
                 outcome_counts[usize::from(is_new)] += 1;
                 // One cut in 97 is also loaded by the running image.
-                image_count += 1;
-                if image_count % 97 == 0 {
+                torn_count += 1;
+                if torn_count % 97 == 0 {
                     let calibration = board.power_on_with(&contents);
                     assert_eq!(calibration, board.calibrations[usize::from(is_new)]);
                 }
             }
         }
-        contents[usize::from(operation.address)] = operation.new;
+        contents[usize::from(operation.address)] = operation.new_value;
     }
     assert_eq!(contents, contents_after);
-    println!("{image_count} images: {outcome_counts:?} old and new");
+    println!("{torn_count} torn EEPROMs: {outcome_counts:?} old and new");
     assert!(outcome_counts[0] > 0 && outcome_counts[1] > 0);
 }
 
 #[test]
-fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
+fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_settings() {
     let mut board = UnsavedBoard::new();
     let contents_before = board.saved_eeprom;
     let count = board.save().len() as u64;
     let contents_after = board.bench.uno.eeprom();
     let mut outcome_counts = [0, 0];
     for operation in 0..count {
-        for (cut, ones) in [
+        for (cut, stuck_bits) in [
             (PowerCut::InErase(operation), 0x00),
             (PowerCut::InErase(operation), 0x5a),
             (PowerCut::InWrite(operation), 0x00),
@@ -117,7 +128,7 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
             for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
                 board.bench.say(line);
             }
-            board.bench.uno.cut_power(cut, ones);
+            board.bench.uno.cut_power(cut, stuck_bits);
             board.bench.send("save");
             board.bench.uno.run_ms(400);
             assert_eq!(*board.bench.uno.state(), simulated_uno::State::Off);
@@ -125,29 +136,32 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
             let calibration = read_calibration(&mut board.bench);
             let index = board.calibrations.iter().position(|c| *c == calibration);
             outcome_counts
-                [index.unwrap_or_else(|| panic!("{cut:?} {ones:02x}: {calibration:?}"))] += 1;
+                [index.unwrap_or_else(|| panic!("{cut:?} {stuck_bits:02x}: {calibration:?}"))] += 1;
         }
     }
     assert!(
         outcome_counts[0] > 0 && outcome_counts[1] > 0,
         "{outcome_counts:?}"
     );
-    assert_ne!(load(&contents_before).0, load(&contents_after).0);
+    assert_ne!(
+        load_settings(&contents_before).0,
+        load_settings(&contents_after).0
+    );
 }
 
 #[test]
-fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
+fn after_any_bit_flip_the_latest_or_the_previous_settings_are_loaded() {
     let mut board = UnsavedBoard::new();
     board.save();
     let contents = board.bench.uno.eeprom();
-    let [latest, older] = [contents, board.saved_eeprom].map(|contents| load(&contents).0);
+    let [latest, older] = [contents, board.saved_eeprom].map(|contents| load_settings(&contents).0);
     let mut defaults = Settings::of(robot().firmware());
     defaults.set_save_number(0);
     let mut outcome_counts = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
         let mut flipped_contents = contents;
         flipped_contents[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = load(&flipped_contents);
+        let (settings, outcome) = load_settings(&flipped_contents);
         let index = [&latest, &older, &defaults]
             .iter()
             .position(|known| **known == settings);
@@ -159,7 +173,10 @@ fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
             assert_eq!(&calibration, expected, "bit {bit}");
         }
     }
-    println!("{outcome_counts:?} the latest, the copy before, the defaults");
-    assert_eq!(outcome_counts[2], 0, "one copy is always whole");
-    assert!(outcome_counts[1] >= 8 * 44, "the latest copy's own bits");
+    println!("{outcome_counts:?}: the latest settings, the previous ones, the defaults");
+    assert_eq!(outcome_counts[2], 0, "both copies are invalid");
+    assert!(
+        outcome_counts[1] >= 8 * 44,
+        "too few bit flips damage the latest copy"
+    );
 }

@@ -17,7 +17,7 @@ const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
 /// Starts the board with these register values, orders the robot to stand, and returns the servos' edges
 /// of the first second.
-fn edges_after(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
+fn record_edges_after(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in register_values {
         bench.uno.poke(*register, *value);
@@ -31,14 +31,14 @@ fn edges_after(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
 #[test]
 fn a_timer_that_was_left_running_changes_no_edge() {
     run_in_both_simulations(|fidelity| {
-        let cold_edges = edges_after(&[], fidelity);
+        let cold_edges = record_edges_after(&[], fidelity);
         assert!(cold_edges.len() > 100);
         for clock in 1..=5 {
-            let running_edges = edges_after(&[(TCCR1B, clock)], fidelity);
+            let running_edges = record_edges_after(&[(TCCR1B, clock)], fidelity);
             assert_eq!(running_edges, cold_edges, "TCCR1B = {clock}");
         }
         // 8-bit fast PWM, in which the timer takes over a new OCR1A only at the end of its cycle.
-        let pwm_edges = edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
+        let pwm_edges = record_edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
         assert_eq!(pwm_edges, cold_edges);
     });
 }
@@ -69,7 +69,7 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
 }
 
 #[test]
-fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
+fn main_sleeps_in_idle_mode() {
     // The simulation has only one sleep mode, so the test reads the register. Idle is
     // 000, data sheet 10.2; the last bit enables sleep.
     let bench = FirmwareBench::boot();
@@ -79,9 +79,9 @@ fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
 #[test]
 fn pins_that_were_left_high_go_low_and_make_no_pulse() {
     run_in_both_simulations(|fidelity| {
-        let cold_edges = edges_after(&[], fidelity);
+        let cold_edges = record_edges_after(&[], fidelity);
         let ports = PORTS.map(|port| (port, 0xff));
-        let high_pin_edges = edges_after(&ports, fidelity);
+        let high_pin_edges = record_edges_after(&ports, fidelity);
         // The pull-ups may raise pins before main begins, for far less than a servo's
         // pulse. Then nothing drives the pins until the robot is known; the simulation
         // keeps a pin's last level.
@@ -89,8 +89,8 @@ fn pins_that_were_left_high_go_low_and_make_no_pulse() {
         let mut early_edges = high_pin_edges
             .iter()
             .take_while(|edge| edge.cycle < first_cycle);
-        let raised_edge = early_edges.find(|edge| edge.high && edge.cycle >= CYCLES_PER_MS);
-        assert_eq!(raised_edge, None);
+        let late_rise = early_edges.find(|edge| edge.is_rising && edge.cycle >= CYCLES_PER_MS);
+        assert_eq!(late_rise, None);
         let mut bench = FirmwareBench::power_on(fidelity);
         for (port, bits) in ports {
             bench.uno.poke(port, bits);

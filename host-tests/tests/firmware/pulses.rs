@@ -1,12 +1,12 @@
 //! Tests of the servo pulses: they are exact to the cycle, whatever the serial line does.
 
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME, Frame};
+use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Edge, Fidelity, most_pins_high};
 
 use crate::{
-    FRAMES_PER_SECOND, Status, boot_standing, end_flood, first_moving_gait, for_each,
+    FRAMES_PER_SECOND, Status, boot_standing, end_flood, first_moving_gait, for_each_in_parallel,
     run_in_both_simulations,
 };
 
@@ -19,12 +19,16 @@ pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
 
 /// Asserts that each servo has one pulse in each frame, 20 ms apart to the cycle, and that one pin
 /// is high at a time.
-fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
+fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         for (servo, start) in frame.starts.into_iter().enumerate() {
             let start = start.unwrap_or_else(|| panic!("no pulse: {frame:?}"));
             // Each servo has a slot of 4 ms, counted from A1's.
-            assert_eq!(start, frame.start + servo as u64 * FRAME / 5, "{frame:?}");
+            assert_eq!(
+                start,
+                frame.start + servo as u64 * FRAME_CYCLES / 5,
+                "{frame:?}"
+            );
         }
     }
     let edges = servo_edges(bench);
@@ -34,7 +38,7 @@ fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
 
 /// Returns the cycle of A1's first pulse since power-on. The bench must still hold all edges, so call it before
 /// the bench runs for frames.
-pub fn first_pulse(bench: &FirmwareBench) -> u64 {
+pub fn first_pulse_cycle(bench: &FirmwareBench) -> u64 {
     let edges = servo_edges(bench);
     edges.first().expect("the robot stands").cycle
 }
@@ -47,7 +51,7 @@ pub fn commanded_widths(
     received_count: usize,
     frames: &[Frame],
 ) -> Vec<[u64; 4]> {
-    let frames_before = ((frames[0].start - first_rise) / FRAME) as usize;
+    let frames_before = ((frames[0].start - first_rise) / FRAME_CYCLES) as usize;
     let commands = core_run::play(
         *robot().firmware(),
         &bench.uno.received_by_uno()[..received_count],
@@ -61,29 +65,29 @@ pub fn commanded_widths(
 }
 
 #[test]
-fn every_width_is_the_one_that_was_asked_for() {
-    for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+fn every_width_is_the_one_that_the_core_computes() {
+    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that
             // main may read it before or after the tick, a new bench sends it a millisecond later.
             let boot_and_order = |ms| {
                 let mut bench = boot_standing(*fidelity);
-                let first_rise = first_pulse(&bench);
+                let first_rise = first_pulse_cycle(&bench);
                 bench.run_ms(ms);
                 bench.say(&gait.name().replace('-', " "));
                 (bench, first_rise)
             };
-            let is_decided = |(bench, first_rise): &(FirmwareBench, u64)| {
+            let is_away_from_ticks = |(bench, first_rise): &(FirmwareBench, u64)| {
                 core_run::undecided_lines(&bench.uno.received_by_uno(), *first_rise)
                     .next()
                     .is_none()
             };
             let (mut bench, first_rise) = (200..220)
                 .map(boot_and_order)
-                .find(is_decided)
-                .expect("a time");
+                .find(is_away_from_ticks)
+                .expect("some delay keeps the line away from the ticks");
             let frames = bench.run_for_frames(6 * FRAMES_PER_SECOND);
-            assert_in_step(&bench, &frames);
+            assert_on_slot_grid(&bench, &frames);
             let received_count = bench.uno.received_by_uno().len();
             for (frame, expected) in frames.iter().zip(commanded_widths(
                 &bench,
@@ -98,13 +102,13 @@ fn every_width_is_the_one_that_was_asked_for() {
 }
 
 #[test]
-fn a_saturated_line_both_ways_moves_no_edge() {
-    // None of these can become a command that moves, however many bytes are lost.
+fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
+    // None of these can become a command that moves a servo, however many bytes are lost.
     const FLOODS: [&str; 4] = ["status\n", "help\n", "?\r", "x"];
     run_in_both_simulations(|fidelity| {
         for flood in FLOODS {
             let mut bench = boot_standing(fidelity);
-            let first_rise = first_pulse(&bench);
+            let first_rise = first_pulse_cycle(&bench);
             bench.say("watch 1");
             bench.say(&first_moving_gait());
             let received_count = bench.uno.received_by_uno().len();
@@ -112,7 +116,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             let sent_before = bench.bytes().len();
             let frames = bench.run_for_frames(10 * FRAMES_PER_SECOND);
             let sent_count = bench.bytes().len() - sent_before;
-            assert_in_step(&bench, &frames);
+            assert_on_slot_grid(&bench, &frames);
             for (frame, expected) in frames.iter().zip(commanded_widths(
                 &bench,
                 first_rise,
@@ -124,7 +128,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             let changes = frames
                 .windows(2)
                 .filter(|pair| pair[0].widths != pair[1].widths);
-            let can_vary = robot().gaits().iter().any(|gait| gait.moves());
+            let can_vary = robot().gaits().iter().any(|gait| gait.has_movement());
             assert!(
                 !can_vary || changes.count() as u64 > 2 * FRAMES_PER_SECOND,
                 "the widths do not vary"
@@ -152,7 +156,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
 }
 
 #[test]
-fn frames_are_counted_right_through_a_flood() {
+fn every_frame_is_counted_during_a_flood() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         bench.run_for_frames(0);
@@ -161,7 +165,7 @@ fn frames_are_counted_right_through_a_flood() {
         bench.run_ms(20_000);
         end_flood(&mut bench);
         bench.run_for_frames(0);
-        let passed_frames = (bench.uno.cycle() - cycle) / FRAME;
+        let passed_frames = (bench.uno.cycle() - cycle) / FRAME_CYCLES;
         let status_after = Status::of(&mut bench);
         assert_eq!(
             status_after.number("frames") - status_before.number("frames"),

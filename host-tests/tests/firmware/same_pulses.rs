@@ -6,13 +6,13 @@
 //! command: then replace the records with those that the failed test prints.
 
 use lizard_host::firmware::with_robot;
-use lizard_host::sim::frame::{FRAME, servo_pins};
+use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
 use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, root};
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
-use crate::{FRAMES_PER_SECOND, for_each};
+use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
 /// A random number generator whose numbers no update of a library changes: xorshift64*, Vigna 2016.
 struct Random(u64);
@@ -39,6 +39,7 @@ impl Random {
 fn random_command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.random_below(4);
     let neutral_of = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
+    // `reach` is in hundredths of a degree.
     let pose_near = |random: &mut Random, reach: i64| {
         let random_angle = |index: usize| {
             let angle = neutral_of(index);
@@ -99,12 +100,12 @@ fn digest_of(name: &str) -> (u64, u64) {
         uno.run_until(500 * CYCLES_PER_MS, 1_000, has_risen),
         "no pulse"
     );
-    let is_first = |edge: &&Edge| edge.high && edge.pin == pins[0];
+    let is_first = |edge: &&Edge| edge.is_rising && edge.pin == pins[0];
     let first_rise = uno
         .edges()
         .iter()
         .find(is_first)
-        .expect("it has risen")
+        .expect("A1 has risen")
         .cycle;
     println!(
         "{name}: the first pulse begins after {:.3} ms",
@@ -112,47 +113,48 @@ fn digest_of(name: &str) -> (u64, u64) {
     );
     let mut random = Random(0x1234_5678_9abc_def1);
     let mut digest = 0xcbf2_9ce4_8422_2325u64;
-    let mut count = 0;
-    let mut commands = 0;
+    let mut edge_count = 0;
+    let mut command_count = 0;
     // The first command comes when all servos are awake.
     let mut next_frame = 50;
     for frame in 0..frames {
-        let start = first_rise + frame * FRAME;
+        let start = first_rise + frame * FRAME_CYCLES;
         if frame == next_frame {
             // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next
             // line, so the robot obeys it in a certain frame.
             uno.run_until_cycle(start + random.random_below(8) * CYCLES_PER_MS);
             uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
-            commands += 1;
+            command_count += 1;
             next_frame += 16 + random.random_below(48);
         }
-        uno.run_until_cycle(start + FRAME - FRAME / 10);
+        uno.run_until_cycle(start + FRAME_CYCLES - FRAME_CYCLES / 10);
         assert_eq!(*uno.state(), State::Alive);
         for edge in uno.take_edges() {
             if let Some(servo) = pins.iter().position(|pin| *pin == edge.pin)
                 && edge.cycle >= first_rise
             {
-                count += 1;
+                edge_count += 1;
                 // FNV-1a.
-                let value =
-                    (edge.cycle - first_rise) << 3 | (servo as u64) << 1 | u64::from(edge.high);
+                let value = (edge.cycle - first_rise) << 3
+                    | (servo as u64) << 1
+                    | u64::from(edge.is_rising);
                 for byte in value.to_le_bytes() {
                     digest = (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
                 }
             }
         }
     }
-    let answers = uno.transmitted();
-    let text: Vec<u8> = answers.iter().map(|sent| sent.byte).collect();
+    let sent_bytes = uno.transmitted();
+    let text: Vec<u8> = sent_bytes.iter().map(|sent| sent.byte).collect();
     let text = String::from_utf8_lossy(&text);
-    let answers = text.lines().filter(|line| !line.starts_with('#')).count();
+    let answer_count = text.lines().filter(|line| !line.starts_with('#')).count();
     assert!(
-        (commands - 1..=commands).contains(&answers),
-        "{answers} of {commands} answers"
+        (command_count - 1..=command_count).contains(&answer_count),
+        "{answer_count} of {command_count} answers"
     );
-    println!("{name}: {commands} commands, {count} edges, {digest:#018x}");
-    (digest, count)
+    println!("{name}: {command_count} commands, {edge_count} edges, {digest:#018x}");
+    (digest, edge_count)
 }
 
 #[test]
@@ -170,27 +172,27 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         ("unequal", (0xef9f_3060_6801_8a27, 164_444)),
     ];
     let name_of_file = |path: std::io::Result<std::fs::DirEntry>| {
-        let path = path.expect("a file").path();
-        let name = path.file_stem().expect("a name");
+        let path = path.expect("the folder is readable").path();
+        let name = path.file_stem().expect("a file has a name");
         name.to_string_lossy().into_owned()
     };
-    let folder = std::fs::read_dir(root().join("robots")).expect("robots/");
-    let mut files: Vec<String> = folder.map(name_of_file).collect();
-    files.sort();
+    let folder = std::fs::read_dir(root().join("robots")).expect("robots/ is readable");
+    let mut names: Vec<String> = folder.map(name_of_file).collect();
+    names.sort();
     assert_eq!(
-        files,
+        names,
         recorded.map(|(name, _)| name),
         "one record for each file"
     );
-    for_each(&recorded, |(name, expected)| {
+    for_each_in_parallel(&recorded, |(name, expected)| {
         if !fits_beside_firmware(name) {
             return;
         }
-        let (actual, edge_count) = digest_of(name);
+        let (digest, edge_count) = digest_of(name);
         assert_eq!(
-            (actual, edge_count),
+            (digest, edge_count),
             *expected,
-            "{name}: {actual:#018x}, {edge_count} edges"
+            "{name}: {digest:#018x}, {edge_count} edges"
         );
     });
 }

@@ -33,7 +33,10 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
             &padded_line,
         ];
         for _ in 0..600 {
-            say_expecting_ok(&mut bench, rng.choice(&lines).expect("there are some"));
+            say_expecting_ok(
+                &mut bench,
+                rng.choice(&lines).expect("the list is not empty"),
+            );
         }
         say_expecting_ok(&mut bench, "watch 0");
         let status = Status::of(&mut bench);
@@ -46,7 +49,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
 }
 
 #[test]
-fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
+fn a_whole_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
     // Sends the longest line right after the question with the longest answer, without waiting.
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
@@ -56,7 +59,12 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
             .uno
             .send(format!("stand{}\n", " ".repeat(57)).as_bytes());
         bench.run_ms(300);
-        let last_line = bench.lines().last().expect("answers").text.clone();
+        let last_line = bench
+            .lines()
+            .last()
+            .expect("the robot has answered")
+            .text
+            .clone();
         assert_eq!(last_line, "ok stand");
         assert!(bench.lines().len() > line_count + 2);
         assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
@@ -64,7 +72,7 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
 }
 
 #[test]
-fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
+fn a_long_answer_takes_less_than_2000_cycles_a_byte() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         say_expecting_ok(&mut bench, "stand");
@@ -127,7 +135,7 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 }
 
 #[test]
-fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
+fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
     // The receiver has room for two bytes and the byte being received. The answer shows
     // which of the five digits were not lost.
     let byte_cycles = 1_400;
@@ -153,7 +161,11 @@ fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
             .all(|digit| sent_digits.any(|sent_digit| *sent_digit == digit));
         assert!(is_in_order, "{n}: {answer}");
         let lost_count = Status::of(&mut bench).number("rx_lost");
-        assert_eq!(lost_count > lost_before, was_lost, "{n}: it is counted");
+        assert_eq!(
+            lost_count > lost_before,
+            was_lost,
+            "{n}: {lost_count} bytes counted as lost"
+        );
         lost_before = lost_count;
         bench.say("watch 0");
     }
@@ -164,7 +176,7 @@ fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
 }
 
 #[test]
-fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
+fn a_line_of_any_bytes_gets_one_answer_unless_it_is_blank() {
     let mut rng = Rng::with_seed(11);
     let mut bench = boot_standing(Fidelity::DataSheet);
     for _ in 0..300 {
@@ -177,9 +189,10 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
         bench.uno.send(&bytes);
         bench.uno.send(b"\n");
         bench.run_ms(20);
-        let answers = bench.lines().iter().filter(|line| line.is_answer()).count() - answers_before;
+        let answer_count =
+            bench.lines().iter().filter(|line| line.is_answer()).count() - answers_before;
         let is_blank = bytes.iter().all(|byte| *byte == b' ');
-        assert_eq!(answers, usize::from(!is_blank), "{bytes:?}");
+        assert_eq!(answer_count, usize::from(!is_blank), "{bytes:?}");
     }
     assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
 }

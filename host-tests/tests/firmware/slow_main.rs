@@ -1,14 +1,15 @@
 //! Tests that stop main at every instruction that shares data with an interrupt: at the hand-over of a
 //! frame, at the LED, in an answer, and before it sleeps.
 
-use lizard_host::sim::frame::{FRAME, group_frames, servo_pins};
+use lizard_host::sim::frame::{FRAME_CYCLES, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::kept::{CYCLES_PER_MS, assert_no_leap_in_a_gait, recorded_pulses};
-use crate::walk::{ReferenceRun, SLOT_CYCLES};
+use crate::measurements::{CYCLES_PER_MS, assert_no_leap_in_gait, recorded_pulses};
+use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
-    Status, boot_and_command, boot_standing, for_each, gait_commands, run_in_both_simulations,
+    Status, boot_and_command, boot_standing, for_each_in_parallel, gait_commands,
+    run_in_both_simulations,
 };
 
 /// Upper bound of the cycles that main takes, after it has computed a frame, to hand
@@ -17,17 +18,17 @@ use crate::{
 /// second sweep finds the LED lit where it was dark in the first.
 const MAX_HAND_OVER_CYCLES: u64 = 608;
 
-/// Runs until `Control::frame` returns to main with the next frame.
+/// Runs until `Control::compute_frame` returns to main with the next frame.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
-    let frame_function = bench.uno.image().function("Control::frame");
-    let entry = frame_function.expect("it computes a frame").address as u32;
+    let frame_function = bench.uno.image().function("Control::compute_frame");
+    let entry = frame_function.expect("the ELF has the function").address as u32;
     let uno = &mut bench.uno;
-    assert!(uno.run_until(FRAME, 1, |uno| uno.pc() == entry));
+    assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == entry));
     let byte_at = |address| u16::from(uno.peek(address));
     let stack_pointer = byte_at(0x5d) | byte_at(0x5e) << 8;
     let return_address =
         u32::from(byte_at(stack_pointer + 1) << 8 | byte_at(stack_pointer + 2)) * 2;
-    assert!(uno.run_until(FRAME, 1, |uno| uno.pc() == return_address));
+    assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == return_address));
 }
 
 #[test]
@@ -37,20 +38,20 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
     // done in every third frame, because a frame that comes too late is played at the next
     // tick and thus affects two frames.
     run_in_both_simulations(|fidelity| {
-        let mut walk = ReferenceRun::start_walking(fidelity);
-        let start = walk.next_frame();
+        let mut run = ReferenceRun::start_walking(fidelity);
+        let start = run.next_frame();
         let count = 2 * 3 * MAX_HAND_OVER_CYCLES;
         for n in (1..count).step_by(3) {
-            let frame_start = start + n * FRAME;
-            walk.run_to(frame_start - SLOT_CYCLES - 400);
-            run_to_hand_over(&mut walk.bench);
-            walk.bench.uno.run_cycles(n / 3 % MAX_HAND_OVER_CYCLES);
-            let stall_cycles = frame_start + 2_000 - walk.bench.uno.cycle();
-            walk.bench.uno.stall_main(stall_cycles);
-            walk.run_to(frame_start + 2_000);
+            let frame_start = start + n * FRAME_CYCLES;
+            run.run_to(frame_start - SLOT_CYCLES - 400);
+            run_to_hand_over(&mut run.bench);
+            run.bench.uno.run_cycles(n / 3 % MAX_HAND_OVER_CYCLES);
+            let stall_cycles = frame_start + 2_000 - run.bench.uno.cycle();
+            run.bench.uno.stall_main(stall_cycles);
+            run.run_to(frame_start + 2_000);
         }
-        walk.run_to(start + count * FRAME - SLOT_CYCLES / 2);
-        let frames = walk.frames_since(start);
+        run.run_to(start + count * FRAME_CYCLES - SLOT_CYCLES / 2);
+        let frames = run.frames_since(start);
         assert_eq!(frames.len() as u64, count);
         // No frame is left out: each repeats the previous one, or is the next one computed.
         let commanded: Vec<_> = frames
@@ -71,34 +72,34 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
             (40..frames.len() / 3 - 40).contains(&repeated_count),
             "{repeated_count}"
         );
-        assert_eq!(walk.late_edge_count(), 0);
+        assert_eq!(run.late_edge_count(), 0);
     });
 }
 
 #[test]
 fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
-    let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
+    let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
     for n in 0..160 {
-        let frame_start = walk.next_frame();
-        walk.run_to(frame_start - SLOT_CYCLES - 400);
-        walk.bench.uno.stall_main(SLOT_CYCLES + 2_400);
-        walk.run_to(frame_start + 3_000);
-        walk.bench.uno.send(b"rest\n");
-        walk.run_to(frame_start + FRAME - SLOT_CYCLES - 400);
-        run_to_hand_over(&mut walk.bench);
-        walk.bench.uno.run_cycles(n);
-        let stall_cycles = frame_start + FRAME + 2_000 - walk.bench.uno.cycle();
-        walk.bench.uno.stall_main(stall_cycles);
-        walk.run_to(frame_start + 4 * FRAME - SLOT_CYCLES / 2);
-        let edges = walk.bench.uno.edges();
+        let frame_start = run.next_frame();
+        run.run_to(frame_start - SLOT_CYCLES - 400);
+        run.bench.uno.stall_main(SLOT_CYCLES + 2_400);
+        run.run_to(frame_start + 3_000);
+        run.bench.uno.send(b"rest\n");
+        run.run_to(frame_start + FRAME_CYCLES - SLOT_CYCLES - 400);
+        run_to_hand_over(&mut run.bench);
+        run.bench.uno.run_cycles(n);
+        let stall_cycles = frame_start + FRAME_CYCLES + 2_000 - run.bench.uno.cycle();
+        run.bench.uno.stall_main(stall_cycles);
+        run.run_to(frame_start + 4 * FRAME_CYCLES - SLOT_CYCLES / 2);
+        let edges = run.bench.uno.edges();
         let sent_frames = group_frames(&edges, servo_pins(robot()), frame_start, 4);
         for frame in &sent_frames {
             let pulses = frame.widths.iter().flatten().count();
             assert!(pulses % 4 == 0, "{n} cycles in: {frame:?}");
         }
         assert_eq!(sent_frames[2].widths, [None; 4], "{n} cycles in");
-        walk.bench.say("stand");
-        walk.bench.run_ms(700);
+        run.bench.say("stand");
+        run.bench.run_ms(700);
     }
 }
 
@@ -113,7 +114,7 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
         for cycles in 0..4_500 {
             bench.send("stop");
             bench.uno.run_cycles(6_700);
-            assert!(bench.uno.run_until(1_000, 1, |uno| uno.unsent() == 0));
+            assert!(bench.uno.run_until(1_000, 1, |uno| uno.bytes_unsent() == 0));
             bench.uno.run_cycles(cycles);
             bench.uno.stall_main(STOP_CYCLES);
             assert_eq!(
@@ -129,20 +130,20 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
 #[test]
 fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
     run_in_both_simulations(|fidelity| {
-        let mut walk = ReferenceRun::start_standing(fidelity);
-        let start = walk.next_frame();
+        let mut run = ReferenceRun::start_standing(fidelity);
+        let start = run.next_frame();
         // Main wakes for each pulse's rise, finds nothing and falls asleep again.
         for n in 0..700 {
-            let rise = start + n / 4 * FRAME + n % 4 * SLOT_CYCLES;
-            walk.run_to(rise - 20_000);
-            walk.bench.uno.send(b"stop");
-            let bytes_before = walk.bench.bytes().len();
+            let rise = start + n / 4 * FRAME_CYCLES + n % 4 * SLOT_CYCLES;
+            run.run_to(rise - 20_000);
+            run.bench.uno.send(b"stop");
+            let bytes_before = run.bench.bytes().len();
             // The receiver delivers a byte 9.5 bit times after its start.
             let arrival_cycle = rise - 200 + n;
-            walk.run_to(arrival_cycle - 1_320);
-            walk.bench.uno.send(b"\n");
-            walk.run_to(arrival_cycle + 20_000);
-            let answer_delay = walk.bench.bytes()[bytes_before].cycle - arrival_cycle;
+            run.run_to(arrival_cycle - 1_320);
+            run.bench.uno.send(b"\n");
+            run.run_to(arrival_cycle + 20_000);
+            let answer_delay = run.bench.bytes()[bytes_before].cycle - arrival_cycle;
             assert!(
                 answer_delay < 12_000,
                 "answered {answer_delay} cycles after {n}"
@@ -154,21 +155,21 @@ fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
 #[test]
 fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
     run_in_both_simulations(|fidelity| {
-        let mut walk = ReferenceRun::start_walking(fidelity);
-        walk.next_frame();
-        let frames_before = Status::of(&mut walk.bench).number("frames");
-        let cycle = walk.bench.uno.cycle();
-        walk.bench.uno.take_edges();
+        let mut run = ReferenceRun::start_walking(fidelity);
+        run.next_frame();
+        let frames_before = Status::of(&mut run.bench).number("frames");
+        let start_cycle = run.bench.uno.cycle();
+        run.bench.uno.take_edges();
         // Each stall is shorter than the watchdog's timeout.
         for _ in 0..20 {
-            walk.bench.uno.stall_main(5 * FRAME);
-            walk.bench.run_ms(300);
+            run.bench.uno.stall_main(5 * FRAME_CYCLES);
+            run.bench.run_ms(300);
         }
-        let pulses = recorded_pulses(&walk.bench);
+        let pulses = recorded_pulses(&run.bench);
         assert!(pulses.iter().all(|pulses| pulses.len() > 250));
-        assert_no_leap_in_a_gait(&pulses);
-        let frames = Status::of(&mut walk.bench).number("frames") - frames_before;
-        let passed_frames = (walk.bench.uno.cycle() - cycle) as f64 / FRAME as f64;
+        assert_no_leap_in_gait(&pulses);
+        let frames = Status::of(&mut run.bench).number("frames") - frames_before;
+        let passed_frames = (run.bench.uno.cycle() - start_cycle) as f64 / FRAME_CYCLES as f64;
         let missed_frames = passed_frames - frames;
         assert!(
             (70.0..=101.0).contains(&missed_frames),
@@ -179,11 +180,11 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
 
 #[test]
 fn old_widths_repeat_while_main_stands_still() {
-    let mut walk = ReferenceRun::start_walking(Fidelity::DataSheet);
-    let start = walk.next_frame();
-    walk.bench.uno.stall_main(5 * FRAME);
-    walk.run_to(start + 4 * FRAME + FRAME / 2);
-    let frames = walk.frames_since(start);
+    let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
+    let start = run.next_frame();
+    run.bench.uno.stall_main(5 * FRAME_CYCLES);
+    run.run_to(start + 4 * FRAME_CYCLES + FRAME_CYCLES / 2);
+    let frames = run.frames_since(start);
     let (last_frame, _) = frames[1];
     assert!(
         frames[1..]
@@ -199,14 +200,16 @@ fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
     // the first cause no reset, stalls from the second on always do.
     const HARMLESS_MS: u64 = 105;
     const SURELY_RESET_MS: u64 = 250;
-    for_each(&gait_commands(), |gait| {
+    for_each_in_parallel(&gait_commands(), |gait| {
         let mut bench = boot_and_command(gait, Fidelity::DataSheet);
         // Short stalls are tried at more moments, because only short stalls end near the
         // next tick.
         let lengths_ms = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (n, length_ms) in lengths_ms.enumerate() {
             // Spreads the stalls evenly over the frame, since 7 919 is a prime.
-            bench.uno.run_cycles(FRAME + n as u64 * 7_919 % FRAME);
+            bench
+                .uno
+                .run_cycles(FRAME_CYCLES + n as u64 * 7_919 % FRAME_CYCLES);
             let resets_before = bench.uno.watchdog_resets();
             bench.uno.stall_main(length_ms * CYCLES_PER_MS);
             // Once the watchdog's first stage has ended the pulses, the reset is certain.
@@ -220,7 +223,7 @@ fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
             assert!(length_ms < SURELY_RESET_MS || was_reset, "{length_ms} ms");
             assert!(length_ms >= HARMLESS_MS || !was_reset, "{length_ms} ms");
             println!("{gait}, stalled for {length_ms} ms");
-            assert_no_leap_in_a_gait(&recorded_pulses(&bench));
+            assert_no_leap_in_gait(&recorded_pulses(&bench));
             if was_reset {
                 bench.say(gait);
                 bench.run_ms(900);

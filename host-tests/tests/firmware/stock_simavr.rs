@@ -35,7 +35,7 @@ fn write_eeprom(folder: &Path) {
     );
     let bytes = *running.board.memory.bytes();
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
-    fs::write(folder.join("eeprom.bin"), bytes).expect("a folder");
+    fs::write(folder.join("eeprom.bin"), bytes).expect("the folder is writable");
     objcopy(
         &[
             "-I",
@@ -51,36 +51,39 @@ fn write_eeprom(folder: &Path) {
     );
 }
 
+/// Runs `avr-objcopy` in a folder.
 fn objcopy(arguments: &[&str], folder: &Path) {
     let status = Command::new("avr-objcopy")
         .args(arguments)
         .current_dir(folder)
         .status();
-    assert!(status.expect("avr-objcopy").success(), "{arguments:?}");
+    assert!(status.expect("avr-objcopy runs").success(), "{arguments:?}");
 }
 
 /// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, so that
 /// it closes its files.
 fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
     let output_path = folder.join("output.txt");
-    let file = File::create(&output_path).expect("a folder");
+    let file = File::create(&output_path).expect("the folder is writable");
     let mut child = Command::new("simavr")
         .args(arguments)
         .current_dir(folder)
         .stdin(Stdio::null())
-        .stdout(file.try_clone().expect("a file"))
+        .stdout(file.try_clone().expect("the file can be shared"))
         .stderr(file)
         .spawn()
-        .expect("simavr, which scripts/setup installs");
-    let read_output =
-        || String::from_utf8_lossy(&fs::read(&output_path).expect("it was made")).into_owned();
+        .expect("scripts/setup has installed simavr");
+    let read_output = || {
+        String::from_utf8_lossy(&fs::read(&output_path).expect("the output file exists"))
+            .into_owned()
+    };
     let deadline = Instant::now() + TIMEOUT;
     while !is_complete(&read_output()) && Instant::now() < deadline {
         sleep(Duration::from_millis(100));
     }
     let pid = rustix::process::Pid::from_child(&child);
-    rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
-    child.wait().expect("it ends");
+    rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("simavr runs");
+    child.wait().expect("simavr ends");
     read_output()
 }
 
@@ -113,13 +116,16 @@ fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
         if let ["$var", _, _, sign, name, ..] = words[..] {
             names.insert(sign.to_owned(), name.to_owned());
         } else if let Some(time) = line.strip_prefix('#') {
-            now_us = time.trim().parse::<f64>().expect("a time") / 100.0;
+            now_us = time.trim().parse::<f64>().expect("a time is a number") / 100.0;
         } else if let Some(sign) = line.strip_prefix('1') {
             rises.insert(sign.trim().to_owned(), now_us);
         } else if let Some(sign) = line.strip_prefix('0')
             && let Some(rise) = rises.remove(sign.trim())
         {
-            let name = names.get(sign.trim()).expect("a signal").clone();
+            let name = names
+                .get(sign.trim())
+                .expect("the signal has a name")
+                .clone();
             widths.entry(name).or_default().push(now_us - rise);
         }
     }
@@ -128,10 +134,11 @@ fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
 
 #[test]
 fn the_elf_file_walks_in_debians_simavr() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("the folder is writable");
     let folder = folder.path();
     write_eeprom(folder);
-    fs::copy(FirmwareBench::elf(), folder.join("lizard.elf")).expect("the firmware");
+    fs::copy(FirmwareBench::elf(), folder.join("lizard.elf"))
+        .expect("`make firmware` has built the firmware");
     // `traced.elf` is the same file with trace tags for four pins added to its own tags.
     objcopy(
         &[
@@ -146,10 +153,10 @@ fn the_elf_file_walks_in_debians_simavr() {
         ],
         folder,
     );
-    let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("what simavr reads");
+    let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("avr-objcopy has written the section");
     let end = mmcu.len() - 2;
     mmcu.splice(end..end, trace_tags(robot().firmware().pins()));
-    fs::write(folder.join("mmcu.bin"), mmcu).expect("a folder");
+    fs::write(folder.join("mmcu.bin"), mmcu).expect("the folder is writable");
     objcopy(
         &[
             "--update-section",
@@ -181,21 +188,26 @@ fn the_elf_file_walks_in_debians_simavr() {
         !output_text.contains("fault") && !output_text.contains("supply"),
         "{output_text}"
     );
-    let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
+    let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("simavr has written the trace");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
     let widths = parse_widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let servo_widths = &widths[&format!("A{}", servo + 1)];
-        let [min_width, max_width] = [f64::min, f64::max]
-            .map(|pick| servo_widths.iter().copied().reduce(pick).expect("pulses"));
+        let [min_width, max_width] = [f64::min, f64::max].map(|pick| {
+            servo_widths
+                .iter()
+                .copied()
+                .reduce(pick)
+                .expect("the servo has pulses")
+        });
         assert!(servo_widths.len() > 150, "{} pulses", servo_widths.len());
         assert!(
             max_width - min_width > 50.0,
             "A{} turns: {min_width} to {max_width} us",
             servo + 1
         );
-        let limits = [calibration.min, calibration.max]
-            .map(|limit| f64::from(calibration.pulse(limit)) / f64::from(CYCLES_PER_US));
+        let limits = [calibration.travel_min, calibration.travel_max]
+            .map(|limit| f64::from(calibration.clamped_width(limit)) / f64::from(CYCLES_PER_US));
         let (low, high) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
         assert!(
             low - 0.1 <= min_width && max_width <= high + 0.1,
@@ -209,20 +221,22 @@ fn the_elf_file_walks_in_debians_simavr() {
 /// servos, and the firmware must say so.
 #[test]
 fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("the folder is writable");
     let folder = folder.path();
     let elf = FirmwareBench::elf();
-    fs::copy(elf.with_extension("hex"), folder.join("made.hex")).expect("the firmware");
-    let image = lizard_host::firmware::with_robot(&elf, robot()).expect("the firmware");
-    let image = lizard_upload::Image::new(image.flash()).expect("an image");
-    fs::write(folder.join("image.hex"), image.to_hex()).expect("a folder");
+    fs::copy(elf.with_extension("hex"), folder.join("made.hex"))
+        .expect("`make firmware` has built the firmware");
+    let image = lizard_host::firmware::with_robot(&elf, robot())
+        .expect("`make firmware` has built the firmware");
+    let image = lizard_upload::Image::new(image.flash()).expect("the flash makes an image");
+    fs::write(folder.join("image.hex"), image.to_hex()).expect("the folder is writable");
     for file in ["made.hex", "image.hex"] {
         let output_text = run_simavr(
             &["-m", "atmega328p", "-f", "16000000", file],
             folder,
             |output_text| output_text.contains("3.30 V"),
         );
-        let name = lizard_host::firmware::label(robot().firmware());
+        let name = lizard_host::firmware::robot_label(robot().firmware());
         assert!(
             output_text.contains(&format!("robot {name},")),
             "{file}: {output_text}"

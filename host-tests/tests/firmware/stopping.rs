@@ -1,26 +1,31 @@
 //! Tests of `stop`, `rest` and waking, ordered at any moment and checked to the frame.
 
-use lizard_host::sim::frame::{FRAME, Frame, group_frames as frames_of, servo_pins};
+use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames as frames_of, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Fidelity};
 
 use crate::{
-    boot_and_command, boot_standing, first_moving_gait, for_each, gait_commands, neutral_widths,
-    pose_command, run_in_both_simulations, widths,
+    boot_and_command, boot_standing, first_moving_gait, for_each_in_parallel, gait_commands,
+    neutral_widths, pose_command, run_in_both_simulations, widths,
 };
 
 /// Cycles between the interruptions of a gait. Not a multiple of a frame, so that many phases of
 /// gait and frame are covered.
 const INTERRUPTION_INTERVAL_CYCLES: u64 = 1_237_331;
 
-/// Runs `gait` for a second and `cycle` more cycles, sends a line, and returns the bench
+/// Runs `gait` for a second and `extra_cycles` more, sends a line, and returns the bench
 /// and the cycle at which the last byte of the line has arrived.
-fn interrupt(gait: &str, line: &str, cycle: u64, fidelity: Fidelity) -> (FirmwareBench, u64) {
+fn interrupt_gait(
+    gait: &str,
+    line: &str,
+    extra_cycles: u64,
+    fidelity: Fidelity,
+) -> (FirmwareBench, u64) {
     let mut bench = boot_and_command(gait, fidelity);
-    bench.uno.run_cycles(cycle);
+    bench.uno.run_cycles(extra_cycles);
     bench.send(line);
-    while bench.uno.unsent() > 0 {
+    while bench.uno.bytes_unsent() > 0 {
         bench.uno.run_cycles(100);
     }
     let arrival_cycle = bench.uno.cycle();
@@ -33,12 +38,12 @@ fn stop_freezes_within_one_frame_from_any_phase_of_a_gait() {
         for gait in gait_commands().iter().skip(1).take(4) {
             for n in 0..12 {
                 let (mut bench, arrival_cycle) =
-                    interrupt(gait, "stop", n * INTERRUPTION_INTERVAL_CYCLES, fidelity);
+                    interrupt_gait(gait, "stop", n * INTERRUPTION_INTERVAL_CYCLES, fidelity);
                 let frames = bench.run_for_frames(20);
-                let late_frames = frames
+                let later_frames = frames
                     .iter()
-                    .filter(|frame| frame.start > arrival_cycle + FRAME);
-                let sent_widths: Vec<_> = late_frames.map(Frame::widths).collect();
+                    .filter(|frame| frame.start > arrival_cycle + FRAME_CYCLES);
+                let sent_widths: Vec<_> = later_frames.map(Frame::widths).collect();
                 assert!(sent_widths.len() >= 18);
                 assert!(
                     sent_widths.iter().all(|widths| *widths == sent_widths[0]),
@@ -55,12 +60,12 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         .into_iter()
         .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * INTERRUPTION_INTERVAL_CYCLES)))
         .collect();
-    for_each(&cases, |&(fidelity, cycle)| {
+    for_each_in_parallel(&cases, |&(fidelity, cycle)| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.uno.run_cycles(cycle);
         let first_frame = bench.run_for_frames(1)[0];
         // The recorded edges still contain this frame; later edges are appended.
-        bench.uno.run_cycles(cycle % FRAME);
+        bench.uno.run_cycles(cycle % FRAME_CYCLES);
         bench.send("rest");
         bench.run_ms(100);
         let edges = bench.uno.edges();
@@ -69,7 +74,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
             let pulses = bench.uno.pulses(simulated_uno::Pin::arduino(pin));
             let rise_count = edges
                 .iter()
-                .filter(|edge| edge.pin.number() == pin && edge.high)
+                .filter(|edge| edge.pin.number() == pin && edge.is_rising)
                 .count();
             assert_eq!(pulses.len(), rise_count, "A{} is left high", servo + 1);
             for pulse in &pulses {
@@ -84,8 +89,11 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
             }
         }
         let received = bench.uno.received_by_uno();
-        let arrival_cycle = received.last().expect("a line").cycle;
-        assert!(last_fall < arrival_cycle + 2 * FRAME && last_fall > first_frame.start);
+        let arrival_cycle = received
+            .last()
+            .expect("the robot has received a line")
+            .cycle;
+        assert!(last_fall < arrival_cycle + 2 * FRAME_CYCLES && last_fall > first_frame.start);
         assert!(
             bench
                 .run_for_frames(50)
@@ -102,7 +110,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
             let first_index = frames
                 .iter()
                 .position(|frame| frame.widths[servo].is_some());
-            let first_index = first_index.expect("it wakes");
+            let first_index = first_index.expect("the servo wakes");
             let later_frames = &frames[first_index..];
             assert!(
                 later_frames
@@ -142,9 +150,9 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
     });
 }
 
-/// Returns a sweep from neutral for each servo, all of different sizes, the largest `size` deg.
-fn sweeps_of_size(size: f64) -> [f64; 4] {
-    [-1.0, 0.25, 0.8, -0.6].map(|share| size * share)
+/// Returns a sweep from neutral for each servo, all of different sizes, the largest `max_sweep_deg`.
+fn sweeps_up_to(max_sweep_deg: f64) -> [f64; 4] {
+    [-1.0, 0.25, 0.8, -0.6].map(|share| max_sweep_deg * share)
 }
 
 /// Returns the pulse width of a servo at this many degrees from neutral, cycles.
@@ -154,12 +162,12 @@ fn width_at(servo: usize, sweep: f64) -> u64 {
 }
 
 #[test]
-fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
+fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         // The pose is as far from neutral as the robot allows.
         let (size, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
-            .map(|size| (size, bench.say(&pose_command(sweeps_of_size(size)))))
+            .map(|size| (size, bench.say(&pose_command(sweeps_up_to(size)))))
             .into_iter()
             .find(|(_, answer)| answer.starts_with("ok pose"))
             .expect("a pose next to neutral is safe");
@@ -167,11 +175,11 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         bench.run_ms(3000);
         assert!(
             bench
-                .say(&pose_command(sweeps_of_size(size)))
+                .say(&pose_command(sweeps_up_to(size)))
                 .starts_with("ok pose")
         );
         let sent_widths = widths(&bench.run_for_frames(150));
-        let goal_widths: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps_of_size(size)[i]));
+        let goal_widths: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps_up_to(size)[i]));
         let end_widths = sent_widths[149];
         for (end, goal) in end_widths.into_iter().zip(goal_widths) {
             // Rounding to hundredths of a degree and rounding to steps of 1/65536 turn cost a cycle or two each.
@@ -191,7 +199,8 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         }
         for pair in sent_widths.windows(2) {
             for (i, servo) in robot().servos().iter().enumerate() {
-                let max_step = robot().pace().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
+                let max_step =
+                    robot().speed_limits().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
                 let step = pair[0][i].abs_diff(pair[1][i]) as f64;
                 assert!(step <= max_step + 2.0, "A{} by {step} cycles", i + 1);
             }

@@ -1,14 +1,14 @@
-//! Tests that sweep the chip's supply down and up, and check the measured voltage and the robot's reactions.
+//! Tests of the measured supply voltage and of the robot's reactions while the supply sinks and recovers.
 
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Rail;
 use simulated_uno::{Fidelity, Pin};
 
-use crate::kept::{count_flashes, measure_widths, run_for_pulses};
+use crate::measurements::{count_flashes, measure_widths, run_for_pulses};
 use crate::{Status, boot_and_command, boot_standing, first_moving_gait};
 
 /// The largest error of a printed board supply, V: one converter step at 5.5 V and the rounding to two decimals.
-const BOARD_ERROR_V: f64 = 0.04;
+const MAX_BOARD_ERROR_V: f64 = 0.04;
 
 /// The first pin that can measure a rail, by its Arduino number.
 const FIRST_ANALOG_PIN: u8 = 14;
@@ -20,8 +20,13 @@ fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)
         .iter()
         .filter_map(|line| line.text.strip_prefix("# supply: "));
     let notes = notes.map(|text| {
-        let (volts, reaction) = text.split_once(" V, ").expect("volts and the reaction");
-        (reaction.to_owned(), volts.parse().expect("a number"))
+        let (volts, reaction) = text
+            .split_once(" V, ")
+            .expect("a note has a voltage and a reaction");
+        (
+            reaction.to_owned(),
+            volts.parse().expect("the voltage is a number"),
+        )
     });
     notes.collect()
 }
@@ -93,7 +98,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     assert_reacts_at(
         &mut bench,
         robot().supplies().board,
-        BOARD_ERROR_V,
+        MAX_BOARD_ERROR_V,
         |bench, volts| {
             bench.uno.set_supply_mv(1000.0 * volts);
         },
@@ -112,7 +117,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 }
 
 #[test]
-fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
+fn a_low_supply_limits_the_pace_and_prevents_saving() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let measure_pace = |bench: &mut FirmwareBench| {
         let phase_before = Status::of(bench).number("phase");
@@ -131,7 +136,7 @@ fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
     );
     let slow_pace = measure_pace(&mut bench);
     let expected = f64::from(robot().supplies().slow_pace) / 100.0;
-    assert!(full_pace > 0.0, "it walks");
+    assert!(full_pace > 0.0, "the robot does not walk");
     assert!(
         (slow_pace / full_pace - expected).abs() < 0.1,
         "{slow_pace} of {full_pace}, not {expected}"
@@ -141,12 +146,12 @@ fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
     assert_eq!(
         bench.uno.eeprom_operations().len(),
         operations_before,
-        "not even the pose"
+        "`rest` has saved the pose"
     );
 }
 
 #[test]
-fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
+fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let [slow_volts, stop_volts, _] = robot().supplies().board;
     bench.uno.set_supply_mv(stop_volts * 1000.0 - 60.0);
@@ -168,16 +173,16 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
             good_volts = Some(f64::from(mv) / 1000.0);
         }
     }
-    let good_volts = good_volts.expect("it is good at last");
+    let good_volts = good_volts.expect("the supply is reported as good");
     assert!(
-        (good_volts - slow_volts - 0.150).abs() <= BOARD_ERROR_V,
-        "{good_volts}: 150 mV above"
+        (good_volts - slow_volts - 0.150).abs() <= MAX_BOARD_ERROR_V,
+        "{good_volts} V, not 150 mV above {slow_volts} V"
     );
-    assert_eq!(measure_widths(&mut bench), held_widths, "nothing has moved");
+    assert_eq!(measure_widths(&mut bench), held_widths, "a servo has moved");
     assert_eq!(
         Status::of(&mut bench).text("fault"),
         "supply",
-        "until it moves"
+        "the fault ends before the robot moves"
     );
     assert_eq!(
         bench.say(&first_moving_gait()),
@@ -189,7 +194,7 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
 }
 
 #[test]
-fn a_short_dip_and_a_supply_that_wavers_change_little() {
+fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let line_count = bench.lines().len();
     // A starting servo pulls the supply down for some milliseconds.
@@ -278,5 +283,5 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
         set_rail(bench, &rail, volts);
     });
     assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
-    assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= BOARD_ERROR_V);
+    assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= MAX_BOARD_ERROR_V);
 }

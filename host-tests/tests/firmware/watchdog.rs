@@ -4,7 +4,7 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Fidelity, ResetCause};
 
-use crate::kept::{
+use crate::measurements::{
     CYCLES_PER_MS, count_flashes, measure_widths, power_cycle, recorded_pulses, run_for_pulses,
     slew_limit,
 };
@@ -18,9 +18,9 @@ const TIMSK1: u16 = 0x6f;
 
 /// The longest time until the watchdog resets a program that hangs: two stages of 125 ms each, and the
 /// frame in which the watchdog was fed last.
-const TIMEOUT_MS: u64 = 250 + 20;
+const MAX_TIMEOUT_MS: u64 = 250 + 20;
 
-/// Returns a robot that holds a pose other than the neutral one, and the pulse widths of that pose.
+/// Returns a bench whose robot holds a pose other than the neutral one, and the pulse widths of that pose.
 fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     let mut bench = boot_standing(Fidelity::DataSheet);
     bench.say(&pose_command([5.0, -4.0, 3.0, -2.0]));
@@ -33,7 +33,7 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
 /// Runs until the watchdog resets the chip, ends the stall of main, and returns the cycles that passed.
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (start, resets) = (bench.uno.cycle(), bench.uno.watchdog_resets());
-    let limit = TIMEOUT_MS * CYCLES_PER_MS;
+    let limit = MAX_TIMEOUT_MS * CYCLES_PER_MS;
     assert!(
         bench
             .uno
@@ -139,7 +139,7 @@ fn a_stopped_timer_or_disabled_interrupts_are_detected() {
 }
 
 #[test]
-fn disabled_interrupts_are_detected_and_the_chip_tells_the_cause() {
+fn disabled_interrupts_are_detected_and_reported_as_a_watchdog_reset() {
     let (mut bench, widths) = hold_pose();
     // SREG's I bit.
     let sreg = 0x5f;
@@ -164,7 +164,7 @@ fn a_robot_that_works_is_never_reset() {
 }
 
 /// Returns a board shortly after power-on, with or without a boot loader.
-fn fresh_board(has_boot_loader: bool) -> FirmwareBench {
+fn boot_fresh_board(has_boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.uno.set_boot_loader(has_boot_loader);
     bench.run_ms(700);
@@ -174,19 +174,19 @@ fn fresh_board(has_boot_loader: bool) -> FirmwareBench {
 #[test]
 fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
     for has_boot_loader in [false, true] {
-        let mut bench = fresh_board(has_boot_loader);
-        let expect = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
+        let mut bench = boot_fresh_board(has_boot_loader);
+        let assert_reported = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
             bench.uno.run_ms(700);
             let status = Status::of(bench);
             let reported = (status.text("reset"), status.number("resets"));
             assert_eq!(reported, (cause, resets), "boot loader: {has_boot_loader}");
         };
-        expect(&mut bench, "power", 0.0);
+        assert_reported(&mut bench, "power", 0.0);
         bench.uno.reset();
-        expect(&mut bench, "external", 1.0);
+        assert_reported(&mut bench, "external", 1.0);
         bench.uno.stall_main(1_000 * CYCLES_PER_MS);
         run_until_reset(&mut bench);
-        expect(&mut bench, "watchdog", 2.0);
+        assert_reported(&mut bench, "watchdog", 2.0);
         bench.uno.set_supply_mv(2_400.0);
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
@@ -197,11 +197,11 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         } else {
             "brownout"
         };
-        expect(&mut bench, dip_cause, 3.0);
+        assert_reported(&mut bench, dip_cause, 3.0);
         bench.uno.reset();
-        expect(&mut bench, "external", 4.0);
+        assert_reported(&mut bench, "external", 4.0);
         power_cycle(&mut bench);
-        expect(&mut bench, "power", 0.0);
+        assert_reported(&mut bench, "power", 0.0);
         let causes: Vec<ResetCause> = bench.uno.reset_events().iter().map(|r| r.cause).collect();
         assert_eq!(
             causes,
@@ -219,7 +219,7 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
 
 #[test]
 fn resets_are_counted_up_to_255_and_no_farther() {
-    let mut bench = fresh_board(true);
+    let mut bench = boot_fresh_board(true);
     for reset in 1..=260u32 {
         bench.uno.reset();
         bench.run_ms(5);
@@ -232,8 +232,8 @@ fn resets_are_counted_up_to_255_and_no_farther() {
 }
 
 #[test]
-fn power_on_is_known_from_any_noise_in_the_memory() {
-    let mut bench = fresh_board(true);
+fn power_on_is_recognised_whatever_noise_the_ram_holds() {
+    let mut bench = boot_fresh_board(true);
     for seed in 0..300 {
         bench.uno.set_noise_seed(seed);
         power_cycle(&mut bench);
@@ -242,11 +242,12 @@ fn power_on_is_known_from_any_noise_in_the_memory() {
             (status.text("reset"), status.number("resets")),
             ("power", 0.0)
         );
-        assert_eq!(status.pose(), robot_neutral());
+        assert_eq!(status.pose(), neutral_angles());
     }
 }
 
-fn robot_neutral() -> [f64; 4] {
+/// Returns the servos' neutral angles as `status` prints them, deg.
+fn neutral_angles() -> [f64; 4] {
     lizard_host_tests::robot()
         .servos()
         .map(|servo| (servo.neutral * 100.0).round() / 100.0)
@@ -261,8 +262,8 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         bench.uno.stall_main(ms * CYCLES_PER_MS);
         bench.uno.run_ms(ms + 150);
         let was_reset = bench.uno.watchdog_resets() > resets;
-        let frames = run_for_pulses(&mut bench, 200);
-        for (servo, pulses) in frames.iter().enumerate() {
+        let servo_pulses = run_for_pulses(&mut bench, 200);
+        for (servo, pulses) in servo_pulses.iter().enumerate() {
             let is_steady =
                 pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
             assert!(is_steady, "A{} after {ms} ms: {pulses:?}", servo + 1);
@@ -278,7 +279,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
 
 #[test]
 fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
-    // The EEPROM holds the pose in which the robot rested, or it is blank.
+    // The EEPROM holds the pose in which the robot rested, or is blank.
     for is_blank in [false, true] {
         for ms in [140, 200, 400] {
             let (mut bench, _) = hold_pose();

@@ -20,7 +20,7 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
         );
         for (n, servo) in robot.servos().iter().enumerate() {
             let core = firmware.calibration()[n];
-            let neutral = degrees(firmware.neutral()[n]);
+            let neutral = degrees(firmware.neutral_angles()[n]);
             assert!(
                 (neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS_PER_DEGREE,
                 "{name}: A{}",
@@ -64,7 +64,7 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
                 let us = pulse_us(sweep);
                 servo.min_us - 1e-6 <= us && us <= servo.max_us + 1e-6
             };
-            for (end, outward) in [(core.min, -1), (core.max, 1)] {
+            for (end, outward) in [(core.travel_min, -1), (core.travel_max, 1)] {
                 let end = i32::from(end.0);
                 assert!(is_in_range(end), "{name}: A{} at {end}", n + 1);
                 let next_sweep = end + outward;
@@ -74,8 +74,14 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
                     n + 1
                 );
             }
-            assert!(core.reaches(core.min) && core.reaches(core.max), "{name}");
-            let sweeps_beyond = [core.min.0.checked_sub(1), core.max.0.checked_add(1)];
+            assert!(
+                core.reaches(core.travel_min) && core.reaches(core.travel_max),
+                "{name}"
+            );
+            let sweeps_beyond = [
+                core.travel_min.0.checked_sub(1),
+                core.travel_max.0.checked_add(1),
+            ];
             for sweep in sweeps_beyond.into_iter().flatten() {
                 assert!(!core.reaches(Sweep(sweep)), "{name}: A{} at {sweep}", n + 1);
             }
@@ -87,7 +93,7 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
 fn a_move_is_as_fast_as_the_file_allows_and_no_faster() {
     for Named { name, robot } in robots() {
         let per_frame = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
-        let limit = robot.pace().slew;
+        let limit = robot.speed_limits().slew;
         assert!(
             per_frame <= limit + 1e-6 && per_frame > limit - 50.0 / STEPS_PER_DEGREE,
             "{name}"

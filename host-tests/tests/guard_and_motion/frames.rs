@@ -44,10 +44,10 @@ pub fn max_speed_change(robot: &Robot) -> f64 {
 }
 
 fn compute_max_speed_change(robot: &Robot) -> f64 {
-    let move_change = robot.pace().slew / 2.0;
+    let move_change = robot.speed_limits().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
         let (speed, change) = max_speed_and_change(robot, id);
-        change.max(speed / ACCELERATION_FRAMES + robot.pace().slew / 4.0)
+        change.max(speed / ACCELERATION_FRAMES + robot.speed_limits().slew / 4.0)
             + speed / ACCELERATION_FRAMES
     });
     gaits.fold(move_change, f64::max) + ROUNDING * STEP_PER_FRAME
@@ -79,9 +79,9 @@ fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
 /// slew limit, and gaining pace.
 pub fn settling_frames(robot: &Robot) -> u32 {
     let travels = robot.firmware().calibration();
-    let ranges = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
+    let ranges = travels.map(|servo| f64::from(servo.travel_max.0) - f64::from(servo.travel_min.0));
     let farthest = ranges.into_iter().fold(0.0, f64::max);
-    let frames = 1.5 * farthest * STEP_PER_FRAME / robot.pace().slew;
+    let frames = 1.5 * farthest * STEP_PER_FRAME / robot.speed_limits().slew;
     WAKING_FRAMES + 30 + (1.05 * frames) as u32
 }
 
@@ -175,8 +175,8 @@ impl<'a> CheckedRobot<'a> {
         let (name, robot) = (self.name, self.robot);
         let previous_pose = self.pose();
         let was_held = self.motion().hazard().is_some();
-        self.running.frame();
-        let pulses = self.running.board.submitted();
+        self.running.run_frame();
+        let pulses = self.running.board.submitted_pulses();
         let (pose, motion) = (self.pose(), self.running.motion());
 
         let guard_stopped = !was_held && motion.hazard().is_some();
@@ -201,9 +201,9 @@ impl<'a> CheckedRobot<'a> {
         // During a move, the phase is 0. In a gait, the phase is 0 only once per cycle.
         let is_in_gait = motion.phase() != 0;
         let speed_limit = if is_in_gait {
-            robot.pace().gait_slew
+            robot.speed_limits().gait_slew
         } else {
-            robot.pace().slew
+            robot.speed_limits().slew
         };
         // The poses of a gait are rounded, which may add a step.
         let fastest_speed = f64::from(previous_pose.largest_turn_to(&pose)) * STEP_PER_FRAME;

@@ -6,7 +6,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{CYCLE, Sweep};
 use lizard_host_tests::{Named, paper, robots};
 use lizard_kinematics::End;
-use lizard_robot::servo::{FORWARD, LEGS, OPPOSITE};
+use lizard_robot::servo::{FORWARD_TURN_SIGN, LEG_NAMES, OPPOSITE_SERVO};
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
 use crate::frames::gait_command;
@@ -42,7 +42,7 @@ fn phases() -> impl Iterator<Item = u32> {
 
 /// Returns the mirrored pose: left and right exchanged, every sweep negated.
 fn mirror(pose: Pose) -> Pose {
-    Pose(OPPOSITE.map(|servo| Sweep(-pose.0[servo].0)))
+    Pose(OPPOSITE_SERVO.map(|servo| Sweep(-pose.0[servo].0)))
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn the_core_has_the_gaits_of_the_file_in_its_order() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
         let names: Vec<String> = GaitId::all(firmware.gait_count())
-            .map(|id| firmware.name(id).map(char::from).collect())
+            .map(|id| firmware.gait_name(id).map(char::from).collect())
             .collect();
         let expected: Vec<String> = robot.gaits().iter().map(gait_command).collect();
         assert_eq!(names, expected, "{name}");
@@ -111,9 +111,9 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
             let foot_angle = |cycle_share: f64| {
                 let phase = (stride.start + cycle_share).rem_euclid(1.0) * f64::from(CYCLE);
                 let pose = gait.pose(robot.firmware().waves(), phase as u32);
-                FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
+                FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
-            let leg_name = format!("{name}: {} {}", float_gait.name(), LEGS[servo]);
+            let leg_name = format!("{name}: {} {}", float_gait.name(), LEG_NAMES[servo]);
             // A stroke starts in front, moves at constant speed to the same angle behind, and returns.
             let front_angle = foot_angle(0.0);
             let share = front_angle / stride.amplitude;
@@ -143,7 +143,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
             .strides()
             .each_ref()
             .map(|stride| match stride.waveform {
-                Waveform::Held { turn } => Some(turn),
+                Waveform::Held { swing_index: turn } => Some(turn),
                 _ => None,
             });
         let [Some(a), Some(b), Some(c), Some(d)] = turns else {
@@ -154,7 +154,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
             let amplitude = float_gait.strides()[servo].amplitude;
             let foot_angle = |phase: f64| {
                 let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
-                FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
+                FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             // The common stroke takes a fifth of the cycle, then the return of each leg takes a fifth.
             let start = 0.2 * (1.0 + turn as f64);
@@ -205,7 +205,10 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
                     .end(end)
                     .end_point
             };
-            let neutral = robot.lizard().solve(&robot.neutral()).expect("it stands");
+            let neutral = robot
+                .lizard()
+                .solve(&robot.neutral_pose())
+                .expect("it stands");
             let mut mean = [0.0; 2];
             for phase in 0..256 {
                 let point_here = end_point_of(phase, end);

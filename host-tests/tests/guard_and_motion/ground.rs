@@ -49,7 +49,7 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let share = frames - frames.ceil() + 1.0;
     let (previous, last) = (path[last_index - 1], path[last_index]);
     path[last_index] = std::array::from_fn(|n| previous[n] + share * (last[n] - previous[n]));
-    Some(robot.travel(path))
+    Some(robot.predict_travel(path))
 }
 
 /// Asserts that a travel is the expected one: forward to within `tolerance_mm` mm or 1 %, the turn to within
@@ -95,7 +95,7 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
                     continue;
                 };
                 travel_count += 1;
-                let expected = gait.predict(&named.robot.ground().rigid());
+                let expected = gait.predict(&named.robot.ground().with_rigid_drive());
                 let name = format!("{}: {} at {percent} %", named.name, gait.name());
                 // On a robot without symmetry, a tenth of a degree may decide which foot sticks.
                 let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
@@ -116,7 +116,7 @@ fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
     };
     let mut decided_count = 0;
     for gait in paper().gaits() {
-        let expected = gait.predict(&paper().ground().rigid());
+        let expected = gait.predict(&paper().ground().with_rigid_drive());
         decided_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for percent in [100.0, 80.0, 50.0, 20.0] {
             let travel = travel(&named, gait, percent).expect("the way is clear");

@@ -28,8 +28,8 @@ fn ceil_q15(limit: f64) -> i16 {
 fn clearance_at_limit(robot: &Robot) -> Clearance {
     Clearance {
         margins: limits(robot).map(|limit| Sine(ceil_q15(limit))),
-        sliders_sq: Side::ALL.map(|side| {
-            let max = u32::from(robot.firmware().side(side).max);
+        slider_lengths_sq: Side::ALL.map(|side| {
+            let max = u32::from(robot.firmware().slider(side).stroke_max);
             max * max
         }),
     }
@@ -59,8 +59,9 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
         for (index, side) in Side::ALL.into_iter().enumerate() {
-            let slider = firmware.side(side);
-            let [min_sq, max_sq] = [slider.min, slider.max].map(|steps| u32::from(steps).pow(2));
+            let slider = firmware.slider(side);
+            let [min_sq, max_sq] =
+                [slider.stroke_min, slider.stroke_max].map(|steps| u32::from(steps).pow(2));
             for (length_sq, is_safe) in [
                 (min_sq, true),
                 (min_sq.wrapping_sub(1), false),
@@ -68,7 +69,7 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
                 (max_sq + 1, false),
             ] {
                 let mut core = clearance_at_limit(robot);
-                core.sliders_sq[index] = length_sq;
+                core.slider_lengths_sq[index] = length_sq;
                 let named_side = match core.first_hazard(firmware) {
                     None => None,
                     Some(Hazard::Stroke { side, .. }) => Some(side),
@@ -102,15 +103,27 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
             lizard_kinematics::Side::Right,
         ];
         for (side, kinematics_side) in Side::ALL.into_iter().zip(sides) {
-            let slider = robot.firmware().side(side);
-            let nominal = robot.lizard().side(kinematics_side).nominal;
+            let slider = robot.firmware().slider(side);
+            let nominal = robot.lizard().side(kinematics_side).nominal_length;
             let length_mm = |steps: u16| f64::from(steps) / per_mm(slider.scale);
             let [min_mm, max_mm] =
                 [file.stroke_min, file.stroke_max].map(|travel| nominal + travel);
-            assert!(length_mm(slider.min) >= min_mm - 1e-9, "{name}: {side:?}");
-            assert!(length_mm(slider.min - 1) < min_mm, "{name}: {side:?}");
-            assert!(length_mm(slider.max) <= max_mm + 1e-9, "{name}: {side:?}");
-            assert!(length_mm(slider.max + 1) > max_mm, "{name}: {side:?}");
+            assert!(
+                length_mm(slider.stroke_min) >= min_mm - 1e-9,
+                "{name}: {side:?}"
+            );
+            assert!(
+                length_mm(slider.stroke_min - 1) < min_mm,
+                "{name}: {side:?}"
+            );
+            assert!(
+                length_mm(slider.stroke_max) <= max_mm + 1e-9,
+                "{name}: {side:?}"
+            );
+            assert!(
+                length_mm(slider.stroke_max + 1) > max_mm,
+                "{name}: {side:?}"
+            );
         }
     }
 }

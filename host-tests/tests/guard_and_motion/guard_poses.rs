@@ -5,7 +5,7 @@ use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;
 use lizard_core::numbers::part::Side;
 use lizard_core::numbers::pose::Pose;
-use lizard_core::numbers::root::root;
+use lizard_core::numbers::root::isqrt;
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_proof::STEPS_BAND;
@@ -128,10 +128,10 @@ impl Findings {
         }
         for (side, (length_sq, travel)) in Side::ALL
             .into_iter()
-            .zip(core.sliders_sq.into_iter().zip(truth.travels))
+            .zip(core.slider_lengths_sq.into_iter().zip(truth.travels))
         {
-            let slider = robot.firmware().side(side);
-            let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal);
+            let slider = robot.firmware().slider(side);
+            let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal_length);
             self.stroke.add(steps - travel * per_mm(slider.scale));
         }
     }
@@ -260,7 +260,11 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
                 }
                 Some(Hazard::Travel(_)) => unreachable!("a clearance knows no travel"),
                 Some(Hazard::Stroke { side, length }) => {
-                    assert_eq!(length, root(core.sliders_sq[side as usize]), "{name}");
+                    assert_eq!(
+                        length,
+                        isqrt(core.slider_lengths_sq[side as usize]),
+                        "{name}"
+                    );
                     reason_counts[1] += 1;
                 }
             }

@@ -49,7 +49,7 @@ fn pose_with_head_at(theta1: f64, theta4: f64) -> Pose {
     let mut pose = Pose::NEUTRAL;
     for (servo, degrees) in [theta1, theta4].into_iter().enumerate() {
         let centideg = (100.0 * degrees).round() as i32;
-        let neutral = paper().firmware().neutral()[servo];
+        let neutral = paper().firmware().neutral_angles()[servo];
         pose.0[servo] = neutral.sweep_to(Angle::from_centideg(centideg));
     }
     pose

@@ -55,7 +55,7 @@ pub fn per_mm(scale: Scale) -> f64 {
 
 /// Returns the chassis angles of a pose in degrees, exactly as the core represents them.
 pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
-    pose.angles(&firmware.neutral()).map(degrees)
+    pose.angles(&firmware.neutral_angles()).map(degrees)
 }
 
 /// The values of every safety condition at a pose, computed in floating point.
@@ -104,8 +104,8 @@ impl ExactConditions {
             *type2 = type2.copysign(k2);
         }
         let firmware = robot.firmware();
-        let side_band = |side| STEPS_BAND / per_mm(firmware.side(side).scale);
-        let end_band = |end| STEPS_BAND / per_mm(firmware.end(end).bars().scale());
+        let side_band = |side| STEPS_BAND / per_mm(firmware.slider(side).scale);
+        let end_band = |end| STEPS_BAND / per_mm(firmware.five_bar(end).bars().scale());
         let [head, tail] =
             [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
                 five_bar_bands(
@@ -207,7 +207,7 @@ fn five_bar_bands(
         End::Head => lizard_kinematics::End::Head,
         End::Tail => lizard_kinematics::End::Tail,
     });
-    let (a, b) = (bars.coupler_left, bars.coupler_right);
+    let (a, b) = (bars.left_coupler_length, bars.right_coupler_length);
     let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
     [cosine * tip_distance / (a * b), 1.0 / a, 1.0 / b]
         .map(|turns| MARGIN_BAND + step_mm * turns / type2)
@@ -267,7 +267,7 @@ impl fmt::Display for ErrorStatistics {
 
 /// Returns a random pose anywhere in the servos' travel.
 pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
-    Pose(calibration.map(|servo| Sweep(rng.i16(servo.min.0..=servo.max.0))))
+    Pose(calibration.map(|servo| Sweep(rng.i16(servo.travel_min.0..=servo.travel_max.0))))
 }
 
 /// Returns a random pose within a share of every servo's travel from neutral.

@@ -13,10 +13,10 @@ mod shell;
 use std::sync::LazyLock;
 
 use desk::{BOOT_LOADER_START, Desk, loader};
-use lizard_core::memory::copies::REST_POSE;
-use lizard_core::memory::record::{RECORD_BYTES, SIZE};
-use lizard_core::numbers::section::START;
-use lizard_host::firmware::label;
+use lizard_core::memory::copies::REST_POSE_ADDRESS;
+use lizard_core::memory::record::{MEMORY_BYTES, RECORD_BYTES};
+use lizard_core::numbers::section::START_ADDRESS;
+use lizard_host::firmware::robot_label;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::{avr_gcc, robot, root};
 use lizard_robot::Robot;
@@ -26,7 +26,7 @@ use simulated_uno::{Fidelity, Image, Port, Uno};
 
 /// A program other than the firmware, which sends bytes without end at the boot loader's baud rate.
 static TALKER: LazyLock<Image> = LazyLock::new(|| {
-    avr_gcc::c(
+    avr_gcc::compile_c(
         r#"
         #include <avr/io.h>
         #include <util/delay.h>
@@ -75,13 +75,14 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
 
 /// Checks that an upload has left the EEPROM alone, except for the rest pose. The firmware itself may write
 /// the rest pose, for example when `lizard` on a slow machine resets the board several times.
-fn assert_kept(desk: &Desk, expected: &[u8; SIZE]) {
-    let rest_addresses = usize::from(REST_POSE.0)..usize::from(REST_POSE.0 + RECORD_BYTES);
+fn assert_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
+    let rest_addresses =
+        usize::from(REST_POSE_ADDRESS.0)..usize::from(REST_POSE_ADDRESS.0 + RECORD_BYTES);
     let eeprom = desk.uno.eeprom();
     let has_changed = |address: &usize| {
         eeprom[*address] != expected[*address] && !rest_addresses.contains(address)
     };
-    let changed_addresses: Vec<usize> = (0..SIZE).filter(has_changed).collect();
+    let changed_addresses: Vec<usize> = (0..MEMORY_BYTES).filter(has_changed).collect();
     assert!(
         changed_addresses.is_empty(),
         "the EEPROM has changed at {changed_addresses:?}:\n{eeprom:?}"
@@ -155,7 +156,7 @@ fn a_board_that_has_the_image_is_left_as_it_is() {
     let mut desk = board_with_firmware();
     let shell = lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
-    let robot_text = format!("robot {} already", label(robot().firmware()));
+    let robot_text = format!("robot {} already", robot_label(robot().firmware()));
     assert!(screen.contains(&robot_text), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
 }

@@ -28,7 +28,8 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     desk.wait_for_text(&shell, "written and verified");
     assert_kept(&desk, &eeprom_before);
     let screen = run_to_exit(&mut desk, &shell);
-    let [first_label, other_label] = [robot(), &other_robot].map(|robot| label(robot.firmware()));
+    let [first_label, other_label] =
+        [robot(), &other_robot].map(|robot| robot_label(robot.firmware()));
     assert!(
         screen.contains(&format!(" robot {first_label}\n")),
         "{screen}"
@@ -38,7 +39,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
         banner.is_some_and(|line| line.contains(&format!(" robot {other_label}"))),
         "{screen}"
     );
-    let end = usize::from(START) + other_robot.section().len();
+    let end = usize::from(START_ADDRESS) + other_robot.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
 
     // Then the first robot is written again, with `--json`; its trims are unchanged.
@@ -66,7 +67,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let shell = lizard_flash(&desk, &arguments);
     let section = other_robot.section();
     // Waits until the third page of the robot is written.
-    let third_page = usize::from(START) + 0x100;
+    let third_page = usize::from(START_ADDRESS) + 0x100;
     let is_half_written = desk.run_until(|uno| {
         let is_written = uno.flash()[third_page..third_page + 0x80] == section[0x100..0x180];
         is_written || shell.has_ended()
@@ -100,10 +101,10 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
-        screen.contains(&format!(" robot {}", label(other_robot.firmware()))),
+        screen.contains(&format!(" robot {}", robot_label(other_robot.firmware()))),
         "{screen}"
     );
-    let end = usize::from(START) + section.len();
+    let end = usize::from(START_ADDRESS) + section.len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
 }
 
@@ -145,6 +146,6 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
     let shell = Shell::start("avrdude", &arguments, &[]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
-    let end = usize::from(START) + other_robot.section().len();
+    let end = usize::from(START_ADDRESS) + other_robot.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
 }

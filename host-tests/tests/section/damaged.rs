@@ -11,8 +11,10 @@ use lizard_core::numbers::calibration::Calibration;
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::limits::Limits;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::numbers::section::{Damage, Header, MAGIC, Numbers, Region, SPACE, seal};
-use lizard_core::numbers::units::{Sine, Sweep, Width};
+use lizard_core::numbers::section::{
+    Header, MAGIC, Numbers, Region, SPACE_BYTES, SectionError, write_checksum,
+};
+use lizard_core::numbers::units::{PulseWidth, Sine, Sweep};
 use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::rng;
 use lizard_robot::flash;
@@ -23,14 +25,14 @@ use crate::sections;
 const FORMAT: std::ops::Range<usize> = 4..6;
 const LENGTH: std::ops::Range<usize> = 6..8;
 
-fn find_damage(section: &[u8]) -> Option<Damage> {
+fn find_damage(section: &[u8]) -> Option<SectionError> {
     Robot::open(Region::new(section)).err()
 }
 
 /// Returns the flash of a chip into which only these first bytes of a section were written.
 fn partly_written_flash(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
-    flash.resize(SPACE.into(), 0xff);
+    flash.resize(SPACE_BYTES.into(), 0xff);
     flash
 }
 
@@ -40,7 +42,7 @@ fn every_robot_is_read_with_anything_behind_its_section() {
         assert_eq!(find_damage(section), None, "{}", named.name);
         for filler in [0, 0x55, 0xff] {
             let mut flash = section.clone();
-            flash.resize(SPACE.into(), filler);
+            flash.resize(SPACE_BYTES.into(), filler);
             assert_eq!(find_damage(&flash), None, "{} before {filler}", named.name);
         }
     }
@@ -59,9 +61,9 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
         for bit in 0..8 * usize::from(length) {
             section[bit / 8] ^= 1 << (bit % 8);
             let expected = match bit / 8 {
-                0..4 => Damage::Missing,
-                index if FORMAT.contains(&index) => Damage::Format,
-                _ => Damage::Damaged,
+                0..4 => SectionError::Missing,
+                index if FORMAT.contains(&index) => SectionError::OtherFormat,
+                _ => SectionError::Damaged,
             };
             assert_eq!(
                 find_damage(&section),
@@ -105,24 +107,28 @@ fn a_section_of_any_other_version_is_reported_as_such() {
     let own_format = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
     for format in (0..=u16::MAX).filter(|format| *format != own_format) {
         section[FORMAT].copy_from_slice(&format.to_le_bytes());
-        assert_eq!(find_damage(&section), Some(Damage::Format), "{format}");
+        assert_eq!(
+            find_damage(&section),
+            Some(SectionError::OtherFormat),
+            "{format}"
+        );
     }
 }
 
 #[test]
 fn erased_flash_and_flash_filled_with_one_byte_is_refused() {
     for byte in 0..=u8::MAX {
-        let flash = [byte; SPACE as usize];
-        assert_eq!(find_damage(&flash), Some(Damage::Missing), "{byte}");
+        let flash = [byte; SPACE_BYTES as usize];
+        assert_eq!(find_damage(&flash), Some(SectionError::Missing), "{byte}");
     }
-    assert_eq!(find_damage(&[]), Some(Damage::Missing));
+    assert_eq!(find_damage(&[]), Some(SectionError::Missing));
 }
 
 #[test]
 fn a_hundred_thousand_random_sections_are_refused() {
     let rng = &mut rng(150);
     for n in 0..100_000 {
-        let mut section = vec![0; rng.usize(..=usize::from(SPACE))];
+        let mut section = vec![0; rng.usize(..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
         // Each valid field of the header lets the check reach the next field.
         if n % 4 > 0 {
@@ -155,13 +161,13 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
     let rng = &mut rng(151);
     for _ in 0..20_000 {
         let min = size_of::<Header>() + size_of::<Numbers>();
-        let mut section = vec![0; rng.usize(min..=usize::from(SPACE))];
+        let mut section = vec![0; rng.usize(min..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
         let (_, valid_section) = rng.choice(sections()).expect("sections");
         put_bytes(&mut section, 0, &valid_section[..LENGTH.start]);
         let length = section.len() as u16;
         put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
-        seal(&mut section);
+        write_checksum(&mut section);
         if find_damage(&section).is_none() {
             check_motion(rng, &section);
         }
@@ -178,9 +184,9 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
         for _ in 0..=rng.usize(..4) {
             change_random_number(rng, &mut section);
         }
-        seal(&mut section);
+        write_checksum(&mut section);
         match find_damage(&section) {
-            Some(Damage::Impossible) => refused_count += 1,
+            Some(SectionError::Impossible) => refused_count += 1,
             Some(other_damage) => panic!("section {n} is {other_damage:?}"),
             None => {
                 accepted_count += 1;
@@ -210,8 +216,8 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
             type1: Sine(i16::MIN),
             leg: Sine(i16::MIN),
         };
-        for side in &mut content.sides {
-            (side.min, side.max) = (0, u16::MAX);
+        for side in &mut content.sliders {
+            (side.stroke_min, side.stroke_max) = (0, u16::MAX);
         }
         for wave in &mut content.waves {
             wave.fill_with(|| rng.i16(..));
@@ -222,17 +228,17 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
         {
             channel.gain = rng.i16(..);
         }
-        let robot = Robot::open(flash(&content.section())).expect("nothing is out of range");
+        let robot = Robot::open(flash(&content.section_bytes())).expect("nothing is out of range");
         for id in GaitId::all(robot.gait_count()).skip(1) {
             let mut running = RunningRobot::power_on(robot);
             run_frames(&mut running, 30);
-            let name: String = robot.name(id).map(char::from).collect();
+            let name: String = robot.gait_name(id).map(char::from).collect();
             assert_eq!(running.send_line(&name), format!("ok {name}"));
             run_frames(&mut running, 300);
             if running.motion().activity() == Activity::Stop {
                 let hazard = running.motion().hazard();
                 assert!(matches!(hazard, Some(Hazard::Travel(_))), "{hazard:?}");
-                assert_eq!(running.status("guard"), "held");
+                assert_eq!(running.status_value("guard"), "held");
                 held_count += 1;
             }
         }
@@ -248,14 +254,14 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
             for [min, max] in [[1, 9000], [-9000, -1], [1, -1], [100, 50]] {
                 let mut content = named.robot.content().clone();
                 let calibration = &mut content.calibration[servo];
-                (calibration.min, calibration.max) = (Sweep(min), Sweep(max));
-                let reach = &mut content.reach[servo];
+                (calibration.travel_min, calibration.travel_max) = (Sweep(min), Sweep(max));
+                let reach = &mut content.needed_travel[servo];
                 (reach.min, reach.max) = (Sweep(min), Sweep(max));
-                let damage = find_damage(&content.section());
+                let damage = find_damage(&content.section_bytes());
                 let name = &named.name;
                 assert_eq!(
                     damage,
-                    Some(Damage::Impossible),
+                    Some(SectionError::Impossible),
                     "{name} {servo} {min} {max}"
                 );
             }
@@ -269,8 +275,10 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
 fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     let numbers = size_of::<Header>();
     let offset = match rng.u8(..4) {
-        0 | 1 => numbers + rng.usize(offset_of!(Numbers, neutral)..offset_of!(Numbers, curves)),
-        2 => numbers + rng.usize(offset_of!(Numbers, rail)..offset_of!(Numbers, maps)),
+        0 | 1 => {
+            numbers + rng.usize(offset_of!(Numbers, neutral_angles)..offset_of!(Numbers, curves))
+        }
+        2 => numbers + rng.usize(offset_of!(Numbers, rail_pin)..offset_of!(Numbers, maps)),
         _ => rng.usize(numbers + size_of::<Numbers>()..section.len() - 1),
     };
     let offset = offset & !1;
@@ -299,11 +307,11 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
         let line = match rng.u8(..8) {
             0..4 => {
                 let id = *rng.choice(&gaits).expect("stand at least");
-                let name: Vec<u8> = robot.name(id).collect();
+                let name: Vec<u8> = robot.gait_name(id).collect();
                 name.into_iter().map(char::from).collect()
             }
             4 | 5 => {
-                let angles = robot.neutral().map(|angle| {
+                let angles = robot.neutral_angles().map(|angle| {
                     let angle = f64::from(angle.0) * 360.0 / 65536.0 + 40.0 * rng.f64() - 20.0;
                     format!("{:.2}", angle.rem_euclid(360.0))
                 });
@@ -324,7 +332,7 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
 /// Runs frames and checks that no servo turns beyond its travel.
 fn run_frames(running: &mut RunningRobot, count: u32) {
     for _ in 0..count {
-        let pulses = running.frame();
+        let pulses = running.run_frame();
         running.board.transmitter.text.clear();
         for (pulse, servo) in pulses.0.into_iter().zip(running.motion().calibration()) {
             check_pulse(pulse, servo);
@@ -333,8 +341,11 @@ fn run_frames(running: &mut RunningRobot, count: u32) {
 }
 
 /// Checks that there is no pulse, or a pulse within the travel and the range of a hobby servo.
-fn check_pulse(pulse: Width, servo: &Calibration) {
-    let end_pulses = [servo.pulse(servo.min), servo.pulse(servo.max)];
+fn check_pulse(pulse: PulseWidth, servo: &Calibration) {
+    let end_pulses = [
+        servo.clamped_width(servo.travel_min),
+        servo.clamped_width(servo.travel_max),
+    ];
     let travel = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
     let allowed_range = 500 * 16 - 1..=2500 * 16 + 1;
     assert!(

@@ -4,7 +4,7 @@
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
-use lizard_core::numbers::curve::{ENTRIES, Table, argument};
+use lizard_core::numbers::curve::{ENTRY_COUNT, Table, argument_at};
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
@@ -57,12 +57,12 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
         let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
         let are_close = |thresholds: lizard_core::numbers::supplies::Thresholds,
                          volts: [f64; 3]| {
-            is_close(thresholds.slow, volts[0])
-                && is_close(thresholds.stop, volts[1])
-                && is_close(thresholds.rest, volts[2])
+            is_close(thresholds.slow_mv, volts[0])
+                && is_close(thresholds.stop_mv, volts[1])
+                && is_close(thresholds.rest_mv, volts[2])
         };
         assert!(
-            is_close(stored.reference, supplies.reference),
+            is_close(stored.reference_mv, supplies.reference),
             "{name} {stored:?}"
         );
         assert!(are_close(stored.board, supplies.board), "{name} {stored:?}");
@@ -70,12 +70,12 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
             Some(rail) => {
                 let divided = supplies.reference * rail.ratio;
                 assert!(
-                    is_close(stored.rail_reference, divided),
+                    is_close(stored.rail_reference_mv, divided),
                     "{name} {stored:?}"
                 );
                 assert!(are_close(stored.rail, rail.thresholds), "{name} {stored:?}");
             }
-            None => assert_eq!(stored.rail_reference, 0, "{name}"),
+            None => assert_eq!(stored.rail_reference_mv, 0, "{name}"),
         }
     });
 }
@@ -85,16 +85,19 @@ fn the_servos_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         for (index, servo) in toml.servos().iter().enumerate() {
             let servo_id = Servo::ALL[index];
-            let neutral = f64::from(robot.neutral_of(servo_id).0) / STEPS_PER_DEGREE;
+            let neutral = f64::from(robot.neutral_angle_of(servo_id).0) / STEPS_PER_DEGREE;
             assert!(
                 (neutral - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
                 "{name}"
             );
-            assert_eq!(robot.neutral()[index], robot.neutral_of(servo_id));
+            assert_eq!(
+                robot.neutral_angles()[index],
+                robot.neutral_angle_of(servo_id)
+            );
             let calibration = robot.calibration_of(servo_id);
             assert_eq!(robot.calibration()[index], calibration);
             let pulse_us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
-            for sweep in calibration.min.0..=calibration.max.0 {
+            for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
                 let error =
                     f64::from(calibration.width(Sweep(sweep)).0) - 16.0 * pulse_us(sweep.into());
                 // Half a cycle each for the neutral width and for the product, and the rounding of the
@@ -106,7 +109,10 @@ fn the_servos_are_read_back() {
             }
             let is_in_range =
                 |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_us(sweep));
-            let (min, max) = (i32::from(calibration.min.0), i32::from(calibration.max.0));
+            let (min, max) = (
+                i32::from(calibration.travel_min.0),
+                i32::from(calibration.travel_max.0),
+            );
             assert!(
                 is_in_range(min)
                     && !is_in_range(min - 1)
@@ -133,7 +139,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
                 "{name}: {stored:?} for {exact}"
             );
         }
-        let per_frame = toml.pace().slew * STEPS_PER_DEGREE / 50.0;
+        let per_frame = toml.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
         let rounding_down = per_frame - f64::from(robot.slew().per_frame);
         assert!(
             (-1e-5..1.0).contains(&rounding_down),
@@ -152,7 +158,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
             }
         }
         for servo in Servo::ALL {
-            let reach = robot.reach(servo);
+            let reach = robot.needed_travel(servo);
             let [min, max] = widest_sweeps[servo.index()];
             let error = [
                 degrees(reach.min.0.into()) - min,
@@ -175,7 +181,7 @@ fn the_bars_and_the_sliders_are_read_back() {
             (End::Head, [l.l0, l.l1, l.l4, l.l2, l.l3]),
             (End::Tail, [l.l5, l.l6, l.l9, l.l7, l.l8]),
         ] {
-            let five_bar = robot.end(end);
+            let five_bar = robot.five_bar(end);
             let scale = five_bar.bars().scale();
             let length = |mm: f64| steps(mm, scale) as i16;
             let bars = [base, left, right].map(length);
@@ -199,21 +205,21 @@ fn the_bars_and_the_sliders_are_read_back() {
                 [-side_offset, l.l15, l.l19, l.l16, l.l17 + l.l18],
             ),
         ] {
-            let core_side = robot.side(side);
+            let core_side = robot.slider(side);
             let length = |mm: f64| steps(mm, core_side.scale);
             let lengths = [
                 f64::from(core_side.offset),
                 f64::from(core_side.base),
-                f64::from(core_side.front),
-                f64::from(core_side.rear),
-                f64::from(core_side.nominal),
+                f64::from(core_side.front_arm),
+                f64::from(core_side.rear_arm),
+                f64::from(core_side.nominal_length),
             ];
             let expected = [offset, base, front, rear, nominal].map(length);
             assert_eq!(lengths, expected, "{name} {side:?}");
             let per_mm = f64::from(1u32 << core_side.scale.bits);
             let inward_rounding = [
-                f64::from(core_side.min) - (nominal + limits.stroke_min) * per_mm,
-                (nominal + limits.stroke_max) * per_mm - f64::from(core_side.max),
+                f64::from(core_side.stroke_min) - (nominal + limits.stroke_min) * per_mm,
+                (nominal + limits.stroke_max) * per_mm - f64::from(core_side.stroke_max),
             ];
             let is_inwards = inward_rounding
                 .iter()
@@ -240,7 +246,7 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
             (End::Head, [l.l2, l.l3], read_numbers(flash).curves[0]),
             (End::Tail, [l.l7, l.l8], read_numbers(flash).curves[1]),
         ] {
-            let scale = robot.end(end).bars().scale();
+            let scale = robot.five_bar(end).bars().scale();
             let [a, b] = [a, b].map(|mm| steps(mm, scale));
             // Squared distances divided by four, in squared steps.
             let [largest_reach, smallest_reach] =
@@ -260,14 +266,14 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
                     .get(0)
                     .expect("a curve")
                     .load();
-                for (index, entry) in table.into_iter().enumerate().take(ENTRIES) {
+                for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
                     let largest_argument = match shape {
                         Shape::Rise | Shape::Skew => largest_reach,
                         // Rounded down to integers, as in the core.
                         Shape::Stretched => (largest_reach.floor() / 4.0).floor(),
                         Shape::Folded => smallest_reach.floor(),
                     };
-                    let value = argument(largest_argument as u32, index) as f64;
+                    let value = argument_at(largest_argument as u32, index) as f64;
                     let s = match shape {
                         Shape::Rise => value.max(
                             2.0 * largest_reach * smallest_reach / (largest_reach + smallest_reach),
@@ -303,7 +309,7 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
         assert_eq!(robot.gait_count(), toml.gaits().len(), "{name}");
         for (id, gait) in GaitId::all(robot.gait_count()).zip(toml.gaits()) {
             let gait_name = format!("{name} {}", gait.name());
-            let read_name: String = robot.name(id).map(char::from).collect();
+            let read_name: String = robot.gait_name(id).map(char::from).collect();
             assert_eq!(read_name, gait.name().replace('-', " "), "{name}");
             let numbers = robot.gait(id);
             let mut increment = f64::from(1 << 24) / (gait.period() * 50.0);
@@ -317,7 +323,7 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
             for step in 0..8192 {
                 let pose = numbers.pose(robot.waves(), step << 11);
                 let exact = gait.angles(f64::from(step) / 8192.0);
-                for (index, angle) in pose.angles(&robot.neutral()).into_iter().enumerate() {
+                for (index, angle) in pose.angles(&robot.neutral_angles()).into_iter().enumerate() {
                     let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
                     let error = (angle - exact[index] + 180.0).rem_euclid(360.0) - 180.0;
                     // The error of a table, and half a step of the neutral angle.
@@ -340,21 +346,26 @@ const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = read_numbers(flash);
     let rows_part = numbers.parts[Part::Rows as usize];
-    let rows = flash.values::<[i8; 2]>(rows_part.at, rows_part.count);
+    let rows = flash.values::<[i8; 2]>(rows_part.address, rows_part.count);
     let mut next_row = 0;
-    numbers.maps.map(|MapHeader { first, rows: count }| {
-        let map = (0..i32::from(count)).map(|row| {
-            let [first_column, last_column] =
-                rows.get(next_row).expect("a row").load().map(i32::from);
-            next_row += 1;
-            let row = 256 * (i32::from(first) + row);
-            [
-                row..=row + 255,
-                128 * first_column..=128 * last_column + 127,
-            ]
-        });
-        map.collect()
-    })
+    numbers.maps.map(
+        |MapHeader {
+             first_row: first,
+             row_count: count,
+         }| {
+            let map = (0..i32::from(count)).map(|row| {
+                let [first_column, last_column] =
+                    rows.get(next_row).expect("a row").load().map(i32::from);
+                next_row += 1;
+                let row = 256 * (i32::from(first) + row);
+                [
+                    row..=row + 255,
+                    128 * first_column..=128 * last_column + 127,
+                ]
+            });
+            map.collect()
+        },
+    )
 }
 
 /// True if the exact guard accepts every condition that depends on the servos of a map.
@@ -370,8 +381,12 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
     match pair {
         0 => accepts_margins(0, 0),
         1 => accepts_margins(1, 2),
-        2 => robot.side(Side::Left).allows(clearance.sliders_sq[0]),
-        _ => robot.side(Side::Right).allows(clearance.sliders_sq[1]),
+        2 => robot
+            .slider(Side::Left)
+            .allows(clearance.slider_lengths_sq[0]),
+        _ => robot
+            .slider(Side::Right)
+            .allows(clearance.slider_lengths_sq[1]),
     }
 }
 
@@ -431,7 +446,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
                 // Any sweep, any within the travel, or any near neutral.
                 *sweep = Sweep(match n % 3 {
                     0 => rng.i16(..),
-                    1 => rng.i16(travel.min.0..=travel.max.0),
+                    1 => rng.i16(travel.travel_min.0..=travel.travel_max.0),
                     _ => rng.i16(-3000..3000),
                 });
             }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use lizard_host_tests::avr_gcc::{assembler, link, object_of_c};
+use lizard_host_tests::avr_gcc::{assemble, link, object_of_c};
 use lizard_host_tests::root;
 use lizard_linker::frame::FIRST_REGISTERS;
 use lizard_linker::{ROUTINES, shrink};
@@ -231,7 +231,7 @@ fn frame_program(first_register: u8, room_bytes: u8) -> String {
 fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
     for first_register in FIRST_REGISTERS {
         for room_bytes in [0, 1, 5, 63, 64, 200, 255] {
-            let image = assembler(&frame_program(first_register, room_bytes));
+            let image = assemble(&frame_program(first_register, room_bytes));
             let mut uno = Uno::with_image(image, Fidelity::DataSheet);
             uno.run_ms(10);
             assert_eq!(

@@ -4,7 +4,7 @@ use std::fmt;
 
 use lizard_core::console::word::Word;
 use lizard_core::memory::restart::Cause;
-use lizard_core::numbers::rate::Rate;
+use lizard_core::numbers::rate::BaudRate;
 
 use crate::small::{BUTTON, NOSE};
 
@@ -16,7 +16,7 @@ pub enum Action {
     /// A line arrives in which noise has changed a byte.
     Noise,
     /// Lines are sent at this rate from now on.
-    SendAt(Rate),
+    SendAt(BaudRate),
     /// Main performs its most urgent task.
     Step,
     /// Frames pass.
@@ -94,7 +94,7 @@ impl Action {
         };
         let other_words = Word::ALL.iter().filter(|word| !is_tried(word));
         actions.extend(LINES.map(Self::Say));
-        actions.extend(Rate::ALL.map(Self::SendAt));
+        actions.extend(BaudRate::ALL.map(Self::SendAt));
         actions.extend(other_words.map(|word| Self::Say(word.example())));
         // The last hand-over of a frame was 16 ms ago. In these times main misses no hand-over, one, three or
         // five; or the watchdog ends the pulses; or the watchdog resets the chip.

@@ -26,23 +26,23 @@ type Field = (&'static str, &'static str, Treatment);
 
 /// The fields that are left out or rounded in a state's fingerprint.
 const RULES: &[Field] = &[
-    ("Main", "ticks", Skip),
+    ("Main", "last_tick", Skip),
     // The previous line has no effect, since the next byte begins a new line.
     ("Console", "line", Skip),
     // No action ends within a line, so no line waits for its rest.
-    ("Console", "silence", Skip),
+    ("Console", "silence_ms", Skip),
     // A line at another rate has enough wrong bytes to change the rate, however many came before.
-    ("RateFinder", "wrong_bytes", Skip),
+    ("RateFinder", "wrong_byte_count", Skip),
     (
         "Motion",
-        "frames",
+        "frame_count",
         Coarse(|frames| u64::from(frames >= 1_500)),
     ),
     ("Motion", "calibration", Skip),
-    ("Count", "phase_covered", Coarse(|phase| phase >> 14)),
-    ("Count", "phase", Skip),
+    ("CycleCount", "phase_covered", Coarse(|phase| phase >> 14)),
+    ("CycleCount", "last_phase", Skip),
     ("Routine", "frames_left", Coarse(coarse_countdown)),
-    ("Stance", "sent", Coarse(|width| width >> 11)),
+    ("Stance", "sent_pulses", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
     (
         "Stance",
@@ -61,22 +61,26 @@ const RULES: &[Field] = &[
     ("Cycling", "phase", Coarse(|phase| phase >> 22)),
     ("Cycling", "pace", Coarse(coarse_pace)),
     ("Moving", "pace", Coarse(coarse_pace)),
-    ("PointToPoint", "from", Coarse(|sweep| sweep >> 11)),
-    ("PointToPoint", "step", Skip),
-    ("PointToPoint", "elapsed", Coarse(|share| share >> 13)),
-    ("Restart", "count", Coarse(|count| count.min(1))),
-    ("Control", "restarts", Coarse(|count| count.min(1))),
+    ("PointToPointMove", "from", Coarse(|sweep| sweep >> 11)),
+    ("PointToPointMove", "share_per_frame", Skip),
+    (
+        "PointToPointMove",
+        "elapsed_share",
+        Coarse(|share| share >> 13),
+    ),
+    ("Restart", "reset_count", Coarse(|count| count.min(1))),
+    ("Control", "reset_count", Coarse(|count| count.min(1))),
 ];
 
 /// The fields that a refused command may change: they record that a line has arrived.
 const LINE_ARRIVAL_FIELDS: &[Field] = &[
-    ("Main", "ticks", Skip),
+    ("Main", "last_tick", Skip),
     ("Console", "line", Skip),
-    ("Console", "silence", Skip),
+    ("Console", "silence_ms", Skip),
     ("Console", "answer", Skip),
-    ("RateFinder", "wrong_bytes", Skip),
+    ("RateFinder", "wrong_byte_count", Skip),
     ("RateFinder", "has_received", Skip),
-    ("Console", "has_greeted", Skip),
+    ("Console", "has_printed_banner", Skip),
     ("Safety", "silence_ms", Skip),
     ("Safety", "boot_timer", Skip),
     // A command shows that a program opened the port, which resets the board.
@@ -245,7 +249,7 @@ mod tests {
     #[derive(Clone, Copy, Debug)]
     #[allow(dead_code, reason = "read by Debug")]
     struct Motion {
-        frames: u32,
+        frame_count: u32,
         stance: Stance,
         speed: i16,
         list: [u8; 3],
@@ -258,7 +262,7 @@ mod tests {
     }
 
     const MOTION: Motion = Motion {
-        frames: 7,
+        frame_count: 7,
         stance: Stance { frames_awake: 3 },
         speed: -5,
         list: [1, 2, 3],
@@ -275,7 +279,7 @@ mod tests {
     fn counters_are_left_out_coarse_fields_are_rounded_and_all_others_count() {
         let fingerprint = coarse_fingerprint(&MOTION);
         assert_eq!(
-            coarse_fingerprint(&motion_with(|motion| motion.frames = 1_499)),
+            coarse_fingerprint(&motion_with(|motion| motion.frame_count = 1_499)),
             fingerprint
         );
         assert_eq!(
@@ -283,7 +287,7 @@ mod tests {
             fingerprint
         );
         assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.frames = 1_500)),
+            coarse_fingerprint(&motion_with(|motion| motion.frame_count = 1_500)),
             fingerprint
         );
         assert_ne!(
@@ -300,7 +304,7 @@ mod tests {
         );
         let exact_fingerprint = fingerprint_without_line_arrival(&MOTION);
         assert_ne!(
-            fingerprint_without_line_arrival(&motion_with(|motion| motion.frames = 8)),
+            fingerprint_without_line_arrival(&motion_with(|motion| motion.frame_count = 8)),
             exact_fingerprint
         );
     }

@@ -1,6 +1,6 @@
 //! Initial states of a search: every kind of EEPROM contents, each with several activities.
 
-use lizard_core::memory::copies::COPIES;
+use lizard_core::memory::copies::COPY_ADDRESSES;
 use lizard_core::memory::record::Progress;
 use lizard_core::memory::restart::Cause;
 use lizard_core::memory::settings::Settings;
@@ -99,13 +99,13 @@ const ACTIVITIES: [&[Action]; 11] = [
 /// Returns an EEPROM with valid settings that leave servo A3 too little travel for the gaits.
 fn short_travel_memory(robot: &Robot) -> Eeprom {
     let mut settings = Settings::of(robot);
-    let mut servo_settings = settings.servo(Servo::ALL[2]);
-    servo_settings.max = Sweep(robot.reach(Servo::ALL[2]).max.0 / 2);
-    settings.set_servo(Servo::ALL[2], servo_settings);
+    let mut servo_settings = settings.adjustment(Servo::ALL[2]);
+    servo_settings.travel_max = Sweep(robot.needed_travel(Servo::ALL[2]).max.0 / 2);
+    settings.set_adjustment(Servo::ALL[2], servo_settings);
     let mut memory = Eeprom::blank();
-    let mut writing = COPIES[0].start_write();
-    while writing.step(settings.bytes(), &mut memory) == Progress::InProgress {}
-    Eeprom::with(*memory.bytes())
+    let mut writing = COPY_ADDRESSES[0].start_write();
+    while writing.advance(settings.bytes(), &mut memory) == Progress::InProgress {}
+    Eeprom::with_bytes(*memory.bytes())
 }
 
 /// Returns every initial state: each EEPROM with each activity that breaks no rule.
@@ -122,7 +122,10 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
             for action in *actions {
                 _ = world.apply(*action);
             }
-            (*name, Eeprom::with(*world.running.board.memory.bytes()))
+            (
+                *name,
+                Eeprom::with_bytes(*world.running.board.memory.bytes()),
+            )
         })
         .collect();
     let saved_memory = |memories: &[(&'static str, Eeprom)]| memories[1].1.clone();

@@ -1,8 +1,8 @@
 //! A small robot: the paper's robot with few and short gaits, so that the states of a walk
 //! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
 
-use lizard_core::numbers::calibration::Reach;
-use lizard_core::numbers::gaits::{Channel, Gait, Input, SAMPLES, Step, Wave};
+use lizard_core::numbers::calibration::NeededTravel;
+use lizard_core::numbers::gaits::{Channel, Gait, Input, SAMPLES_PER_WAVE, Step, Wave};
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::Content;
 use lizard_core::numbers::slew::Slew;
@@ -30,13 +30,13 @@ pub const NOSE: u8 = 16;
 pub fn small_robot() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
-    let angle_rad = |n: usize| n as f64 / SAMPLES as f64 * std::f64::consts::TAU;
+    let angle_rad = |n: usize| n as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
     let wave_of = |height_at: &dyn Fn(usize) -> f64| -> Wave {
         std::array::from_fn(|n| (height_at(n) * 1820.0).round() as i16)
     };
     let mut content = Content {
         slew: Slew::new(SLEW_PER_FRAME),
-        reach: [Reach {
+        needed_travel: [NeededTravel {
             min: Sweep(-DECLARED_REACH),
             max: Sweep(DECLARED_REACH),
         }; 4],
@@ -81,7 +81,7 @@ pub fn small_robot() -> Robot<'static> {
         (Step::CYCLES, trot, 1),
     ];
     add_routine(&mut content, "patrol", &patrol);
-    Robot::open(flash(&content.section())).expect("whole")
+    Robot::open(flash(&content.section_bytes())).expect("whole")
 }
 
 fn add_gait(content: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4]) {

@@ -3,12 +3,12 @@
 mod inside;
 mod lines;
 
-use lizard_core::console::line::GARBLED;
+use lizard_core::console::line::GARBLED_BYTE;
 use lizard_core::control::fault::Fault;
-use lizard_core::memory::copies::{COPIES, REST_POSE};
+use lizard_core::memory::copies::{COPY_ADDRESSES, REST_POSE_ADDRESS};
 use lizard_core::memory::record::{RECORD_BYTES, VALID_MARK};
 use lizard_core::memory::restart::{Cause, Restart};
-use lizard_core::numbers::rate::Rate;
+use lizard_core::numbers::rate::BaudRate;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::step::Board;
 use lizard_core::virtual_board::{Eeprom, RunningRobot, compute_reading};
@@ -27,7 +27,7 @@ fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
 
 /// The bytes that a receiver at another rate reads in place of a line: enough wrong bytes to make the robot
 /// leave any rate.
-const UNREADABLE: [u8; 40] = [GARBLED; 40];
+const UNREADABLE: [u8; 40] = [GARBLED_BYTE; 40];
 
 /// Number of lines within which a robot must find the rate of the sender.
 const MAX_LINES_TO_FIND_RATE: usize = 12;
@@ -50,7 +50,7 @@ pub struct World {
     /// The last line that was sent, until its answer is known.
     unread: Option<&'static str>,
     /// The rate at which lines are sent.
-    sender_rate: Rate,
+    sender_rate: BaudRate,
     /// Number of lines whose answers are judged already and not printed yet.
     judged_answers: u8,
 }
@@ -58,7 +58,7 @@ pub struct World {
 impl World {
     /// Returns a robot whose power has just come on.
     pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
-        memory.slowness = 4;
+        memory.write_delay = 4;
         memory.is_timed = true;
         let mut world = Self {
             running: RunningRobot::with_memory(robot, memory, Restart::default()),
@@ -67,7 +67,7 @@ impl World {
             sags_when_servos_wake: false,
             is_late: false,
             unread: None,
-            sender_rate: Rate::Fastest,
+            sender_rate: BaudRate::Fastest,
             judged_answers: 0,
         };
         world.observe(Event::Supply(5_000));
@@ -81,7 +81,11 @@ impl World {
         let mut fingerprint = Fingerprint(fingerprint::coarse_fingerprint(&self.running.main));
         fingerprint.add(fingerprint::coarse_fingerprint(&self.observer.coarse()));
         let memory = board.memory.bytes();
-        for record in COPIES.map(|copy| copy.0).into_iter().chain([REST_POSE.0]) {
+        for record in COPY_ADDRESSES
+            .map(|copy| copy.0)
+            .into_iter()
+            .chain([REST_POSE_ADDRESS.0])
+        {
             let record = &memory[usize::from(record)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
             let used_bytes = if record[0] == VALID_MARK {
@@ -97,7 +101,7 @@ impl World {
             &board.ram.peek_restart(None),
         ));
         fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
-        let reading = board.converter.actual();
+        let reading = board.converter.true_reading();
         let flags = [
             board.memory.is_worn,
             board.has_boot_loader,
@@ -106,11 +110,11 @@ impl World {
             board.is_stack_intact,
             board.converter.is_complete(),
             board.transmitter.is_held,
-            board.restart().stance_before.is_some(),
-            board.unread() > 0,
+            board.last_restart().stance_before.is_some(),
+            board.unread_count() > 0,
             board.is_frame_pending(),
-            board.closed & 1 << BUTTON != 0,
-            board.closed & 1 << NOSE != 0,
+            board.closed_pins & 1 << BUTTON != 0,
+            board.closed_pins & 1 << NOSE != 0,
             self.sags_when_servos_wake,
             self.is_late,
             self.judged_answers > 0,
@@ -130,11 +134,13 @@ impl World {
         let board = &self.running.board;
         match action {
             Action::Say(_) | Action::Noise => {
-                board.unread() == 0
+                board.unread_count() == 0
                     && !board.transmitter.is_held
                     && !self.running.is_stopped_by_watchdog()
             }
-            Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
+            Action::Step => {
+                self.running.has_output() || self.running.main.control().is_memory_in_use()
+            }
             Action::Frames(_)
             | Action::Stall(_)
             | Action::Reset(_)
@@ -145,7 +151,7 @@ impl World {
             Action::Weak(is_weak) => is_weak != self.sags_when_servos_wake,
             Action::Late => board.late_edges < 3,
             Action::Stack => board.is_stack_intact,
-            Action::Contact(pin, is_closed) => is_closed != (board.closed & 1 << pin != 0),
+            Action::Contact(pin, is_closed) => is_closed != (board.closed_pins & 1 << pin != 0),
             Action::StopReading(is_deaf) => is_deaf != board.transmitter.is_held,
         }
     }
@@ -165,7 +171,7 @@ impl World {
                 self.sender_rate = rate;
                 self.check_rate_is_found()?;
             }
-            Action::Noise => self.say("", &[b'w', b'a', GARBLED, b'k'])?,
+            Action::Noise => self.say("", &[b'w', b'a', GARBLED_BYTE, b'k'])?,
             Action::Step => {
                 self.running.main.step(&mut self.running.board);
                 self.listen(self.now)?;
@@ -175,7 +181,7 @@ impl World {
             Action::Supply(mv) => {
                 let supplies = self.robot().supplies();
                 let reading = compute_reading(&supplies, u32::from(mv), 0);
-                self.running.board.converter.set(reading);
+                self.running.board.converter.set_true_reading(reading);
                 self.observe(Event::Supply(u32::from(mv)));
             }
             Action::Weak(is_weak) => self.sags_when_servos_wake = is_weak,
@@ -269,7 +275,7 @@ impl World {
         let was_held = self.running.motion().hazard().is_some();
         let frame_start = self.now;
         let was_resting = self.running.motion().is_resting();
-        self.running.frame();
+        self.running.run_frame();
         if self.running.board.transmitter.is_held
             && self.running.motion().is_resting() != was_resting
         {

@@ -3,7 +3,7 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
-use lizard_core::memory::copies::{self, REST_POSE, SavedState};
+use lizard_core::memory::copies::{self, REST_POSE_ADDRESS, SavedState};
 use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
@@ -159,7 +159,7 @@ impl Board {
     /// # Panics
     /// If its pulses break a rule.
     pub fn frame(&mut self) {
-        self.running.frame();
+        self.running.run_frame();
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         self.observer.observe_frame(self.now, widths);
         self.now += 20 * MS;
@@ -178,7 +178,7 @@ impl Board {
         let outcome = copies::load(robot, self.memory(), &mut settings);
         let is_whole = matches!(outcome, SavedState::Latest | SavedState::Blank);
         assert!(is_whole, "{rule}: {outcome:?}");
-        let is_forgotten = self.memory().read(REST_POSE.0) == 0xff;
+        let is_forgotten = self.memory().read(REST_POSE_ADDRESS.0) == 0xff;
         let has_rest_pose = copies::last_rest_pose(robot, self.memory()).is_some();
         assert!(is_forgotten || has_rest_pose, "{rule}: a pose");
         assert!(

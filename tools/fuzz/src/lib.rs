@@ -14,7 +14,7 @@ pub use board::Board;
 
 use std::sync::LazyLock;
 
-use lizard_core::memory::copies::{COPIES, REST_POSE};
+use lizard_core::memory::copies::{COPY_ADDRESSES, REST_POSE_ADDRESS};
 use lizard_core::memory::record::{Address, CONTENT_BYTES, Progress};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
@@ -59,7 +59,7 @@ pub fn memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
     let (records, patches) = data.split_at(data.len().min(3 * CONTENT_BYTES));
-    let addresses = [COPIES[0], COPIES[1], REST_POSE];
+    let addresses = [COPY_ADDRESSES[0], COPY_ADDRESSES[1], REST_POSE_ADDRESS];
     for (address, changes) in addresses.into_iter().zip(records.chunks(CONTENT_BYTES)) {
         let mut content = *Settings::of(robot.firmware()).bytes();
         for (byte, change) in content.iter_mut().zip(changes) {
@@ -78,7 +78,7 @@ pub fn memory(data: &[u8]) {
         board.frame();
     }
     let bytes_after = board.memory().bytes();
-    let settings_range = 0..usize::from(REST_POSE.0);
+    let settings_range = 0..usize::from(REST_POSE_ADDRESS.0);
     assert_eq!(
         bytes_after[settings_range.clone()],
         memory_before.bytes()[settings_range],
@@ -95,5 +95,5 @@ pub fn memory(data: &[u8]) {
 /// Writes a record as the core does.
 fn write_record(address: Address, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
     let mut writing = address.start_write();
-    while writing.step(content, memory) == Progress::InProgress {}
+    while writing.advance(content, memory) == Progress::InProgress {}
 }

@@ -83,11 +83,11 @@ impl Case {
             drive: match self.legs {
                 Legs::Rigid => Drive::RIGID,
                 Legs::Strut => Drive {
-                    kind: DriveKind::Strut(robot.strut_of(&robot.parts().spring)),
+                    kind: DriveKind::Strut(robot.strut_with_coil(&robot.parts().spring)),
                     ..Drive::RIGID
                 },
             },
-            ratio: 1.0,
+            friction_ratio: 1.0,
             ..*robot.ground()
         }
     }

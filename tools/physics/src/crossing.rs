@@ -42,11 +42,12 @@ impl Crossing {
             left,
             turn,
         };
-        let begin = (0..unmeasured_cycles).fold(Place::START, |place, _| place.after(cycle));
+        let begin =
+            (0..unmeasured_cycles).fold(Place::START, |place, _| place.moved_by_travel(cycle));
         let is_turn = !matches!(gait_purposes(by_cycle)[..], [Part::Ahead, ..]);
         let mut end = begin;
         for cycles in 1.. {
-            end = end.after(cycle);
+            end = end.moved_by_travel(cycle);
             let heading = if is_turn {
                 0.0
             } else {
@@ -61,7 +62,7 @@ impl Crossing {
                 .into_iter()
                 .fold(f64::MAX, f64::min);
             let has_passed = nearest_end > distance + CLEARANCE_MM;
-            if has_passed || end.seen_from(begin).turn.abs() >= MAX_TURN_DEG {
+            if has_passed || end.travel_from(begin).turn.abs() >= MAX_TURN_DEG {
                 return Self {
                     cycles,
                     is_crossed: has_passed,
@@ -89,7 +90,7 @@ impl Crossing {
 
 /// Returns the positions of the feet of a robot at a place on the floor.
 fn feet_at(place: Place, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
-    feet.map(|foot| place.on_floor(foot))
+    feet.map(|foot| place.to_floor(foot))
 }
 
 /// Returns the direction of a place from another place, deg counter-clockwise from ahead.

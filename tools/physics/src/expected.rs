@@ -12,7 +12,7 @@ pub fn expected(robot: &Robot) -> String {
     let grams = |newton: f64| 1000.0 * newton / GRAVITY;
     let stiffness = ground.stance.stiffness;
     let reach = ground.feet.reach;
-    let strut = robot.strut_of(&robot.parts().spring);
+    let strut = robot.strut_with_coil(&robot.parts().spring);
     let (servo, hardest_gait) = (*robot.servo_type(), HardestGait::of(robot));
     let rows = [
         (
@@ -29,7 +29,10 @@ pub fn expected(robot: &Robot) -> String {
         (
             "1",
             "pull along the floor at which a pad with a load of 100 g slides",
-            format!("{:.0} g; 40 to 100 g will do", 100.0 * ground.friction),
+            format!(
+                "{:.0} g; 40 to 100 g will do",
+                100.0 * ground.friction_coefficient
+            ),
             "[ground] friction",
         ),
         (
@@ -37,7 +40,7 @@ pub fn expected(robot: &Robot) -> String {
             "the same pull backward over the pull forward",
             format!(
                 "{:.1}; 0.9 to 1.1 will do; above it, `robots/grain.toml`",
-                ground.ratio
+                ground.friction_ratio
             ),
             "[ground] friction_back_over_forward",
         ),
@@ -126,7 +129,7 @@ pub fn expected(robot: &Robot) -> String {
         (
             "built",
             "load of LF and RH less that of RF and LH, divided by the g for each mm of the first line",
-            format!("0 mm, to {:.1} mm either way", ground.stance.level),
+            format!("0 mm, to {:.1} mm either way", ground.stance.twist_error),
             "[feet] twist",
         ),
     ];
@@ -161,7 +164,7 @@ impl<'a> HardestGait<'a> {
     }
 
     fn line(robot: &Robot, gait: &CheckedGait, servo: &ServoType) -> f64 {
-        let motors = robot.motors_of(servo, servo.volts);
+        let motors = robot.motors_of_type(servo, servo.volts);
         Effort::of(gait, robot.ground(), &motors).line_share(1.0, 1.0)
     }
 

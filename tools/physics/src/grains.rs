@@ -80,7 +80,7 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
             stiffness: robot.ground().stance.stiffness,
             ..Stance::LEVEL
         },
-        ratio,
+        friction_ratio: ratio,
         ..*robot.ground()
     };
     let is_decided = gait.predict(&ground).is_decided();
@@ -125,7 +125,7 @@ pub(crate) fn settling_cycles(gait: &CheckedGait) -> u32 {
 
 /// Returns the answers of a gait at the ratio in the robot's file.
 pub(crate) fn answers_at_own_ratio(answers: &[Answers]) -> Answers {
-    let own_ratio = crate::robot(ROBOT).ground().ratio;
+    let own_ratio = crate::robot(ROBOT).ground().friction_ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
     answers[index.expect("the file's ratio is one of the table's")]
 }
@@ -135,7 +135,7 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
     let cycles = settling_cycles(gait) + 1;
     Scene {
         name,
-        ratio,
+        friction_ratio: ratio,
         course: Some(Course::of(robot, gait, cycles, 1)),
         has_shapes: false,
         ..Scene::of(assembly)

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::process::{Child, Command, Stdio};
 
-use lizard_parts::{Assembly, Course, Pieces, Pull, Scene};
+use lizard_parts::{Assembly, Course, Pieces, Scene, StrutSpring};
 use serde::Deserialize;
 use tempfile::TempDir;
 
@@ -88,7 +88,7 @@ impl Jobs {
         walks: impl Iterator<Item = (Legs, Scene)>,
     ) -> Result<(), MujocoError> {
         let robot = assembly.robot();
-        let neutral = robot.lizard().solve(&robot.neutral());
+        let neutral = robot.lizard().solve(&robot.neutral_pose());
         let neutral = neutral.expect("every robot closes at neutral");
         let mut known_pieces: Vec<(Legs, Pieces)> = Vec::new();
         for (legs, scene) in walks {
@@ -132,15 +132,15 @@ impl Jobs {
 pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) -> Scene {
     let robot = assembly.robot();
     let gait = robot.gait(gait).expect("it is the robot's");
-    let strut = robot.strut_of(&robot.parts().spring);
+    let strut = robot.strut_with_coil(&robot.parts().spring);
     Scene {
         name: name.to_owned(),
         excess_lengths: [case.feet.excess_length(), 0.0, 0.0, 0.0],
-        stiffness: case.feet.stiffness(robot),
+        leaf_stiffness: case.feet.stiffness(robot),
         // Friction is equal in all directions, as in `Case::ground`; `grains.rs` is for other pads.
-        ratio: 1.0,
-        pull: (case.legs == Legs::Strut).then_some(Pull {
-            force: strut.force,
+        friction_ratio: 1.0,
+        strut_spring: (case.legs == Legs::Strut).then_some(StrutSpring {
+            preload: strut.force,
             rate: strut.rate,
         }),
         course: Some(Course::of(robot, gait, 2, 1)),

@@ -39,7 +39,7 @@ impl Row {
 /// Returns every gait of a robot that moves, in every case. A gait on which the contact model cannot decide
 /// has only the first case.
 pub fn rows(robot: &Robot) -> Vec<Row> {
-    let gaits = robot.gaits().iter().filter(|gait| gait.moves());
+    let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
     gaits.flat_map(|gait| rows_of(robot, gait)).collect()
 }
 

@@ -130,7 +130,7 @@ impl Variant {
             ..Scene::of(assembly)
         };
         if let Some(pins) = self.pins {
-            (scene.pin_friction, scene.motors.joints.drag) = (pins, 0.0);
+            (scene.pin_friction, scene.motors.joints.pin_torque) = (pins, 0.0);
         }
         scene
     }

@@ -54,7 +54,10 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
             .into();
     }
     let loaded_robot = crate::robot(robot);
-    let moving = loaded_robot.gaits().iter().filter(|gait| gait.moves());
+    let moving = loaded_robot
+        .gaits()
+        .iter()
+        .filter(|gait| gait.has_movement());
     let level_answers = moving.map(|gait| {
         let answers = figures.get(robot, gait.name(), Case::ALL[0]);
         (
@@ -134,10 +137,11 @@ impl Surface {
             Self::Slope(deg) => floor.slope = direction * f64::from(deg),
             Self::UnequalFriction => {
                 let friction_of = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
-                floor.friction = robot.ground().feet.positions([0.0; 4]).map(friction_of);
+                floor.friction_coefficients =
+                    robot.ground().feet.positions([0.0; 4]).map(friction_of);
             }
             // The screw's steel head rubs on the floor.
-            Self::NoPad => floor.friction[0] = 0.2,
+            Self::NoPad => floor.friction_coefficients[0] = 0.2,
         }
         floor
     }
@@ -154,10 +158,10 @@ impl Surface {
             1.0
         };
         let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
-        scene.ratio = robot.ground().ratio;
+        scene.friction_ratio = robot.ground().friction_ratio;
         let gait = robot.gait(gait).expect("it is the robot's");
         // On pads without a grain, a gait has its full speed from the first cycle on.
-        let settling_cycles = match scene.ratio == 1.0 {
+        let settling_cycles = match scene.friction_ratio == 1.0 {
             true => 0,
             false => grains::settling_cycles(gait),
         };

@@ -107,7 +107,7 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
 
 /// Returns the names of the gaits that move, in the order of robot.toml.
 fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
-    let moving = robot.gaits().iter().filter(|gait| gait.moves());
+    let moving = robot.gaits().iter().filter(|gait| gait.has_movement());
     moving.map(|gait| gait.name())
 }
 
@@ -116,7 +116,7 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
 /// from the model with ideal servos to MuJoCo.
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
-    for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
+    for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
         let answers_with = |feet: Feet| {
             let legs = Legs::Rigid;
             figures.get(name, gait.name(), Case { legs, feet })

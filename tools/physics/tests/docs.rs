@@ -222,7 +222,7 @@ fn every_walk_is_stored_and_close_to_the_model() {
     let mut count = 0;
     for name in ROBOTS {
         let robot = robot(name);
-        for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
+        for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
             let answers_for = |case| figures.get(name, gait.name(), case);
             let is_decided =
                 answers_for(Case::ALL[0]).is_some_and(|answers| answers.model.is_some());
@@ -281,7 +281,11 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
     };
     let mut count = 0;
     for name in ROBOTS {
-        for gait in robot(name).gaits().iter().filter(|gait| gait.moves()) {
+        for gait in robot(name)
+            .gaits()
+            .iter()
+            .filter(|gait| gait.has_movement())
+        {
             let answers_for = |feet| figures.get(name, gait.name(), case_with(feet));
             let (Some(level), Some(long)) = (answers_for(Feet::Level), answers_for(Feet::Soft))
             else {

@@ -79,7 +79,7 @@ fn the_stored_answers_of_the_model_are_its_present_ones() {
 fn with_a_grain_the_robot_runs_at_90_mm_a_second_and_still_turns() {
     let stored = grains::stored();
     assert_eq!(
-        robot(grains::ROBOT).ground().ratio,
+        robot(grains::ROBOT).ground().friction_ratio,
         1.5,
         "robots/grain.toml"
     );

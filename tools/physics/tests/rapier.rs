@@ -45,7 +45,7 @@ fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64
 fn rigid_legs_go_where_the_engine_went_on_a_slippery_and_on_a_rough_floor() {
     for (friction, displacements) in [(0.4, SLIPPERY), (1.0, ROUGH)] {
         let ground = Ground {
-            friction,
+            friction_coefficient: friction,
             ..ground()
         };
         assert_agreement(&ground, &displacements, 0.5, 0.3);
@@ -56,7 +56,7 @@ fn rigid_legs_go_where_the_engine_went_on_a_slippery_and_on_a_rough_floor() {
 fn legs_mounted_outward_lose_what_they_lost_in_the_engine() {
     let ground = ground();
     let feet = Feet {
-        mount: 45.0,
+        mount_angle: 45.0,
         ..ground.feet
     };
     assert_agreement(&Ground { feet, ..ground }, &MOUNTED, 0.5, 0.3);

@@ -2,7 +2,7 @@
 
 use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
-use lizard_core::virtual_board::is_final;
+use lizard_core::virtual_board::is_answer;
 
 use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
@@ -61,7 +61,7 @@ impl Observer {
     /// Judges a line that the robot printed; `since` is the time at which the line's first byte was written.
     pub(crate) fn judge_line(&mut self, since: Time, line: &str) {
         // After a reset the banner follows on the line that the reset has cut off, which is then no answer.
-        if is_final(line) && !line.contains("# lizard ") {
+        if is_answer(line) && !line.contains("# lizard ") {
             self.lines -= 1;
             if self.lines < 0 {
                 self.fail(Rule::OneAnswer, format!("unasked: {line}"));

@@ -92,7 +92,7 @@ impl Studio {
     /// True if the corners of both strips are in the picture.
     fn sees_strips(&self) -> bool {
         let view = self.view();
-        let [length, width] = sheet::STRIP.map(|length| length / 2.0);
+        let [length, width] = sheet::STRIP_SIZE.map(|length| length / 2.0);
         self.strips.iter().all(|&[x, y, heading]| {
             let (sin, cos) = heading.sin_cos();
             [
@@ -196,7 +196,7 @@ impl Studio {
             let middle = view.meet([x, y], 0.0);
             let is_near = (0..2).any(|strip| {
                 let [u, v] = Turned::new(self.strips[strip]).local_point(middle);
-                u.abs() < sheet::STRIP[0] && v.abs() < sheet::STRIP[1]
+                u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
             *light = match is_near {
                 true => {
@@ -225,7 +225,7 @@ impl Studio {
         for (strip, spot) in self.strips.iter().enumerate() {
             let [u, v] = Turned::new(*spot).local_point(point);
             let [u, v] = [u / self.print[0], v / self.print[1]];
-            if u.abs() > sheet::STRIP[0] / 2.0 || v.abs() > sheet::STRIP[1] / 2.0 {
+            if u.abs() > sheet::STRIP_SIZE[0] / 2.0 || v.abs() > sheet::STRIP_SIZE[1] / 2.0 {
                 continue;
             }
             for id in 2 * strip..2 * strip + 2 {
@@ -246,12 +246,12 @@ impl Studio {
     /// The grey of a point of the robot's card, given to the right and ahead of the middle of its tag.
     fn card_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [x, y] = [x / self.print[0], y / self.print[1]];
-        let low = -sheet::DECK_EDGE / 2.0 - sheet::CARD_MARGIN;
-        if x.abs() > sheet::CARD[0] / 2.0 || y < low || y > low + sheet::CARD[1] {
+        let low = -sheet::DECK_TAG_EDGE / 2.0 - sheet::CARD_MARGIN;
+        if x.abs() > sheet::CARD_SIZE[0] / 2.0 || y < low || y > low + sheet::CARD_SIZE[1] {
             return None;
         }
-        Some(match tag_grey(sheet::DECK_TAG, [x, y]) {
-            Some(_) if self.hidden.contains(&sheet::DECK_TAG) => PAPER,
+        Some(match tag_grey(sheet::DECK_TAG_ID, [x, y]) {
+            Some(_) if self.hidden.contains(&sheet::DECK_TAG_ID) => PAPER,
             Some(grey) => grey,
             None => PAPER,
         })
@@ -341,8 +341,8 @@ impl Background {
             }
         });
         let card = [
-            sheet::CARD[0] / 2.0 + 2.0,
-            sheet::CARD[1] - sheet::DECK_EDGE / 2.0 + 2.0,
+            sheet::CARD_SIZE[0] / 2.0 + 2.0,
+            sheet::CARD_SIZE[1] - sheet::DECK_TAG_EDGE / 2.0 + 2.0,
         ];
         self.for_each_pixel(middle_spot, card, studio.deck, |i, [x, y]| {
             let spots = &rows[i / width];
@@ -411,10 +411,10 @@ fn mean_of_samples(sample: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// The grey of a tag at a point relative to its middle; `None` outside of the tag.
 fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
-    let square = sheet::edge(id) / sheet::SQUARES as f64;
-    let half = sheet::SQUARES as f64 / 2.0;
+    let square = sheet::tag_edge(id) / sheet::SQUARES_PER_SIDE as f64;
+    let half = sheet::SQUARES_PER_SIDE as f64 / 2.0;
     let (column, row) = ((x / square + half).floor(), (half - y / square).floor());
-    let tag_range = 0.0..sheet::SQUARES as f64;
+    let tag_range = 0.0..sheet::SQUARES_PER_SIDE as f64;
     let is_inside = tag_range.contains(&column) && tag_range.contains(&row);
     is_inside.then(
         || match sheet::is_white(id, row as usize, column as usize) {

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_film::Picture;
-use lizard_film::orders::{Order, PAUSE, orders};
+use lizard_film::orders::{ORDER_INTERVAL, Order, orders};
 
 use crate::render::Studio;
 
@@ -64,7 +64,7 @@ impl Servo {
 
     /// The time at which all orders are complete, s.
     pub fn end(&self) -> f64 {
-        self.begin + PAUSE * orders(1.0).len() as f64
+        self.begin + ORDER_INTERVAL * orders(1.0).len() as f64
     }
 
     /// Simulates the card's angles, deg, at `STEP` from time 0. The orders are counter-clockwise from
@@ -125,7 +125,7 @@ impl Servo {
         let mut last_order = 0;
         let pulse_at = |i: usize| {
             let seconds = i as f64 * FRAME - self.begin;
-            let order = ((seconds / PAUSE).max(0.0) as usize).min(orders.len() - 1);
+            let order = ((seconds / ORDER_INTERVAL).max(0.0) as usize).min(orders.len() - 1);
             if order != last_order {
                 (last_order, start_pulse) = (order, pulse);
             }
@@ -135,7 +135,7 @@ impl Servo {
                 let max_step = self.slew * FRAME;
                 pulse + (ordered - pulse).clamp(-max_step, max_step)
             } else {
-                let begin = PAUSE * order as f64;
+                let begin = ORDER_INTERVAL * order as f64;
                 let share = ((seconds - begin) / (MOVE_FRAMES as f64 * FRAME)).clamp(0.0, 1.0);
                 start_pulse + (ordered - start_pulse) * share * share * (3.0 - 2.0 * share)
             };

@@ -26,7 +26,7 @@ pub fn gait(name: &str) -> Gait {
         }
     }
     let relative_place = |place: &Place| {
-        let travel = place.seen_from(places[0]);
+        let travel = place.travel_from(places[0]);
         Place {
             forward: travel.forward,
             left: travel.left,
@@ -208,6 +208,6 @@ fn place_of([forward, left, heading]: [f64; 3]) -> Place {
 
 /// Converts a place relative to `from` to a place on the floor.
 fn compose(from: Place, relative: Place) -> Place {
-    let [forward, left] = from.on_floor([relative.forward, relative.left]);
+    let [forward, left] = from.to_floor([relative.forward, relative.left]);
     place_of([forward, left, from.heading + relative.heading])
 }

@@ -7,14 +7,14 @@ import { isRefused, type OnFloor } from '../robot';
 let robot: Robot;
 
 /** A gait that the search found, with its trial on the page's floor and servos. */
-export interface Best extends Found {
+export interface BestGait extends Found {
   trial: Trial;
 }
 
 const functions = {
   /**
-   * Prepares a search; returns the number of gaits to try, the servos' largest deg/s, and the trial of the gait to
-   * beat. Throws the refusal.
+   * Prepares a search. Returns the number of gaits to try, the largest speed of the servos, deg/s, and the trial of the
+   * gait to beat. Throws the refusal.
    */
   begin(module: WebAssembly.Module, { toml, floor, servos, task }: OnFloor & { task: SearchTask }) {
     initSync({ module });
@@ -24,17 +24,17 @@ const functions = {
     robot.setServos(servos);
     const search = robot.makeFaster(task);
     if (isRefused(search)) throw new Error(search.refused);
-    return { ...search, before: robot.trial(task.bars) as Trial };
+    return { ...search, referenceTrial: robot.trial(task.bars) as Trial };
   },
 
-  /** Tries one more gait. */
-  step: () => robot.fasterStep(),
+  /** Tries one more gait; returns the number of gaits tried so far, and the best score. */
+  tryNext: () => robot.fasterStep(),
 
   /**
    * Returns the best gait so far, compared with the gait to beat on a number of random robots; null while no gait has
    * kept the limits.
    */
-  best(robotCount: number): Best | null {
+  bestSoFar(robotCount: number): BestGait | null {
     const bestGait = robot.fasterFound(robotCount);
     return bestGait && { ...bestGait, trial: robot.trial(bestGait.bars) as Trial };
   },

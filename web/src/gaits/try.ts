@@ -1,4 +1,4 @@
-// Gives an edited gait to the robot, simulated or on a board.
+// Puts an edited gait into the page's robot, and starts it in the simulation.
 import type { EditedGait, Refused } from '../robot';
 import type { Session } from '../session';
 
@@ -15,7 +15,7 @@ export async function takeGait(session: Session, gait: EditedGait): Promise<Refu
  * USB, which has only the gaits that are written on it.
  */
 export async function tryGait(session: Session, gait: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
-  const refusal = await wakeWith(session, gait);
+  const refusal = await restartWithGait(session, gait);
   if (!refusal) await ask(gait.name.replaceAll('-', ' '));
   return refusal;
 }
@@ -24,7 +24,7 @@ export async function tryGait(session: Session, gait: EditedGait, ask: (line: st
  * Puts the gait into the session's robot, restarts the simulated board and waits until it stands. Refused for a board
  * on USB.
  */
-export async function wakeWith(session: Session, gait: EditedGait): Promise<Refused | null> {
+export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   if (session.isReal) {
     return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };
   }

@@ -1,5 +1,5 @@
 // The link to a board with a Bluetooth LE module on its serial line, by Web Bluetooth. A module passes bytes on in
-// packets and resets no board. If it is out of reach for a while, the link tries to reach it again.
+// packets and cannot reset a board. If it is out of reach for a while, the link tries to reach it again.
 import { sleep, type Link } from './link';
 
 /** The parts of Web Bluetooth that the page uses; TypeScript's library does not declare them. */
@@ -25,7 +25,7 @@ interface Bluetooth {
   requestDevice(options: { filters: object[]; optionalServices: (number | string)[] }): Promise<Device>;
 }
 
-/** The serial services of the HM-10 and of Nordic's modules, each with its characteristics to and from the module. */
+/** The serial services of the HM-10 and of Nordic's modules, each with its characteristics for writing and reading. */
 const SERIAL_SERVICES = [
   { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
   {
@@ -47,14 +47,14 @@ function bluetooth(): Bluetooth | undefined {
 
 const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
 /** Advice for a user whose iPhone or iPad has no Web Bluetooth; null on another device or browser. */
-export const ON_IPHONE =
+export const IPHONE_ADVICE =
   isApple && !bluetooth() ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
 
 /** Returns the reason why this browser cannot reach a Bluetooth module; null if it can. */
 export function bluetoothProblem(): string | null {
   if (bluetooth()) return null;
   return (
-    ON_IPHONE ??
+    IPHONE_ADVICE ??
     'This browser cannot reach a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".'
   );
 }
@@ -65,7 +65,8 @@ export class BluetoothLink implements Link {
   onGone: (why: string) => void = () => {};
   onReach: (isInReach: boolean) => void = () => {};
   private writeCharacteristic: Characteristic | null = null;
-  private packets: Promise<void> = Promise.resolve();
+  /** Settles when all writes so far are done. */
+  private pendingWrites: Promise<void> = Promise.resolve();
   private isClosing = false;
 
   private constructor(private readonly device: Device) {
@@ -95,11 +96,11 @@ export class BluetoothLink implements Link {
       throw new Error(`The browser may not use Bluetooth: allow it in its settings, and in those of the system. It says: ${String(error)}`);
     }
     const link = new BluetoothLink(device);
-    await link.reach();
+    await link.connect();
     return link;
   }
 
-  private async reach(): Promise<void> {
+  private async connect(): Promise<void> {
     const server = await this.device.gatt.connect();
     for (const candidate of SERIAL_SERVICES) {
       const service = await server.getPrimaryService(candidate.service).catch(() => null);
@@ -124,13 +125,13 @@ export class BluetoothLink implements Link {
     this.onReach(false);
     while (!this.isClosing && !this.writeCharacteristic) {
       await sleep(RETRY_MS);
-      await this.reach().catch(() => {});
+      await this.connect().catch(() => {});
     }
     if (!this.isClosing) this.onReach(true);
   }
 
   write(bytes: Uint8Array): Promise<void> {
-    return (this.packets = this.packets.catch(() => {}).then(() => this.send(bytes)));
+    return (this.pendingWrites = this.pendingWrites.catch(() => {}).then(() => this.send(bytes)));
   }
 
   private async send(bytes: Uint8Array): Promise<void> {
@@ -152,7 +153,7 @@ export class BluetoothLink implements Link {
   async close(): Promise<void> {
     this.isClosing = true;
     // The bytes of earlier writes go out first, unless that takes too long.
-    await Promise.race([this.packets.catch(() => {}), sleep(RETRY_MS)]);
+    await Promise.race([this.pendingWrites.catch(() => {}), sleep(RETRY_MS)]);
     this.device.gatt.disconnect();
   }
 }

@@ -1,16 +1,16 @@
-// The serial line to a board's boot loader. The conversation with it is Rust, in the module of boards.
+// The serial line to a board's boot loader. Its protocol is Rust, in the WebAssembly module for boards.
 import type { Line } from '../../generated/board';
 import { BAUD, type Link } from './link';
 
 export class BootLine implements Line {
-  private received: number[] = [];
-  private arrived: () => void = () => {};
+  private receivedBytes: number[] = [];
+  private onArrival: () => void = () => {};
   private baud = BAUD;
 
   constructor(private readonly link: Link) {
     link.onBytes = (bytes) => {
-      this.received.push(...bytes);
-      this.arrived();
+      this.receivedBytes.push(...bytes);
+      this.onArrival();
     };
   }
 
@@ -24,16 +24,16 @@ export class BootLine implements Line {
   }
 
   async read(count: number, ms: number): Promise<Uint8Array> {
-    if (this.received.length < count) {
-      const isComplete = new Promise<void>((resolve) => (this.arrived = () => this.received.length >= count && resolve()));
-      await Promise.race([this.link.wait(ms), isComplete]);
+    if (this.receivedBytes.length < count) {
+      const completion = new Promise<void>((resolve) => (this.onArrival = () => this.receivedBytes.length >= count && resolve()));
+      await Promise.race([this.link.wait(ms), completion]);
     }
-    return Uint8Array.from(this.received.splice(0, count));
+    return Uint8Array.from(this.receivedBytes.splice(0, count));
   }
 
   async discard(ms: number): Promise<void> {
     await this.link.wait(ms);
-    this.received = [];
+    this.receivedBytes = [];
   }
 
   /** Returns the line to the firmware's baud rate, which resets the board if the boot loader has another one. */

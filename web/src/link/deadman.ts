@@ -1,5 +1,5 @@
-// A robot out of reach would walk on. So while a user drives it, the page sets `deadman`, the time without a line
-// after which the robot ends a gait by itself. After the gait the robot's own setting is restored.
+// A robot that loses its link would walk on. So while a user drives it, the page sets `deadman`, the time without a
+// line after which the robot ends a gait by itself. After the gait the robot's own setting is restored.
 import { WORDS } from '../words';
 import type { Dialogue } from './dialogue';
 
@@ -13,42 +13,43 @@ const LINES_PER_DEADMAN = 3;
 
 export class Deadman {
   /** The robot's own setting, ms; null until it is read. */
-  private own: number | null = null;
+  private robotSettingMs: number | null = null;
   /** Resolves to true if the robot confirms the page's `deadman`; null while the robot has its own setting. */
-  private set: Promise<boolean> | null = null;
+  private confirmation: Promise<boolean> | null = null;
 
   constructor(private readonly dialogue: Dialogue) {}
 
+  /** True while the robot has, or is about to get, the page's `deadman`. */
   get isSet(): boolean {
-    return this.set !== null;
+    return this.confirmation !== null;
   }
 
   /** Sets `deadman` before a gait; resolves to false if the robot does not confirm it: then no gait may start. */
   begin(): Promise<boolean> {
-    return (this.set ??= this.setAndConfirm());
+    return (this.confirmation ??= this.setAndConfirm());
   }
 
   private async setAndConfirm(): Promise<boolean> {
-    if (this.own === null) await this.read();
-    const ms = this.own ? Math.min(this.own, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
+    if (this.robotSettingMs === null) await this.readSetting();
+    const ms = this.robotSettingMs ? Math.min(this.robotSettingMs, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
     const line = `${WORDS.deadman} ${ms}`;
     const isSet = (await this.askQuietly(line))?.ok ?? false;
     if (isSet && this.isSet) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
     return isSet;
   }
 
-  private async read(): Promise<void> {
+  private async readSetting(): Promise<void> {
     const notes = (await this.askQuietly(WORDS.cal))?.notes ?? [];
     const [, ms] = notes.map((line) => /^# deadman (\d+)$/.exec(line)).find(Boolean) ?? [];
-    if (ms !== undefined) this.own = Number(ms) === DRIVING_DEADMAN_MS ? 0 : Number(ms);
+    if (ms !== undefined) this.robotSettingMs = Number(ms) === DRIVING_DEADMAN_MS ? 0 : Number(ms);
   }
 
   /** Notes a user's line, accepted if `isOk`, that changes the robot's own setting. */
-  follow(line: string, isOk: boolean): void {
+  noteLine(line: string, isOk: boolean): void {
     if (!isOk) return;
     const [word, ms] = line.split(/\s+/);
-    if (word === WORDS.deadman) this.own = Number(ms);
-    if (word === WORDS.load || word === WORDS.factory) this.own = null;
+    if (word === WORDS.deadman) this.robotSettingMs = Number(ms);
+    if (word === WORDS.load || word === WORDS.factory) this.robotSettingMs = null;
   }
 
   /** Stops the repeated line, so that the robot stops unless somebody else sends lines. */
@@ -60,15 +61,15 @@ export class Deadman {
   end(): void {
     this.letGo();
     if (!this.isSet) return;
-    this.set = null;
-    if (this.own !== null) void this.askQuietly(`${WORDS.deadman} ${this.own}`);
+    this.confirmation = null;
+    if (this.robotSettingMs !== null) void this.askQuietly(`${WORDS.deadman} ${this.robotSettingMs}`);
   }
 
   /** Resets this state after a restart of the robot. */
   forget(): void {
     this.letGo();
-    this.set = null;
-    this.own = null;
+    this.confirmation = null;
+    this.robotSettingMs = null;
   }
 
   private askQuietly(line: string) {

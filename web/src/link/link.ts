@@ -27,11 +27,12 @@ export interface Link {
   reset(baud?: number): Promise<void>;
   /** Waits in the board's time, which is simulated time for a simulated board. */
   wait(ms: number): Promise<void>;
+  /** Closes the link; nothing is received afterwards. */
   close(): Promise<void>;
 }
 
 /** A link to a simulated board, which runs only in `advance`. */
-export interface Simulated extends Link {
+export interface SimulatedLink extends Link {
   /** Runs the board for a simulated time. */
   advance(ms: number): void;
   /** Sets the voltage of the board's supply. */
@@ -42,16 +43,18 @@ export interface Simulated extends Link {
 
 /** Timers in simulated time. */
 export class Timers {
-  private waiting: { due: number; done: () => void }[] = [];
+  private pendingTimers: { due: number; resolve: () => void }[] = [];
 
+  /** Resolves once the simulated time has reached `due`. */
   waitUntil(due: number): Promise<void> {
-    return new Promise((done) => this.waiting.push({ due, done }));
+    return new Promise((resolve) => this.pendingTimers.push({ due, resolve }));
   }
 
+  /** Settles the timers that are due. */
   advanceTo(now: number): void {
-    const dueTimers = this.waiting.filter(({ due }) => due <= now);
+    const dueTimers = this.pendingTimers.filter(({ due }) => due <= now);
     if (dueTimers.length === 0) return;
-    this.waiting = this.waiting.filter(({ due }) => due > now);
-    for (const { done } of dueTimers) done();
+    this.pendingTimers = this.pendingTimers.filter(({ due }) => due > now);
+    for (const { resolve: done } of dueTimers) done();
   }
 }

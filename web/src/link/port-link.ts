@@ -22,16 +22,16 @@ const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
 const ARDUINO_VENDORS = [0x2341, 0x2a03];
 /** The message for a browser without Web Serial. */
-export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
+export const NO_SERIAL_MESSAGE = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
 const GONE_MESSAGE = 'the board is not connected any more';
 /** Length of the pulse on the reset line, ms. */
-const RESET_MS = 50;
+const RESET_PULSE_MS = 50;
 
 function serial(): Serial | undefined {
   return (navigator as Navigator & { serial?: Serial }).serial;
 }
 
-/** Returns true if this browser can open a port. */
+/** True if this browser can open a port. */
 export function hasSerial(): boolean {
   return serial() !== undefined;
 }
@@ -41,10 +41,10 @@ export class PortLink implements Link {
   onGone: (why: string) => void = () => {};
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
   private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
-  private closing = false;
+  private isClosing = false;
   private baud = BAUD;
-  /** Settled when nothing is read from the port any more. */
-  private listening: Promise<void> = Promise.resolve();
+  /** Settles when nothing is read from the port any more. */
+  private readLoop: Promise<void> = Promise.resolve();
 
   private constructor(private readonly port: SerialPort) {}
 
@@ -64,7 +64,7 @@ export class PortLink implements Link {
   /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
     const serialApi = serial();
-    if (!serialApi) throw new Error(NO_SERIAL);
+    if (!serialApi) throw new Error(NO_SERIAL_MESSAGE);
     let port: SerialPort;
     try {
       port = await serialApi.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
@@ -84,13 +84,13 @@ export class PortLink implements Link {
 
   private async openPort(): Promise<void> {
     await this.port.open({ baudRate: this.baud, bufferSize: 4096 });
-    this.closing = false;
-    this.listening = this.listen();
+    this.isClosing = false;
+    this.readLoop = this.listen();
   }
 
   async write(bytes: Uint8Array): Promise<void> {
     const { writable } = this.port;
-    if (!writable || this.closing) throw new Error(GONE_MESSAGE);
+    if (!writable || this.isClosing) throw new Error(GONE_MESSAGE);
     this.writer ??= writable.getWriter();
     await this.writer.write(bytes).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
   }
@@ -108,7 +108,7 @@ export class PortLink implements Link {
     }
     for (const isLow of [false, true]) {
       await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
-      await sleep(RESET_MS);
+      await sleep(RESET_PULSE_MS);
     }
   }
 
@@ -117,9 +117,9 @@ export class PortLink implements Link {
   }
 
   async close(): Promise<void> {
-    this.closing = true;
+    this.isClosing = true;
     await this.reader?.cancel().catch(() => {});
-    await this.listening;
+    await this.readLoop;
     this.writer?.releaseLock();
     this.writer = null;
     await this.port.close().catch(() => {});
@@ -130,7 +130,7 @@ export class PortLink implements Link {
     // A line error (break, framing error) ends a stream, and the port then has a new one; an
     // unplugged board has none.
     let endedStream: ReadableStream<Uint8Array> | null = null;
-    while (this.port.readable && this.port.readable !== endedStream && !this.closing) {
+    while (this.port.readable && this.port.readable !== endedStream && !this.isClosing) {
       endedStream = this.port.readable;
       this.reader = endedStream.getReader();
       try {
@@ -145,6 +145,6 @@ export class PortLink implements Link {
         this.reader.releaseLock();
       }
     }
-    if (!this.closing) this.onGone(reason);
+    if (!this.isClosing) this.onGone(reason);
   }
 }

@@ -1,29 +1,30 @@
 // The link to a simulated UNO, which runs the image cycle by cycle.
 import type { Four } from '../robot';
-import { SimulatedBoard, FREQUENCY } from '../uno/board';
-import { Frames } from '../uno/frames';
-import { type Simulated, Timers } from './link';
+import { SimulatedBoard, FREQUENCY_HZ } from '../uno/board';
+import { FrameCollector } from '../uno/frames';
+import { type SimulatedLink, Timers } from './link';
 
-const CYCLES_PER_MS = FREQUENCY / 1000;
+const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
 /** Simulated time that the chip runs between two reads of its output, ms. */
 const SLICE_MS = 2;
 
 /** Callbacks for the servo pulses of the simulated board. */
 export interface UnoEvents {
   /** Receives a frame: the width of each servo's pulse in cycles, 0 for none, and the cycle at which the first rose. */
-  frame(widths: Four<number>, cycle: number): void;
+  onFrame(widths: Four<number>, cycle: number): void;
   /** Receives a pulse: its pin by the Arduino number, the cycle at which it rose, and its width in cycles. */
-  pulse(pin: number, rise: number, width: number): void;
+  onPulse(pin: number, rise: number, width: number): void;
 }
 
-export class UnoLink implements Simulated {
+export class UnoLink implements SimulatedLink {
   readonly kind = 'simulated';
   readonly name = 'simulated UNO';
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   private readonly timers = new Timers();
-  private readonly frames: Frames;
-  private sent: number[] = [];
+  private readonly frameCollector: FrameCollector;
+  /** The bytes that the board has sent in the current slice. */
+  private bytesFromBoard: number[] = [];
   /** Time that the chip still has to run, cycles. */
   private cyclesToRun = 0;
 
@@ -33,11 +34,11 @@ export class UnoLink implements Simulated {
     pins: number[],
     events: UnoEvents,
   ) {
-    this.frames = new Frames(pins, events.frame);
-    board.onByte = (byte) => this.sent.push(byte);
+    this.frameCollector = new FrameCollector(pins, events.onFrame);
+    board.onByte = (byte) => this.bytesFromBoard.push(byte);
     board.onPulse = (pin, rise, width) => {
-      events.pulse(pin, rise, width);
-      this.frames.add(pin, rise, width);
+      events.onPulse(pin, rise, width);
+      this.frameCollector.add(pin, rise, width);
     };
   }
 
@@ -51,10 +52,10 @@ export class UnoLink implements Simulated {
       this.board.run(sliceCycles);
       // The last instruction may overrun the slice.
       this.cyclesToRun -= this.board.cycle - startCycle;
-      this.frames.advanceTo(this.board.cycle);
-      if (this.sent.length > 0) {
-        const bytes = Uint8Array.from(this.sent);
-        this.sent = [];
+      this.frameCollector.advanceTo(this.board.cycle);
+      if (this.bytesFromBoard.length > 0) {
+        const bytes = Uint8Array.from(this.bytesFromBoard);
+        this.bytesFromBoard = [];
         this.onBytes(bytes);
       }
       this.timers.advanceTo(this.board.cycle);

@@ -1,15 +1,15 @@
 // Drives gaits one after another in front of a camera, keeps the robot near the sheet of tags, and records the time
 // of each walk. Any other activity of the robot ends the protocol: `stop`, another gait, a lost link.
-import { DONE, GAITS, WORDS } from '../words';
-import type { Back } from './seen';
+import { DONE_LINE, GAITS, WORDS } from '../words';
+import type { OffsetToMiddle } from './seen';
 
 /**
- * Limits of a return by a gait: most cycles, most attempts, and the least share of the distance that must lie ahead
+ * Limits of a return by a gait: cycles per attempt, attempts, and the least share of the distance that must lie ahead
  * or behind.
  */
-const RETURN = { cycles: 12, tries: 2, minAhead: 0.7 };
-/** Least distance per cycle of a gait by which the robot can return, mm, and its largest turn, deg. */
-const RETURN_GAIT = { way: 3, turn: 2 };
+const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minAheadShare: 0.7 };
+/** Limits of a gait by which the robot can return: least distance and largest turn, each per cycle. */
+const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
 /**
  * Distance from the middle of the sheet beyond which the robot returns first if the next walk would leave the sheet,
  * mm.
@@ -30,7 +30,7 @@ export const MIN_CYCLES = 4;
 /** A gait that the robot walked, on the film's clock. */
 export interface Walk {
   gait: string;
-  /** Begin and end, s. */
+  /** Start and end, s. */
   during: [number, number];
 }
 
@@ -64,9 +64,10 @@ export interface Stage {
   /** Waits some seconds. */
   wait: (seconds: number) => Promise<void>;
   /** Returns the predicted displacements of the gaits, as far as they are known. */
-  ways: () => PredictedCycle[];
+  predictions: () => PredictedCycle[];
   /** Asks a person to put the robot back; resolves when that is done, or when the protocol is over. */
   putBack: () => Promise<void>;
+  /** Shows the progress to the user. */
   say: (text: string) => void;
 }
 
@@ -74,31 +75,31 @@ export interface Stage {
 export class Interrupted extends Error {}
 
 /** A walk that has not ended yet. */
-interface Waiting {
+interface ActiveWalk {
   gait: string;
-  /** The robot's least distance from the middle so far, mm; null until the robot has accepted the gait. */
-  nearest: number | null;
+  /** Least distance from the middle so far, mm; null until the robot has accepted the gait. */
+  nearestMm: number | null;
   /** True if the walk is being ended before its last cycle. */
   isCut: boolean;
   /** The end of the walk on the film's clock, s; null until it has ended. */
-  end: number | null;
-  done: () => void;
-  fail: (error: Error) => void;
+  endSeconds: number | null;
+  resolve: () => void;
+  reject: (error: Error) => void;
 }
 
-const distance = ({ ahead, aside }: Back) => Math.hypot(ahead, aside);
+const distance = ({ ahead, left }: OffsetToMiddle) => Math.hypot(ahead, left);
 
 export class Protocol {
   readonly walks: Walk[] = [];
-  private waiting: Waiting | null = null;
+  private activeWalk: ActiveWalk | null = null;
   /** The last line that the protocol has sent. */
   private lastSent = '';
   /** Called when the protocol is over. */
   onEnd: () => void = () => {};
   /** The reason why the protocol is over; null until then. */
   private endReason: Interrupted | null = null;
-  /** The robot's last known place, and its time on the film's clock, s; null before the first. */
-  private last: { back: Back; seconds: number } | null = null;
+  /** The last offset that was seen, and its time on the film's clock, s; null before the first. */
+  private lastSighting: { offset: OffsetToMiddle; seconds: number } | null = null;
 
   constructor(private readonly stage: Stage) {}
 
@@ -107,7 +108,7 @@ export class Protocol {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
     for (const [i, { command, period }] of gaits.entries()) {
-      const { forward = 0 } = stage.ways().find((predicted) => predicted.command === command) ?? {};
+      const { forward = 0 } = stage.predictions().find((predicted) => predicted.command === command) ?? {};
       for (let cyclesLeft = cycles; cyclesLeft >= MIN_CYCLES; ) {
         await this.goBack(cyclesLeft * forward);
         await this.wait(pause);
@@ -120,37 +121,38 @@ export class Protocol {
   }
 
   /**
-   * Takes the robot's place in a picture, null if the picture does not show it. Ends a walk that leaves the sheet.
+   * Takes the robot's offset in a picture, null if the picture does not show the robot. Ends a walk that leaves the
+   * sheet.
    */
-  setPlace(back: Back | null): void {
-    if (!back) return;
-    this.last = { back, seconds: this.stage.now() };
-    const { waiting } = this;
-    if (waiting === null || waiting.nearest === null) return;
-    waiting.nearest = Math.min(waiting.nearest, distance(back));
-    if (back.isNear && distance(back) > waiting.nearest + MAX_OUTWARD_MM) this.cut(waiting);
+  setPlace(offset: OffsetToMiddle | null): void {
+    if (!offset) return;
+    this.lastSighting = { offset, seconds: this.stage.now() };
+    const { activeWalk } = this;
+    if (activeWalk === null || activeWalk.nearestMm === null) return;
+    activeWalk.nearestMm = Math.min(activeWalk.nearestMm, distance(offset));
+    if (offset.isNear && distance(offset) > activeWalk.nearestMm + MAX_OUTWARD_MM) this.cut(activeWalk);
   }
 
-  /** Takes a line that was sent to the robot, by the protocol or another part of the page. */
-  sent(line: string): void {
+  /** Notes a line that was sent to the robot, by the protocol or by another part of the page. */
+  noteSent(line: string): void {
     const isWalk = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
-    else if (line !== this.lastSent && this.stage.ways().some(isWalk)) this.end(`the robot was sent "${line}"`);
+    else if (line !== this.lastSent && this.stage.predictions().some(isWalk)) this.end(`the robot was sent "${line}"`);
   }
 
-  /** Takes a line that the robot printed: `DONE` ends a walk, and arrives before `doing` is called. */
-  received(line: string): void {
-    if (line !== DONE || !this.waiting) return;
-    this.finish(this.waiting);
-    this.waiting = null;
+  /** Notes a line that the robot printed: `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
+  noteReceived(line: string): void {
+    if (line !== DONE_LINE || !this.activeWalk) return;
+    this.finish(this.activeWalk);
+    this.activeWalk = null;
   }
 
   /** Takes the robot's current activity; one that is not the protocol's ends the protocol. */
   setActivity(activity: string): void {
-    const { waiting } = this;
-    const isWalking = waiting?.gait === activity;
+    const { activeWalk } = this;
+    const isWalking = activeWalk?.gait === activity;
     const isStanding = activity === WORDS.stop || activity === GAITS.stand;
-    if (isWalking || (isStanding && (waiting === null || waiting.isCut))) return;
+    if (isWalking || (isStanding && (activeWalk === null || activeWalk.isCut))) return;
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
@@ -158,22 +160,22 @@ export class Protocol {
    * Ends the protocol for an external reason, such as a camera that is switched off, and stops a robot that walks.
    */
   stop(reason: string): void {
-    const isWalking = this.waiting !== null;
+    const wasWalking = this.activeWalk !== null;
     this.end(reason);
-    if (isWalking) void this.stage.ask(WORDS.stop);
+    if (wasWalking) void this.stage.ask(WORDS.stop);
   }
 
   /** Ends the protocol: nothing more is sent. */
   end(reason: string): void {
     this.endReason ??= new Interrupted(reason);
-    if (this.waiting) this.finish(this.waiting, this.endReason);
-    this.waiting = null;
+    if (this.activeWalk) this.finish(this.activeWalk, this.endReason);
+    this.activeWalk = null;
     this.onEnd();
   }
 
-  /** The robot's place; null if the camera has not seen the robot for `MAX_UNSEEN_S`. */
-  private get place(): Back | null {
-    return this.last && this.stage.now() - this.last.seconds < MAX_UNSEEN_S ? this.last.back : null;
+  /** The robot's last offset; null if the camera has not seen the robot for `MAX_UNSEEN_S`. */
+  private get lastOffset(): OffsetToMiddle | null {
+    return this.lastSighting && this.stage.now() - this.lastSighting.seconds < MAX_UNSEEN_S ? this.lastSighting.offset : null;
   }
 
   /**
@@ -182,90 +184,90 @@ export class Protocol {
    * there.
    */
   private async goBack(forwardMm: number): Promise<void> {
-    for (let n = 0; ; n++) {
-      const { place, stage } = this;
-      const isFit = place !== null && !place.isNear;
-      const isLeaving = place !== null && n === 0 && distance(place) > RETURN_DISTANCE_MM && Math.hypot(place.ahead - forwardMm, place.aside) > place.reach;
-      if (isFit && !isLeaving) return;
-      const gait = place && n < RETURN.tries && Math.abs(place.ahead) > RETURN.minAhead * distance(place) ? this.gaitToward(place.ahead) : null;
-      if (place && gait) {
+    for (let attempt = 0; ; attempt++) {
+      const { lastOffset: offset, stage } = this;
+      const isOnSheet = offset !== null && !offset.isNear;
+      const isLeaving = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.ahead - forwardMm, offset.left) > offset.reach;
+      if (isOnSheet && !isLeaving) return;
+      const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.ahead) > RETURN_LIMITS.minAheadShare * distance(offset) ? this.gaitToward(offset.ahead) : null;
+      if (offset && gait) {
         stage.say(`Back to the middle by ${gait.command}`);
-        await this.walk(gait.command, Math.min(RETURN.cycles, Math.max(1, Math.round(place.ahead / gait.forward))));
-      } else if (isFit) return;
+        await this.walk(gait.command, Math.min(RETURN_LIMITS.maxCycles, Math.max(1, Math.round(offset.ahead / gait.forward))));
+      } else if (isOnSheet) return;
       else await stage.putBack();
-      this.check();
+      this.throwIfEnded();
     }
   }
 
   /**
-   * Returns the gait that hardly turns and walks farthest ahead, or back if `ahead` is negative; null if none is fit.
+   * Returns the gait that walks farthest ahead (back if `ahead` is negative) and hardly turns; null if there is none.
    */
   private gaitToward(ahead: number): PredictedCycle | null {
-    const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.turn ? forward * Math.sign(ahead) : 0);
-    const [best] = this.stage.ways().sort((a, b) => progressOf(b) - progressOf(a));
-    return best && progressOf(best) > RETURN_GAIT.way ? best : null;
+    const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(ahead) : 0);
+    const [best] = this.stage.predictions().sort((a, b) => progressOf(b) - progressOf(a));
+    return best && progressOf(best) > RETURN_GAIT.minForwardMm ? best : null;
   }
 
   /**
-   * Walks a gait to its last cycle, or to the edge of the sheet; returns begin and end, which `record` also gets if it
-   * was interrupted.
+   * Walks a gait to its last cycle, or to the edge of the sheet. Returns the start and the end of the walk, s; `record`
+   * gets them even if the walk is interrupted.
    */
   private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { stage } = this;
-    const waiting: Waiting = { gait, nearest: null, isCut: false, end: null, done: () => {}, fail: () => {} };
-    const walkEnd = new Promise<void>((resolve, reject) => Object.assign(waiting, { done: resolve, fail: reject }));
+    const activeWalk: ActiveWalk = { gait, nearestMm: null, isCut: false, endSeconds: null, resolve: () => {}, reject: () => {} };
+    const walkEnd = new Promise<void>((resolve, reject) => Object.assign(activeWalk, { resolve, reject }));
     // The promise may reject before it is awaited.
     walkEnd.catch(() => {});
-    this.waiting = waiting;
+    this.activeWalk = activeWalk;
     const begin = stage.now();
     await this.ask(`${gait} ${cycles}`);
-    waiting.nearest = this.place ? distance(this.place) : Infinity;
-    void this.watch(waiting);
+    activeWalk.nearestMm = this.lastOffset ? distance(this.lastOffset) : Infinity;
+    void this.watch(activeWalk);
     try {
       await walkEnd;
     } finally {
-      record([begin, waiting.end ?? begin]);
+      record([begin, activeWalk.endSeconds ?? begin]);
     }
-    if (waiting.isCut) {
+    if (activeWalk.isCut) {
       await this.ask(GAITS.stand);
-      this.waiting = null;
+      this.activeWalk = null;
     }
-    return [begin, waiting.end ?? begin];
+    return [begin, activeWalk.endSeconds ?? begin];
   }
 
-  /** Ends a walk once the robot is not seen any more. */
-  private async watch(waiting: Waiting): Promise<void> {
-    while (this.waiting === waiting && !waiting.isCut) {
-      if (!this.place) return this.cut(waiting);
+  /** Ends a walk when the robot is no longer seen. */
+  private async watch(activeWalk: ActiveWalk): Promise<void> {
+    while (this.activeWalk === activeWalk && !activeWalk.isCut) {
+      if (!this.lastOffset) return this.cut(activeWalk);
       await this.stage.wait(MAX_UNSEEN_S / 4);
     }
   }
 
   /** Ends a walk before its last cycle; the robot walks on until it is told to stand. */
-  private cut(waiting: Waiting): void {
-    waiting.isCut = true;
-    this.finish(waiting);
+  private cut(activeWalk: ActiveWalk): void {
+    activeWalk.isCut = true;
+    this.finish(activeWalk);
   }
 
-  private finish(waiting: Waiting, error?: Error): void {
-    waiting.end ??= this.stage.now();
-    if (error) waiting.fail(error);
-    else waiting.done();
+  private finish(activeWalk: ActiveWalk, error?: Error): void {
+    activeWalk.endSeconds ??= this.stage.now();
+    if (error) activeWalk.reject(error);
+    else activeWalk.resolve();
   }
 
-  private check(): void {
+  private throwIfEnded(): void {
     if (this.endReason) throw this.endReason;
   }
 
   private async wait(seconds: number): Promise<void> {
     await this.stage.wait(seconds);
-    this.check();
+    this.throwIfEnded();
   }
 
   private async ask(line: string): Promise<void> {
-    this.check();
+    this.throwIfEnded();
     this.lastSent = line;
     if (!(await this.stage.ask(line))) this.stop(`the robot did not take "${line}"`);
-    this.check();
+    this.throwIfEnded();
   }
 }

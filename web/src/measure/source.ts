@@ -1,45 +1,45 @@
 // Pictures from a camera or from a film file, each with its time on the film's clock.
 import { messageOf } from '../trouble';
 
-/** Largest number of a film file's pictures that wait for their processing. */
-const MAX_WAITING = 4;
-const CAMERA = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
+/** Largest number of a film file's pictures that wait to be processed. */
+const MAX_WAITING_PICTURES = 4;
+const CAMERA_CONSTRAINTS = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
 
 /** Processes a picture and its time, s; resolves when that is done. */
-type Take = (picture: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
+type ProcessPicture = (picture: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
 
-export class Source {
+export class PictureSource {
   private stream: MediaStream | null = null;
   /**
-   * Number of calls of `stop`, which also comes before each new camera or film: a picture from before the last call
-   * is dropped.
+   * Number of calls of `stop`, which is also called before each new camera or film: a picture from before the last
+   * call is dropped.
    */
   private generation = 0;
   private waitingPictures = 0;
-  /** The page's time less the film's, s: the least that was seen, since the delay of a picture makes it larger. */
+  /** The page's clock minus the film's, s: the least so far, since the delay of a picture makes it larger. */
   private clockOffset = Infinity;
 
   constructor(
     private readonly video: HTMLVideoElement,
-    private readonly take: Take,
+    private readonly processPicture: ProcessPicture,
   ) {}
 
   get isCamera(): boolean {
     return this.stream !== null;
   }
 
-  /** The present time on the film's clock, s. */
+  /** The current time on the film's clock, s. */
   get now(): number {
     return performance.now() / 1000 - this.clockOffset;
   }
 
   /** Opens the rear camera; `onEnd` is called if the camera is lost. Throws a message for the user. */
-  async camera(onEnd: () => void): Promise<void> {
+  async openCamera(onEnd: () => void): Promise<void> {
     this.stop();
     const { generation: startGeneration } = this;
     const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
     if (!mediaDevices) throw new Error('This page may not use a camera: open it by an address that begins with https. A film file works here, too.');
-    const stream = await mediaDevices.getUserMedia(CAMERA).catch((error: unknown) => {
+    const stream = await mediaDevices.getUserMedia(CAMERA_CONSTRAINTS).catch((error: unknown) => {
       throw new Error(refusalOf(error));
     });
     if (this.generation !== startGeneration) {
@@ -49,12 +49,12 @@ export class Source {
     this.stream = stream;
     stream.getVideoTracks()[0]?.addEventListener('ended', onEnd);
     this.video.srcObject = stream;
-    this.follow(1);
+    this.processPictures(1);
     await this.video.play();
   }
 
   /** Plays a film file; resolves at its end. Throws a message for the user. */
-  async file(file: File): Promise<void> {
+  async playFile(file: File): Promise<void> {
     this.stop();
     const { video, generation: startGeneration } = this;
     const address = URL.createObjectURL(file);
@@ -65,7 +65,7 @@ export class Source {
         video.onemptied = () => this.generation !== startGeneration && resolve();
       });
       video.src = address;
-      this.follow(MAX_WAITING);
+      this.processPictures(MAX_WAITING_PICTURES);
       await Promise.race([video.play().then(() => filmEnd), filmEnd]);
       while (this.waitingPictures > 0 && this.generation === startGeneration) await new Promise((resolve) => setTimeout(resolve, 20));
     } finally {
@@ -85,10 +85,10 @@ export class Source {
   }
 
   /**
-   * Gives each picture to `take` while fewer than `maxWaiting` are waiting. Otherwise a film file pauses, and a camera's
-   * picture is dropped.
+   * Gives each picture to `processPicture` while fewer than `maxWaiting` are waiting. Otherwise a film file pauses, and
+   * a camera's picture is dropped.
    */
-  private follow(maxWaiting: number): void {
+  private processPictures(maxWaiting: number): void {
     const { video, generation: startGeneration } = this;
     this.waitingPictures = 0;
     const onPicture = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
@@ -99,7 +99,7 @@ export class Source {
       this.waitingPictures += 1;
       if (!this.isCamera && this.waitingPictures >= maxWaiting) video.pause();
       void pictureOf(video)
-        .then((picture) => this.take(picture, mediaTime))
+        .then((picture) => this.processPicture(picture, mediaTime))
         .finally(() => {
           if (this.generation !== startGeneration) return;
           this.waitingPictures -= 1;

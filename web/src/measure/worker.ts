@@ -8,7 +8,7 @@ import { type Asked, Camera, initSync, type TagEntry } from '../../generated/mea
 export interface Sight {
   tags: TagEntry[];
   size: [number, number];
-  ms: number;
+  searchMs: number;
 }
 
 let camera: Camera;
@@ -21,7 +21,7 @@ const pen = canvas.getContext('2d', { willReadFrequently: true });
 
 /**
  * Returns the brightness plane of a picture, a byte for each pixel; null if it has no such plane, or is scaled,
- * turned or padded.
+ * rotated or padded.
  */
 async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
   const { format, visibleRect, displayWidth, displayHeight } = picture;
@@ -65,7 +65,7 @@ const functions = {
       const grey = 'codedWidth' in picture ? await greyOf(picture).catch(() => null) : null;
       const pixels = grey ?? coloursOf(picture, width, height);
       picture.close();
-      return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], ms: performance.now() - startMs };
+      return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], searchMs: performance.now() - startMs };
     }),
 
   /** Discards the film and begins a new one. */

@@ -27,12 +27,12 @@ import { PaintBudget } from './paint-budget';
 
 /** Height by which a body with `lift` 1 rises in the fully exploded view, mm, as in the guide's pictures. */
 const LIFT_MM = 45;
-/** Size of a cell of the floor's grid, mm, and number of cells along a side of the grid. */
+/** Size of a cell of the floor's grid, mm. */
 const CELL_MM = 50;
-const CELLS = 16;
+const CELLS_PER_SIDE = 16;
 /** Movement of the pointer during a press below which the press is a click, CSS pixels. */
 const CLICK_PX = 5;
-/** Turn of the view by one press of a key, rad. */
+/** Turn of the view for one press of a key, rad. */
 const TURN_RAD = Math.PI / 24;
 /** Time without a change after which the view counts as still, ms. */
 const STILL_MS = 400;
@@ -42,16 +42,16 @@ const PALE_SHARE = 0.65;
 /** The view's settings. */
 export interface ViewSettings {
   /** Spread of the exploded view, 0 to 1. */
-  apart: number;
+  explosion: number;
   /** The step of the guide, from 1; null for the whole robot. */
-  step: number | null;
+  guideStep: number | null;
   /** Index of the selected body; null for none. */
-  picked: number | null;
+  selectedBody: number | null;
   /** Indices of the two bodies that overlap or come too close; empty if all fit. */
-  clash: number[];
+  clashingBodies: number[];
 }
 
-export class Space {
+export class RobotView {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(35, 1, 10, 4000);
@@ -62,10 +62,10 @@ export class Space {
   private model: Model | null = null;
   private mounts: Group[] = [];
   private meshes: Mesh<BufferGeometry, MeshLambertMaterial>[] = [];
-  private settings: ViewSettings = { apart: 0, step: null, picked: null, clash: [] };
-  private dirty = true;
+  private settings: ViewSettings = { explosion: 0, guideStep: null, selectedBody: null, clashingBodies: [] };
+  private needsDrawing = true;
   /** Time of the last change, ms. */
-  private changed = 0;
+  private changedAt = 0;
 
   /** Throws if the browser has no WebGL. `onPick` gets the index of the body that was clicked, or null. */
   constructor(
@@ -80,16 +80,16 @@ export class Space {
     this.camera.add(this.sun);
     this.scene.add(this.camera, new AmbientLight(0xffffff, 1.1));
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener('change', () => (this.dirty = true));
+    this.controls.addEventListener('change', () => (this.needsDrawing = true));
     this.controls.maxDistance = 1500;
     this.controls.minDistance = 60;
     // A horizontal drag with one finger turns the robot; a vertical one scrolls the page.
     canvas.style.touchAction = 'pan-y';
-    this.listen(onPick);
-    this.home();
+    this.addListeners(onPick);
+    this.resetView();
   }
 
-  private listen(onPick: (body: number | null) => void): void {
+  private addListeners(onPick: (body: number | null) => void): void {
     const { canvas } = this;
     // Without Ctrl the wheel scrolls the page, so the controls must not get it.
     canvas.parentElement?.addEventListener('wheel', (event) => event.ctrlKey || event.stopPropagation(), { capture: true });
@@ -101,15 +101,15 @@ export class Space {
     });
     canvas.addEventListener('pointercancel', () => (pressed = null));
     canvas.addEventListener('keydown', (event) => {
-      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.press(event.key)) return;
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.handleKey(event.key)) return;
       event.preventDefault();
       event.stopPropagation();
     });
   }
 
   /** Turns, zooms or resets the view as the key asks; returns false if the key has no effect. */
-  press(key: string): boolean {
-    const moves: Record<string, [number, number, number]> = {
+  handleKey(key: string): boolean {
+    const movesByKey: Record<string, [number, number, number]> = {
       ArrowLeft: [-TURN_RAD, 0, 1],
       ArrowRight: [TURN_RAD, 0, 1],
       ArrowUp: [0, TURN_RAD, 1],
@@ -118,35 +118,35 @@ export class Space {
       '-': [0, 0, 1.15],
       Home: [0, 0, 0],
     };
-    const move = moves[key];
+    const move = movesByKey[key];
     if (!move) return false;
-    const [turnAbout, turnUp, zoom] = move;
-    if (zoom === 0) this.home();
+    const [azimuthChange, elevationChange, zoom] = move;
+    if (zoom === 0) this.resetView();
     else {
       const { target } = this.controls;
       const offset = this.camera.position.clone().sub(target);
       const elevation = Math.asin(Math.max(-1, Math.min(1, offset.z / offset.length())));
       const maxElevation = Math.PI / 2 - 0.05;
-      const newElevation = Math.max(-maxElevation, Math.min(maxElevation, elevation + turnUp));
-      const newDirection = Math.atan2(offset.y, offset.x) + turnAbout;
+      const newElevation = Math.max(-maxElevation, Math.min(maxElevation, elevation + elevationChange));
+      const newDirection = Math.atan2(offset.y, offset.x) + azimuthChange;
       const distance = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, offset.length() * zoom));
       this.camera.position.set(Math.cos(newDirection) * Math.cos(newElevation), Math.sin(newDirection) * Math.cos(newElevation), Math.sin(newElevation));
       this.camera.position.multiplyScalar(distance).add(target);
       this.controls.update();
     }
-    this.dirty = true;
+    this.needsDrawing = true;
     return true;
   }
 
   /** Resets the camera to the guide's view: from behind, from the left and from above. */
-  home(): void {
+  resetView(): void {
     this.controls.target.set(0, -30, 5);
     // The camera is farther away for a narrow canvas, to show the whole robot.
     const { clientWidth, clientHeight } = this.canvas;
     const distance = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
     this.camera.position.copy(new Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(distance)).add(this.controls.target);
     this.controls.update();
-    this.dirty = true;
+    this.needsDrawing = true;
   }
 
   /** Replaces the shown robot by another model and its solids. */
@@ -180,39 +180,39 @@ export class Space {
   /** Applies the view's settings, and the colours of light or dark mode. */
   show(settings: ViewSettings): void {
     this.settings = settings;
-    const { step, apart, picked, clash } = settings;
+    const { guideStep, explosion, selectedBody, clashingBodies } = settings;
     const colours = palette();
     const floor = new Color(colours.floor);
     this.scene.background = floor;
     if (this.grid) this.scene.remove(this.grid);
     this.grid?.dispose();
-    this.grid = new GridHelper(CELL_MM * CELLS, CELLS, colours.grid, colours.grid);
+    this.grid = new GridHelper(CELL_MM * CELLS_PER_SIDE, CELLS_PER_SIDE, colours.grid, colours.grid);
     this.grid.geometry.rotateX(Math.PI / 2);
     this.grid.matrixAutoUpdate = false;
     this.scene.add(this.grid);
     this.model?.bodies.forEach((body, index) => {
       const mesh = this.meshes[index];
       if (!mesh) return;
-      const isNew = step === null || body.step === step;
-      mesh.visible = step === null || body.step <= step;
-      const chosenBodies = clash.length > 0 ? clash : picked === null ? null : [picked];
+      const isNew = guideStep === null || body.step === guideStep;
+      mesh.visible = guideStep === null || body.step <= guideStep;
+      const chosenBodies = clashingBodies.length > 0 ? clashingBodies : selectedBody === null ? null : [selectedBody];
       const isPale = chosenBodies ? !chosenBodies.includes(index) : !isNew;
-      mesh.material.color.set(clash.includes(index) ? colours.alarm : colourOf(body)).lerp(floor, isPale ? PALE_SHARE : 0);
-      const lift = new Matrix4().makeTranslation(0, 0, isNew ? apart * LIFT_MM * body.lift : 0);
+      mesh.material.color.set(clashingBodies.includes(index) ? colours.alarm : colourOf(body)).lerp(floor, isPale ? PALE_SHARE : 0);
+      const lift = new Matrix4().makeTranslation(0, 0, isNew ? explosion * LIFT_MM * body.lift : 0);
       mesh.matrix.copy(lift.multiply(new Matrix4().fromArray(body.place)));
       mesh.matrixWorldNeedsUpdate = true;
     });
-    this.dirty = true;
+    this.needsDrawing = true;
   }
 
   /** Places every mount by four numbers: x and y in mm, cosine and sine of its angle. */
-  pose(places: Float64Array): void {
+  placeMounts(places: Float64Array): void {
     this.mounts.forEach((mount, index) => {
       const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * index, 4 * index + 4);
       mount.matrix.set(cos, -sin, 0, x, sin, cos, 0, y, 0, 0, 1, 0, 0, 0, 0, 1);
       mount.matrixWorldNeedsUpdate = true;
     });
-    this.dirty = true;
+    this.needsDrawing = true;
   }
 
   /** Returns true if a picture may be painted now; must be called in every frame of the page. */
@@ -225,9 +225,9 @@ export class Space {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.mayDraw() || width === 0 || height === 0) return;
     const now = performance.now();
-    if (this.dirty) this.changed = now;
+    if (this.needsDrawing) this.changedAt = now;
     // A still view is painted once more at full resolution.
-    const isStill = now - this.changed > STILL_MS;
+    const isStill = now - this.changedAt > STILL_MS;
     const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.paintBudget.resolution);
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
@@ -235,10 +235,10 @@ export class Space {
       this.renderer.setSize(width, height, false);
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
-      this.dirty = true;
+      this.needsDrawing = true;
     }
-    if (!this.dirty) return;
-    this.dirty = false;
+    if (!this.needsDrawing) return;
+    this.needsDrawing = false;
     this.moveGround(place);
     this.renderer.render(this.scene, this.camera);
     this.paintBudget.notePicture(isStill);
@@ -249,7 +249,7 @@ export class Space {
     if (!this.grid) return;
     const turn = new Matrix4().makeRotationZ((-heading * Math.PI) / 180);
     const remainder = (value: number) => value - CELL_MM * Math.round(value / CELL_MM);
-    const depth = this.settings.step === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
+    const depth = this.settings.guideStep === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
     const shift = new Matrix4().makeTranslation(-remainder(x), -remainder(y), depth);
     this.grid.matrix.copy(turn.multiply(shift));
     this.grid.matrixWorldNeedsUpdate = true;

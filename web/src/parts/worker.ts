@@ -6,7 +6,7 @@ import { initSync, Parts } from '../../generated/parts';
 
 /** Progress of the making of a robot's files. */
 export interface Progress {
-  doing: 'prove' | 'make';
+  stage: 'prove' | 'make';
   done: number;
   all: number;
 }
@@ -19,7 +19,7 @@ function filesOf(parts: Parts, progress: (progress: Progress) => void): Record<s
   const filesByPath: Record<string, Uint8Array> = {};
   const fileCount = parts.entry().files;
   for (let number = 0; number < fileCount; number++) {
-    progress({ doing: 'make', done: number, all: fileCount });
+    progress({ stage: 'make', done: number, all: fileCount });
     for (const { path, bytes } of parts.files(number)) filesByPath[path] = bytes;
   }
   return filesByPath;
@@ -53,7 +53,7 @@ const functions = {
    */
   make(toml: string, previousToml: string | null, progress: (progress: Progress) => void) {
     const parts = new Parts(toml);
-    const leastMm = parts.prove((done, all) => progress({ doing: 'prove', done, all })) ?? null;
+    const leastMm = parts.prove((done, all) => progress({ stage: 'prove', done, all })) ?? null;
     const files = filesOf(parts, progress);
     const count = Object.keys(files).length;
     if (previousToml !== null) {

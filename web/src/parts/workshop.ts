@@ -14,10 +14,10 @@ export type Solid = { corners: Float32Array; triangles: Uint32Array };
  * The archive with its paths, the number of all files of the robot, and the least proved distance between two parts,
  * mm.
  */
-export type Made = ReturnType<PartsFunctions['make']>;
+export type PartsArchive = ReturnType<PartsFunctions['make']>;
 
 /** Thrown for a robot whose parts cannot be made; its message is for the user. */
-export class Unfit extends Error {
+export class UnfitError extends Error {
   readonly meeting: Meeting | null;
 
   constructor({ refused, meeting }: Refused) {
@@ -26,7 +26,7 @@ export class Unfit extends Error {
   }
 }
 
-/** A worker with the parts; what it refuses is thrown as an {@link Unfit}. */
+/** A worker with the parts; what it refuses is thrown as an {@link UnfitError}. */
 class Workshop extends Helper<PartsFunctions> {
   constructor() {
     super(new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' }));
@@ -37,22 +37,22 @@ class Workshop extends Helper<PartsFunctions> {
     const module = await files.parts();
     await this.ask((parts) => parts.load(module));
     return this.ask(call).catch((error: Error | Refused) => {
-      throw 'refused' in error ? new Unfit(error) : error;
+      throw 'refused' in error ? new UnfitError(error) : error;
     });
   }
 }
 
 /** A robot's solids and their places at a pose. */
 export class Solids {
-  private asking = false;
+  private isAsking = false;
 
   private constructor(private readonly workshop: Workshop) {}
 
   /**
-   * Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws {@link Unfit} for a robot that cannot
-   * be built.
+   * Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws {@link UnfitError} for a robot that
+   * cannot be built.
    */
-  static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
+  static async make(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const workshop = new Workshop();
     try {
       const { model, solids } = await workshop.loadAndAsk((parts) => parts.model(toml));
@@ -67,9 +67,9 @@ export class Solids {
    * Returns the places of all mounts; null if a loop does not close, or if the worker still computes an earlier pose.
    */
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
-    if (this.asking) return null;
-    this.asking = true;
-    return this.workshop.ask((parts) => parts.pose(angles, lags)).finally(() => (this.asking = false));
+    if (this.isAsking) return null;
+    this.isAsking = true;
+    return this.workshop.ask((parts) => parts.pose(angles, lags)).finally(() => (this.isAsking = false));
   }
 
   end(): void {
@@ -90,13 +90,13 @@ function startWork<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answ
 
 /**
  * Proves that the parts of a robot.toml fit; answers with the least distance between two, mm, null if no pair was
- * checked. Throws {@link Unfit}.
+ * checked. Throws {@link UnfitError}.
  */
-export const fit = (toml: string): Work<number | null> => startWork((parts) => parts.fit(toml));
+export const proveFit = (toml: string): Work<number | null> => startWork((parts) => parts.fit(toml));
 
 /**
  * Proves that the parts fit, makes all files and packs them; if `previousToml` is a robot.toml, packs only files that
  * differ from its files.
  */
-export const make = (toml: string, previousToml: string | null, progress: (progress: Progress) => void): Work<Made> =>
+export const makeArchive = (toml: string, previousToml: string | null, progress: (progress: Progress) => void): Work<PartsArchive> =>
   startWork((parts) => parts.make(toml, previousToml, proxy(progress)));

@@ -1,5 +1,5 @@
-// The calibration of a robot at its first connection, on one board. What its steps ask of the robot is Rust, in the module
-// of boards.
+// The calibration of a robot at its first connection, on one board. Its steps are Rust, in the
+// WebAssembly module for boards.
 import type { Console, Guide } from '../../generated/board';
 import { loadBoard } from '../board';
 import type { Answer } from '../link/dialogue';
@@ -8,26 +8,26 @@ import type { Calibration } from '../robot';
 import type { Session } from '../session';
 import { WORDS } from '../words';
 
-const LOST = 'The board has restarted or is gone; what was not saved is lost.';
+const LOST_MESSAGE = 'The board has restarted or is gone; what was not saved is lost.';
 
 /** The console of a board, until the board restarts or is gone. */
 class BoardConsole implements Console {
   private readonly link: Link;
-  private readonly banners: number;
+  private readonly bannerCount: number;
 
   constructor(private readonly session: Session) {
-    ({ link: this.link, banners: this.banners } = session);
+    ({ link: this.link, bannerCount: this.bannerCount } = session);
   }
 
   get isCurrent(): boolean {
-    return this.session.link === this.link && this.session.banners === this.banners;
+    return this.session.link === this.link && this.session.bannerCount === this.bannerCount;
   }
 
   async ask(line: string): Promise<Answer> {
-    if (!this.isCurrent) throw new Error(LOST);
+    if (!this.isCurrent) throw new Error(LOST_MESSAGE);
     const answer = await this.session.ask(line, line === WORDS.status);
     if (answer) return answer;
-    throw new Error(this.isCurrent ? `The robot has not answered "${line}".` : LOST);
+    throw new Error(this.isCurrent ? `The robot has not answered "${line}".` : LOST_MESSAGE);
   }
 
   wait(ms: number): Promise<void> {
@@ -38,7 +38,7 @@ class BoardConsole implements Console {
 export class BoardGuide {
   /** The robot's calibration after the last action, saved or not. */
   calibration: Readonly<Calibration>;
-  /** True if it is not saved. */
+  /** True if the calibration is not saved. */
   isChanged = false;
 
   private constructor(

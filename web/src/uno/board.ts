@@ -7,24 +7,27 @@ import { Scope } from '../../../tools/judge/src/scope.js';
 import { selfProgramming } from '../../../tools/judge/src/self-programming.js';
 import { Uno } from '../../../tools/judge/src/uno.js';
 
-export const FREQUENCY = 16_000_000;
+/** Clock frequency of the chip, Hz. */
+export const FREQUENCY_HZ = 16_000_000;
 
 /** Number of bits per byte on the serial line, with start and stop bit. */
-const BYTE_BITS = 10;
+const BITS_PER_BYTE = 10;
 /** Share by which a baud rate may differ from the chip's; beyond it every byte is garbled. */
-const RATE_ERROR = 0.045;
-/** The byte in place of each one that is read at another baud rate than it was sent at; no text contains it. */
-const UNREADABLE = 0xfe;
+const MAX_RATE_ERROR = 0.045;
+/** The byte that replaces each byte received at a baud rate other than that of its sender; no text contains it. */
+const UNREADABLE_BYTE = 0xfe;
+/** Address of the register with the cause of the last reset. */
 const MCUSR = 0x54;
 /** Address of the RAM, after the registers. */
 const RAM_START = 0x100;
 /** Byte address of a boot loader of 512 bytes. */
-export const BOOT = 0x7e00;
+export const BOOT_START = 0x7e00;
 
 /** Causes of a reset as bits of MCUSR. */
-const CAUSES = { power: 0x01, external: 0x02, watchdog: 0x08 };
-export type Cause = keyof typeof CAUSES;
+const RESET_CAUSE_BITS = { power: 0x01, external: 0x02, watchdog: 0x08 };
+export type ResetCause = keyof typeof RESET_CAUSE_BITS;
 
+/** Thrown by the chip's watchdog to leave the run of a chip that is reset. */
 class ChipReset extends Error {}
 
 export class SimulatedBoard {
@@ -41,9 +44,10 @@ export class SimulatedBoard {
 
   private uno!: Uno & { receive?(byte: number, isGarbled: boolean): boolean };
   /** Cycles from power-on to the last reset. */
-  private before = 0;
-  private readonly line: number[] = [];
-  private lineIsBusy = false;
+  private cyclesBeforeReset = 0;
+  /** The bytes that were sent to the UNO and have not arrived. */
+  private readonly bytesToDeliver: number[] = [];
+  private isLineBusy = false;
   private volts = 5;
   /** The contacts between pins and ground, by Arduino number: true if closed. */
   private readonly contacts = new Map<number, boolean>();
@@ -61,13 +65,13 @@ export class SimulatedBoard {
   ) {
     const flash = new Uint8Array(32 * 1024).fill(0xff);
     if (image !== null) flash.set(image);
-    if (bootLoader !== null) flash.set(bootLoader, BOOT);
+    if (bootLoader !== null) flash.set(bootLoader, BOOT_START);
     this.begin('power', flash, eeprom);
   }
 
   /** Cycles since power-on. */
   get cycle(): number {
-    return this.before + this.uno.cpu.cycles;
+    return this.cyclesBeforeReset + this.uno.cpu.cycles;
   }
 
   /** The whole flash. */
@@ -85,7 +89,7 @@ export class SimulatedBoard {
     const end = this.cycle + cycles;
     while (this.cycle < end) {
       try {
-        this.uno.run(end - this.before);
+        this.uno.run(end - this.cyclesBeforeReset);
       } catch (error) {
         if (!(error instanceof ChipReset)) throw error;
         this.reset('watchdog');
@@ -95,7 +99,7 @@ export class SimulatedBoard {
 
   /** Sends bytes to the UNO; they arrive one by one, at the baud rate. */
   send(bytes: Iterable<number>): void {
-    this.line.push(...bytes);
+    this.bytesToDeliver.push(...bytes);
     this.deliverNextByte();
   }
 
@@ -119,50 +123,50 @@ export class SimulatedBoard {
   }
 
   /** Resets the chip; flash, EEPROM and RAM keep their content. */
-  reset(cause: Cause): void {
+  reset(cause: ResetCause): void {
     const { cpu, flash, memory } = this.uno;
-    this.before += cpu.cycles;
-    this.line.length = 0;
-    this.lineIsBusy = false;
+    this.cyclesBeforeReset += cpu.cycles;
+    this.bytesToDeliver.length = 0;
+    this.isLineBusy = false;
     const ram = cpu.data.slice(RAM_START);
     this.begin(cause, flash, memory);
     if (cause !== 'power') this.uno.cpu.data.set(ram, RAM_START);
   }
 
-  private begin(cause: Cause, flash: Uint8Array, eeprom?: Uint8Array): void {
+  private begin(cause: ResetCause, flash: Uint8Array, eeprom?: Uint8Array): void {
     const uno = new Uno([...corrections, selfProgramming, receiveBuffer, busyWait]);
     this.uno = uno;
     uno.flash.set(flash);
     if (eeprom) uno.memory.set(eeprom);
-    uno.cpu.data[MCUSR] = CAUSES[cause];
-    uno.cpu.pc = flash[BOOT] === 0xff && flash[BOOT + 1] === 0xff ? 0 : BOOT / 2;
+    uno.cpu.data[MCUSR] = RESET_CAUSE_BITS[cause];
+    uno.cpu.pc = flash[BOOT_START] === 0xff && flash[BOOT_START + 1] === 0xff ? 0 : BOOT_START / 2;
     uno.cpu.reset = () => {
       throw new ChipReset();
     };
     uno.adc.avcc = this.volts;
     if (this.rail) uno.adc.channelValues[this.rail[0]] = this.rail[1];
     for (const [pin, isClosed] of this.contacts) this.setPinLevel(pin, isClosed);
-    uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE : byte);
-    const cyclesBefore = this.before;
+    uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE_BYTE : byte);
+    const cyclesBefore = this.cyclesBeforeReset;
     new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
   }
 
   /** True while the chip's baud rate and that of the other side differ too much. */
   private get isGarbled(): boolean {
-    return Math.abs(this.uno.usart.baudRate / this.baud - 1) > RATE_ERROR;
+    return Math.abs(this.uno.usart.baudRate / this.baud - 1) > MAX_RATE_ERROR;
   }
 
   private deliverNextByte(): void {
     const { uno } = this;
-    if (this.lineIsBusy || this.line.length === 0) return;
-    this.lineIsBusy = true;
+    if (this.isLineBusy || this.bytesToDeliver.length === 0) return;
+    this.isLineBusy = true;
     uno.cpu.addClockEvent(() => {
-      this.lineIsBusy = false;
-      const byte = this.line.shift();
+      this.isLineBusy = false;
+      const byte = this.bytesToDeliver.shift();
       if (uno !== this.uno || byte === undefined) return;
       if (!uno.receive?.(byte, this.isGarbled)) this.lost += 1;
       this.onReceived(byte, this.cycle);
       this.deliverNextByte();
-    }, Math.round((BYTE_BITS * FREQUENCY) / this.baud));
+    }, Math.round((BITS_PER_BYTE * FREQUENCY_HZ) / this.baud));
   }
 }

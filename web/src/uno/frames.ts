@@ -1,14 +1,16 @@
 // Collects single pulses into frames: the widths of all four servos within 20 ms.
 import type { Four } from '../robot';
-import { FREQUENCY } from './board';
+import { FREQUENCY_HZ } from './board';
 
 /** Cycles from a frame's first pulse after which the frame is over: four slots of 4 ms, one for each servo. */
-const FOUR_SLOTS = 0.0165 * FREQUENCY;
+const FOUR_SLOTS_CYCLES = 0.0165 * FREQUENCY_HZ;
 
-export class Frames {
+export class FrameCollector {
   private widths: Four<number> = [0, 0, 0, 0];
-  private start: number | null = null;
-  private last = -1;
+  /** The cycle at which the frame's first pulse rose; null before it. */
+  private startCycle: number | null = null;
+  /** The servo of the last pulse; -1 before the first. */
+  private lastServo = -1;
 
   /** Takes the Arduino pin numbers of the four servos, in their order. */
   constructor(
@@ -16,28 +18,29 @@ export class Frames {
     private readonly onFrame: (widths: Four<number>, cycle: number) => void,
   ) {}
 
+  /** Adds a pulse: its pin, the cycle at which it rose, and its width in cycles. */
   add(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
     // A pulse of the same servo, or of one earlier in the order, starts a new frame.
-    if (servo <= this.last) this.close();
-    this.start ??= rise;
-    this.last = servo;
+    if (servo <= this.lastServo) this.close();
+    this.startCycle ??= rise;
+    this.lastServo = servo;
     this.widths[servo] = width;
     if (servo === 3) this.close();
   }
 
   /** Closes the frame if its time is over at a cycle, even if not all servos have had a pulse. */
   advanceTo(cycle: number): void {
-    if (this.start !== null && cycle - this.start > FOUR_SLOTS) this.close();
+    if (this.startCycle !== null && cycle - this.startCycle > FOUR_SLOTS_CYCLES) this.close();
   }
 
   private close(): void {
-    if (this.start === null) return;
-    const { widths, start } = this;
+    if (this.startCycle === null) return;
+    const { widths, startCycle } = this;
     this.widths = [0, 0, 0, 0];
-    this.start = null;
-    this.last = -1;
-    this.onFrame(widths, start);
+    this.startCycle = null;
+    this.lastServo = -1;
+    this.onFrame(widths, startCycle);
   }
 }

@@ -1,14 +1,14 @@
 // Warns that the board has another robot than the page, which would draw and predict it wrongly. Searches for the
 // board's robot and offers to show it.
 import { files } from '../files';
-import { kept } from '../kept';
+import { browserStorage } from '../kept';
 import { isRefused, Robot } from '../robot';
 import type { Session } from '../session';
-import { nameOf } from './setup/board';
+import { robotName } from './setup/board';
 import type { Troubles } from './troubles';
 
 /** A robot that the page can show: the name of its file, and its robot.toml, which the user may have changed. */
-interface Known {
+interface KnownRobot {
   file: string;
   toml: string;
 }
@@ -17,35 +17,35 @@ export class BoardRobot {
   /** A separate reader, since a reader holds one robot only, and the page's reader must keep its own. */
   private readonly reader = new Robot();
 
-  /** `show` loads a robot into the page. */
+  /** `showRobot` loads a robot into the page. */
   constructor(
     private readonly session: () => Session,
     private readonly troubles: Troubles,
-    private readonly show: (known: Known) => void,
+    private readonly showRobot: (known: KnownRobot) => void,
   ) {}
 
   /** Reports that the board has another robot; removes the message if it does not. */
-  async follow(): Promise<void> {
+  async update(): Promise<void> {
     const session = this.session();
     const otherRobot = session.otherRobot;
     if (!session.isReal || !otherRobot) return this.troubles.say('other', null);
-    const knownRobot = await this.find(otherRobot.hash);
+    const knownRobot = await this.findByHash(otherRobot.hash);
     if (session.otherRobot?.hash !== otherRobot.hash) return;
-    const message = `The ${session.link.name} has another robot, ${otherRobot.name}, and is drawn and predicted here as ${nameOf(session)}.`;
+    const message = `The ${session.link.name} has another robot, ${otherRobot.name}, and is drawn and predicted here as ${robotName(session)}.`;
     if (!knownRobot) return this.troubles.say('other', `${message} This page does not know it: open its robot.toml in Build, or write this one.`);
-    this.troubles.say('other', message, { label: `Show ${otherRobot.name}`, act: () => this.show(knownRobot) });
+    this.troubles.say('other', message, { label: `Show ${otherRobot.name}`, act: () => this.showRobot(knownRobot) });
   }
 
   /**
    * Finds the robot with a hash among the robots that the user has put aside and the page's files; null if none has
    * it.
    */
-  private async find(hash: string): Promise<Known | null> {
+  private async findByHash(hash: string): Promise<KnownRobot | null> {
     const hasHash = (toml: string) => {
       const answer = this.reader.read(toml);
       return !isRefused(answer) && answer.hash === hash;
     };
-    const ownRobot = kept.aside().find(({ toml }) => hasHash(toml));
+    const ownRobot = browserStorage.getPutAside().find(({ toml }) => hasHash(toml));
     if (ownRobot) return ownRobot;
     const names = await files.robots().catch(() => ({ all: [] }));
     for (const file of names.all) {

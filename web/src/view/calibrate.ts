@@ -1,4 +1,4 @@
-// The panel of the servos' calibration: read by `cal`, set while a slider moves, stored by `save`.
+// The panel of the servos' calibration, which `cal` reads, the sliders and fields set, and `save` stores.
 import { loadBoard } from '../board';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
@@ -17,17 +17,17 @@ interface Row {
 }
 
 export class Calibrate {
-  private readonly box = element('calibration');
+  private readonly rowBox = element('calibration');
   private readonly message = element('cal-said');
   private rows: Row[] = [];
   /** True after a line without an answer: the shown settings may differ from the robot's. */
-  private isUnsure = false;
+  private mayBeOutdated = false;
 
   constructor(private readonly session: () => Session) {
     element('cal-read').addEventListener('click', () => void this.read());
-    element('cal-save').addEventListener('click', () => void this.set(WORDS.save));
+    element('cal-save').addEventListener('click', () => void this.send(WORDS.save));
     for (const word of [WORDS.load, WORDS.factory]) {
-      element(`cal-${word}`).addEventListener('click', () => void this.set(word).then(() => this.read()));
+      element(`cal-${word}`).addEventListener('click', () => void this.send(word).then(() => this.read()));
     }
     const panel = element<HTMLDetailsElement>('calibrate');
     panel.addEventListener('toggle', () => isShown(panel) && void this.read());
@@ -39,14 +39,14 @@ export class Calibrate {
     const board = await loadBoard().catch((error: unknown) => (this.message.textContent = messageOf(error)));
     const settings = answer && typeof board === 'object' && board.readCalibration(answer.notes);
     if (!settings) return;
-    this.isUnsure = false;
-    if (this.rows.length === 0) this.build();
+    this.mayBeOutdated = false;
+    if (this.rows.length === 0) this.buildRows();
     settings.servos.forEach((servo, n) => this.show(n, servo));
   }
 
   /** Reads the settings again if the shown ones may be wrong; call it when the robot answers again. */
   refresh(): void {
-    if (this.isUnsure) void this.read();
+    if (this.mayBeOutdated) void this.read();
   }
 
   private show(servo: number, { trim, limit, dir, scale }: ServoSettings): void {
@@ -58,20 +58,20 @@ export class Calibrate {
     row.dir.value = dir;
   }
 
-  private async set(line: string): Promise<void> {
+  private async send(line: string): Promise<void> {
     const answer = await this.session().ask(line);
     this.message.textContent = answer?.text ?? '';
-    this.isUnsure ||= answer === null;
+    this.mayBeOutdated ||= answer === null;
     if (answer && !answer.ok) await this.read();
   }
 
-  private build(): void {
+  private buildRows(): void {
     this.rows = [1, 2, 3, 4].map((servo) => {
       const group = make('fieldset', {}, make('legend', {}, `A${servo}`));
       const trim = this.makeTrim(group, servo);
       const numbers = make('div', { className: 'numbers' });
       group.append(numbers);
-      this.box.append(group);
+      this.rowBox.append(group);
       const addNumber = (label: string, step: string) => {
         const input = make('input', { type: 'number', step });
         numbers.append(make('label', {}, label, input));
@@ -83,10 +83,10 @@ export class Calibrate {
       const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
       numbers.append(make('label', {}, 'longer pulse turns it', dir));
       for (const input of [min, max]) {
-        input.addEventListener('change', () => void this.set(`${WORDS.limit} ${servo} ${min.value} ${max.value}`));
+        input.addEventListener('change', () => void this.send(`${WORDS.limit} ${servo} ${min.value} ${max.value}`));
       }
-      scale.addEventListener('change', () => void this.set(`${WORDS.scale} ${servo} ${scale.value}`));
-      dir.addEventListener('change', () => void this.set(`${WORDS.dir} ${servo} ${dir.value}`));
+      scale.addEventListener('change', () => void this.send(`${WORDS.scale} ${servo} ${scale.value}`));
+      dir.addEventListener('change', () => void this.send(`${WORDS.dir} ${servo} ${dir.value}`));
       return { trim, scale, min, max, dir };
     });
   }
@@ -98,7 +98,7 @@ export class Calibrate {
     const showTrim = () => (output.textContent = `${Number(trim.value).toFixed(2)}°`);
     trim.addEventListener('input', showTrim);
     trim.addEventListener('shown', showTrim);
-    trim.addEventListener('change', () => void this.set(`${WORDS.trim} ${servo} ${trim.value}`));
+    trim.addEventListener('change', () => void this.send(`${WORDS.trim} ${servo} ${trim.value}`));
     return trim;
   }
 }

@@ -1,5 +1,6 @@
 // Canvases at the screen's resolution, which follow the size of their elements, and access to the page's elements.
 
+/** A canvas that is ready for drawing. */
 export interface Surface {
   pen: CanvasRenderingContext2D;
   /** Width, CSS pixels. */
@@ -37,7 +38,7 @@ export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radi
   pen.arc(x, y, radius, Math.PI, 2 * Math.PI);
 }
 
-/** Finds an element of index.html. */
+/** Returns an element of index.html. */
 export function element<T extends HTMLElement>(id: string): T {
   const node = document.getElementById(id);
   if (!node) throw new Error(`the page has no #${id}`);

@@ -2,9 +2,9 @@
 import { files } from '../files';
 import { element } from './canvas';
 
-export class Choice {
+export class RobotChoice {
   private readonly list = element<HTMLSelectElement>('robot');
-  private readonly own = document.createElement('optgroup');
+  private readonly ownGroup = document.createElement('optgroup');
 
   private constructor(
     private readonly robots: string[],
@@ -18,28 +18,28 @@ export class Choice {
       else this.list.add(option);
     });
     if (testGroup.childElementCount > 0) this.list.append(testGroup);
-    this.own.label = 'your own';
+    this.ownGroup.label = 'your own';
   }
 
   /** Lists the names of the user's own robots. */
   showOwn(names: string[]): void {
-    this.own.replaceChildren(...names.map((name) => new Option(name, '')));
-    if (names.length > 0) this.list.prepend(this.own);
-    else this.own.remove();
+    this.ownGroup.replaceChildren(...names.map((name) => new Option(name, '')));
+    if (names.length > 0) this.list.prepend(this.ownGroup);
+    else this.ownGroup.remove();
   }
 
   /** The index of the chosen robot among the user's own robots; null if a file is chosen. */
-  get chosenOwn(): number | null {
-    const index = [...this.own.children].indexOf(this.list.selectedOptions[0]);
+  get chosenOwnIndex(): number | null {
+    const index = [...this.ownGroup.children].indexOf(this.list.selectedOptions[0]);
     return index < 0 ? null : index;
   }
 
   /**
    * Makes the list of the robots whose files come with the page. Throws an error for the user if the list is missing.
    */
-  static async load(): Promise<Choice> {
+  static async load(): Promise<RobotChoice> {
     const { all, tests } = await files.robots();
-    return new Choice(all, tests);
+    return new RobotChoice(all, tests);
   }
 
   /** Calls `act` when the user has chosen a robot. */
@@ -48,19 +48,19 @@ export class Choice {
   }
 
   /** The chosen robot's file name. */
-  get robot(): string {
+  get chosenFile(): string {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
 
   /** Selects a robot by its file name; returns true if it is in the list. */
-  show(name: string): boolean {
+  select(name: string): boolean {
     const isListed = this.robots.includes(name);
     if (isListed) this.list.value = name;
     return isListed;
   }
 
-  /** Allows or forbids the user to choose. */
-  set enabled(isEnabled: boolean) {
+  /** True if the user may choose. */
+  set isEnabled(isEnabled: boolean) {
     this.list.disabled = !isEnabled;
   }
 }

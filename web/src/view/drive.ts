@@ -24,15 +24,15 @@ export function formatDisplacement(displacement: Displacement | null): string {
 }
 
 export class Drive {
-  private readonly list = element('gaits');
-  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; line: HTMLElement; moves: boolean }[] = [];
+  private readonly buttonList = element('gaits');
+  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
   private readonly predictions = new Map<string, GaitPrediction>();
   /** The robot's pace, percent. */
   private pace = 100;
 
   private readonly message = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
-  readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
+  readonly commands: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
   /** `send` sends a line and resolves to its answer, or to null without an answer. */
   constructor(private readonly send: (line: string) => Promise<Answer | null>) {
@@ -55,52 +55,52 @@ export class Drive {
 
   /** Shows the buttons of another robot. */
   showRobot({ gaits, routines }: Description): void {
-    this.list.replaceChildren();
+    this.buttonList.replaceChildren();
     // A prediction names its gait by index, so the gaits come first.
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const note = make('span', {});
       const noteBox = make('small', {}, note);
-      const line = make('span', { className: 'line', title: 'share of their torque-speed line that its servos use at this pace' });
+      const loadLabel = make('span', { className: 'line', title: 'share of their torque-speed line that its servos use at this pace' });
       if (moves) noteBox.dataset.room = LONGEST_PREDICTION;
       // A button with a long name is twice as wide.
-      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, noteBox, ...(moves ? [line] : []));
+      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, noteBox, ...(moves ? [loadLabel] : []));
       button.dataset.command = command;
-      this.list.append(button);
-      return { command, button, note, line, moves };
+      this.buttonList.append(button);
+      return { command, button, note, loadLabel, moves };
     });
     this.predictions.clear();
     this.message.hidden = true;
   }
 
   /** Shows the prediction of the gait with an index. */
-  predicted(gait: number, prediction: GaitPrediction): void {
+  showPrediction(gait: number, prediction: GaitPrediction): void {
     const entry = this.buttons[gait];
     if (!entry) return;
     this.predictions.set(entry.command, prediction);
     entry.note.textContent = formatDisplacement(prediction);
-    this.showLine();
+    this.showLoadShares();
   }
 
   /** Sets the robot's pace, percent, for which the shares of the torque-speed line are shown. */
-  speed(percent: number): void {
+  setPace(percent: number): void {
     if (percent === this.pace) return;
     this.pace = percent;
-    this.showLine();
+    this.showLoadShares();
   }
 
   /**
    * Shows each gait's share of the torque-speed line at the robot's pace, and, once all are predicted, the gait with
    * the largest.
    */
-  private showLine(): void {
+  private showLoadShares(): void {
     const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
     let [hardestGait, largestShare] = ['', 0];
-    for (const { command, line } of this.buttons) {
+    for (const { command, loadLabel } of this.buttons) {
       const { lines } = this.predictions.get(command) ?? {};
       const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
       const isTight = share !== undefined && share >= HIGH_LOAD_SHARE;
-      line.classList.toggle('tight', isTight);
-      line.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
+      loadLabel.classList.toggle('tight', isTight);
+      loadLabel.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
       if (isKnown && share !== undefined && share > largestShare) [hardestGait, largestShare] = [command, share];
     }
     const note = element('line-note');
@@ -109,20 +109,21 @@ export class Drive {
     note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
   }
 
-  /** The prediction for a command; null until it is known. */
-  prediction(command: string): GaitPrediction | null {
+  /** Returns the prediction for a command; null until it is known. */
+  predictionOf(command: string): GaitPrediction | null {
     return this.predictions.get(command) ?? null;
   }
 
-  /** The gaits that have a prediction. */
-  choices(): { command: string; displacement: GaitPrediction }[] {
+  /** Returns the gaits that have a prediction. */
+  predictedGaits(): { command: string; displacement: GaitPrediction }[] {
     return this.buttons.flatMap(({ command }) => {
       const displacement = this.predictions.get(command);
       return displacement ? [{ command, displacement }] : [];
     });
   }
 
-  doing(command: string): void {
+  /** Marks the button of the robot's current gait or routine. */
+  showActivity(command: string): void {
     for (const { button, command: buttonCommand } of this.buttons) {
       button.setAttribute('aria-pressed', String(buttonCommand === command));
     }

@@ -9,22 +9,22 @@ import { element } from './canvas';
 import type { PartsView } from './parts';
 
 /** Time without a further change until the parts are made, ms: dragging a joint makes many changes. */
-const QUIET_MS = 400;
+const CHECK_DELAY_MS = 400;
 /** Step of the lengths that are tried, mm. */
 const STEP_MM = 0.5;
 
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
 
-/** Work that ends with the next change: checks in workers. */
+/** Checks in workers, which end with the next change. */
 interface Work {
   isOver: boolean;
   /** The functions that end its workers. */
   stops: Set<() => void>;
 }
 
-/** A length whose printable values are wanted, within a range. */
-interface Wish {
+/** A request for the printable values of lengths that change together, within a range. */
+interface RangeRequest {
   keys: string[];
   range: [number, number];
   show: (printable: [number, number] | null, message: string) => void;
@@ -32,11 +32,11 @@ interface Wish {
 
 export class FitView {
   private readonly message = element('fit-said');
-  private readonly use = element<HTMLButtonElement>('fit-use');
-  private readonly where = element<HTMLButtonElement>('fit-where');
+  private readonly useButton = element<HTMLButtonElement>('fit-use');
+  private readonly whereButton = element<HTMLButtonElement>('fit-where');
   /** The last lengths whose parts fit, of robots from the same file. */
-  private fitting: Lengths = new Map();
-  private wish: Wish | null = null;
+  private fittingLengths: Lengths = new Map();
+  private rangeRequest: RangeRequest | null = null;
   private timer = 0;
   private work: Work = { isOver: true, stops: new Set() };
 
@@ -44,30 +44,30 @@ export class FitView {
     private readonly session: () => Session,
     private readonly parts: PartsView,
   ) {
-    this.where.addEventListener('click', () => this.parts.set3d(true));
+    this.whereButton.addEventListener('click', () => this.parts.set3d(true));
   }
 
   /** Takes the lengths of the session's robot. */
   showRobot(lengths: Length[]): void {
     const robotLengths: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
-    this.wish = null;
-    this.begin();
+    this.rangeRequest = null;
+    this.cancelWork();
     this.parts.showRobot();
     const { file, toml, original } = this.session();
     // Not checked: a robot chosen from the list (whose file name is empty while it loads), an unchanged robot, and
     // changes made outside the room Build.
-    if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = robotLengths;
-    const changedLengths = [...robotLengths].filter(([key, value]) => this.fitting.get(key) !== value);
-    if (changedLengths.length > 0) this.schedule((work) => this.check(robotLengths, new Map(changedLengths), work));
+    if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fittingLengths = robotLengths;
+    const changedLengths = [...robotLengths].filter(([key, value]) => this.fittingLengths.get(key) !== value);
+    if (changedLengths.length > 0) this.schedule((work) => this.checkRobot(robotLengths, new Map(changedLengths), work));
   }
 
   /** Takes the robot.toml of lengths that are being dragged; null if the lengths are refused. */
-  follow(toml: string | null): void {
-    this.begin();
+  checkDragged(toml: string | null): void {
+    this.cancelWork();
     if (toml === null) return;
     this.schedule(async (work) => {
       this.parts.show3d(toml);
-      await this.prove(toml, work);
+      await this.proveAndReport(toml, work);
     });
   }
 
@@ -75,20 +75,20 @@ export class FitView {
    * Searches for the least and the greatest value of the lengths `keys` with which the parts fit, once the robot is
    * known to fit.
    */
-  findRange(keys: string[], range: [number, number], show: Wish['show']): void {
-    this.wish = { keys, range, show };
-    if (this.isFitting) {
-      this.begin();
-      this.schedule((work) => this.search(work));
+  findRange(keys: string[], range: [number, number], show: RangeRequest['show']): void {
+    this.rangeRequest = { keys, range, show };
+    if (this.isKnownToFit) {
+      this.cancelWork();
+      this.schedule((work) => this.searchRange(work));
     }
   }
 
-  private get isFitting(): boolean {
-    return this.session().description.lengths.every(({ key, value }) => this.fitting.get(key) === value);
+  private get isKnownToFit(): boolean {
+    return this.session().description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
   }
 
   /** Cancels the scheduled or running work, and clears the message. */
-  private begin(): void {
+  private cancelWork(): void {
     clearTimeout(this.timer);
     this.work.isOver = true;
     for (const stop of this.work.stops) stop();
@@ -99,11 +99,11 @@ export class FitView {
     const work: Work = { isOver: false, stops: new Set() };
     this.work = work;
     const run = () => act(work).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`, null));
-    this.timer = setTimeout(() => void run(), QUIET_MS);
+    this.timer = setTimeout(() => void run(), CHECK_DELAY_MS);
   }
 
   /** Proves that a robot's parts fit, and shows the result; returns true if they do. */
-  private async prove(toml: string, work: Work): Promise<boolean> {
+  private async proveAndReport(toml: string, work: Work): Promise<boolean> {
     this.say('Checking that the parts fit…', null);
     const result = await this.proveParts(toml, work);
     if (work.isOver) return false;
@@ -117,23 +117,23 @@ export class FitView {
    * fit.
    */
   private async proveParts(toml: string, work: Work) {
-    const { fit, Unfit } = await import('../parts/workshop');
+    const { proveFit, UnfitError } = await import('../parts/workshop');
     if (work.isOver) return null;
-    const { answer, stop } = fit(toml);
+    const { answer, stop } = proveFit(toml);
     work.stops.add(stop);
     return answer
       .catch((error: unknown) => {
-        if (error instanceof Unfit) return error;
+        if (error instanceof UnfitError) return error;
         throw error;
       })
       .finally(() => work.stops.delete(stop));
   }
 
-  private async check(robotLengths: Lengths, changedLengths: Lengths, work: Work): Promise<void> {
+  private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, work: Work): Promise<void> {
     const { toml } = this.session();
-    if (await this.prove(toml, work)) {
-      this.fitting = robotLengths;
-      return this.search(work);
+    if (await this.proveAndReport(toml, work)) {
+      this.fittingLengths = robotLengths;
+      return this.searchRange(work);
     }
     if (work.isOver) return;
     const refusalText = this.message.textContent ?? '';
@@ -143,16 +143,16 @@ export class FitView {
     this.message.textContent = refusalText;
     const { lengths } = this.session().description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
-    this.use.textContent = `Use what fits: ${names.join(', ')}`;
-    this.use.onclick = () => void this.session().change(nearest.text);
-    this.use.hidden = false;
+    this.useButton.textContent = `Use what fits: ${names.join(', ')}`;
+    this.useButton.onclick = () => void this.session().change(nearest.text);
+    this.useButton.hidden = false;
   }
 
   /** Searches for the requested range, if there is a request. */
-  private async search(work: Work): Promise<void> {
-    const { wish } = this;
-    if (!wish) return;
-    const { keys, range, show } = wish;
+  private async searchRange(work: Work): Promise<void> {
+    const { rangeRequest } = this;
+    if (!rangeRequest) return;
+    const { keys, range, show } = rangeRequest;
     show(null, 'Looking for the shortest and the longest that can be printed…');
     const findLimit = async (wantedValue: number) => {
       const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, wantedValue])), work, true);
@@ -166,28 +166,28 @@ export class FitView {
 
   /**
    * Returns the lengths nearest to the wanted ones whose parts fit: bisects between the last lengths that fit and the
-   * wanted ones, to within one step. If `isOpen`, tries the wanted lengths first, since they may fit.
+   * wanted ones, to within one step. If `triesWantedFirst`, tries the wanted lengths first, since they may fit.
    */
-  private async findNearest(wantedLengths: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
+  private async findNearest(wantedLengths: Lengths, work: Work, triesWantedFirst = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session();
     const lengthsAt = (share: number): Lengths =>
       new Map([...wantedLengths].map(([key, to]) => {
-        const from = this.fitting.get(key) ?? to;
+        const from = this.fittingLengths.get(key) ?? to;
         return [key, share === 0 ? from : STEP_MM * Math.round((from + (to - from) * share) / STEP_MM)];
       }));
     const robotAt = (share: number) => {
       const lengths = lengthsAt(share);
       const { text, refusal } = Robot.lengths(toml, [...lengths], false);
-      return { lengths, text, isRobot: refusal === null };
+      return { lengths, text, isAccepted: refusal === null };
     };
-    const partsFit = async ({ text, isRobot }: ReturnType<typeof robotAt>) => isRobot && !((await this.proveParts(text, work)) instanceof Error);
+    const partsFit = async ({ text, isAccepted }: ReturnType<typeof robotAt>) => isAccepted && !((await this.proveParts(text, work)) instanceof Error);
     let best = robotAt(0);
-    if (isOpen) {
+    if (triesWantedFirst) {
       const wantedRobot = robotAt(1);
       if (await partsFit(wantedRobot)) return wantedRobot;
     }
     let [low, high] = [0, 1];
-    const longestChange = Math.max(...[...wantedLengths].map(([key, to]) => Math.abs(to - (this.fitting.get(key) ?? to))));
+    const longestChange = Math.max(...[...wantedLengths].map(([key, to]) => Math.abs(to - (this.fittingLengths.get(key) ?? to))));
     while ((high - low) * longestChange > STEP_MM && !work.isOver) {
       const middleShare = (low + high) / 2;
       const candidate = robotAt(middleShare);
@@ -200,9 +200,9 @@ export class FitView {
   private say(text: string, meeting: Meeting | null): void {
     element('fit').hidden = text === '';
     this.message.textContent = text;
-    this.use.hidden = true;
-    this.where.hidden = meeting === null;
-    this.parts.meet(meeting);
+    this.useButton.hidden = true;
+    this.whereButton.hidden = meeting === null;
+    this.parts.showMeeting(meeting);
   }
 }
 

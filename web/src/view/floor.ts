@@ -4,32 +4,35 @@ import { circle, element, surface } from './canvas';
 import { drawLizard } from './lizard';
 import { onPaletteChange, palette } from './palette';
 
-const GRID_MM = 50;
-/** Least and greatest zoom, CSS pixels per mm: a robot of about 250 mm stays longer than 60 pixels. */
-const LEAST_ZOOM = 0.25;
-const MOST_ZOOM = 8;
-/** Least width and height of the view while the zoom follows the canvas, mm. */
-const VIEW_MM = 420;
-/** Largest number of points of a track, and their least distance, mm. */
-const LONGEST_TRACK = 6000;
-const TRACK_STEP = 0.5;
+const GRID_SPACING_MM = 50;
+/** Least zoom, CSS pixels per mm: a robot of about 250 mm stays longer than 60 pixels. */
+const MIN_ZOOM = 0.25;
+/** Greatest zoom, CSS pixels per mm. */
+const MAX_ZOOM = 8;
+/** Least width and height of the view while the zoom follows the size of the canvas. */
+const MIN_VIEW_MM = 420;
+/** Largest number of points of a track. */
+const MAX_TRACK_POINTS = 6000;
+/** Least distance between two points of a track. */
+const MIN_POINT_DISTANCE_MM = 0.5;
 
-/** Distance from the robot's start to the second robot's start, to the right, mm. */
-const SECOND_OFFSET = 280;
+/** Distance from the robot's start to the second robot's start, to the right. */
+const SECOND_ROBOT_OFFSET_MM = 280;
 
-/** Distance from its goal at which the view stops moving, mm: a tenth of a pixel at the greatest zoom. */
-const GOAL_TOLERANCE = 0.01;
+/** Distance from its goal at which the view stops moving: a tenth of a pixel at the greatest zoom. */
+const GOAL_TOLERANCE_MM = 0.01;
 
-/** Sideways movement after which a finger drags the floor, CSS pixels. */
-const DRAG_THRESHOLD = 12;
+/** Sideways movement after which a finger drags the floor, in CSS pixels. */
+const DRAG_THRESHOLD_PX = 12;
 
-/** The label of the scale bar and its place, CSS pixels. */
+/** The label of the scale bar and its position, in CSS pixels. */
 interface Label {
   text: string;
   x: number;
   y: number;
 }
 
+/** The last position of a pressed pointer, in CSS pixels of the canvas. */
 interface Touch {
   x: number;
   y: number;
@@ -38,42 +41,45 @@ interface Touch {
 export class Floor {
   private readonly canvas = element<HTMLCanvasElement>('floor');
   private readonly followButton = element<HTMLButtonElement>('follow');
+  /** The point of the floor in the middle of the canvas, mm. */
   private centre = { x: 0, y: 0 };
   /** Zoom, CSS pixels per mm; 0 until the canvas has a size. */
   private zoom = 0;
   /** True while the zoom follows the size of the canvas; false once the user has chosen a zoom. */
-  private fits = true;
-  private following = true;
-  /** The tracks of the robot and of the second robot. */
+  private isZoomAutomatic = true;
+  /** True while the view follows the robot. */
+  private isFollowing = true;
+  /** The tracks of the robot and of the second robot, in mm from their own starts. */
   private tracks: { x: number; y: number }[][] = [[], []];
   /** True if the floor is painted in every frame, even behind the robot in 3D: for a film or a picture. */
   paintsAlways = false;
-  /** The last drawn frame, for a picture as PNG or SVG. */
-  private shown: [Plate, Frame | null, Frame | null] | null = null;
-  /** Everything that the picture on the canvas depends on, except the colours; empty if it must be painted again. */
-  private painted = '';
+  /** The plate and the two robots' frames that were drawn last, for a picture as PNG or SVG. */
+  private lastDrawn: [Plate, Frame | null, Frame | null] | null = null;
+  /** Everything that the picture on the canvas depends on, except the colours; empty if the floor must be repainted. */
+  private paintedState = '';
   private readonly touches = new Map<number, Touch>();
   /** True while the pointer drags the floor. */
-  private dragging = false;
+  private isDragging = false;
 
+  /** `onHome` is called when the user resets the view. */
   constructor(onHome: () => void) {
     element('zoom-in').addEventListener('click', () => this.zoomBy(1.25));
     element('zoom-out').addEventListener('click', () => this.zoomBy(0.8));
     element('home').addEventListener('click', () => {
       onHome();
-      this.fits = true;
-      this.follow(true);
+      this.isZoomAutomatic = true;
+      this.setFollowing(true);
     });
-    this.followButton.addEventListener('click', () => this.follow(!this.following));
+    this.followButton.addEventListener('click', () => this.setFollowing(!this.isFollowing));
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
       this.touches.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     });
-    this.canvas.addEventListener('pointermove', (event) => this.drag(event));
+    this.canvas.addEventListener('pointermove', (event) => this.handleDrag(event));
     for (const eventName of ['pointerup', 'pointercancel'] as const) {
       this.canvas.addEventListener(eventName, (event) => {
         this.touches.delete(event.pointerId);
-        this.dragging = false;
+        this.isDragging = false;
       });
     }
     this.canvas.addEventListener(
@@ -87,43 +93,43 @@ export class Floor {
       { passive: false },
     );
     this.canvas.addEventListener('keydown', (event) => this.handleKey(event));
-    const forget = () => (this.painted = '');
-    onPaletteChange(forget);
+    const forgetPainted = () => (this.paintedState = '');
+    onPaletteChange(forgetPainted);
     // A browser that is short of memory empties canvases.
-    this.canvas.addEventListener('contextrestored', forget);
+    this.canvas.addEventListener('contextrestored', forgetPainted);
   }
 
-  /** Clears the tracks. */
-  clear(): void {
+  /** Clears the tracks, and moves the view to the start. */
+  clearTracks(): void {
     this.tracks = [[], []];
     this.centre = { x: 0, y: 0 };
   }
 
-  /** Adds a place to the track of the robot, or of the second robot. */
+  /** Adds a place to the track of the robot or, if `isSecond`, of the second robot. */
   addToTrack({ x, y }: Place, isSecond = false): void {
     const track = this.tracks[isSecond ? 1 : 0] ?? [];
     const lastPoint = track[track.length - 1];
-    if (lastPoint && Math.hypot(x - lastPoint.x, y - lastPoint.y) < TRACK_STEP) return;
+    if (lastPoint && Math.hypot(x - lastPoint.x, y - lastPoint.y) < MIN_POINT_DISTANCE_MM) return;
     track.push({ x, y });
-    if (track.length > LONGEST_TRACK) track.splice(0, LONGEST_TRACK / 4);
+    if (track.length > MAX_TRACK_POINTS) track.splice(0, MAX_TRACK_POINTS / 4);
   }
 
   /**
-   * Draws the floor and the robots, unless the canvas shows them already: painting takes half a core of a slow
-   * machine.
+   * Draws the floor and the robots, unless the canvas shows them already: painting every frame takes half a core of a
+   * slow machine.
    */
-  draw(plate: Plate, frame: Frame | null, second: Frame | null): void {
+  draw(plate: Plate, frame: Frame | null, secondFrame: Frame | null): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    this.shown = [plate, frame, second];
-    if (this.fits) this.zoom = Math.min(width / (VIEW_MM + (second ? SECOND_OFFSET : 0)), height / VIEW_MM);
-    if (this.following && frame) this.followTo(frame.place, second && second.place);
+    this.lastDrawn = [plate, frame, secondFrame];
+    if (this.isZoomAutomatic) this.zoom = Math.min(width / (MIN_VIEW_MM + (secondFrame ? SECOND_ROBOT_OFFSET_MM : 0)), height / MIN_VIEW_MM);
+    if (this.isFollowing && frame) this.moveViewTowards(frame.place, secondFrame && secondFrame.place);
     // Tests read the scale of the picture.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
-    const robots = [frame, second].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
-    const picture = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
-    if (picture === this.painted && !this.paintsAlways) return;
+    const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
+    const state = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
+    if (state === this.paintedState && !this.paintsAlways) return;
     const area = surface(this.canvas, true);
     if (!area) return;
     const { pen } = area;
@@ -131,24 +137,24 @@ export class Floor {
     pen.fillStyle = palette().ink;
     pen.font = '12px system-ui, sans-serif';
     pen.fillText(label.text, label.x, label.y);
-    this.painted = picture;
+    this.paintedState = state;
   }
 
   /**
-   * Moves the view towards the robot, or towards the middle between two robots; smoothed, so that the gait does not
-   * shake it.
+   * Moves the view towards the robot, or towards the middle between two robots; the movement is smoothed, so that the
+   * gait does not shake the view.
    */
-  private followTo(robot: Place, second: Place | null): void {
-    const goal = second ? { x: (robot.x + second.x + SECOND_OFFSET) / 2, y: (robot.y + second.y) / 2 } : robot;
+  private moveViewTowards(robotPlace: Place, secondPlace: Place | null): void {
+    const goal = secondPlace ? { x: (robotPlace.x + secondPlace.x + SECOND_ROBOT_OFFSET_MM) / 2, y: (robotPlace.y + secondPlace.y) / 2 } : robotPlace;
     const [x, y] = [goal.x - this.centre.x, goal.y - this.centre.y];
-    const share = Math.hypot(x, y) < GOAL_TOLERANCE ? 1 : 0.08;
+    const share = Math.hypot(x, y) < GOAL_TOLERANCE_MM ? 1 : 0.08;
     this.centre = { x: this.centre.x + x * share, y: this.centre.y + y * share };
   }
 
-  /** Resets the view, so that it shows both robots. */
+  /** Lets the view follow both robots, and fits the zoom to them. */
   fitTwoRobots(): void {
-    this.fits = true;
-    this.follow(true);
+    this.isZoomAutomatic = true;
+    this.setFollowing(true);
   }
 
   /**
@@ -161,7 +167,7 @@ export class Floor {
   }
 
   private paint(pen: CanvasRenderingContext2D, width: number, height: number): Label {
-    const [plate, frame, second] = this.shown ?? [null, null, null];
+    const [plate, frame, secondFrame] = this.lastDrawn ?? [null, null, null];
     pen.fillStyle = palette().floor;
     pen.fillRect(0, 0, width, height);
     pen.save();
@@ -169,11 +175,11 @@ export class Floor {
     pen.scale(this.zoom, -this.zoom);
     pen.translate(-this.centre.x, -this.centre.y);
     this.drawGrid(pen, width, height);
-    const robots: [number, Frame | null][] = second ? [[0, frame], [SECOND_OFFSET, second]] : [[0, frame]];
-    robots.forEach(([shift, robot], n) => {
+    const robots: [number, Frame | null][] = secondFrame ? [[0, frame], [SECOND_ROBOT_OFFSET_MM, secondFrame]] : [[0, frame]];
+    robots.forEach(([shift, robot], index) => {
       pen.save();
       pen.translate(shift, 0);
-      this.drawTrack(pen, this.tracks[n] ?? []);
+      this.drawTrack(pen, this.tracks[index] ?? []);
       if (plate && robot?.scene) {
         const { x, y, heading } = robot.place;
         pen.translate(x, y);
@@ -187,17 +193,17 @@ export class Floor {
   }
 
   private drawGrid(pen: CanvasRenderingContext2D, width: number, height: number): void {
-    const step = this.zoom < 0.4 ? GRID_MM * 5 : GRID_MM;
+    const spacing = this.zoom < 0.4 ? GRID_SPACING_MM * 5 : GRID_SPACING_MM;
     const [halfWidth, halfHeight] = [width / 2 / this.zoom, height / 2 / this.zoom];
     const { x, y } = this.centre;
     pen.strokeStyle = palette().grid;
     pen.lineWidth = 1 / this.zoom;
     pen.beginPath();
-    for (let lineX = Math.ceil((x - halfWidth) / step) * step; lineX <= x + halfWidth; lineX += step) {
+    for (let lineX = Math.ceil((x - halfWidth) / spacing) * spacing; lineX <= x + halfWidth; lineX += spacing) {
       pen.moveTo(lineX, y - halfHeight);
       pen.lineTo(lineX, y + halfHeight);
     }
-    for (let lineY = Math.ceil((y - halfHeight) / step) * step; lineY <= y + halfHeight; lineY += step) {
+    for (let lineY = Math.ceil((y - halfHeight) / spacing) * spacing; lineY <= y + halfHeight; lineY += spacing) {
       pen.moveTo(x - halfWidth, lineY);
       pen.lineTo(x + halfWidth, lineY);
     }
@@ -223,7 +229,7 @@ export class Floor {
 
   private drawRuler(pen: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
-    // To the right of the on-screen stick.
+    // The bar stands to the right of the on-screen stick.
     const [x, y] = [124, height - 18];
     pen.strokeStyle = palette().ink;
     pen.lineWidth = 1.5;
@@ -236,29 +242,29 @@ export class Floor {
     return { text: `${length} mm`, x: x + 4, y: y - 5 };
   }
 
-  private follow(isOn: boolean): void {
-    this.following = isOn;
+  private setFollowing(isOn: boolean): void {
+    this.isFollowing = isOn;
     this.followButton.setAttribute('aria-pressed', String(isOn));
   }
 
   /** Zooms about a point of the canvas, by default its middle. */
   private zoomBy(factor: number, x = this.canvas.clientWidth / 2, y = this.canvas.clientHeight / 2): void {
-    const zoom = Math.min(MOST_ZOOM, Math.max(LEAST_ZOOM, this.zoom * factor));
+    const zoom = Math.min(MAX_ZOOM, Math.max(MIN_ZOOM, this.zoom * factor));
     const [dx, dy] = [x - this.canvas.clientWidth / 2, this.canvas.clientHeight / 2 - y];
     const shift = 1 / this.zoom - 1 / zoom;
     this.centre.x += dx * shift;
     this.centre.y += dy * shift;
     this.zoom = zoom;
-    this.fits = false;
+    this.isZoomAutomatic = false;
   }
 
   private pan(dx: number, dy: number): void {
-    this.follow(false);
+    this.setFollowing(false);
     this.centre.x -= dx / this.zoom;
     this.centre.y += dy / this.zoom;
   }
 
-  private drag(event: PointerEvent): void {
+  private handleDrag(event: PointerEvent): void {
     const previous = this.touches.get(event.pointerId);
     if (!previous) return;
     const current = { x: event.offsetX, y: event.offsetY };
@@ -267,9 +273,9 @@ export class Floor {
       const distanceToOther = (a: Touch) => Math.hypot(a.x - otherTouch.x, a.y - otherTouch.y);
       this.zoomBy(distanceToOther(current) / Math.max(1, distanceToOther(previous)), (current.x + otherTouch.x) / 2, (current.y + otherTouch.y) / 2);
     } else {
-      // A finger that scrolls the page moves a little before the browser takes over.
-      this.dragging ||= event.pointerType !== 'touch' || Math.abs(current.x - previous.x) > DRAG_THRESHOLD;
-      if (!this.dragging) return;
+      // A finger that scrolls the page moves a little before the browser takes over; that is not a drag of the floor.
+      this.isDragging ||= event.pointerType !== 'touch' || Math.abs(current.x - previous.x) > DRAG_THRESHOLD_PX;
+      if (!this.isDragging) return;
       this.pan(current.x - previous.x, current.y - previous.y);
     }
     this.touches.set(event.pointerId, current);
@@ -283,7 +289,7 @@ export class Floor {
       ArrowDown: () => this.pan(0, -40),
       '+': () => this.zoomBy(1.25),
       '-': () => this.zoomBy(0.8),
-      Home: () => this.follow(true),
+      Home: () => this.setFollowing(true),
     };
     const move = moves[event.key];
     if (!move || event.defaultPrevented) return;

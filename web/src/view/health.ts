@@ -1,16 +1,17 @@
-// The robot's status, requested twice a second while the page is visible.
+// The panel of the robot's status, which is requested twice a second while the page is visible.
 import type { Session } from '../session';
 import type { Status } from '../status';
 import { element } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
 
-const PERIOD_MS = 500;
+const REQUEST_PERIOD_MS = 500;
 
 export class Health {
   private readonly panel = element<HTMLDetailsElement>('power');
   private readonly list = element('health');
   private readonly values = new Map<string, HTMLElement>();
+  /** True from a request until its answer. */
   private isAsking = false;
 
   constructor(private readonly session: () => Session) {
@@ -19,13 +20,13 @@ export class Health {
       this.list.append(make('div', {}, make('dt', {}, name), value));
       this.values.set(name, value);
     }
-    setInterval(() => void this.ask(), PERIOD_MS);
+    setInterval(() => void this.requestStatus(), REQUEST_PERIOD_MS);
   }
 
   /** True while something else, such as the boot loader, uses the link. */
   isPaused = false;
 
-  private async ask(): Promise<void> {
+  private async requestStatus(): Promise<void> {
     if (this.isAsking || this.isPaused || document.hidden || !this.session().mayAsk) return;
     this.isAsking = true;
     const status = await this.session().status();
@@ -40,10 +41,10 @@ export class Health {
       guard: status.guard,
       margin: status.margin === null ? '–' : status.margin.toFixed(3),
       vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
-      'late edges': String(status.late),
-      'bytes lost': String(status.lost),
-      'last reset': status.reset,
-      restarts: String(status.resets),
+      'late edges': String(status.lateEdges),
+      'bytes lost': String(status.lostBytes),
+      'last reset': status.resetCause,
+      restarts: String(status.resetCount),
     };
     for (const [name, text] of Object.entries(texts)) {
       const value = this.values.get(name);

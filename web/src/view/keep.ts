@@ -1,33 +1,34 @@
 // The panel that records runs, saves pictures and films, and lets a second robot walk beside the first.
 import { Companion } from '../companion';
-import { wakeWith } from '../gaits/try';
-import { LONGEST, Recording } from '../recording';
+import { restartWithGait } from '../gaits/try';
+import { MAX_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
 import { element } from './canvas';
-import { save } from './download';
+import { saveFile } from './download';
 import { formatDisplacement } from './drive';
 import type { Floor } from './floor';
 import { palette } from './palette';
 import { isShown } from './rooms';
 
-/** MIME types of films with their file extensions; the one with the smallest files is first. */
-const FILMS = [
+/** MIME types of films with their file extensions; the one that makes the smallest files is first. */
+const FILM_FORMATS = [
   ['video/webm;codecs=vp9', 'webm'],
   ['video/webm;codecs=vp8', 'webm'],
   ['video/webm', 'webm'],
   ['video/mp4', 'mp4'],
 ] as const;
 
-/** Duration of a frame of the firmware's core, s. */
+/** Period at which the firmware's core computes a frame. */
 const FRAME_SECONDS = 0.02;
 
 /** Two robots that walk side by side: the first is the page's own. */
 interface Pair {
-  /** The robot.toml of the second one. */
+  /** The robot.toml of the second robot. */
   toml: string;
+  /** The commands that start the robots' gaits. */
   gaits: [string, string];
   /** The robots' names in the text that compares them. */
   names: [string, string];
@@ -35,28 +36,32 @@ interface Pair {
   output: HTMLElement;
 }
 
-export class Keep {
+export class RecordView {
   private readonly panel = element<HTMLDetailsElement>('keep');
-  private readonly moment = element<HTMLInputElement>('moment');
-  private readonly ownGait = element<HTMLSelectElement>('mine');
-  private readonly otherGait = element<HTMLSelectElement>('other');
+  private readonly timeSlider = element<HTMLInputElement>('moment');
+  private readonly firstGaitList = element<HTMLSelectElement>('mine');
+  private readonly secondGaitList = element<HTMLSelectElement>('other');
   private recording: Recording | null = null;
   private isRecording = false;
   /**
-   * Real time at which the replay started, ms, and the recording's time there, s; null while the replay is paused or
-   * off.
+   * `startedAt` is the real time at which the replay started, ms, and `startTime` the recording's time at that moment,
+   * s; null while the replay is paused or off.
    */
-  private playing: { since: number; from: number } | null = null;
+  private playback: { startedAt: number; startTime: number } | null = null;
   private isReplaying = false;
+  /** The film that is being recorded; null for none. */
   private film: MediaRecorder | null = null;
+  /** The second robot; null while the robot is alone. */
   private companion: Companion | null = null;
   private pair: Pair | null = null;
   /** True until the robot begins its gait; the companion then begins, too. */
   private isWaiting = false;
+  /** Time by which the companion is behind the robot, s. */
   private pendingTime = 0;
+  /** Takes the requested picture after the next drawing of the floor; null without a request. */
   private onDrawn: (() => void) | null = null;
 
-  /** `ask` sends a line, and `pace` returns the pace, percent. */
+  /** `ask` sends a line, and `pace` returns the pace in percent. */
   constructor(
     private readonly session: () => Session,
     private readonly floor: Floor,
@@ -64,46 +69,46 @@ export class Keep {
     private readonly pace: () => number,
   ) {
     const onClick = (id: string, act: () => void) => element(id).addEventListener('click', act);
-    onClick('record', () => this.record(!this.isRecording));
-    onClick('replay', () => this.play(!this.isReplaying));
-    onClick('csv', () => this.recording && save('run.csv', [this.recording.csv()], 'text/csv'));
+    onClick('record', () => this.setRecording(!this.isRecording));
+    onClick('replay', () => this.setReplaying(!this.isReplaying));
+    onClick('csv', () => this.recording && saveFile('run.csv', [this.recording.csv()], 'text/csv'));
     onClick('png', () => this.takePicture(() => void this.savePng()));
     onClick('svg', () => this.takePicture(() => void this.saveSvg()));
     onClick('film', () => this.toggleFilm());
     onClick('both', () => void this.startBoth(this.chosenPair()));
     onClick('alone', () => this.removeCompanion());
-    this.moment.addEventListener('input', () => {
+    this.timeSlider.addEventListener('input', () => {
       this.isReplaying = true;
-      this.playing = null;
+      this.playback = null;
       this.updateButtons();
     });
-    element<HTMLButtonElement>('film').disabled = !this.format;
+    element<HTMLButtonElement>('film').disabled = !this.filmFormat;
     this.updateButtons();
   }
 
   /** Shows another robot; the recording of the previous one is dropped. */
   showRobot({ gaits }: Description): void {
-    this.record(false);
+    this.setRecording(false);
     this.recording = null;
     this.isReplaying = false;
     this.removeCompanion();
-    const chosen = [this.ownGait.value, this.otherGait.value];
-    for (const list of [this.ownGait, this.otherGait]) {
+    const chosen = [this.firstGaitList.value, this.secondGaitList.value];
+    for (const list of [this.firstGaitList, this.secondGaitList]) {
       list.replaceChildren(...gaits.map(({ command }) => new Option(command)));
     }
     const commands = gaits.map(({ command }) => command);
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
-    this.ownGait.value = commands.find((gait) => gait === chosen[0]) ?? movingCommands[movingCommands.length > 1 ? 1 : 0] ?? '';
-    this.otherGait.value = commands.find((gait) => gait === chosen[1]) ?? movingCommands[0] ?? '';
+    this.firstGaitList.value = commands.find((gait) => gait === chosen[0]) ?? movingCommands[movingCommands.length > 1 ? 1 : 0] ?? '';
+    this.secondGaitList.value = commands.find((gait) => gait === chosen[1]) ?? movingCommands[0] ?? '';
     this.say('');
     this.updateButtons();
   }
 
-  /** Adds a frame to the recording and advances the companion. */
-  frame(frame: Frame, widths: Four<number> | null, seconds: number): void {
-    if (this.isRecording && this.recording && !this.recording.note(frame, widths, this.session().gait, seconds)) {
-      this.record(false);
-      this.say(`The recording is full: ${LONGEST} s.`);
+  /** Adds a frame, which lasted `seconds`, to the recording, and advances the companion. */
+  addFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
+    if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session().gait, seconds)) {
+      this.setRecording(false);
+      this.say(`The recording is full: ${MAX_SECONDS} s.`);
     }
     if (!this.companion || this.isWaiting) return;
     for (this.pendingTime += seconds; this.pendingTime > FRAME_SECONDS / 2; this.pendingTime -= FRAME_SECONDS) this.companion.step();
@@ -111,8 +116,8 @@ export class Keep {
     if (place) this.floor.addToTrack(place, true);
   }
 
-  /** Starts the companion when the robot starts its gait. */
-  doing(gait: string): void {
+  /** Starts and stops the companion together with the robot, whose new gait is `gait`. */
+  followGait(gait: string): void {
     const { companion, pair, isWaiting } = this;
     if (!companion || !pair) return;
     if (isWaiting && gait === pair.gaits[0]) {
@@ -121,37 +126,37 @@ export class Keep {
     } else if (!isWaiting && gait === WORDS.stop) companion.send(WORDS.stop);
   }
 
-  /** The frame that the floor shows: the current one, or one of the replay. */
-  shown(current: Frame | null): Frame | null {
+  /** Returns the frame to draw: the current one, or one of the replay. */
+  frameToDraw(current: Frame | null): Frame | null {
     const { recording } = this;
     if (!this.isReplaying || !recording) return current;
-    if (this.playing) {
-      const time = this.playing.from + (performance.now() - this.playing.since) / 1000;
-      this.moment.value = String(time);
-      if (time >= recording.seconds) this.playing = null;
+    if (this.playback) {
+      const time = this.playback.startTime + (performance.now() - this.playback.startedAt) / 1000;
+      this.timeSlider.value = String(time);
+      if (time >= recording.duration) this.playback = null;
     }
-    return recording.frameAt(this.moment.valueAsNumber)?.frame ?? current;
+    return recording.frameAt(this.timeSlider.valueAsNumber)?.frame ?? current;
   }
 
-  /** The current frame of the second robot. */
-  get beside(): Frame | null {
+  /** The current frame of the second robot; null without one. */
+  get companionFrame(): Frame | null {
     return this.companion?.frame ?? null;
   }
 
   /** Takes a requested picture; called after each drawing of the floor. */
-  drawn(): void {
+  afterDrawing(): void {
     this.onDrawn?.();
     this.onDrawn = null;
     this.floor.paintsAlways = this.film !== null;
   }
 
-  /** Updates the numbers; called several times per second. */
-  write(): void {
+  /** Updates the texts with numbers; called several times per second. */
+  updateNumbers(): void {
     const { recording, companion, pair } = this;
     if (recording && isShown(this.panel)) {
-      if (this.isRecording) this.moment.max = String(recording.seconds);
-      const time = this.isRecording && !this.isReplaying ? recording.seconds : this.moment.valueAsNumber;
-      const totalText = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
+      if (this.isRecording) this.timeSlider.max = String(recording.duration);
+      const time = this.isRecording && !this.isReplaying ? recording.duration : this.timeSlider.valueAsNumber;
+      const totalText = this.isRecording ? '' : ` of ${recording.duration.toFixed(1)}`;
       element('moment-out').textContent = `${time.toFixed(1)}${totalText} s`;
     }
     const panel = pair?.output.closest('details');
@@ -162,44 +167,47 @@ export class Keep {
     this.say(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
   }
 
-  private record(isOn: boolean): void {
+  /** Starts or ends the recording. */
+  private setRecording(isOn: boolean): void {
     if (isOn === this.isRecording) return;
     this.isRecording = isOn;
     if (isOn) {
       this.recording = new Recording();
       this.isReplaying = false;
-      this.playing = null;
+      this.playback = null;
     } else if (this.recording) {
-      this.moment.max = String(this.recording.seconds);
-      this.moment.value = '0';
-      this.say(`${this.recording.seconds.toFixed(1)} s recorded.`);
+      this.timeSlider.max = String(this.recording.duration);
+      this.timeSlider.value = '0';
+      this.say(`${this.recording.duration.toFixed(1)} s recorded.`);
     }
     this.updateButtons();
   }
 
-  private play(isOn: boolean): void {
+  /** Starts the replay at the slider's time, or ends it. */
+  private setReplaying(isOn: boolean): void {
     this.isReplaying = isOn;
     const { recording } = this;
-    const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME_SECONDS ? this.moment.valueAsNumber : 0;
-    this.playing = isOn ? { since: performance.now(), from } : null;
+    const startTime = recording && this.timeSlider.valueAsNumber < recording.duration - FRAME_SECONDS ? this.timeSlider.valueAsNumber : 0;
+    this.playback = isOn ? { startedAt: performance.now(), startTime } : null;
     this.updateButtons();
   }
 
-  /** Requests that `take` is called after the next drawing, even if the robot in 3D hides the floor. */
+  /** Lets `take` be called after the next drawing of the floor, which is drawn even if the robot in 3D hides it. */
   private takePicture(take: () => void): void {
     this.onDrawn = take;
     this.floor.paintsAlways = true;
   }
 
-  private get format(): (typeof FILMS)[number] | undefined {
-    return typeof MediaRecorder === 'undefined' ? undefined : FILMS.find(([type]) => MediaRecorder.isTypeSupported(type));
+  /** The first format that the browser can record; undefined if it can record none. */
+  private get filmFormat(): (typeof FILM_FORMATS)[number] | undefined {
+    return typeof MediaRecorder === 'undefined' ? undefined : FILM_FORMATS.find(([type]) => MediaRecorder.isTypeSupported(type));
   }
 
   private toggleFilm(): void {
-    const { format } = this;
+    const { filmFormat } = this;
     if (this.film) this.film.stop();
-    else if (format) {
-      const [type, extension] = format;
+    else if (filmFormat) {
+      const [type, extension] = filmFormat;
       const pieces: Blob[] = [];
       const film = new MediaRecorder(element<HTMLCanvasElement>('floor').captureStream(), { mimeType: type });
       film.addEventListener('dataavailable', ({ data }) => pieces.push(data));
@@ -207,7 +215,7 @@ export class Keep {
         this.film = null;
         this.updateButtons();
         for (const track of film.stream.getTracks()) track.stop();
-        save(`run.${extension}`, pieces, type);
+        saveFile(`run.${extension}`, pieces, type);
       });
       film.addEventListener('error', () => this.say('The browser could not write the film.'));
       film.start(1000);
@@ -219,7 +227,7 @@ export class Keep {
   private async savePng(): Promise<void> {
     const canvas = element<HTMLCanvasElement>('floor');
     const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
-    if (blob) save('floor.png', [blob], 'image/png');
+    if (blob) saveFile('floor.png', [blob], 'image/png');
     else this.say('The browser could not write the picture.');
   }
 
@@ -229,29 +237,29 @@ export class Keep {
       const { clientWidth, clientHeight } = element('floor');
       const pen = new Context(clientWidth, clientHeight);
       const label = this.floor.redraw(pen as unknown as CanvasRenderingContext2D);
-      // The package would measure text with an inline style, which the page's policy forbids.
+      // The package measures text by an inline style, which the page's security policy forbids.
       const text = pen.getSvg().appendChild(document.createElementNS('http://www.w3.org/2000/svg', 'text'));
       const { ink } = palette();
       const attributes = { x: label.x, y: label.y, fill: ink, 'font-size': 12, 'font-family': 'sans-serif' };
       for (const [name, value] of Object.entries(attributes)) text.setAttribute(name, String(value));
       text.textContent = label.text;
-      save('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
+      saveFile('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
       this.say(`The picture cannot be made: ${messageOf(error)}`);
     }
   }
 
   private chosenPair(): Pair {
-    const gaits: [string, string] = [this.ownGait.value, this.otherGait.value];
+    const gaits: [string, string] = [this.firstGaitList.value, this.secondGaitList.value];
     return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
-  /** Lets the page's robot walk a found gait, and the second robot the gait before it. */
+  /** Lets the page's robot walk the gait that a search has found, and the second robot the gait before the search. */
   async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
     const session = this.session();
     const toml = session.robot.putGait(session.toml, previousGait);
     this.say('The robot restarts with this gait…', output);
-    const refusal = await wakeWith(session, foundGait);
+    const refusal = await restartWithGait(session, foundGait);
     if (refusal) return this.say(refusal.refused, output);
     const gait = foundGait.name.replaceAll('-', ' ');
     await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
@@ -267,8 +275,8 @@ export class Keep {
       const companion = Companion.create(pair.toml, floor, servos, volts);
       if (toml !== this.session().toml) return;
       await this.ask(WORDS.stop);
-      session.home();
-      this.floor.clear();
+      session.returnToStart();
+      this.floor.clearTracks();
       companion.send(`${WORDS.speed} ${this.pace()}`);
       companion.step();
       Object.assign(this, { companion, pair, isWaiting: true, pendingTime: 0 });
@@ -289,7 +297,7 @@ export class Keep {
 
   private updateButtons(): void {
     const { recording, isRecording, isReplaying, film } = this;
-    const hasRecording = recording !== null && recording.moments.length > 0 && !isRecording;
+    const hasRecording = recording !== null && recording.frames.length > 0 && !isRecording;
     const setButton = (id: string, text: string, isPressed: boolean, isEnabled = true) => {
       const button = element<HTMLButtonElement>(id);
       if (button.textContent !== text) button.textContent = text;
@@ -298,9 +306,9 @@ export class Keep {
     };
     setButton('record', isRecording ? 'Stop recording' : 'Record', isRecording);
     setButton('replay', isReplaying ? 'Back to the robot' : 'Replay', isReplaying, hasRecording);
-    setButton('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
+    setButton('film', film ? 'Stop the film' : 'Film', film !== null, this.filmFormat !== undefined);
     element<HTMLButtonElement>('csv').disabled = !hasRecording;
-    this.moment.disabled = !hasRecording;
+    this.timeSlider.disabled = !hasRecording;
     element<HTMLButtonElement>('alone').disabled = this.companion === null;
   }
 

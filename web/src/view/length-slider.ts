@@ -1,88 +1,93 @@
-// A slider for one length. It covers the values with which the robot walks; the values whose parts can be printed are
-// marked.
+// A slider for one length. Its range is the values with which the robot walks; marks show the values whose parts can be
+// printed.
 import type { Edits, Length } from '../robot';
 import { element } from './canvas';
-import { withTwin } from './tried-lengths';
+import { editsWithTwin } from './tried-lengths';
 
-/** Called with the slider's lengths while it is dragged, and with `isLast` at the end of the drag. */
+/** Called with the slider's lengths while it is dragged; `isLast` is true at the end of the drag. */
 export type TryOut = (edits: Edits, isLast: boolean) => void;
 
 export class LengthSlider {
-  private readonly slide = element<HTMLInputElement>('length-slide');
-  private readonly out = element('length-out');
-  private readonly symmetric = element<HTMLInputElement>('alike');
-  private readonly printed = element('length-printed');
-  private readonly marks = element('length-marks');
+  private readonly slider = element<HTMLInputElement>('length-slide');
+  private readonly valueText = element('length-out');
+  private readonly symmetryBox = element<HTMLInputElement>('alike');
+  private readonly printableText = element('length-printed');
+  private readonly printableMarks = element('length-marks');
   private lengths: Length[] = [];
-  /** True once the user has chosen a length; until then no time is spent on proving which values can be printed. */
+  /** True once the user has chosen a length; before that, no time is spent on finding which values can be printed. */
   isChosen = false;
 
-  /** `onChoice` is called when the user chooses another length, or switches the symmetry of left and right. */
+  /**
+   * `onChoice` is called when the user chooses another length, or switches the symmetry of left and right; `chosenKey`
+   * is the length that is chosen at first.
+   */
   constructor(
     tryOut: TryOut,
     private readonly onChoice: () => void,
-    private key = 'leg.crank',
+    private chosenKey = 'leg.crank',
   ) {
     element('lengths').addEventListener('focusin', ({ target }) => this.choose((target as HTMLInputElement).name));
-    this.slide.addEventListener('focus', () => this.choose(this.key));
-    this.symmetric.addEventListener('change', () => this.onChoice());
-    const handleMove = (isLast: boolean) => {
-      this.write(this.slide.valueAsNumber);
-      tryOut(withTwin(this.key, this.slide.valueAsNumber, this.lengths, this.symmetric.checked), isLast);
+    this.slider.addEventListener('focus', () => this.choose(this.chosenKey));
+    this.symmetryBox.addEventListener('change', () => this.onChoice());
+    const showAndTry = (isLast: boolean) => {
+      this.showValue(this.slider.valueAsNumber);
+      tryOut(editsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isLast);
     };
-    this.slide.addEventListener('input', () => handleMove(false));
-    this.slide.addEventListener('change', () => handleMove(true));
+    this.slider.addEventListener('input', () => showAndTry(false));
+    this.slider.addEventListener('change', () => showAndTry(true));
   }
 
   /** The keys of the lengths that the slider sets: the chosen length and, with symmetry, its twin. */
   get keys(): string[] {
-    return withTwin(this.key, 0, this.lengths, this.symmetric.checked).map(([key]) => key);
+    return editsWithTwin(this.chosenKey, 0, this.lengths, this.symmetryBox.checked).map(([key]) => key);
   }
 
-  private get length(): Length | undefined {
-    return this.lengths.find(({ key }) => key === this.key);
+  private get chosenLength(): Length | undefined {
+    return this.lengths.find(({ key }) => key === this.chosenKey);
   }
 
+  /** Shows the chosen length of a robot with these lengths. */
   showRobot(lengths: Length[]): void {
     this.lengths = lengths;
-    if (!this.length) this.key = lengths[0]?.key ?? '';
+    if (!this.chosenLength) this.chosenKey = lengths[0]?.key ?? '';
     this.show();
   }
 
   private choose(key: string): void {
-    if (key === this.key && this.isChosen) return;
-    this.key = key;
+    if (key === this.chosenKey && this.isChosen) return;
+    this.chosenKey = key;
     this.isChosen = true;
     this.show();
     this.onChoice();
   }
 
+  /** Shows the chosen length, without marks until they are known. */
   private show(): void {
-    const { length } = this;
-    element('length-name').textContent = length?.label ?? '';
-    this.mark(null, '');
-    if (length) this.write(length.value);
+    const { chosenLength } = this;
+    element('length-name').textContent = chosenLength?.label ?? '';
+    this.markPrintable(null, '');
+    if (chosenLength) this.showValue(chosenLength.value);
   }
 
   /** Sets the slider's range: the least and the greatest value with which the robot walks. */
   setRange([smallest, largest]: [number, number]): void {
-    Object.assign(this.slide, { min: String(smallest), max: String(largest) });
-    if (this.length) this.write(this.length.value);
+    Object.assign(this.slider, { min: String(smallest), max: String(largest) });
+    if (this.chosenLength) this.showValue(this.chosenLength.value);
   }
 
-  /** Marks the values that can be printed and shows a message; null while the values are unknown. */
-  mark(range: [number, number] | null, message: string): void {
-    this.printed.textContent = message;
-    this.marks.hidden = range === null;
-    const { min, max } = this.slide;
+  /** Marks the range of values that can be printed, null while it is unknown, and shows a message. */
+  markPrintable(range: [number, number] | null, message: string): void {
+    this.printableText.textContent = message;
+    this.printableMarks.hidden = range === null;
+    const { min, max } = this.slider;
     const percentOf = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
     if (!range) return;
-    this.marks.style.setProperty('--from', percentOf(range[0]));
-    this.marks.style.setProperty('--to', percentOf(range[1]));
+    this.printableMarks.style.setProperty('--from', percentOf(range[0]));
+    this.printableMarks.style.setProperty('--to', percentOf(range[1]));
   }
 
-  private write(value: number): void {
-    if (this.slide.valueAsNumber !== value) this.slide.value = String(value);
-    this.out.textContent = `${value} ${this.length?.unit === 'deg' ? '°' : 'mm'}`;
+  private showValue(value: number): void {
+    if (this.slider.valueAsNumber !== value) this.slider.value = String(value);
+    this.valueText.textContent = `${value} ${this.chosenLength?.unit === 'deg' ? '°' : 'mm'}`;
   }
 }

@@ -1,21 +1,21 @@
-// The robot's lengths as number inputs: a change makes a new robot or is refused.
+// The robot's lengths as number inputs: each change makes a new robot or is refused.
 import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
-import { download } from './download';
+import { downloadRobot } from './download';
 import { make } from './make';
-import { refusalOf, showOffers, withTwin } from './tried-lengths';
+import { describeRefusal, showOffers, editsWithTwin } from './tried-lengths';
 
 export class Lengths {
   private readonly list = element('lengths');
-  private readonly symmetric = element<HTMLInputElement>('alike');
-  private readonly refusal = element('lengths-refusal');
+  private readonly symmetryBox = element<HTMLInputElement>('alike');
+  private readonly refusalText = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
-  /** `offer` searches for valid lengths in place of refused ones. */
+  /** `offerValidLengths` searches for valid lengths in place of refused ones, and offers them. */
   constructor(
     private readonly session: () => Session,
-    private readonly offer: (edits: Edits) => void,
+    private readonly offerValidLengths: (edits: Edits) => void,
   ) {
     element('lengths-reset').addEventListener('click', () => void this.session().restore());
     element('lengths-save').addEventListener('click', () => this.download());
@@ -23,7 +23,7 @@ export class Lengths {
 
   /** Shows the lengths of the session's robot. */
   showRobot(lengths: Length[]): void {
-    if (lengths.length !== this.inputs.size) this.build(lengths);
+    if (lengths.length !== this.inputs.size) this.buildInputs(lengths);
     for (const { key, value } of lengths) {
       const input = this.inputs.get(key);
       if (input) {
@@ -34,23 +34,23 @@ export class Lengths {
     this.say(null);
   }
 
-  private build(lengths: Length[]): void {
+  private buildInputs(lengths: Length[]): void {
     this.list.replaceChildren();
     this.inputs.clear();
     for (const { key, label, unit } of lengths) {
       const input = make('input', { type: 'number', step: '0.5', name: key });
       this.list.append(make('label', {}, `${label} (${key.replace('links.', '')}, ${unit})`, input));
-      input.addEventListener('change', () => void this.change(key));
+      input.addEventListener('change', () => void this.changeLength(key));
       this.inputs.set(key, input);
     }
   }
 
-  private async change(key: string): Promise<void> {
+  private async changeLength(key: string): Promise<void> {
     const session = this.session();
     const input = this.inputs.get(key);
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
-    const edits = withTwin(key, value, session.description.lengths, this.symmetric.checked);
+    const edits = editsWithTwin(key, value, session.description.lengths, this.symmetryBox.checked);
     const { text, refusal } = Robot.lengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
@@ -62,19 +62,19 @@ export class Lengths {
       lengthInput.value = String(length.value);
       lengthInput.setAttribute('aria-invalid', 'true');
     }
-    this.say(refusalOf(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
-    this.offer(edits);
+    this.say(describeRefusal(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
+    this.offerValidLengths(edits);
   }
 
   private download(): void {
     const { toml, floor } = this.session();
-    const refusal = download(toml, floor);
-    if (refusal) this.say(`This robot.toml has not what Legs, feet and floor are set to: ${refusal.refused}`);
+    const refusal = downloadRobot(toml, floor);
+    if (refusal) this.say(`This robot.toml lacks the settings of Legs, feet and floor: ${refusal.refused}`);
   }
 
   private say(message: string | null): void {
-    this.refusal.hidden = message === null;
-    this.refusal.textContent = message ?? '';
+    this.refusalText.hidden = message === null;
+    this.refusalText.textContent = message ?? '';
     showOffers(null, this.session());
   }
 }

@@ -3,11 +3,11 @@ import type { Plate, Scene, Point } from '../robot';
 import { circle } from './canvas';
 import { palette, servoColour } from './palette';
 
-/** Radius of a foot and width of the plate's edge, mm. */
-const FOOT_RADIUS = 6;
-const RIM_WIDTH = 0.6;
-/** Slide in a frame beyond which a foot counts as slipping, mm. */
-const SLIP_LIMIT = 0.3;
+const FOOT_RADIUS_MM = 6;
+/** Width of the plate's drawn edge. */
+const RIM_WIDTH_MM = 0.6;
+/** Slide in one frame beyond which a foot counts as slipping. */
+const SLIP_LIMIT_MM = 0.3;
 
 type Pen = CanvasRenderingContext2D;
 
@@ -32,9 +32,10 @@ function drawDisc(pen: Pen, [x, y]: Point, radiusMm: number, fill: string, edge?
   pen.stroke();
 }
 
-/** Number of turns of a drawn spring, and half its width, mm. */
+/** Number of turns of a drawn spring. */
 const SPRING_TURNS = 5;
-const SPRING_HALF_WIDTH = 2.4;
+/** Half of a drawn spring's width. */
+const SPRING_HALF_WIDTH_MM = 2.4;
 
 /** Draws a spring between two hooks. */
 function drawSpring(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
@@ -51,13 +52,13 @@ function drawSpring(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
   pen.beginPath();
   pen.moveTo(x1, y1);
   pen.lineTo(...pointAt(0.12, 0));
-  for (let n = 0; n < 2 * SPRING_TURNS; n++) pen.lineTo(...pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH : -SPRING_HALF_WIDTH));
+  for (let n = 0; n < 2 * SPRING_TURNS; n++) pen.lineTo(...pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH_MM : -SPRING_HALF_WIDTH_MM));
   pen.lineTo(...pointAt(0.88, 0));
   pen.lineTo(x2, y2);
   pen.stroke();
 }
 
-/** Draws the outline of an animal from the head's point to the tail's. */
+/** Draws the outline of a lizard from the head's end point to the tail's. */
 function drawSkin(pen: Pen, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
   const backY = Math.max(...scene.shafts.map(([, y]) => y));
@@ -82,24 +83,24 @@ function drawSkin(pen: Pen, scene: Scene): void {
 
 const SERVOS = [0, 1, 2, 3];
 
-/** Draws a leg's bodies beside and below the plate: foot, leaf and coupler. */
+/** Draws a leg's bodies beside and below the plate: foot, leaf spring and coupler. */
 function drawFoot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
   const { joints, foot } = scene.legs[servo];
   drawBar(pen, joints[1], foot, colours.steel, 2.2);
   // A foot that holds is filled; one that slips is a ring.
-  drawDisc(pen, foot, FOOT_RADIUS, slide > SLIP_LIMIT ? colours.card : colours.ink);
+  drawDisc(pen, foot, FOOT_RADIUS_MM, slide > SLIP_LIMIT_MM ? colours.card : colours.ink);
   pen.strokeStyle = colours.ink;
   pen.lineWidth = 2;
   pen.stroke();
   drawBar(pen, joints[0], joints[1], servoColour(servo), 4.2);
 }
 
-/** Draws the plate, its arms that carry the legs' pivots, and the servos' cases. */
+/** Draws the plate, the arms on it that carry the legs' pivots, and the servos' cases. */
 function drawChassis(pen: Pen, plate: Plate): void {
   const colours = palette();
   const [halfWidth, halfLength] = plate.half;
-  for (const [rim, colour] of [[RIM_WIDTH, colours['frame-edge']], [0, colours.frame]] as const) {
+  for (const [rim, colour] of [[RIM_WIDTH_MM, colours['frame-edge']], [0, colours.frame]] as const) {
     for (const [from, to] of plate.arms) drawBar(pen, from, to, colour, 2 * (plate.arm + rim));
     pen.fillStyle = colour;
     pen.beginPath();
@@ -131,6 +132,7 @@ function drawLeg(pen: Pen, scene: Scene, servo: number): void {
   drawBar(pen, scene.shafts[servo], strut[0], colour, 3);
 }
 
+/** Draws the telescopic slider between the two servos of a side, 0 for left and 1 for right. */
 function drawSlider(pen: Pen, scene: Scene, side: 0 | 1): void {
   const colours = palette();
   const { shafts, tips, tube } = scene.sliders[side];
@@ -145,6 +147,7 @@ function drawSlider(pen: Pen, scene: Scene, side: 0 | 1): void {
   });
 }
 
+/** Draws the five-bar of an end, 0 for the head and 1 for the tail. */
 function drawFiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
   const colours = palette();
   const servos = end === 0 ? [0, 1] : [2, 3];
@@ -159,7 +162,7 @@ function drawFiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
   drawDisc(pen, point, 3.2, '#f0e442', '#222222');
 }
 
-/** Draws a pose, the lowest bodies first; `slides` is the distance that each foot slid in this frame, mm. */
+/** Draws a pose, the lowest bodies first; `slides` are the distances that the feet slid in this frame, mm. */
 export function drawLizard(pen: Pen, plate: Plate, scene: Scene, slides: readonly number[]): void {
   drawSkin(pen, scene);
   for (const servo of SERVOS) drawFoot(pen, scene, servo, slides[servo] ?? 0);

@@ -1,4 +1,4 @@
-// The console: the lines that were sent and received, and an input for a line.
+// The console: the lines that were sent and received, and an input for a line to send.
 import { element } from './canvas';
 import { make } from './make';
 
@@ -7,40 +7,44 @@ const MAX_LINES = 400;
 
 export class Log {
   private readonly box = element('log');
-  private readonly typed = element<HTMLInputElement>('typed');
+  private readonly lineInput = element<HTMLInputElement>('typed');
+  /** The lines that the user has entered, the latest at the end. */
   private readonly history: string[] = [];
-  private at = 0;
+  /** Index of the line of the history in the input; the history's length if the line is new. */
+  private historyIndex = 0;
 
   constructor(onLine: (line: string) => void) {
     element<HTMLFormElement>('line').addEventListener('submit', (event) => {
       event.preventDefault();
-      const line = this.typed.value.trim();
+      const line = this.lineInput.value.trim();
       if (line === '') return;
       this.history.push(line);
-      this.at = this.history.length;
-      this.typed.value = '';
+      this.historyIndex = this.history.length;
+      this.lineInput.value = '';
       onLine(line);
     });
-    this.typed.addEventListener('keydown', (event) => {
+    this.lineInput.addEventListener('keydown', (event) => {
       const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
       if (step === undefined) return;
       event.preventDefault();
-      this.at = Math.min(this.history.length, Math.max(0, this.at + step));
-      this.typed.value = this.history[this.at] ?? '';
+      this.historyIndex = Math.min(this.history.length, Math.max(0, this.historyIndex + step));
+      this.lineInput.value = this.history[this.historyIndex] ?? '';
     });
   }
 
-  sent(line: string): void {
+  /** Shows a line that was sent to the robot. */
+  showSent(line: string): void {
     this.add(`> ${line}`, 'sent');
   }
 
-  received(line: string): void {
+  /** Shows a line that the robot has sent, in the style of an error, a note or an answer. */
+  showReceived(line: string): void {
     this.add(line, line.startsWith('err') ? 'err' : line.startsWith('#') ? 'note' : 'ok');
   }
 
   private add(text: string, className: string): void {
     const { box } = this;
-    // A reader who scrolled up is not disturbed.
+    // A user who has scrolled up to read older lines is not disturbed.
     const isAtEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
     box.append(make('div', { className }, text));
     while (box.childElementCount > MAX_LINES) box.firstElementChild?.remove();

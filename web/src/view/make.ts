@@ -1,4 +1,4 @@
-// Makes elements: paragraphs, buttons, number boxes, tables.
+// Makes elements: paragraphs, buttons, number inputs, lists, tables.
 
 type Child = Node | string;
 
@@ -9,18 +9,24 @@ export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: 
   return node;
 }
 
-export const words = (...children: Child[]): HTMLElement => make('p', {}, ...children);
+/** Makes a paragraph. */
+export const paragraph = (...children: Child[]): HTMLElement => make('p', {}, ...children);
+/** Makes a paragraph of less important text. */
 export const note = (...children: Child[]): HTMLElement => make('p', { className: 'note' }, ...children);
+/** Makes a paragraph that warns of a problem. */
 export const warning = (text: string): HTMLElement => make('p', { className: 'refusal' }, text);
+/** Makes a row of buttons or other controls. */
 export const row = (...children: Child[]): HTMLElement => make('p', { className: 'actions' }, ...children);
+/** Makes a bulleted list. */
 export const list = (...items: Child[]): HTMLElement => make('ul', {}, ...items.map((item) => make('li', {}, item)));
 
+/** Makes a button that calls `act`; `isMain` marks the action that the user is expected to take. */
 export function button(label: string, act: () => void, isMain = false): HTMLButtonElement {
   return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: act }, label);
 }
 
 /** Makes a labelled number input; `act` is called with each number that the user enters. */
-export function number(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
+export function numberBox(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
   const box = make('input', { type: 'number', step, value: String(value ?? '') });
   box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && act(box.valueAsNumber));
   return make('label', { className: 'number' }, label, ' ', box);
@@ -31,7 +37,7 @@ export function tableRow([head = '', ...cells]: string[]): HTMLElement {
   return make('tr', {}, make('th', { scope: 'row' }, head), ...cells.map((text) => make('td', {}, text)));
 }
 
-/** Makes a table with a header row. */
+/** Makes a table with a header row and a caption for screen readers. */
 export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
   const headCells = head.map((text) => make('th', { scope: 'col' }, text));
   const captionElement = make('caption', { className: 'hidden' }, caption);

@@ -1,4 +1,5 @@
-// The maps of the singularities of head and tail, with the robot's current position on each map.
+// The maps of the singularities of the head's and the tail's five-bar over the angles of their left and right servo,
+// with the robot's current position.
 import type { Robot, Scene, SingularityMap } from '../robot';
 import { element, surface } from './canvas';
 import { onPaletteChange, palette } from './palette';
@@ -6,26 +7,30 @@ import { onPaletteChange, palette } from './palette';
 /** Number of frames whose positions are drawn as a trail. */
 const TRAIL_LENGTH = 100;
 
+/** The map of one end, head or tail. */
 class MapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
   private trail: [number, number][] = [];
-  /** The map without trail and dot, drawn once for each size of the canvas. */
-  private still: HTMLCanvasElement | null = null;
+  /** The map without trail and dot, drawn once for each size of the canvas; null if it must be drawn again. */
+  private background: HTMLCanvasElement | null = null;
 
-  constructor(private readonly end: number) {
-    this.canvas = element<HTMLCanvasElement>(`map-${end}`);
-    onPaletteChange(() => (this.still = null));
+  /** `endIndex` is 0 for the head and 1 for the tail. */
+  constructor(private readonly endIndex: number) {
+    this.canvas = element<HTMLCanvasElement>(`map-${endIndex}`);
+    onPaletteChange(() => (this.background = null));
   }
 
+  /** Shows the map of another robot. */
   setRobot(robot: Robot): void {
-    this.map = robot.map(this.end);
-    this.still = null;
+    this.map = robot.map(this.endIndex);
+    this.background = null;
     this.trail = [];
   }
 
-  add(scene: Scene): void {
-    this.trail.push(scene.map[this.end]);
+  /** Adds the current position to the trail. */
+  addPosition(scene: Scene): void {
+    this.trail.push(scene.map[this.endIndex]);
     if (this.trail.length > TRAIL_LENGTH) this.trail.shift();
   }
 
@@ -34,8 +39,8 @@ class MapView {
     const area = surface(this.canvas);
     if (!area || !map) return;
     const { pen, width, height } = area;
-    if (this.still?.width !== this.canvas.width) this.still = this.drawBackground(map);
-    pen.drawImage(this.still, 0, 0, width, height);
+    if (this.background?.width !== this.canvas.width) this.background = this.drawBackground(map);
+    pen.drawImage(this.background, 0, 0, width, height);
     const scale = width / (map.to - map.from);
     const pixelOf = ([left, right]: [number, number]): [number, number] => [
       (left - map.from) * scale,
@@ -67,23 +72,23 @@ class MapView {
     const colours = palette();
     pen.fillStyle = colours.floor;
     pen.fillRect(0, 0, size, size);
-    const cell = size / (map.size - 1);
-    map.margins.forEach((margin, n) => {
-      const [left, right] = [Math.floor(n / map.size), n % map.size];
+    const cellSize = size / (map.size - 1);
+    map.margins.forEach((margin, index) => {
+      const [left, right] = [Math.floor(index / map.size), index % map.size];
       if (margin === null || margin <= 0) return;
-      pen.fillStyle = map.safe[n] ? colours.safe : colours.near;
-      pen.globalAlpha = map.safe[n] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
-      pen.fillRect((left - 0.5) * cell, size - (right + 0.5) * cell, cell + 0.6, cell + 0.6);
+      pen.fillStyle = map.safe[index] ? colours.safe : colours.near;
+      pen.globalAlpha = map.safe[index] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
+      pen.fillRect((left - 0.5) * cellSize, size - (right + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
     });
     pen.globalAlpha = 1;
     const scale = size / (map.to - map.from);
-    const dot = Math.max(1.2, size / 160);
+    const dotRadius = Math.max(1.2, size / 160);
     for (const { kind, points } of map.curves) {
       pen.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
       const dotScale = kind === 'couplers' ? 2.5 : 1;
       for (const [left, right] of points) {
         pen.beginPath();
-        pen.arc((left - map.from) * scale, size - (right - map.from) * scale, dot * dotScale, 0, 2 * Math.PI);
+        pen.arc((left - map.from) * scale, size - (right - map.from) * scale, dotRadius * dotScale, 0, 2 * Math.PI);
         pen.fill();
       }
     }
@@ -98,8 +103,8 @@ export class MapsView {
     for (const map of this.maps) map.setRobot(robot);
   }
 
-  add(scene: Scene): void {
-    for (const map of this.maps) map.add(scene);
+  addPosition(scene: Scene): void {
+    for (const map of this.maps) map.addPosition(scene);
   }
 
   draw(): void {

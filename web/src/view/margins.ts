@@ -8,6 +8,7 @@ export class MarginsView {
   private readonly panel = element<HTMLDetailsElement>('margins-panel');
   private bars: { row: HTMLElement; fill: HTMLElement; value: HTMLElement; limit: number }[] = [];
 
+  /** Makes a bar with a mark at the limit for each margin of another robot. */
   setRobot({ margins }: Description): void {
     const list = element('margins');
     list.replaceChildren();
@@ -20,20 +21,21 @@ export class MarginsView {
     });
   }
 
+  /** Draws the bars for a pose, null for an unknown one. */
   draw(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
-    this.bars.forEach(({ row, fill, limit }, n) => {
-      const margin = scene?.margins[n]?.value;
+    this.bars.forEach(({ row, fill, limit }, index) => {
+      const margin = scene?.margins[index]?.value;
       fill.style.transform = `scaleX(${Math.max(0, margin ?? 0).toFixed(3)})`;
       row.classList.toggle('low', margin !== undefined && margin < limit);
     });
   }
 
-  /** Updates the numbers, for which the browser must lay out the page again. */
-  write(scene: Scene | null): void {
+  /** Updates the numbers; called less often than `draw`, since the browser lays out the page again for them. */
+  updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
-    this.bars.forEach(({ value }, n) => {
-      const text = scene?.margins[n]?.value.toFixed(3) ?? '–';
+    this.bars.forEach(({ value }, index) => {
+      const text = scene?.margins[index]?.value.toFixed(3) ?? '–';
       if (value.textContent !== text) value.textContent = text;
     });
   }

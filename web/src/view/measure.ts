@@ -1,5 +1,5 @@
-// The room in which a camera measures the robot: the camera's picture, the page's protocol or the user's own film,
-// and the results.
+// The room in which a camera measures the robot: the camera's picture, the protocol by which the page drives the robot,
+// or a film of the user's own, and the results.
 import { transfer } from 'comlink';
 
 import type { AskedWalk } from '../../generated/measure';
@@ -7,23 +7,24 @@ import { files } from '../files';
 import { Helper } from '../helper';
 import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
 import { TagTracker } from '../measure/seen';
-import { Source } from '../measure/source';
+import { PictureSource } from '../measure/source';
 import type { FilmFunctions } from '../measure/worker';
 import type { Description, Gait, GaitPrediction } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
 import { element } from './canvas';
-import { save } from './download';
+import { saveFile } from './download';
 import { make } from './make';
-import { Measured } from './measured';
-import { numberInput, putNumber, type Range } from './number';
-import { OPENED } from './rooms';
-import { drawSight } from './sight';
+import { ResultsView } from './measured';
+import { setUpNumberInput, putNumber, type Range } from './number';
+import { ROOM_OPENED } from './rooms';
+import { drawTracking } from './sight';
 
-/** Least displacement per cycle of a gait that is ticked by default: mm ahead or deg of turn. */
-const LEAST_DISPLACEMENT = { way: 3, turn: 2 };
-const NUMBERS: Record<string, Range & { value: number | null }> = {
+/** Least displacement per cycle of a gait that is ticked by default. */
+const MIN_DISPLACEMENT = { forwardMm: 3, turnDeg: 2 };
+/** Range and default value of each number input; null for no default. */
+const INPUT_RANGES: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
   cycles: { min: MIN_CYCLES, max: 50, step: 1, value: 8 },
   pause: { min: 0.5, max: 30, step: 0.5, value: 1 },
@@ -32,95 +33,99 @@ const NUMBERS: Record<string, Range & { value: number | null }> = {
 };
 
 /**
- * `record` keeps the camera's pictures until the user is done, `drive` keeps them while the page drives, `play` reads
- * a film file, `compute` measures the walks in the pictures.
+ * The task of the room: `record` keeps the camera's pictures until the user is done, `drive` keeps them while the page
+ * drives the robot, `play` reads a film file, and `compute` measures the walks in the pictures.
  */
-type Doing = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
+type Task = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
 
-type Film = Helper<FilmFunctions>;
+type FilmHelper = Helper<FilmFunctions>;
 
-async function loadFilm(): Promise<Film> {
+/** Starts the worker that finds the tags in pictures and measures the walks. */
+async function loadFilmHelper(): Promise<FilmHelper> {
   const module = await files.measure();
-  const film: Film = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
-  await film.ask((functions) => functions.load(module));
-  return film;
+  const filmHelper: FilmHelper = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
+  await filmHelper.ask((functions) => functions.load(module));
+  return filmHelper;
 }
 
 export class MeasureView {
   private readonly room = element('room-measure');
   private readonly view = element('measure-view');
-  private readonly driver = element<HTMLSelectElement>('measure-driver');
-  private readonly gait = element<HTMLSelectElement>('measure-gait');
-  private readonly boxes = element('measure-gaits');
+  private readonly driverList = element<HTMLSelectElement>('measure-driver');
+  private readonly gaitList = element<HTMLSelectElement>('measure-gait');
+  private readonly gaitBoxes = element('measure-gaits');
   private readonly startButton = element<HTMLButtonElement>('measure-start');
   private readonly cameraButton = element<HTMLButtonElement>('measure-camera');
-  private readonly goButton = element<HTMLButtonElement>('measure-go');
+  private readonly putBackButton = element<HTMLButtonElement>('measure-go');
+  /** The numbers in the inputs, by the inputs' names. */
   private readonly values: Record<string, number | null> = {};
-  private readonly measured: Measured;
-  private readonly source: Source;
-  private film: Promise<Film> | null = null;
-  private seen = new TagTracker();
-  private doing: Doing = 'nothing';
+  private readonly resultsView: ResultsView;
+  private readonly source: PictureSource;
+  /** The worker that keeps and measures the pictures; null until it is needed. */
+  private filmHelper: Promise<FilmHelper> | null = null;
+  private tracker = new TagTracker();
+  private task: Task = 'nothing';
+  /** The protocol by which the page drives the robot; null while it does not drive. */
   private protocol: Protocol | null = null;
-  /** True while the user puts the robot back by hand; pictures of that are not kept. */
-  private isPutBack = false;
+  /** True while the user puts the robot back by hand; pictures of this are not kept. */
+  private isBeingPutBack = false;
   /** True if a film file was read, whose pictures can be measured again. */
   private hasFilm = false;
   /** The gaits that the user has ticked (true) or unticked (false). */
-  private readonly ticked = new Map<string, boolean>();
+  private readonly userTicks = new Map<string, boolean>();
 
   /**
-   * `choices` returns the gaits predicted so far; `isBarred` returns true while the set-up is open: hands may be in
-   * the robot, which must not be driven.
+   * `choices` returns the gaits predicted so far. `isSetUpOpen` returns true while the set-up is open: the robot must
+   * not be driven then, since hands may be in it.
    */
   constructor(
     private readonly session: () => Session,
     private readonly choices: () => { command: string; displacement: GaitPrediction }[],
-    private readonly isBarred: () => boolean,
+    private readonly isSetUpOpen: () => boolean,
   ) {
-    this.measured = new Measured(() => this.session().description.name);
+    this.resultsView = new ResultsView(() => this.session().description.name);
     const video = this.view.querySelector('video');
     if (!video) throw new Error('the page has no video for the camera');
-    this.source = new Source(video, (picture, seconds) => this.look(picture, seconds));
-    for (const [name, { value, ...range }] of Object.entries(NUMBERS)) {
+    this.source = new PictureSource(video, (picture, seconds) => this.processPicture(picture, seconds));
+    for (const [name, { value, ...range }] of Object.entries(INPUT_RANGES)) {
       const input = element<HTMLInputElement>(`measure-${name}`);
       this.values[name] = value;
-      numberInput(input, range, (typed) => (this.values[name] = typed ?? value));
+      setUpNumberInput(input, range, (typed) => (this.values[name] = typed ?? value));
       if (value !== null) putNumber(input, value);
     }
     this.cameraButton.addEventListener('click', () => void this.runAction(() => this.toggleCamera()));
     element('measure-file').addEventListener('change', ({ target }) => {
       const file = (target as HTMLInputElement).files?.[0];
-      if (file) void this.runAction(() => this.play(file));
+      if (file) void this.runAction(() => this.readFilm(file));
     });
     element('measure-sheet').addEventListener('click', () => void this.runAction(() => this.saveSheet()));
-    this.startButton.addEventListener('click', () => void this.runAction(() => this.start()));
-    this.driver.addEventListener('change', () => this.show());
-    document.addEventListener(OPENED, () => this.room.hidden && this.leave());
-    this.show();
+    this.startButton.addEventListener('click', () => void this.runAction(() => this.pressStart()));
+    this.driverList.addEventListener('change', () => this.updateControls());
+    document.addEventListener(ROOM_OPENED, () => this.room.hidden && this.switchCameraOff());
+    this.updateControls();
   }
 
-  /** Ends driving, and lists the gaits of a newly chosen robot. */
+  /** Ends driving, and lists the gaits of the robot that was chosen. */
   showRobot({ gaits }: Description): void {
     this.stop('another robot was chosen');
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
-    const chosen = this.gait.value;
-    this.gait.replaceChildren(new Option('found by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
-    if ([...this.gait.options].some(({ value }) => value === chosen)) this.gait.value = chosen;
-    this.boxes.replaceChildren(
+    const chosen = this.gaitList.value;
+    this.gaitList.replaceChildren(new Option('found by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
+    if ([...this.gaitList.options].some(({ value }) => value === chosen)) this.gaitList.value = chosen;
+    this.gaitBoxes.replaceChildren(
       make('legend', {}, 'Gaits'),
       ...movingCommands.map((command) => {
-        const box = make('input', { type: 'checkbox', name: command, onchange: () => this.ticked.set(command, box.checked) });
+        const box = make('input', { type: 'checkbox', name: command, onchange: () => this.userTicks.set(command, box.checked) });
         return make('label', { className: 'check' }, box, ` ${command}`);
       }),
     );
-    this.predicted();
+    this.tickMovingGaits();
   }
 
-  /** Ticks the gaits with a displacement, as far as predicted; the user's own ticks stay. */
-  predicted(): void {
-    const hasDisplacement = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= LEAST_DISPLACEMENT.way || Math.abs(turn ?? 0) >= LEAST_DISPLACEMENT.turn]));
-    for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? hasDisplacement.get(box.name) ?? false;
+  /** Ticks the gaits whose predicted displacement is large enough; the user's own ticks stay. */
+  tickMovingGaits(): void {
+    const hasDisplacement = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= MIN_DISPLACEMENT.forwardMm || Math.abs(turn ?? 0) >= MIN_DISPLACEMENT.turnDeg]));
+    for (const box of this.gaitBoxes.querySelectorAll('input')) box.checked = this.userTicks.get(box.name) ?? hasDisplacement.get(box.name) ?? false;
   }
 
   /** Ends driving for an external reason, and stops the robot. */
@@ -129,38 +134,40 @@ export class MeasureView {
   }
 
   /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
-  link(isReal: boolean): void {
+  changeLink(isReal: boolean): void {
     this.protocol?.end('the link to the robot has changed');
-    this.driver.value = isReal ? 'page' : 'other';
-    this.show();
+    this.driverList.value = isReal ? 'page' : 'other';
+    this.updateControls();
   }
 
   /** Takes a line that was sent to the robot. */
-  sent(line: string): void {
-    this.protocol?.sent(line);
+  noteSent(line: string): void {
+    this.protocol?.noteSent(line);
   }
 
-  received(line: string): void {
-    this.protocol?.received(line);
+  /** Takes a line that the robot has sent. */
+  noteReceived(line: string): void {
+    this.protocol?.noteReceived(line);
   }
 
-  did(activity: string): void {
+  /** Takes the robot's activity: its gait or another command that it carries out. */
+  noteActivity(activity: string): void {
     this.protocol?.setActivity(activity);
   }
 
-  /** Updates the text about the last pictures; called several times per second. */
-  write(): void {
+  /** Updates the texts about the last pictures; called several times per second. */
+  updateNumbers(): void {
     if (this.room.hidden || this.view.hidden) return;
-    const { rate, trouble, ms } = this.seen;
+    const { picturesPerSecond: rate, hiddenTagsMessage: trouble, searchMs: ms } = this.tracker;
     this.setText('measure-rate', `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
     this.setText('measure-seen', trouble || 'All five tags are seen.');
     element('measure-seen').classList.toggle('refusal', trouble !== '');
   }
 
-  private getFilm(): Promise<Film> {
-    this.film ??= loadFilm();
-    this.film.catch(() => (this.film = null));
-    return this.film;
+  private getFilmHelper(): Promise<FilmHelper> {
+    this.filmHelper ??= loadFilmHelper();
+    this.filmHelper.catch(() => (this.filmHelper = null));
+    return this.filmHelper;
   }
 
   /** Runs an action that the user has asked for; shows the reason if it fails. */
@@ -170,100 +177,103 @@ export class MeasureView {
     } catch (error) {
       this.say(messageOf(error), true);
     } finally {
-      this.show();
+      this.updateControls();
     }
   }
 
   private async toggleCamera(): Promise<void> {
     if (this.source.isCamera) {
-      this.leave();
+      this.switchCameraOff();
       return this.say('');
     }
     this.say('Opening the camera…');
     this.hasFilm = false;
-    await this.getFilm();
-    await this.source.camera(() => {
-      this.leave();
+    await this.getFilmHelper();
+    await this.source.openCamera(() => {
+      this.switchCameraOff();
       this.say('The camera is gone.', true);
-      this.show();
+      this.updateControls();
     });
-    this.seen = new TagTracker();
+    this.tracker = new TagTracker();
     this.say('Place the camera so that all five tags are seen.');
   }
 
   /** Switches the camera off and ends the activity that uses it. */
-  private leave(): void {
+  private switchCameraOff(): void {
     this.stop('the camera was switched off');
     this.source.stop();
-    if (this.doing !== 'compute') this.doing = 'nothing';
-    this.show();
+    if (this.task !== 'compute') this.task = 'nothing';
+    this.updateControls();
   }
 
-  private async look(picture: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
-    const film = await this.getFilm();
-    const isKept = this.doing === 'record' || this.doing === 'play' || (this.doing === 'drive' && !this.isPutBack);
+  /** Finds the tags in a picture, which was taken at the time `seconds`, and draws them over it. */
+  private async processPicture(picture: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
+    const filmHelper = await this.getFilmHelper();
+    const isKept = this.task === 'record' || this.task === 'play' || (this.task === 'drive' && !this.isBeingPutBack);
     try {
-      this.seen.take(await film.ask((film) => film.look(transfer(picture, [picture]), seconds, isKept)));
-      this.protocol?.setPlace(this.seen.back);
-      drawSight(this.view.querySelector('canvas') as HTMLCanvasElement, this.seen);
+      this.tracker.addSight(await filmHelper.ask((functions) => functions.look(transfer(picture, [picture]), seconds, isKept)));
+      this.protocol?.setPlace(this.tracker.offsetToMiddle);
+      drawTracking(this.view.querySelector('canvas') as HTMLCanvasElement, this.tracker);
     } catch (error) {
       this.say(messageOf(error), true);
     }
   }
 
-  private async play(file: File): Promise<void> {
-    this.leave();
-    const film = await this.getFilm();
-    await film.ask((film) => film.clear());
-    this.seen = new TagTracker();
-    this.doing = 'play';
+  /** Reads a film file and measures the walks in it. */
+  private async readFilm(file: File): Promise<void> {
+    this.switchCameraOff();
+    const filmHelper = await this.getFilmHelper();
+    await filmHelper.ask((functions) => functions.clear());
+    this.tracker = new TagTracker();
+    this.task = 'play';
     this.hasFilm = false;
     this.say(`Reading ${file.name}…`);
-    this.show();
+    this.updateControls();
     try {
-      await this.source.file(file);
-      if (this.doing !== 'play') return;
+      await this.source.playFile(file);
+      if (this.task !== 'play') return;
       this.hasFilm = true;
-      await this.compute(this.wholeFilm);
+      await this.measureWalks(this.wholeFilmWalks);
     } finally {
-      this.doing = 'nothing';
+      this.task = 'nothing';
     }
   }
 
   /** The chosen gait in the whole film as one walk; empty if the gaits are to be recognized by their paths. */
-  private get wholeFilm(): AskedWalk[] {
-    const gait = this.gait.value;
+  private get wholeFilmWalks(): AskedWalk[] {
+    const gait = this.gaitList.value;
     return gait === '' ? [] : [{ gait, during: null }];
   }
 
   /** Acts as the start button says: starts or ends recording or driving, or measures the film file again. */
-  private async start(): Promise<void> {
-    if (this.doing === 'record') return this.compute(this.wholeFilm);
-    if (this.doing === 'drive') return void this.session().ask(WORDS.stop);
-    if (this.hasFilm) return this.compute(this.wholeFilm);
-    const isPage = this.driver.value === 'page';
-    const gaits = isPage ? this.drivableGaits() : [];
-    const film = await this.getFilm();
-    await film.ask((film) => film.clear());
-    this.seen.clear();
-    if (isPage) return this.drive(gaits);
-    this.doing = 'record';
+  private async pressStart(): Promise<void> {
+    if (this.task === 'record') return this.measureWalks(this.wholeFilmWalks);
+    if (this.task === 'drive') return void this.session().ask(WORDS.stop);
+    if (this.hasFilm) return this.measureWalks(this.wholeFilmWalks);
+    const isPageDriving = this.driverList.value === 'page';
+    const gaits = isPageDriving ? this.drivableGaits() : [];
+    const filmHelper = await this.getFilmHelper();
+    await filmHelper.ask((functions) => functions.clear());
+    this.tracker.clear();
+    if (isPageDriving) return this.driveGaits(gaits);
+    this.task = 'record';
     this.say('Recording. Let the robot walk at least four cycles, then press Done.');
   }
 
   /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
   private drivableGaits(): Gait[] {
     const session = this.session();
-    const ticked = [...this.boxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
+    const ticked = [...this.gaitBoxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
     const gaits = session.description.gaits.filter(({ command }) => ticked.includes(command));
-    if (this.isBarred()) throw new Error('Hands may be in the robot: leave the set-up first.');
+    if (this.isSetUpOpen()) throw new Error('Hands may be in the robot: leave the set-up first.');
     if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that one, or write this one to the board.`);
-    if (!session.answers) throw new Error(`No robot answers from the ${session.link.name}.`);
+    if (!session.isFirmwareAnswering) throw new Error(`No robot answers from the ${session.link.name}.`);
     if (gaits.length === 0) throw new Error('Tick at least one gait.');
     return gaits;
   }
 
-  private async drive(gaits: Gait[]): Promise<void> {
+  /** Lets the robot walk the gaits, and measures the walks; also those before an interruption. */
+  private async driveGaits(gaits: Gait[]): Promise<void> {
     const session = this.session();
     const { cycles, pause } = this.values;
     const speed = this.values.speed ?? 100;
@@ -271,85 +281,88 @@ export class MeasureView {
       ask: async (line) => (await session.ask(line))?.ok === true,
       now: () => this.source.now,
       wait: (seconds) => session.link.wait(1000 * seconds),
-      ways: () => this.choices().map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
-      putBack: () => this.putBack(protocol),
+      predictions: () => this.choices().map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
+      putBack: () => this.waitUntilPutBack(protocol),
       say: (text) => this.say(text),
     });
     this.protocol = protocol;
-    protocol.setPlace(this.seen.back);
-    this.doing = 'drive';
-    this.show();
+    protocol.setPlace(this.tracker.offsetToMiddle);
+    this.task = 'drive';
+    this.updateControls();
     try {
       await protocol.run({ gaits, cycles: cycles ?? 8, speed, pause: pause ?? 1 });
-      await this.compute(this.withGaitNames(protocol.walks), speed);
+      await this.measureWalks(this.withGaitNames(protocol.walks), speed);
     } catch (error) {
       if (!(error instanceof Interrupted) || protocol.walks.length === 0) throw error;
-      await this.compute(this.withGaitNames(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
+      await this.measureWalks(this.withGaitNames(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
     } finally {
       this.protocol = null;
-      this.isPutBack = false;
-      this.doing = 'nothing';
-      this.goButton.hidden = true;
+      this.isBeingPutBack = false;
+      this.task = 'nothing';
+      this.putBackButton.hidden = true;
     }
   }
 
-  /** Converts walks: their gaits' commands become the names in robot.toml. */
+  /** Returns the walks with the gaits' names in robot.toml in place of their commands. */
   private withGaitNames(walks: Walk[]): AskedWalk[] {
     const { gaits } = this.session().description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }
 
-  private async putBack(protocol: Protocol): Promise<void> {
-    this.isPutBack = true;
-    this.goButton.hidden = false;
+  /** Asks the user to put the robot back, and waits for the button or the end of the protocol. */
+  private async waitUntilPutBack(protocol: Protocol): Promise<void> {
+    this.isBeingPutBack = true;
+    this.putBackButton.hidden = false;
     this.say('The robot is near the end of what the camera measures, or its tag is hidden: put it back to the middle of the strips, and press the button.', true);
     await new Promise<void>((resolve) => {
-      this.goButton.onclick = () => resolve();
+      this.putBackButton.onclick = () => resolve();
       protocol.onEnd = resolve;
     });
-    this.goButton.hidden = true;
-    this.isPutBack = false;
+    this.putBackButton.hidden = true;
+    this.isBeingPutBack = false;
   }
 
-  /** Measures walks in the film; shows the results, `troubles` and the reasons why walks could not be measured. */
-  private async compute(walks: AskedWalk[], speed = this.values.speed ?? 100, troubles: string[] = []): Promise<void> {
-    this.doing = 'compute';
+  /**
+   * Measures walks in the film. Shows the results, the given troubles and the reasons why walks could not be measured.
+   */
+  private async measureWalks(walks: AskedWalk[], speed = this.values.speed ?? 100, troubles: string[] = []): Promise<void> {
+    this.task = 'compute';
     this.say('Measuring…');
-    this.show();
-    const film = await this.getFilm();
+    this.updateControls();
+    const filmHelper = await this.getFilmHelper();
     const { height = null, ruler } = this.values;
     try {
-      const results = await film.ask((film) => film.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks }));
-      this.measured.show(results.gaits);
+      const results = await filmHelper.ask((functions) => functions.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks }));
+      this.resultsView.show(results.gaits);
       troubles.push(...results.troubles);
     } catch (error) {
-      this.measured.show([]);
+      this.resultsView.show([]);
       troubles.push(messageOf(error));
     }
-    this.doing = 'nothing';
+    this.task = 'nothing';
     this.say(troubles.map((trouble) => `${trouble}.`).join(' '), true);
   }
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
-    const film = await this.getFilm();
-    save('sheet.pdf', [await film.ask((film) => film.sheet(isLetter))], 'application/pdf');
+    const filmHelper = await this.getFilmHelper();
+    saveFile('sheet.pdf', [await filmHelper.ask((functions) => functions.sheet(isLetter))], 'application/pdf');
     this.say('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 
-  /** Shows the controls that can be used now. */
-  private show(): void {
-    const { doing, source, hasFilm } = this;
-    const isPage = this.driver.value === 'page' && !hasFilm;
-    this.view.hidden = !source.isCamera && doing !== 'play';
+  /** Shows and enables the controls that can be used during the current task. */
+  private updateControls(): void {
+    const { task, source, hasFilm } = this;
+    const isPageDriving = this.driverList.value === 'page' && !hasFilm;
+    this.view.hidden = !source.isCamera && task !== 'play';
     element('measure-rate').hidden = element('measure-seen').hidden = this.view.hidden;
     this.cameraButton.setAttribute('aria-pressed', String(source.isCamera));
-    element('measure-one').hidden = isPage;
-    this.boxes.hidden = !isPage;
-    for (const label of this.room.querySelectorAll<HTMLElement>('[data-driver]')) label.hidden = !isPage;
-    this.startButton.textContent = doing === 'record' ? 'Done' : doing === 'drive' ? 'Stop' : hasFilm ? 'Measure again' : isPage ? 'Drive and measure' : 'Record';
-    this.startButton.disabled = doing === 'play' || doing === 'compute' || (!source.isCamera && !hasFilm);
-    this.driver.disabled = doing !== 'nothing';
+    element('measure-one').hidden = isPageDriving;
+    this.gaitBoxes.hidden = !isPageDriving;
+    for (const label of this.room.querySelectorAll<HTMLElement>('[data-driver]')) label.hidden = !isPageDriving;
+    this.startButton.textContent = task === 'record' ? 'Done' : task === 'drive' ? 'Stop' : hasFilm ? 'Measure again' : isPageDriving ? 'Drive and measure' : 'Record';
+    this.startButton.disabled = task === 'play' || task === 'compute' || (!source.isCamera && !hasFilm);
+    this.driverList.disabled = task !== 'nothing';
   }
 
   private say(text: string, isTrouble = false): void {

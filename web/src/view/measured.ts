@@ -1,23 +1,23 @@
 // The results of the room Measure: tables on the page, and files to keep, to share and to print.
-import { card, csv, columnHeadings, rangeOf, rows, titleOf } from '../measure/card';
+import { svgCard, resultsCsv, columnHeadings, rangeSentence, resultRows, titleOf } from '../measure/card';
 import type { Report } from '../../generated/measure';
 import { element } from './canvas';
-import { save } from './download';
+import { saveFile } from './download';
 import { make, table } from './make';
 
 /** Pixels of the PNG for each unit of the SVG. */
 const PNG_SCALE = 2;
 
-export class Measured {
+export class ResultsView {
   private gaits: Report[] = [];
 
-  /** Takes a function that returns the robot's name. */
+  /** `name` returns the robot's name. */
   constructor(private readonly name: () => string) {
     const onClick = (id: string, act: () => void) => element(`measured-${id}`).addEventListener('click', act);
-    onClick('svg', () => save('measured.svg', [this.card], 'image/svg+xml'));
+    onClick('svg', () => saveFile('measured.svg', [this.cardSvg], 'image/svg+xml'));
     onClick('png', () => void this.savePng());
-    onClick('csv', () => save('measured.csv', [csv(this.gaits)], 'text/csv'));
-    onClick('json', () => save('measured.json', [JSON.stringify({ gaits: this.gaits }, null, 2)], 'application/json'));
+    onClick('csv', () => saveFile('measured.csv', [resultsCsv(this.gaits)], 'text/csv'));
+    onClick('json', () => saveFile('measured.json', [JSON.stringify({ gaits: this.gaits }, null, 2)], 'application/json'));
     onClick('print', () => print());
   }
 
@@ -25,21 +25,21 @@ export class Measured {
   show(gaits: Report[]): void {
     this.gaits = gaits;
     element('measure-results').hidden = gaits.length === 0;
-    const sections = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), columnHeadings(report), rows(report)), make('p', { className: 'note' }, rangeOf(report))]);
+    const sections = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), columnHeadings(report), resultRows(report)), make('p', { className: 'note' }, rangeSentence(report))]);
     element('measured').replaceChildren(...sections);
   }
 
-  private get card(): string {
-    return card(this.name(), this.gaits);
+  private get cardSvg(): string {
+    return svgCard(this.name(), this.gaits);
   }
 
   private async savePng(): Promise<void> {
     const image = new Image();
-    image.src = `data:image/svg+xml,${encodeURIComponent(this.card)}`;
+    image.src = `data:image/svg+xml,${encodeURIComponent(this.cardSvg)}`;
     await image.decode();
     const canvas = Object.assign(document.createElement('canvas'), { width: PNG_SCALE * image.width, height: PNG_SCALE * image.height });
     canvas.getContext('2d')?.drawImage(image, 0, 0, canvas.width, canvas.height);
     const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
-    if (blob) save('measured.png', [blob], 'image/png');
+    if (blob) saveFile('measured.png', [blob], 'image/png');
   }
 }

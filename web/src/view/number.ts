@@ -1,5 +1,6 @@
 // A number input that marks values out of range and ignores them.
 
+/** The range of valid numbers, and the distance between two values of the input's arrows. */
 export interface Range {
   min: number;
   max: number;
@@ -7,35 +8,36 @@ export interface Range {
 }
 
 /**
- * Sets an input's range, and calls `take` with each valid number that is typed, or with null when the input is emptied.
+ * Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
+ * emptied.
  * Leaving the input with an invalid number restores the last valid one.
  */
-export function numberInput(input: HTMLInputElement, { min, max, step }: Range, take: (value: number | null) => void): void {
+export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Range, onNumber: (value: number | null) => void): void {
   Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });
   input.addEventListener('input', () => {
     const value = input.valueAsNumber;
     const isEmpty = input.value === '' && !input.validity.badInput;
     const isInRange = value >= min && value <= max;
-    mark(input, !isEmpty && !isInRange);
+    markInvalid(input, !isEmpty && !isInRange);
     if (isInRange || isEmpty) input.defaultValue = input.value;
-    if (isInRange || isEmpty) take(isInRange ? value : null);
+    if (isInRange || isEmpty) onNumber(isInRange ? value : null);
   });
   input.addEventListener('change', () => {
     if (!input.hasAttribute('aria-invalid')) return;
     input.value = input.defaultValue;
-    mark(input, false);
+    markInvalid(input, false);
   });
 }
 
-/** Sets the number of an input; while the user is typing there, the text stays. */
+/** Sets the number of an input; its text stays while the user is typing there. */
 export function putNumber(input: HTMLInputElement, value: number): void {
   input.defaultValue = String(value);
   if (document.activeElement === input) return;
   input.value = String(value);
-  mark(input, false);
+  markInvalid(input, false);
 }
 
-function mark(input: HTMLInputElement, isWrong: boolean): void {
-  if (isWrong) input.setAttribute('aria-invalid', 'true');
+function markInvalid(input: HTMLInputElement, isInvalid: boolean): void {
+  if (isInvalid) input.setAttribute('aria-invalid', 'true');
   else input.removeAttribute('aria-invalid');
 }

@@ -4,39 +4,39 @@ import { element } from './canvas';
 
 export class Pace {
   private readonly slider = element<HTMLInputElement>('speed');
-  private readonly out = element('speed-out');
-  /** True while the user holds the slider, or the line with its value has no answer. */
-  private isHeld = false;
+  private readonly valueText = element('speed-out');
+  /** True while the user moves the slider, and until the line with its value is answered. */
+  private isPending = false;
 
   /** `ask` sends a line and resolves with its answer. */
   constructor(ask: (line: string) => Promise<unknown>) {
     this.slider.addEventListener('input', () => {
-      this.isHeld = true;
-      this.write(this.slider.valueAsNumber);
+      this.isPending = true;
+      this.showText(this.slider.valueAsNumber);
     });
     this.slider.addEventListener('change', () => {
-      this.isHeld = true;
-      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => (this.isHeld = false));
+      this.isPending = true;
+      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => (this.isPending = false));
     });
-    this.write(this.slider.valueAsNumber);
+    this.showText(this.slider.valueAsNumber);
   }
 
-  /** Shows the robot's pace, percent. */
+  /** Shows the robot's pace in percent, unless the user is changing it. */
   show(percent: number): void {
-    if (this.isHeld) return;
+    if (this.isPending) return;
     this.slider.value = String(percent);
-    this.write(percent);
+    this.showText(percent);
   }
 
-  /** The pace of the slider, percent. */
+  /** The slider's pace in percent. */
   get percent(): number {
     return this.slider.valueAsNumber;
   }
 
-  private write(percent: number): void {
+  private showText(percent: number): void {
     const text = `${percent} %`;
-    if (this.out.textContent === text) return;
-    this.out.textContent = text;
+    if (this.valueText.textContent === text) return;
+    this.valueText.textContent = text;
     this.slider.setAttribute('aria-valuetext', text);
   }
 }

@@ -1,19 +1,20 @@
-// The colours of style.css, for canvases. Only style.css decides which colours light and dark mode have.
+// The colours of style.css for canvases. Only style.css defines the colours of light and dark mode.
 
-const NAMES = [
+const COLOUR_NAMES = [
   'card', 'ink', 'soft', 'line', 'floor', 'grid', 'skin', 'skin-edge', 'frame', 'frame-edge', 'steel', 'tube',
   'track', 'accent', 'alarm', 'safe', 'near', 'a1', 'a2', 'a3', 'a4',
 ] as const;
 
-export type Palette = Record<(typeof NAMES)[number], string>;
+export type Palette = Record<(typeof COLOUR_NAMES)[number], string>;
 
 let cachedPalette: Palette | null = null;
 const changeCallbacks: (() => void)[] = [];
 
+/** Returns the colours of the current colour scheme. */
 export function palette(): Palette {
   if (!cachedPalette) {
     const style = getComputedStyle(document.documentElement);
-    cachedPalette = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
+    cachedPalette = Object.fromEntries(COLOUR_NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
   }
   return cachedPalette;
 }
@@ -28,7 +29,7 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   for (const callback of changeCallbacks) callback();
 });
 
-/** The colour of a servo and of its leg. */
+/** Returns the colour of a servo and of its leg. */
 export function servoColour(servo: number): string {
   const { a1, a2, a3, a4 } = palette();
   return [a1, a2, a3, a4][servo] ?? a1;

@@ -2,36 +2,38 @@
 import type { DrawnGait, End, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
-import { numberInput, putNumber, type Range } from './number';
+import { setUpNumberInput, putNumber, type Range } from './number';
 import { isShown } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** Least distance of two recorded points, mm. */
-const LEAST_DISTANCE = 0.3;
+/** Least distance between two recorded points. */
+const MIN_POINT_DISTANCE_MM = 0.3;
 /** Least number of points of a line; fewer points are a tap. */
-const LEAST_POINTS = 8;
+const MIN_POINT_COUNT = 8;
 /** Number of points of a predefined line. */
-const POINTS = 96;
-/** Margin around the picture, mm. */
-const MARGIN = 4;
+const SHAPE_POINT_COUNT = 96;
+/** Margin around the reachable area in the picture. */
+const MARGIN_MM = 4;
 
 type Point = [number, number];
 
 /**
- * Predefined lines: points relative to the neutral point, by an angle of 0 to 2π, in tenths of its distance from the
- * base.
+ * Predefined lines: each returns the point, relative to the neutral point, at an angle of 0 to 2π along the line. The
+ * unit is a tenth of the distance from the base to the neutral point.
  */
-const SHAPES: Record<string, (turn: number) => Point> = {
-  circle: (turn) => [Math.sin(turn), Math.cos(turn) - 1],
-  eight: (turn) => [1.4 * Math.sin(turn), 0.6 * Math.sin(2 * turn)],
-  side: (turn) => [1.4 * Math.sin(turn), 0],
-  nod: (turn) => [0, Math.sin(turn)],
+const SHAPES: Record<string, (angle: number) => Point> = {
+  circle: (angle) => [Math.sin(angle), Math.cos(angle) - 1],
+  eight: (angle) => [1.4 * Math.sin(angle), 0.6 * Math.sin(2 * angle)],
+  side: (angle) => [1.4 * Math.sin(angle), 0],
+  nod: (angle) => [0, Math.sin(angle)],
 };
 
-type Plain = 'period' | 'size' | 'terms';
-const NUMBERS: Record<Plain, Range> = {
+/** A number of a gesture that has an input. */
+type GestureNumber = 'period' | 'size' | 'terms';
+/** Ranges of the inputs: the period in s, the size in percent, and the number of terms of the Fourier series. */
+const NUMBER_RANGES: Record<GestureNumber, Range> = {
   period: { min: 0.2, max: 20, step: 0.1 },
   size: { min: 5, max: 200, step: 1 },
   terms: { min: 1, max: 16, step: 1 },
@@ -40,18 +42,21 @@ const NUMBERS: Record<Plain, Range> = {
 export class PathView {
   private readonly panel = element<HTMLDetailsElement>('path-editor');
   private readonly plane = element<HTMLElement>('path-plane') as unknown as SVGSVGElement;
-  private readonly end = element<HTMLSelectElement>('path-end');
-  private readonly shape = element<HTMLSelectElement>('path-shape');
-  private readonly name = element<HTMLInputElement>('path-name');
+  private readonly endList = element<HTMLSelectElement>('path-end');
+  private readonly shapeList = element<HTMLSelectElement>('path-shape');
+  private readonly nameInput = element<HTMLInputElement>('path-name');
   private readonly trial: TrialView;
-  private readonly allowed = this.makePart('path', 'allowed');
-  private readonly base = this.makePart('path', 'base');
-  private readonly line = this.makePart('path', 'line');
-  private readonly rounded = this.makePart('path', 'rounded');
-  private readonly neutral = this.makePart('circle', 'neutral');
-  private drawn: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
-  private room: ReachArea | null = null;
-  private toml = '';
+  private readonly allowedArea = this.makePart('path', 'allowed');
+  private readonly baseLine = this.makePart('path', 'base');
+  private readonly drawnLine = this.makePart('path', 'line');
+  private readonly smoothedLine = this.makePart('path', 'rounded');
+  private readonly neutralDot = this.makePart('circle', 'neutral');
+  /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
+  private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
+  /** The area that the end point can reach; null until the panel is opened, or if there is none. */
+  private reachArea: ReachArea | null = null;
+  /** The robot.toml whose plane is shown; empty before the first one. */
+  private shownToml = '';
 
   constructor(
     module: WebAssembly.Module,
@@ -59,19 +64,19 @@ export class PathView {
     ask: (line: string) => Promise<unknown>,
     writer: Writer,
   ) {
-    const gaitToTry = () => (this.drawn.points.length === 0 ? null : this.drawn);
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made: gaitToTry, change: (key, value) => key !== 'amplitude' && this.change({ [key]: value }) });
+    const gaitToTry = () => (this.gesture.points.length === 0 ? null : this.gesture);
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', editedGait: gaitToTry, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
     this.panel.addEventListener('toggle', () => this.showRobot());
-    this.end.addEventListener('change', () => {
-      this.drawn = { ...this.drawn, end: this.end.value as End };
-      this.begin();
+    this.endList.addEventListener('change', () => {
+      this.gesture = { ...this.gesture, end: this.endList.value as End };
+      this.showPlane();
     });
-    this.shape.addEventListener('change', () => this.begin());
-    this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
-    for (const key of Object.keys(NUMBERS) as Plain[]) {
-      numberInput(element(`path-${key}`), NUMBERS[key], (value) => {
+    this.shapeList.addEventListener('change', () => this.showPlane());
+    this.nameInput.addEventListener('input', () => this.changeGesture({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
+    for (const key of Object.keys(NUMBER_RANGES) as GestureNumber[]) {
+      setUpNumberInput(element(`path-${key}`), NUMBER_RANGES[key], (value) => {
         if (value === null) return;
-        this.change({ [key]: key === 'size' ? value / 100 : key === 'terms' ? Math.round(value) : value });
+        this.changeGesture({ [key]: key === 'size' ? value / 100 : key === 'terms' ? Math.round(value) : value });
       });
     }
     this.recordLines();
@@ -81,49 +86,53 @@ export class PathView {
   showRobot(): void {
     if (!isShown(this.panel)) return;
     const { toml } = this.session();
-    if (toml === this.toml) return;
-    this.toml = toml;
-    this.begin(this.drawn.points.length > 0);
+    if (toml === this.shownToml) return;
+    this.shownToml = toml;
+    this.showPlane(this.gesture.points.length > 0);
   }
 
-  /** Shows the plane of head or tail, as chosen, with the drawn line if `isKept`, else with the chosen shape. */
-  private begin(isKept = false): void {
-    this.room = this.session().robot.reachArea(this.drawn.end === 'head' ? 0 : 1);
-    if (!this.room) return;
-    this.drawBackground(this.room);
-    const shape = SHAPES[this.shape.value];
+  /** Shows the plane of the chosen end, head or tail, with the drawn line if `isKept`, else with the chosen shape. */
+  private showPlane(isKept = false): void {
+    this.reachArea = this.session().robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
+    if (!this.reachArea) return;
+    this.drawBackground(this.reachArea);
+    const shape = SHAPES[this.shapeList.value];
     if (!isKept && shape) {
-      const [x, y] = this.room.neutral;
+      const [x, y] = this.reachArea.neutral;
       const tenth = Math.hypot(x, y) / 10;
-      const points = Array.from({ length: POINTS }, (_, n): Point => {
-        const [right, outward] = shape((2 * Math.PI * n) / POINTS);
+      const points = Array.from({ length: SHAPE_POINT_COUNT }, (_, n): Point => {
+        const [right, outward] = shape((2 * Math.PI * n) / SHAPE_POINT_COUNT);
         return [x + tenth * right, y + tenth * outward];
       });
-      this.change({ points, size: 1 });
-    } else if (!isKept) this.change({ points: [], size: 1 });
-    else this.change({});
+      this.changeGesture({ points, size: 1 });
+    } else if (!isKept) this.changeGesture({ points: [], size: 1 });
+    else this.changeGesture({});
   }
 
-  private change(changes: Partial<DrawnGait>): void {
-    this.drawn = { ...this.drawn, ...changes };
-    this.show();
+  private changeGesture(changes: Partial<DrawnGait>): void {
+    this.gesture = { ...this.gesture, ...changes };
+    this.showGesture();
     this.trial.predict();
   }
 
-  /** Makes an element of the picture. */
+  /** Makes an element of the picture with the class `name`. */
   private makePart<K extends 'path' | 'circle'>(tag: K, name: string): SVGElementTagNameMap[K] {
     const node = this.plane.appendChild(document.createElementNS(SVG, tag));
     node.classList.add(name);
     return node;
   }
 
-  /** Converts a point to the picture: outward is up for the head and down for the tail. */
-  private pictureOf([x, y]: Point): Point {
-    return [x, this.drawn.end === 'head' ? -y : y];
+  /**
+   * Converts a point from the plane to the picture, or back. Outward is up in the picture for the head and down for the
+   * tail.
+   */
+  private toPicture([x, y]: Point): Point {
+    return [x, this.gesture.end === 'head' ? -y : y];
   }
 
+  /** Returns the SVG path through points, closed by default. */
   private pathText(points: Point[], end = 'Z'): string {
-    return points.length === 0 ? '' : `M ${points.map((point) => this.pictureOf(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
+    return points.length === 0 ? '' : `M ${points.map((point) => this.toPicture(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
   }
 
   /** Draws the background: the reachable area, the base and the neutral point. */
@@ -140,28 +149,28 @@ export class PathView {
         column = endColumn;
       }
     }
-    this.allowed.setAttribute('d', cells.join(' '));
-    this.base.setAttribute('d', this.pathText(shafts, ''));
-    const [x, y] = this.pictureOf(neutral);
-    this.neutral.setAttribute('cx', String(x));
-    this.neutral.setAttribute('cy', String(y));
-    this.neutral.setAttribute('r', '1.5');
+    this.allowedArea.setAttribute('d', cells.join(' '));
+    this.baseLine.setAttribute('d', this.pathText(shafts, ''));
+    const [x, y] = this.toPicture(neutral);
+    this.neutralDot.setAttribute('cx', String(x));
+    this.neutralDot.setAttribute('cy', String(y));
+    this.neutralDot.setAttribute('r', '1.5');
     const farY = from[1] + rows * step;
-    const [left, width] = [Math.min(from[0], shafts[0][0]) - MARGIN, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN];
-    const height = farY + 2 * MARGIN;
-    this.plane.setAttribute('viewBox', `${left} ${this.drawn.end === 'head' ? -farY - MARGIN : -MARGIN} ${width} ${height}`);
+    const [left, width] = [Math.min(from[0], shafts[0][0]) - MARGIN_MM, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN_MM];
+    const height = farY + 2 * MARGIN_MM;
+    this.plane.setAttribute('viewBox', `${left} ${this.gesture.end === 'head' ? -farY - MARGIN_MM : -MARGIN_MM} ${width} ${height}`);
   }
 
-  private show(): void {
-    const { drawn } = this;
-    const put = (name: Plain, value: number) => putNumber(element(`path-${name}`), Number(value.toFixed(2)));
-    put('period', drawn.period);
-    put('size', drawn.size * 100);
-    put('terms', drawn.terms);
-    if (document.activeElement !== this.name) this.name.value = drawn.name;
-    this.end.value = drawn.end;
-    this.line.setAttribute('d', this.pathText(drawn.points));
-    this.rounded.setAttribute('d', this.pathText((drawn.points.length > 0 && this.session().robot.path(drawn)) || []));
+  private showGesture(): void {
+    const { gesture } = this;
+    const put = (name: GestureNumber, value: number) => putNumber(element(`path-${name}`), Number(value.toFixed(2)));
+    put('period', gesture.period);
+    put('size', gesture.size * 100);
+    put('terms', gesture.terms);
+    if (document.activeElement !== this.nameInput) this.nameInput.value = gesture.name;
+    this.endList.value = gesture.end;
+    this.drawnLine.setAttribute('d', this.pathText(gesture.points));
+    this.smoothedLine.setAttribute('d', this.pathText((gesture.points.length > 0 && this.session().robot.path(gesture)) || []));
   }
 
   /** Records lines that the user draws with a finger or a mouse. */
@@ -171,20 +180,20 @@ export class PathView {
       const matrix = this.plane.getScreenCTM();
       if (!matrix) return null;
       const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-      return this.pictureOf([x, y]);
+      return this.toPicture([x, y]);
     };
     const addPoint = (event: PointerEvent) => {
       const nextPoint = pointOf(event);
       const lastPoint = points?.at(-1);
-      if (!points || !nextPoint || (lastPoint && Math.hypot(nextPoint[0] - lastPoint[0], nextPoint[1] - lastPoint[1]) < LEAST_DISTANCE)) return;
+      if (!points || !nextPoint || (lastPoint && Math.hypot(nextPoint[0] - lastPoint[0], nextPoint[1] - lastPoint[1]) < MIN_POINT_DISTANCE_MM)) return;
       points.push(nextPoint);
-      this.line.setAttribute('d', this.pathText(points, ''));
+      this.drawnLine.setAttribute('d', this.pathText(points, ''));
     };
     this.plane.addEventListener('pointerdown', (event) => {
-      if (!this.room) return;
+      if (!this.reachArea) return;
       this.plane.setPointerCapture(event.pointerId);
       points = [];
-      this.rounded.setAttribute('d', '');
+      this.smoothedLine.setAttribute('d', '');
       addPoint(event);
     });
     this.plane.addEventListener('pointermove', addPoint);
@@ -193,16 +202,16 @@ export class PathView {
       const line = points;
       points = null;
       if (!line) return;
-      if (line.length < LEAST_POINTS) {
-        this.show();
+      if (line.length < MIN_POINT_COUNT) {
+        this.showGesture();
         return this.trial.say('A tap is not a line: hold and draw it.');
       }
-      this.shape.value = 'own';
-      this.change({ points: line, size: 1 });
+      this.shapeList.value = 'own';
+      this.changeGesture({ points: line, size: 1 });
     });
     this.plane.addEventListener('pointercancel', () => {
       points = null;
-      this.show();
+      this.showGesture();
     });
   }
 }

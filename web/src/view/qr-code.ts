@@ -1,12 +1,12 @@
 // Draws a text as a QR code, for a phone's camera.
 import { encode } from 'uqr';
 
-/** Empty border, modules (ISO/IEC 18004, 9.1). */
-const BORDER = 4;
+/** Width of the empty border in modules (ISO/IEC 18004, 9.1). */
+const BORDER_MODULES = 4;
 
-/** Draws a text as a QR code. Throws if it is too long for one. */
+/** Returns a text as a QR code. Throws if the text is too long for one. */
 export function qrCode(text: string): SVGSVGElement {
-  const { size, data } = encode(text, { ecc: 'L', border: BORDER });
+  const { size, data } = encode(text, { ecc: 'L', border: BORDER_MODULES });
   const namespace = 'http://www.w3.org/2000/svg';
   const svg = document.createElementNS(namespace, 'svg');
   svg.setAttribute('viewBox', `0 0 ${size} ${size}`);

@@ -1,5 +1,5 @@
-// The robot.toml as text: edited, opened, dropped into the box, undone, and shared as a link.
-import { partsOf } from '../address';
+// The panel of the robot.toml as text: it can be edited, opened, dropped into the box, undone, and shared as a link.
+import { addressParts } from '../address';
 import { linkTo, unpack } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
@@ -12,40 +12,41 @@ import { NO_BOARD, type Writer } from './writer';
 const MAX_UNDO_STEPS = 50;
 
 export class RobotText {
-  private readonly box = element<HTMLTextAreaElement>('robot-text');
-  private readonly undo = element<HTMLButtonElement>('robot-undo');
-  private readonly redo = element<HTMLButtonElement>('robot-redo');
+  private readonly textBox = element<HTMLTextAreaElement>('robot-text');
+  private readonly undoButton = element<HTMLButtonElement>('robot-undo');
+  private readonly redoButton = element<HTMLButtonElement>('robot-redo');
   /** The previous robots, the latest at the end. */
-  private before: string[] = [];
+  private undoStack: string[] = [];
   /** The robots that were undone, the latest at the end. */
-  private undone: string[] = [];
-  private shown = '';
+  private redoStack: string[] = [];
+  /** The session's robot that was shown last; empty before the first one. */
+  private shownToml = '';
   /** The refusal of the shown text; null if the session's robot was loaded from it. */
-  refused: Refused | null = null;
+  refusal: Refused | null = null;
 
-  /** `onText` is called when the text or its refusal has changed. */
+  /** `onChange` is called when the text or its refusal has changed. */
   constructor(
     private readonly session: () => Session,
     private readonly writer: Writer,
-    private readonly onText: () => void,
+    private readonly onChange: () => void,
   ) {
-    element('robot-write').addEventListener('click', () => void this.write());
-    element('robot-take').addEventListener('click', () => void this.loadAndShow(this.box.value));
-    this.box.addEventListener('keydown', (event) => {
+    element('robot-write').addEventListener('click', () => void this.loadAndWrite());
+    element('robot-take').addEventListener('click', () => void this.loadAndShow(this.textBox.value));
+    this.textBox.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter' || !(event.ctrlKey || event.metaKey)) return;
       event.preventDefault();
-      void this.loadAndShow(this.box.value);
+      void this.loadAndShow(this.textBox.value);
     });
-    this.box.addEventListener('input', onText);
-    this.undo.addEventListener('click', () => void this.undoLast());
-    this.redo.addEventListener('click', () => void this.redoLast());
+    this.textBox.addEventListener('input', onChange);
+    this.undoButton.addEventListener('click', () => void this.undoLast());
+    this.redoButton.addEventListener('click', () => void this.redoLast());
     element('robot-line').addEventListener('click', () => this.goToMistake());
     element('robot-link').addEventListener('click', () => void this.copyLink());
-    element('robot-code').addEventListener('click', () => void this.showCode());
+    element('robot-code').addEventListener('click', () => void this.toggleCode());
     const opener = element<HTMLInputElement>('robot-open');
     opener.addEventListener('change', () => {
       const file = opener.files?.[0];
-      if (file) void this.open(file);
+      if (file) void this.openFile(file);
       // Otherwise the same file could not be chosen again.
       opener.value = '';
     });
@@ -56,48 +57,48 @@ export class RobotText {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
       event.preventDefault();
-      void this.open(file);
+      void this.openFile(file);
     });
   }
 
   /** Shows the session's robot. */
   showRobot(): void {
     const { toml, file } = this.session();
-    // While a file of the list is being read it has no name; then there is nothing to undo.
-    if (file === '') this.before = [];
-    else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - MAX_UNDO_STEPS), this.shown];
-    if (this.shown !== toml) this.undone = [];
-    this.shown = toml;
-    this.box.value = toml;
+    // The name is empty while a file of the list is being read: then there is nothing to undo.
+    if (file === '') this.undoStack = [];
+    else if (this.shownToml !== '' && this.shownToml !== toml) this.undoStack = [...this.undoStack.slice(1 - MAX_UNDO_STEPS), this.shownToml];
+    if (this.shownToml !== toml) this.redoStack = [];
+    this.shownToml = toml;
+    this.textBox.value = toml;
     this.showRefusal(null);
   }
 
   /** The shown text: the session's robot, or a text that is being edited or has a mistake. */
   get draft(): string {
-    return this.box.value;
+    return this.textBox.value;
   }
 
-  /** True if there is a step to undo. */
+  /** True if there is a change to undo. */
   get canUndo(): boolean {
-    return this.before.length > 0 || this.refused !== null;
+    return this.undoStack.length > 0 || this.refusal !== null;
   }
 
   /** Loads the robot in the page's address, if there is one; returns false if it is invalid. */
-  async fromAddress(hash = location.hash): Promise<boolean> {
+  async loadFromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const encoded = partsOf(hash).get('robot');
+      const encoded = addressParts(hash).get('robot');
       const toml = encoded === null ? this.session().toml : await unpack(encoded);
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
-      reveal(this.box);
+      reveal(this.textBox);
       this.showRefusal({ refused: messageOf(error), meaning: null, line: null, key: '' });
       return false;
     }
   }
 
-  private async open(file: File): Promise<void> {
-    reveal(this.box);
-    // A binary file is not shown in the box.
+  private async openFile(file: File): Promise<void> {
+    reveal(this.textBox);
+    // A binary file must not be shown in the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
     if (toml === '' || toml.includes('\0')) return this.showRefusal({ refused: `${file.name} is not a robot.toml.`, meaning: null, line: null, key: '' });
     await this.loadAndShow(toml);
@@ -107,7 +108,7 @@ export class RobotText {
   async loadText(toml: string): Promise<boolean> {
     const refusal = await this.session().change(toml);
     if (!refusal) return true;
-    this.box.value = toml;
+    this.textBox.value = toml;
     this.showRefusal(refusal);
     return false;
   }
@@ -118,16 +119,16 @@ export class RobotText {
    */
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
-    reveal(this.box);
+    reveal(this.textBox);
     this.goToMistake();
     return false;
   }
 
   /** Loads the text as the robot and writes it to the board on USB. */
-  private async write(): Promise<void> {
+  private async loadAndWrite(): Promise<void> {
     const session = this.session();
-    if (this.box.value !== session.toml) await this.loadAndShow(this.box.value);
-    if (this.box.value !== session.toml) return;
+    if (this.textBox.value !== session.toml) await this.loadAndShow(this.textBox.value);
+    if (this.textBox.value !== session.toml) return;
     const message = element('robot-said');
     if (!session.isReal) message.textContent = NO_BOARD;
     else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('robot-progress') });
@@ -135,24 +136,24 @@ export class RobotText {
 
   /** Undoes the last change: restores the previous robot, or the current one if the shown text is refused. */
   async undoLast(): Promise<void> {
-    if (this.refused) return this.showRobot();
-    const { before, undone, shown } = this;
-    const lastToml = before.at(-1);
-    if (lastToml !== undefined) await this.restore(lastToml, before.slice(0, -1), [...undone, shown]);
+    if (this.refusal) return this.showRobot();
+    const { undoStack, redoStack, shownToml } = this;
+    const lastToml = undoStack.at(-1);
+    if (lastToml !== undefined) await this.restore(lastToml, undoStack.slice(0, -1), [...redoStack, shownToml]);
   }
 
   /** Restores the robot that was undone last. */
   private async redoLast(): Promise<void> {
-    const { before, undone, shown } = this;
-    const nextToml = undone.at(-1);
-    if (nextToml !== undefined) await this.restore(nextToml, [...before, shown], undone.slice(0, -1));
+    const { undoStack, redoStack, shownToml } = this;
+    const nextToml = redoStack.at(-1);
+    if (nextToml !== undefined) await this.restore(nextToml, [...undoStack, shownToml], redoStack.slice(0, -1));
   }
 
-  /** Loads an earlier robot into the session, with the lists of robots for undo and redo that belong to it. */
-  private async restore(toml: string, before: string[], undone: string[]): Promise<void> {
-    const current = { before: this.before, undone: this.undone, shown: this.shown };
-    // A restored robot is not recorded as a step.
-    Object.assign(this, { before, undone, shown: toml });
+  /** Loads an earlier robot into the session, with the stacks for undo and redo that belong to it. */
+  private async restore(toml: string, undoStack: string[], redoStack: string[]): Promise<void> {
+    const current = { undoStack: this.undoStack, redoStack: this.redoStack, shownToml: this.shownToml };
+    // A restored robot must not be recorded as a new change.
+    Object.assign(this, { undoStack, redoStack, shownToml: toml });
     const refusal = await this.session().change(toml);
     if (!refusal) return;
     Object.assign(this, current);
@@ -169,7 +170,7 @@ export class RobotText {
   }
 
   /** Shows the link to the robot as a QR code, or hides it. */
-  private async showCode(): Promise<void> {
+  private async toggleCode(): Promise<void> {
     const codeBox = element('robot-drawn');
     const isShown = codeBox.childElementCount === 0;
     element('robot-code').setAttribute('aria-pressed', String(isShown));
@@ -190,17 +191,17 @@ export class RobotText {
   }
 
   private goToMistake(): void {
-    const line = this.refused?.line;
+    const line = this.refusal?.line;
     if (line == null) return;
-    const lines = this.box.value.split('\n');
+    const lines = this.textBox.value.split('\n');
     const begin = lines.slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0);
-    this.box.focus();
-    this.box.setSelectionRange(begin, begin + (lines[line - 1]?.length ?? 0));
-    this.box.scrollTop = ((line - 4) / lines.length) * this.box.scrollHeight;
+    this.textBox.focus();
+    this.textBox.setSelectionRange(begin, begin + (lines[line - 1]?.length ?? 0));
+    this.textBox.scrollTop = ((line - 4) / lines.length) * this.textBox.scrollHeight;
   }
 
   private showRefusal(refusal: Refused | null): void {
-    this.refused = refusal;
+    this.refusal = refusal;
     element('robot-refusal').hidden = refusal === null;
     element('robot-refusal').textContent = refusal?.refused ?? '';
     const button = element('robot-line');
@@ -210,9 +211,9 @@ export class RobotText {
     // The code that was shown belongs to another robot.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');
-    this.box.setAttribute('aria-invalid', String(refusal !== null));
-    this.undo.disabled = !this.canUndo;
-    this.redo.disabled = this.undone.length === 0;
-    this.onText();
+    this.textBox.setAttribute('aria-invalid', String(refusal !== null));
+    this.undoButton.disabled = !this.canUndo;
+    this.redoButton.disabled = this.redoStack.length === 0;
+    this.onChange();
   }
 }

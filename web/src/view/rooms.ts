@@ -1,32 +1,32 @@
-// The rooms beside the stage, of which one is open. The part `room` of the address names it, so that links and the
-// browser's Back open it.
-import { partsOf } from '../address';
+// The rooms beside the stage, of which one is open. The part `room` of the page's address names it, so that links and
+// the browser's Back button open a room.
+import { addressParts } from '../address';
 
-/** The name of the document's event after another room was opened. */
-export const OPENED = 'room';
+/** The event that the document receives after another room was opened. */
+export const ROOM_OPENED = 'room';
 
 const FIRST_ROOM = 'start';
 const PAGE_NAME = document.title;
 
-const idOf = (room: string) => `room-${room}`;
-const rooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
+const roomIdOf = (room: string) => `room-${room}`;
+const allRooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
 
 /** Opens the room that an address names, or the first one. */
 export function openRoom(hash: string): void {
-  const requestedId = idOf(partsOf(hash).get('room') ?? FIRST_ROOM);
-  const room = rooms().find(({ id }) => id === requestedId) ?? rooms()[0];
+  const requestedId = roomIdOf(addressParts(hash).get('room') ?? FIRST_ROOM);
+  const room = allRooms().find(({ id }) => id === requestedId) ?? allRooms()[0];
   if (!room || room.id === document.body.dataset.at) return;
-  for (const candidate of rooms()) candidate.hidden = candidate !== room;
+  for (const candidate of allRooms()) candidate.hidden = candidate !== room;
   for (const link of document.querySelectorAll<HTMLAnchorElement>('nav a')) {
-    const isOpenRoom = idOf(partsOf(link.hash).get('room') ?? '') === room.id;
+    const isOpenRoom = roomIdOf(addressParts(link.hash).get('room') ?? '') === room.id;
     if (isOpenRoom) link.setAttribute('aria-current', 'page');
     else link.removeAttribute('aria-current');
   }
   document.body.dataset.at = room.id;
   document.title = `${room.querySelector('h2')?.textContent}, ${PAGE_NAME}`;
   scrollTo(0, 0);
-  document.dispatchEvent(new Event(OPENED));
-  // Its panels show what they have missed.
+  document.dispatchEvent(new Event(ROOM_OPENED));
+  // The room's panels show what has changed while the room was closed.
   for (const panel of room.querySelectorAll('details[open]')) panel.dispatchEvent(new Event('toggle'));
 }
 
@@ -39,6 +39,6 @@ export function reveal(target: HTMLElement): void {
   const panel = target.closest('details');
   if (panel) panel.open = true;
   if (!room || room.id === document.body.dataset.at) return;
-  location.hash = `room=${room.id.slice(idOf('').length)}`;
+  location.hash = `room=${room.id.slice(roomIdOf('').length)}`;
   openRoom(location.hash);
 }

@@ -1,4 +1,4 @@
-// The panel of routines: their steps, as in the text of robot.toml, and the recorder of a drive.
+// The panel of routines: their steps, as in the text of robot.toml, and a recorder that makes a routine of a drive.
 import { LatestQuestion } from '../latest';
 import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
 import { robotHelper } from '../robot-helper';
@@ -12,13 +12,15 @@ import { NO_BOARD, type Writer } from './writer';
 
 /** The first step of a new routine. */
 const FIRST_STEP = 'stand 1 s';
-/** Least width and height of the path's picture without its margin, and the margin around the path, mm. */
-const LEAST_SIZE = 160;
-const PICTURE_MARGIN = 20;
+/** Least width and height of the path's picture without its margin. */
+const MIN_SIZE_MM = 160;
+/** Margin around the path in its picture. */
+const MARGIN_MM = 20;
 
+/** Formats a number without decimals, and without a minus sign for zero. */
 const formatRounded = (value: number) => (Math.round(value) + 0).toFixed(0);
 
-/** Returns the list with the item at the index `from` moved to the index `to`. */
+/** Returns a copy of the list with the item at the index `from` moved to the index `to`. */
 function moveItem<T>(list: T[], from: number, to: number): T[] {
   const rest = list.toSpliced(from, 1);
   return rest.toSpliced(to, 0, list[from] as T);
@@ -26,20 +28,21 @@ function moveItem<T>(list: T[], from: number, to: number): T[] {
 
 export class RoutinesView {
   private readonly panel = element<HTMLDetailsElement>('routines');
-  private readonly list = element<HTMLOListElement>('routine-steps');
-  private readonly choice = element<HTMLSelectElement>('routine');
-  private readonly name = element<HTMLInputElement>('routine-name');
-  private readonly refusal = element('routine-refusal');
-  private readonly path = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
+  private readonly stepList = element<HTMLOListElement>('routine-steps');
+  private readonly routineList = element<HTMLSelectElement>('routine');
+  private readonly nameInput = element<HTMLInputElement>('routine-name');
+  private readonly refusalBox = element('routine-refusal');
+  private readonly pathPicture = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
   private routines: Routine[] = [];
   private recorder: Recorder | null = null;
   /** The recorded steps until they are stored under a name. */
-  private recorded: string[] = [];
-  /** The index of the step that is dragged, and its index if it is dropped now; null without a drag. */
-  private dragged: { from: number; to: number } | null = null;
-  private paths: LatestQuestion<OnFloor & { routine: string }, RoundPath | null> | null = null;
+  private recordedSteps: string[] = [];
+  /** The index of the dragged step, and its new index if it is dropped now; null without a drag. */
+  private drag: { from: number; to: number } | null = null;
+  /** Asks for the predicted path; null until it is needed. */
+  private pathQuestion: LatestQuestion<OnFloor & { routine: string }, RoundPath | null> | null = null;
 
-  /** `pace` returns the pace, percent, and `ask` sends a line. */
+  /** `pace` returns the pace in percent, and `ask` sends a line. */
   constructor(
     private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
@@ -50,84 +53,85 @@ export class RoutinesView {
   ) {
     const onClick = (id: string, act: () => void) => element(`routine-${id}`).addEventListener('click', act);
     this.panel.addEventListener('toggle', () => this.show());
-    this.choice.addEventListener('change', () => this.show());
-    onClick('record', () => this.record());
-    onClick('keep', () => void this.keep());
-    onClick('drop', () => this.offer([]));
-    onClick('add', () => void this.add());
+    this.routineList.addEventListener('change', () => this.show());
+    onClick('record', () => this.toggleRecording());
+    onClick('keep', () => void this.keepRecorded());
+    onClick('drop', () => this.offerToKeep([]));
+    onClick('add', () => void this.addStep());
     onClick('undo', () => void this.text.undoLast());
-    onClick('start', () => void this.start());
-    onClick('write', () => void this.write());
+    onClick('start', () => void this.startRoutine());
+    onClick('write', () => void this.writeRobot());
   }
 
-  /** Takes another robot, which ends a recording. */
+  /** Ends a recording, since the session has another robot. */
   showRobot(): void {
-    if (this.recorder) this.record();
+    if (this.recorder) this.toggleRecording();
   }
 
-  /** Takes the robot's activity. */
-  doing(gait: string): void {
+  /** Tells the recorder the gait that the robot does. */
+  setActivity(gait: string): void {
     this.recorder?.setGait(gait, this.session().clock);
     this.showRecording();
   }
 
-  /** Takes the robot's pace, percent. */
-  speed(percent: number): void {
+  /** Tells the recorder the robot's pace in percent. */
+  setPace(percent: number): void {
     this.recorder?.setPace(percent, this.session().clock);
   }
 
-  /** Takes the phase of the robot's gait. */
-  phase(phase: number): void {
+  /** Tells the recorder the phase of the robot's gait. */
+  setPhase(phase: number): void {
     this.recorder?.setPhase(phase, this.session().clock);
   }
 
   /** Shows the routines of the text, if the panel is open. */
   show(): void {
     if (!isShown(this.panel)) return;
-    const { value } = this.choice;
+    const { value } = this.routineList;
     this.routines = Robot.routines(this.text.draft);
-    this.choice.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
-    if (this.routines.some(({ name }) => name === value)) this.choice.value = value;
-    this.choice.disabled = this.routines.length === 0;
-    this.dragged = null;
+    this.routineList.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
+    if (this.routines.some(({ name }) => name === value)) this.routineList.value = value;
+    this.routineList.disabled = this.routines.length === 0;
+    this.drag = null;
     this.showSteps();
     this.predict();
   }
 
-  /** Predicts the path of the chosen routine with its steps as they are shown. */
+  /** Predicts the path of the chosen routine, with its steps in the shown order. */
   predict(): void {
     if (!isShown(this.panel)) return;
-    const { shown } = this;
-    if (!shown) return this.draw(null);
+    const { chosenRoutine } = this;
+    if (!chosenRoutine) return this.drawPath(null);
     const { floor, servos } = this.session();
-    this.paths ??= this.makePathQuestion();
-    this.paths.ask({ toml: Robot.putSteps(this.text.draft, shown.name, shown.steps).text, floor, servos, routine: shown.name });
+    this.pathQuestion ??= this.createPathQuestion();
+    this.pathQuestion.ask({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
-  private makePathQuestion(): NonNullable<typeof this.paths> {
+  private createPathQuestion(): NonNullable<typeof this.pathQuestion> {
     const helper = robotHelper(this.module);
-    return new LatestQuestion((question) => helper.ask((robot) => robot.round(question)), (path) => this.draw(path));
+    return new LatestQuestion((question) => helper.ask((robot) => robot.round(question)), (path) => this.drawPath(path));
   }
 
   private say(text: string): void {
     element('routine-said').textContent = text;
   }
 
-  /** The chosen routine, with its steps in the order in which they are dragged. */
-  private get shown(): Routine | null {
-    const chosen = this.routines.find(({ name }) => name === this.choice.value);
-    if (!chosen || !this.dragged) return chosen ?? null;
-    return { ...chosen, steps: moveItem(chosen.steps, this.dragged.from, this.dragged.to) };
+  /** The chosen routine, with its steps in the order to which the user is dragging them; null without a routine. */
+  private get chosenRoutine(): Routine | null {
+    const chosen = this.routines.find(({ name }) => name === this.routineList.value);
+    if (!chosen || !this.drag) return chosen ?? null;
+    return { ...chosen, steps: moveItem(chosen.steps, this.drag.from, this.drag.to) };
   }
 
-  private record(): void {
+  /** Starts a recording, or ends it and offers to keep its steps. */
+  private toggleRecording(): void {
     const { description, gait, clock } = this.session();
     const steps = this.recorder?.steps(clock) ?? null;
     this.recorder = steps ? null : new Recorder(description.gaits, gait, this.pace(), clock);
     const button = element('routine-record');
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
-    this.offer(steps ?? []);
+    this.offerToKeep(steps ?? []);
     if (steps?.length === 0) this.say('Nothing is recorded: the robot has not walked.');
     this.showRecording();
   }
@@ -138,157 +142,158 @@ export class RoutinesView {
   }
 
   /** Offers to store recorded steps under a name; without steps, hides the offer. */
-  private offer(steps: string[]): void {
-    this.recorded = steps;
+  private offerToKeep(steps: string[]): void {
+    this.recordedSteps = steps;
     element('routine-recorded').hidden = steps.length === 0;
     this.say(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
     if (steps.length === 0) return;
     const takenNames = new Set(Robot.routines(this.text.draft).map(({ name }) => name));
     const names = ['patrol', ...Array.from(takenNames, (_, n) => `patrol-${n + 2}`)];
-    this.name.value = names.find((name) => !takenNames.has(name)) ?? '';
-    this.name.select();
+    this.nameInput.value = names.find((name) => !takenNames.has(name)) ?? '';
+    this.nameInput.select();
   }
 
-  private async keep(): Promise<void> {
-    const name = this.name.value.trim().replaceAll(' ', '-');
+  private async keepRecorded(): Promise<void> {
+    const name = this.nameInput.value.trim().replaceAll(' ', '-');
     const { draft } = this.text;
     if (Robot.routines(draft).some((routine) => routine.name === name)) return this.say(`${name} is there already: give it another name.`);
-    const { text, refusal } = Robot.putSteps(draft, name, this.recorded);
-    // With a mistake in a step the routine is stored anyway: its block shows the mistake.
+    const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
+    // A routine with a mistake in a step is stored anyway: the step's block shows the mistake.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.say(refusal.refused);
-    this.offer([]);
+    this.offerToKeep([]);
     await this.text.loadText(text);
-    this.choice.value = name;
+    this.routineList.value = name;
     this.show();
   }
 
-  private async add(): Promise<void> {
-    const { steps, name } = this.shown ?? { steps: [], name: 'patrol' };
-    await this.change([...steps, steps.at(-1) ?? FIRST_STEP], name);
+  /** Appends a copy of the last step, and selects it. */
+  private async addStep(): Promise<void> {
+    const { steps, name } = this.chosenRoutine ?? { steps: [], name: 'patrol' };
+    await this.replaceSteps([...steps, steps.at(-1) ?? FIRST_STEP], name);
     this.inputAt(steps.length)?.select();
   }
 
   /** Replaces the steps of the chosen routine. */
-  private async change(steps: string[], name = this.choice.value): Promise<void> {
+  private async replaceSteps(steps: string[], name = this.routineList.value): Promise<void> {
     this.say('');
     await this.text.loadText(Robot.putSteps(this.text.draft, name, steps).text);
   }
 
-  private async move(from: number, to: number): Promise<void> {
-    const { shown } = this;
-    if (!shown || to < 0 || to >= shown.steps.length) return;
-    await this.change(moveItem(shown.steps, from, to));
+  private async moveStep(from: number, to: number): Promise<void> {
+    const { chosenRoutine } = this;
+    if (!chosenRoutine || to < 0 || to >= chosenRoutine.steps.length) return;
+    await this.replaceSteps(moveItem(chosenRoutine.steps, from, to));
   }
 
-  private async start(): Promise<void> {
+  private async startRoutine(): Promise<void> {
     const session = this.session();
-    // A simulated UNO restarts with each change.
-    if (!session.answers) await session.greeting();
-    await this.ask(this.choice.value.replaceAll('-', ' '));
+    // A simulated UNO restarts after each change of the robot.
+    if (!session.isFirmwareAnswering) await session.waitForBanner();
+    await this.ask(this.routineList.value.replaceAll('-', ' '));
   }
 
-  private async write(): Promise<void> {
+  private async writeRobot(): Promise<void> {
     const message = element('routine-said');
     if (!this.session().isReal) this.say(NO_BOARD);
     else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('routine-progress') });
   }
 
   private inputAt(index: number): HTMLInputElement | null {
-    return this.list.children[index]?.querySelector('input') ?? null;
+    return this.stepList.children[index]?.querySelector('input') ?? null;
   }
 
   private showSteps(): void {
-    const { shown, list } = this;
-    const { refused, canUndo } = this.text;
-    const steps = shown?.steps ?? [];
-    while (list.children.length > steps.length) list.lastElementChild?.remove();
-    while (list.children.length < steps.length) list.append(this.makeBlock(list.children.length));
-    const mistakenIndex = shown && refused?.key === `routine.${shown.name}.steps` ? mistakenStepOf(refused) : null;
+    const { chosenRoutine, stepList } = this;
+    const { refusal, canUndo } = this.text;
+    const steps = chosenRoutine?.steps ?? [];
+    while (stepList.children.length > steps.length) stepList.lastElementChild?.remove();
+    while (stepList.children.length < steps.length) stepList.append(this.makeBlock(stepList.children.length));
+    const mistakenIndex = chosenRoutine && refusal?.key === `routine.${chosenRoutine.name}.steps` ? mistakenStepIndex(refusal) : null;
     steps.forEach((step, index) => {
-      const [block, input] = [list.children[index], this.inputAt(index)];
+      const [block, input] = [stepList.children[index], this.inputAt(index)];
       if (!block || !input) return;
       if (input.value !== step) input.value = step;
-      block.classList.toggle('held', this.dragged?.to === index);
+      block.classList.toggle('held', this.drag?.to === index);
       input.setAttribute('aria-invalid', String(mistakenIndex === index));
-      if (mistakenIndex === index) input.setAttribute('aria-describedby', this.refusal.id);
+      if (mistakenIndex === index) input.setAttribute('aria-describedby', this.refusalBox.id);
       else input.removeAttribute('aria-describedby');
     });
-    this.refusal.hidden = refused === null;
-    this.refusal.textContent = refused?.refused ?? '';
-    if (mistakenIndex !== null) list.children[mistakenIndex]?.append(this.refusal);
-    else list.after(this.refusal);
+    this.refusalBox.hidden = refusal === null;
+    this.refusalBox.textContent = refusal?.refused ?? '';
+    if (mistakenIndex !== null) stepList.children[mistakenIndex]?.append(this.refusalBox);
+    else stepList.after(this.refusalBox);
     element<HTMLButtonElement>('routine-undo').disabled = !canUndo;
-    for (const name of ['start', 'write']) element<HTMLButtonElement>(`routine-${name}`).disabled = !shown || refused !== null;
-    element('routine-none').hidden = shown !== null;
+    for (const name of ['start', 'write']) element<HTMLButtonElement>(`routine-${name}`).disabled = !chosenRoutine || refusal !== null;
+    element('routine-none').hidden = chosenRoutine !== null;
   }
 
-  /** Makes the block of the step at an index. */
+  /** Makes the block of the step at an index: its grip, its input and its buttons. */
   private makeBlock(index: number): HTMLLIElement {
     const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
-    this.drag(grip, index);
+    this.addDragHandlers(grip, index);
     const input = make('input', { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63, ariaLabel: `Step ${index + 1}` });
     const block = make('li', {}, grip, input);
-    input.addEventListener('change', () => void this.change(this.shown?.steps.with(index, input.value.trim()) ?? []));
+    input.addEventListener('change', () => void this.replaceSteps(this.chosenRoutine?.steps.with(index, input.value.trim()) ?? []));
     const addButton = (text: string, label: string, act: () => Promise<void>, nextIndex: () => number) => {
       const buttonElement = make('button', { type: 'button', ariaLabel: `${label} ${index + 1}` }, text);
       block.append(buttonElement);
       // The focus follows the step to its new index.
       buttonElement.addEventListener('click', () => void act().then(() => this.findButton(nextIndex(), label)?.focus()));
     };
-    addButton('↑', 'Move up step', () => this.move(index, index - 1), () => Math.max(0, index - 1));
-    addButton('↓', 'Move down step', () => this.move(index, index + 1), () => Math.min(index + 1, this.list.children.length - 1));
-    addButton('Copy', 'Copy step', () => this.change(this.shown?.steps.toSpliced(index, 0, this.shown.steps[index] ?? '') ?? []), () => index + 1);
-    addButton('×', 'Delete step', () => this.change(this.shown?.steps.toSpliced(index, 1) ?? []), () => Math.min(index, this.list.children.length - 1));
+    addButton('↑', 'Move up step', () => this.moveStep(index, index - 1), () => Math.max(0, index - 1));
+    addButton('↓', 'Move down step', () => this.moveStep(index, index + 1), () => Math.min(index + 1, this.stepList.children.length - 1));
+    addButton('Copy', 'Copy step', () => this.replaceSteps(this.chosenRoutine?.steps.toSpliced(index, 0, this.chosenRoutine.steps[index] ?? '') ?? []), () => index + 1);
+    addButton('×', 'Delete step', () => this.replaceSteps(this.chosenRoutine?.steps.toSpliced(index, 1) ?? []), () => Math.min(index, this.stepList.children.length - 1));
     return block;
   }
 
   private findButton(index: number, label: string): HTMLButtonElement | null {
-    return this.list.children[index]?.querySelector(`[aria-label^="${label}"]`) ?? null;
+    return this.stepList.children[index]?.querySelector(`[aria-label^="${label}"]`) ?? null;
   }
 
   /** Lets a pointer drag a step by its grip to another index; the predicted path follows. */
-  private drag(grip: HTMLElement, index: number): void {
-    const indexAt = (y: number) => [...this.list.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
+  private addDragHandlers(grip: HTMLElement, index: number): void {
+    const indexAt = (y: number) => [...this.stepList.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
     const dragTo = (to: number) => {
-      if (!this.dragged || this.dragged.to === to) return;
-      this.dragged = { from: index, to };
+      if (!this.drag || this.drag.to === to) return;
+      this.drag = { from: index, to };
       this.showSteps();
       this.predict();
     };
     grip.addEventListener('pointerdown', (event) => {
       event.preventDefault();
       grip.setPointerCapture(event.pointerId);
-      this.dragged = { from: index, to: index };
+      this.drag = { from: index, to: index };
       this.showSteps();
     });
     grip.addEventListener('pointermove', ({ clientY }) => dragTo(Math.max(0, indexAt(clientY))));
     grip.addEventListener('pointerup', () => {
-      const { dragged } = this;
-      this.dragged = null;
-      if (dragged && dragged.to !== index) void this.move(index, dragged.to);
+      const { drag } = this;
+      this.drag = null;
+      if (drag && drag.to !== index) void this.moveStep(index, drag.to);
       else this.showSteps();
     });
     grip.addEventListener('pointercancel', () => {
       dragTo(index);
-      this.dragged = null;
+      this.drag = null;
       this.showSteps();
     });
   }
 
-  private draw(path: RoundPath | null): void {
+  private drawPath(path: RoundPath | null): void {
     const endPlace = path?.places.at(-1) ?? null;
-    this.path.toggleAttribute('hidden', endPlace === null);
+    this.pathPicture.toggleAttribute('hidden', endPlace === null);
     element('routine-round').textContent = path && endPlace ? describeRound(path, endPlace) : '';
     if (!path || !endPlace) return;
     const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
     const rangeOf = (values: number[]) => {
       const [smallest, largest] = [Math.min(...values), Math.max(...values)];
-      const size = Math.max(LEAST_SIZE, largest - smallest) + 2 * PICTURE_MARGIN;
+      const size = Math.max(MIN_SIZE_MM, largest - smallest) + 2 * MARGIN_MM;
       return { from: (smallest + largest - size) / 2, size };
     };
     const [horizontal, vertical] = [rangeOf(xs), rangeOf(ys)];
-    this.path.setAttribute('viewBox', `${horizontal.from} ${vertical.from} ${horizontal.size} ${vertical.size}`);
-    const findPart = (name: string) => this.path.querySelector(`.${name}`);
+    this.pathPicture.setAttribute('viewBox', `${horizontal.from} ${vertical.from} ${horizontal.size} ${vertical.size}`);
+    const findPart = (name: string) => this.pathPicture.querySelector(`.${name}`);
     findPart('track')?.setAttribute('d', `M ${xs.map((x, n) => `${x.toFixed(1)} ${ys[n]?.toFixed(1)}`).join(' L ')}`);
     const size = Math.max(horizontal.size, vertical.size) / 20;
     findPart('start')?.setAttribute('r', String(size / 3));
@@ -297,11 +302,12 @@ export class RoutinesView {
 }
 
 /** Returns the index of the step that a refusal names; null if it names none. */
-function mistakenStepOf({ refused }: Refused): number | null {
+function mistakenStepIndex({ refused }: Refused): number | null {
   const stepText = /: step (\d+), /.exec(refused)?.[1];
   return stepText === undefined ? null : Number(stepText) - 1;
 }
 
+/** Returns a sentence about the duration of a round and the place where it ends. */
 function describeRound({ seconds, is_cut }: RoundPath, { x, y, heading }: Place): string {
   const subject = is_cut ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
   const sideText = `${formatRounded(Math.abs(x))} mm to the ${x > 0 ? 'right' : 'left'}`;

@@ -1,21 +1,23 @@
-// The four servos' pulses as an oscilloscope shows them, and their widths as numbers.
+// The panel of the four servos' pulses: as an oscilloscope shows them, and their widths as numbers.
 import type { Description, Scene } from '../robot';
-import { FREQUENCY } from '../uno/board';
+import { FREQUENCY_HZ } from '../uno/board';
 import { element, surface } from './canvas';
 import { make } from './make';
 import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
 
-/** Time span of the scope, cycles: three frames. */
-const SPAN_CYCLES = 0.06 * FREQUENCY;
-const CYCLES_PER_US = FREQUENCY / 1e6;
+/** Time span of the scope in cycles of the processor: three frames. */
+const SPAN_CYCLES = 0.06 * FREQUENCY_HZ;
+const CYCLES_PER_US = FREQUENCY_HZ / 1e6;
 
+/** A pulse: the time of its rising edge and its width, in cycles of the processor. */
 interface Pulse {
   servo: number;
-  rise: number;
-  width: number;
+  riseCycle: number;
+  widthCycles: number;
 }
 
+/** Returns the name on the board of a pin with an Arduino number. */
 function pinName(pin: number): string {
   return pin >= 14 ? `A${pin - 14}` : `D${pin}`;
 }
@@ -27,8 +29,9 @@ export class ScopeView {
   private pins: number[] = [];
   private pulses: Pulse[] = [];
   private readonly note = element('scope-note');
-  private widths = [0, 0, 0, 0];
-  /** True if pulses are known, on the simulated board: a real board sends only its pose. */
+  /** Pulse widths of the latest frame, cycles; 0 for no pulse. */
+  private frameWidths = [0, 0, 0, 0];
+  /** True on the simulated board, whose pulses are known; a real board sends only its pose. */
   private hasPulses = true;
 
   /** Shows another robot. */
@@ -48,31 +51,31 @@ export class ScopeView {
   }
 
   /** Switches to a simulated or a real board. */
-  link(isReal: boolean): void {
+  changeLink(isReal: boolean): void {
     this.hasPulses = !isReal;
     this.note.hidden = !isReal;
     this.pulses = [];
-    this.widths = [0, 0, 0, 0];
+    this.frameWidths = [0, 0, 0, 0];
   }
 
-  /** Adds a pulse of a pin, by its Arduino number; `rise` and `width` are in cycles. */
-  pulse(pin: number, rise: number, width: number): void {
+  /** Adds a pulse of the pin with an Arduino number. */
+  addPulse(pin: number, riseCycle: number, widthCycles: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
-    this.pulses.push({ servo, rise, width });
+    this.pulses.push({ servo, riseCycle, widthCycles });
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** Sets the pulse widths of the latest frame, cycles; 0 for no pulse. */
-  frame(widths: readonly number[]): void {
-    this.widths = [...widths];
+  /** Sets the pulse widths of the latest frame, in cycles; 0 for no pulse. */
+  setWidths(widths: readonly number[]): void {
+    this.frameWidths = [...widths];
   }
 
-  /** Updates the numbers in the table, for which the browser must lay out the page again. */
-  write(scene: Scene | null): void {
+  /** Updates the table; called less often than `draw`, since the browser lays out the page again for it. */
+  updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.rows.forEach(({ width, angle }, servo) => {
-      const cycles = this.widths[servo];
+      const cycles = this.frameWidths[servo];
       const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
       if (width.textContent !== text) width.textContent = text;
       const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
@@ -80,6 +83,7 @@ export class ScopeView {
     });
   }
 
+  /** Draws the pulses up to the cycle `currentCycle`, which is at the right edge. */
   draw(currentCycle: number): void {
     const area = surface(this.canvas);
     if (!area) return;
@@ -98,8 +102,8 @@ export class ScopeView {
       pen.beginPath();
       pen.moveTo(0, lowY);
       for (const pulse of this.pulses) {
-        if (pulse.servo !== servo || xOf(pulse.rise + pulse.width) < 0) continue;
-        const [from, to] = [xOf(pulse.rise), xOf(pulse.rise + pulse.width)];
+        if (pulse.servo !== servo || xOf(pulse.riseCycle + pulse.widthCycles) < 0) continue;
+        const [from, to] = [xOf(pulse.riseCycle), xOf(pulse.riseCycle + pulse.widthCycles)];
         pen.lineTo(from, lowY);
         pen.lineTo(from, highY);
         pen.lineTo(to, highY);

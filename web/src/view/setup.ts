@@ -1,4 +1,4 @@
-// The dialog of the first connection: its steps, the current step and its view. Every step can be left and entered
+// The dialog of the first connection, in which a new robot is set up step by step. Every step can be left and entered
 // again.
 import type { Guide } from '../../generated/board';
 import type { Link } from '../link/link';
@@ -6,47 +6,50 @@ import { parseCalibration } from '../robot';
 import type { Session } from '../session';
 import { BoardGuide } from '../setup/guide';
 import { messageOf } from '../trouble';
-import { GAITS, NOTHING_SAVED } from '../words';
+import { GAITS, NOTHING_SAVED_LINE } from '../words';
 import { element } from './canvas';
 import { reveal } from './rooms';
-import { board } from './setup/board';
-import { drawing, PLACES } from './setup/drawing';
-import { firmware } from './setup/firmware';
-import { horns } from './setup/horns';
-import { keep } from './setup/keep';
-import { Limits } from './setup/limits';
-import { button, make, row, words } from './make';
-import { Scale } from './setup/scale';
-import { Signs } from './setup/signs';
-import type { Step, Tools } from './setup/step';
-import { trims } from './setup/trims';
-import { walk } from './setup/walk';
+import { boardStep } from './setup/board';
+import { makeDrawing, SERVO_PLACES } from './setup/drawing';
+import { firmwareStep } from './setup/firmware';
+import { hornsStep } from './setup/horns';
+import { keepStep } from './setup/keep';
+import { LimitsStep } from './setup/limits';
+import { button, make, row, paragraph } from './make';
+import { ScaleStep } from './setup/scale';
+import { SignsStep } from './setup/signs';
+import type { Step, StepTools } from './setup/step';
+import { trimsStep } from './setup/trims';
+import { walkStep } from './setup/walk';
 import type { WriteContent, Writer } from './writer';
 
-const STEPS: readonly Step[] = [board, firmware, horns, new Signs(), trims, new Scale(), new Limits(), walk, keep];
-const LOST = 'The board is not connected any more. What was not saved is lost. Connect it again and go on here.';
-const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
+const STEPS: readonly Step[] = [boardStep, firmwareStep, hornsStep, new SignsStep(), trimsStep, new ScaleStep(), new LimitsStep(), walkStep, keepStep];
+const LOST_MESSAGE = 'The board is not connected any more. What was not saved is lost. Connect it again and go on here.';
+const NO_ROBOT_MESSAGE = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
-/** The dialog. Steps call its methods as plain functions, so these methods are arrow functions. */
-export class Setup implements Tools {
+/** The dialog. The steps call its public methods as plain functions, so these methods are arrow functions. */
+export class Setup implements StepTools {
   guide: BoardGuide | null = null;
   servo = 0;
-  private step: Step = board;
-  private readonly finished = new Set<string>();
-  private readonly box = element('setup');
-  private readonly steps = element('setup-steps');
+  private step: Step = boardStep;
+  /** The keys of the steps, and of the parts of steps, that are done. */
+  private readonly doneSteps = new Set<string>();
+  private readonly dialog = element('setup');
+  private readonly stepList = element('setup-steps');
   private readonly title = element('setup-step');
-  private readonly what = element('setup-what');
-  private readonly servos = element('setup-servos');
-  private readonly picture = element('setup-drawing');
+  private readonly content = element('setup-what');
+  private readonly servoButtons = element('setup-servos');
+  private readonly drawingBox = element('setup-drawing');
   private readonly message = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
-  /** Number of actions that were begun or dropped so far: the result of an outdated action is not shown. */
+  /** Number of actions that were begun or dropped so far; by it the result of an outdated action is recognized. */
   private actionCount = 0;
   private isBusy = false;
-  /** True while an action runs that the dialog started by itself; the action of a button waits until it ends. */
-  private isOwn = false;
-  private next: (() => Promise<string>) | null = null;
+  /** True if the running action was started by the dialog itself; a button's action waits until it ends. */
+  private isAutomatic = false;
+  /** The action of a button that begins when the running action ends; null for none. */
+  private waitingAction: (() => Promise<string>) | null = null;
+  /** Settles when the action that was started last ends. */
   private runningAction: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
@@ -55,85 +58,85 @@ export class Setup implements Tools {
    * began on the lost board must not continue on another one.
    */
   private isLost = false;
-  /** True if the board said that it has never saved a calibration. */
-  private isNew = false;
+  /** True if the board has reported that no calibration is saved on it. */
+  private isUncalibrated = false;
 
   constructor(
-    private readonly sessionOf: () => Session,
+    private readonly getSession: () => Session,
     readonly writer: Writer,
     private readonly connectBoard: () => Promise<void>,
   ) {
-    element('setup-open').addEventListener('click', () => this.begin());
+    element('setup-open').addEventListener('click', () => this.open());
     element('setup-leave').addEventListener('click', () => void this.leave());
     element('setup-back').addEventListener('click', () => this.moveBy(-1));
     element('setup-next').addEventListener('click', () => this.moveBy(1));
     for (const { name } of STEPS) {
-      this.steps.append(make('li', {}, button(name, () => this.go(name))));
+      this.stepList.append(make('li', {}, button(name, () => this.goTo(name))));
     }
-    PLACES.forEach((place, servo) => {
+    SERVO_PLACES.forEach((place, servo) => {
       const choose = () => {
         this.servo = servo;
         this.message.textContent = '';
-        this.show();
+        this.redraw();
       };
-      this.servos.append(button(`A${servo + 1} ${place}`, choose));
+      this.servoButtons.append(button(`A${servo + 1} ${place}`, choose));
     });
   }
 
   get session(): Session {
-    return this.sessionOf();
+    return this.getSession();
   }
 
-  /** Opens the dialog at the step that was left, at first at the first step. */
-  private begin(): void {
-    this.reveal();
-    this.enter(this.step);
+  /** Opens the dialog at the step at which it was left, or at the first step. */
+  private open(): void {
+    this.showDialog();
+    this.enterStep(this.step);
   }
 
-  /** True while hands may be in the robot. */
+  /** True while the dialog is open, so that hands may be in the robot. */
   get isOpen(): boolean {
-    return !this.box.hidden;
+    return !this.dialog.hidden;
   }
 
-  private reveal(): void {
+  private showDialog(): void {
     this.session.letGo();
-    this.box.hidden = false;
-    reveal(this.box);
+    this.dialog.hidden = false;
+    reveal(this.dialog);
     element('setup-open').setAttribute('aria-expanded', 'true');
     element('setup-left').hidden = true;
   }
 
-  /** Opens the step that a newly connected board needs first, if it needs one. */
+  /** Opens the first step that a newly connected board needs, if it needs one. */
   openNeededStep(): void {
     const { banner, hasThisRobot, link } = this.session;
     // Firmware cannot be written by radio, and a user who has added a radio module has been through these steps.
-    if (link.kind === 'radio' && this.box.hidden) return;
-    const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmware : this.isNew ? horns : null;
-    if (this.box.hidden) {
+    if (link.kind === 'radio' && this.dialog.hidden) return;
+    const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmwareStep : this.isUncalibrated ? hornsStep : null;
+    if (this.dialog.hidden) {
       if (!step) return;
       this.step = step;
-      this.reveal();
-      this.enter(step);
-    } else if (this.step === board && step) this.go(step.name);
-    else this.enter(this.step);
+      this.showDialog();
+      this.enterStep(step);
+    } else if (this.step === boardStep && step) this.goTo(step.name);
+    else this.enterStep(this.step);
   }
 
-  /** Reads a line of the robot. */
-  received(line: string): void {
-    if (line.startsWith(NOTHING_SAVED)) this.isNew = true;
+  /** Takes a line that the robot has sent. */
+  noteReceived(line: string): void {
+    if (line.startsWith(NOTHING_SAVED_LINE)) this.isUncalibrated = true;
   }
 
-  /** Takes the session's link. If it is another one, ends the current action. */
-  link(): void {
+  /** Updates the view for the session's link; ends the current action if it is another link. */
+  followLink(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();
     const isGone = this.wasReal && !isReal;
     this.lastLink = link;
     this.wasReal = isReal;
-    this.isNew = false;
-    this.isLost = isGone && !this.box.hidden;
-    this.drop();
-    if (this.isLost) this.say(LOST);
+    this.isUncalibrated = false;
+    this.isLost = isGone && !this.dialog.hidden;
+    this.dropAction();
+    if (this.isLost) this.say(LOST_MESSAGE);
     this.update();
   }
 
@@ -141,23 +144,23 @@ export class Setup implements Tools {
   update(): void {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
-      this.drop(isChanged);
+      this.dropAction(isChanged);
       this.say(isChanged ? 'The board has restarted. What was not saved is lost.' : 'The board has restarted.');
     }
-    if (!this.box.hidden && !this.isBusy) this.show();
+    if (!this.dialog.hidden && !this.isBusy) this.redraw();
   }
 
   /**
-   * Drops the current action. Finished steps stay finished, unless the robot has lost its unsaved settings
-   * (`isLost`).
+   * Drops the current action. Steps that are done stay done, unless the robot has lost its unsaved settings
+   * (`areSettingsLost`).
    */
-  private drop(isLost = true): void {
+  private dropAction(areSettingsLost = true): void {
     this.actionCount += 1;
-    this.hold(false);
-    this.next = null;
+    this.setBusy(false);
+    this.waitingAction = null;
     this.guide = null;
-    if (isLost) this.finished.clear();
-    for (const step of STEPS) step.forget?.();
+    if (areSettingsLost) this.doneSteps.clear();
+    for (const step of STEPS) step.reset?.();
   }
 
   /** Closes the dialog after the current action; if settings are unsaved, restores the old calibration. */
@@ -172,23 +175,23 @@ export class Setup implements Tools {
         message = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
       }
     }
-    this.box.hidden = true;
+    this.dialog.hidden = true;
     this.isLost = false;
     const opener = element('setup-open');
     opener.setAttribute('aria-expanded', 'false');
     opener.focus();
-    this.drop(message !== '');
+    this.dropAction(message !== '');
     const leaveMessage = element('setup-left');
     leaveMessage.textContent = message;
     leaveMessage.hidden = message === '';
   }
 
-  readonly done = (step: string): void => {
-    this.finished.add(step);
+  readonly markDone = (step: string): void => {
+    this.doneSteps.add(step);
   };
 
   readonly isDone = (step: string): boolean => {
-    return this.finished.has(step);
+    return this.doneSteps.has(step);
   };
 
   readonly connect = (): void => {
@@ -197,15 +200,15 @@ export class Setup implements Tools {
 
   readonly write = (content: WriteContent): void => {
     this.guide = null;
-    this.act(async () => {
+    this.runAction(async () => {
       const { message, progress } = this;
-      if (await this.writer.write(content, { message, progress })) this.done('Firmware');
+      if (await this.writer.write(content, { message, progress })) this.markDone('Firmware');
       return message.textContent ?? '';
     });
   };
 
   readonly setCalibration = (text: string, name: string): void => {
-    this.act(async () => {
+    this.runAction(async () => {
       const calibration = parseCalibration(text, name);
       const guide = await this.requireGuide();
       await guide.run((board) => board.replace(calibration));
@@ -214,116 +217,116 @@ export class Setup implements Tools {
   };
 
   readonly run = (work: (guide: Guide) => Promise<string>): void => {
-    this.act(async () => (await this.requireGuide()).run(work));
+    this.runAction(async () => (await this.requireGuide()).run(work));
   };
 
   /** Returns the guide of the connected robot; reads the robot's calibration first if needed. */
   private async requireGuide(): Promise<BoardGuide> {
-    if (this.isLost) throw new Error(LOST);
-    if (!this.session.answers) throw new Error(NO_ROBOT);
+    if (this.isLost) throw new Error(LOST_MESSAGE);
+    if (!this.session.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
     this.guide ??= await BoardGuide.begin(this.session);
     return this.guide;
   }
 
-  /** Runs one action at a time. */
-  private act(work: () => Promise<string>, isOwn = false): void {
+  /** Runs an action, unless another one is running; `isAutomatic` is true if the dialog starts it by itself. */
+  private runAction(work: () => Promise<string>, isAutomatic = false): void {
     if (this.isBusy) {
-      if (this.isOwn && !isOwn) this.next = work;
+      if (this.isAutomatic && !isAutomatic) this.waitingAction = work;
       return;
     }
-    this.isOwn = isOwn;
+    this.isAutomatic = isAutomatic;
     const actionNumber = ++this.actionCount;
-    this.hold(true);
+    this.setBusy(true);
     this.say('');
     this.runningAction = work()
       .catch(messageOf)
       .then((message) => {
         if (actionNumber !== this.actionCount) return;
-        this.hold(false);
+        this.setBusy(false);
         this.say(message);
         this.update();
-        const { next } = this;
-        this.next = null;
-        if (next) this.act(next);
+        const { waitingAction } = this;
+        this.waitingAction = null;
+        if (waitingAction) this.runAction(waitingAction);
       });
   }
 
-  private hold(isBusy: boolean): void {
+  private setBusy(isBusy: boolean): void {
     this.isBusy = isBusy;
-    this.box.setAttribute('aria-busy', String(isBusy));
+    this.dialog.setAttribute('aria-busy', String(isBusy));
   }
 
   private say(text: string): void {
     this.message.textContent = text;
   }
 
-  readonly go = (name: string): void => {
+  readonly goTo = (name: string): void => {
     const step = STEPS.find((candidate) => candidate.name === name);
-    if (step) this.enter(step);
+    if (step) this.enterStep(step);
   };
 
-  private moveBy(steps: number): void {
-    const step = STEPS[STEPS.indexOf(this.step) + steps];
-    if (step) this.enter(step);
+  private moveBy(stepCount: number): void {
+    const step = STEPS[STEPS.indexOf(this.step) + stepCount];
+    if (step) this.enterStep(step);
   }
 
-  private enter(step: Step): void {
+  private enterStep(step: Step): void {
     if (step !== this.step) {
-      if (step.isByServo) this.servo = 0;
-      step.forget?.();
+      if (step.isPerServo) this.servo = 0;
+      step.reset?.();
     }
     this.step = step;
     if (!this.isBusy) this.say('');
-    this.show();
+    this.redraw();
     this.title.focus({ preventScroll: true });
-    if (!step.needsRobot || !this.session.answers || this.isLost) return;
-    // Servos that a step has turned return to neutral before the next step.
+    if (!step.needsRobot || !this.session.isFirmwareAnswering || this.isLost) return;
+    // Servos that the previous step has turned return to neutral.
     const { guide } = this;
-    if (!guide) this.act(async () => this.requireGuide().then(() => ''), true);
-    else if (this.session.gait !== GAITS.stand) this.act(async () => guide.run((board) => board.stand()).then(() => ''), true);
+    if (!guide) this.runAction(async () => this.requireGuide().then(() => ''), true);
+    else if (this.session.gait !== GAITS.stand) this.runAction(async () => guide.run((board) => board.stand()).then(() => ''), true);
   }
 
-  readonly show = (): void => {
+  readonly redraw = (): void => {
     const { step, session } = this;
     if (!session?.link) return;
     const index = STEPS.indexOf(step);
-    this.steps.querySelectorAll('button').forEach((stepButton, n) => {
+    this.stepList.querySelectorAll('button').forEach((stepButton, n) => {
       stepButton.toggleAttribute('aria-current', n === index);
       if (n === index) {
         stepButton.setAttribute('aria-current', 'step');
-        this.steps.scrollLeft = stepButton.offsetLeft - this.steps.offsetLeft - (this.steps.clientWidth - stepButton.offsetWidth) / 2;
+        this.stepList.scrollLeft = stepButton.offsetLeft - this.stepList.offsetLeft - (this.stepList.clientWidth - stepButton.offsetWidth) / 2;
       }
       stepButton.classList.toggle('done', this.isDone(STEPS[n].name));
     });
     this.title.textContent = `${index + 1} of ${STEPS.length}: ${step.title}`;
     element<HTMLButtonElement>('setup-back').disabled = index === 0;
     element<HTMLButtonElement>('setup-next').disabled = index === STEPS.length - 1;
-    const isLost = this.isLost && step !== board;
-    const isUsable = !isLost && (!step.needsRobot || session.answers);
-    this.servos.hidden = !isUsable || !step.isByServo;
-    this.servos.querySelectorAll('button').forEach((servoButton, servo) => servoButton.setAttribute('aria-pressed', String(servo === this.servo)));
+    const isLost = this.isLost && step !== boardStep;
+    const isUsable = !isLost && (!step.needsRobot || session.isFirmwareAnswering);
+    this.servoButtons.hidden = !isUsable || !step.isPerServo;
+    this.servoButtons.querySelectorAll('button').forEach((servoButton, servo) => servoButton.setAttribute('aria-pressed', String(servo === this.servo)));
     const scene = session.last?.scene ?? null;
-    const drawingElement = isUsable && step.drawing && scene ? drawing(session.description, scene, step.drawing(this)) : null;
-    this.picture.replaceChildren(...(drawingElement ? [drawingElement] : []));
-    this.picture.hidden = !drawingElement;
+    const drawingElement = isUsable && step.selectedServo && scene ? makeDrawing(session.description, scene, step.selectedServo(this)) : null;
+    this.drawingBox.replaceChildren(...(drawingElement ? [drawingElement] : []));
+    this.drawingBox.hidden = !drawingElement;
     const tryOnSimulation = () => {
       this.isLost = false;
-      this.enter(step);
+      this.enterStep(step);
     };
-    const parts = isUsable
-      ? step.parts(this)
+    const elements = isUsable
+      ? step.makeElements(this)
       : [
-          words(isLost ? LOST : NO_ROBOT),
+          paragraph(isLost ? LOST_MESSAGE : NO_ROBOT_MESSAGE),
           row(
-            button(isLost ? 'Connect it again…' : 'To the board', isLost ? this.connect : () => this.go(board.name), true),
+            button(isLost ? 'Connect it again…' : 'To the board', isLost ? this.connect : () => this.goTo(boardStep.name), true),
             ...(isLost ? [button('Try this step on the simulated UNO', tryOnSimulation)] : []),
           ),
         ];
-    // The keyboard's focus stays on the same button, or goes to the next one.
-    const focusedText = this.what.contains(document.activeElement) ? document.activeElement?.textContent : null;
-    this.what.replaceChildren(...parts);
+    // The keyboard's focus stays on the button with the same text, or goes to the main button.
+    const focusedText = this.content.contains(document.activeElement) ? document.activeElement?.textContent : null;
+    this.content.replaceChildren(...elements);
     if (focusedText === null) return;
-    const buttons = [...this.what.querySelectorAll('button')];
-    (buttons.find(({ textContent }) => textContent === focusedText) ?? this.what.querySelector<HTMLElement>('button.main') ?? this.title).focus();
+    const buttons = [...this.content.querySelectorAll('button')];
+    (buttons.find(({ textContent }) => textContent === focusedText) ?? this.content.querySelector<HTMLElement>('button.main') ?? this.title).focus();
   };
 }

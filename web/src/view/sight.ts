@@ -1,18 +1,21 @@
-// The overlay on the camera's picture: tags, the robot's path, its heading.
+// The overlay on the camera's picture: the tags, and the robot's path and heading.
 import type { Pixel } from '../../generated/measure';
 import type { TagTracker } from '../measure/seen';
 import { surface } from './canvas';
 import { palette } from './palette';
 
-/** Length of the arrow relative to the deck's tag. */
+/** Length of the heading's arrow relative to the size of the tag on the robot's deck. */
 const ARROW_LENGTH = 1.6;
 
-/** Draws over a picture that is centred in its element and scaled to fit, as `object-fit: contain` does. */
-export function drawSight(canvas: HTMLCanvasElement, seen: TagTracker): void {
+/**
+ * Draws what was found in the last picture over it. The picture is centred in its element and scaled to fit, as
+ * `object-fit: contain` does.
+ */
+export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): void {
   const view = surface(canvas);
   if (!view) return;
   const { pen, width, height } = view;
-  const [pictureWidth, pictureHeight] = seen.size;
+  const [pictureWidth, pictureHeight] = tracker.size;
   const scale = Math.min(width / pictureWidth, height / pictureHeight);
   pen.translate((width - scale * pictureWidth) / 2, (height - scale * pictureHeight) / 2);
   const toCanvas = ([x, y]: Pixel): Pixel => [scale * x, scale * y];
@@ -24,8 +27,8 @@ export function drawSight(canvas: HTMLCanvasElement, seen: TagTracker): void {
     pen.lineWidth = lineWidth;
     pen.stroke();
   };
-  drawLine(seen.path, a2, 2);
-  for (const { corners } of seen.tags) drawLine([...corners, corners[0], corners[1]], accent, 3);
-  const [from, { heading }] = [seen.path.at(-1), seen];
-  if (from && seen.deck && heading) drawLine([from, [from[0] + ARROW_LENGTH * heading[0], from[1] + ARROW_LENGTH * heading[1]]], a2, 4);
+  drawLine(tracker.path, a2, 2);
+  for (const { corners } of tracker.tags) drawLine([...corners, corners[0], corners[1]], accent, 3);
+  const [from, { heading }] = [tracker.path.at(-1), tracker];
+  if (from && tracker.deck && heading) drawLine([from, [from[0] + ARROW_LENGTH * heading[0], from[1] + ARROW_LENGTH * heading[1]]], a2, 4);
 }

@@ -1,4 +1,5 @@
-// The trial of an edited gait: its figures, the nearest valid values, and the buttons that use it.
+// The trial of an edited gait by a simulation: its figures, the nearest valid values if it is refused, and the buttons
+// that use the gait.
 import { takeGait, tryGait } from '../gaits/try';
 import { LatestQuestion } from '../latest';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
@@ -8,20 +9,21 @@ import { element } from './canvas';
 import { button } from './make';
 import { NO_BOARD, type Writer } from './writer';
 
-/** An editor of gaits, as its trial sees it. */
+/** The part of a gait editor that its trial uses. */
 export interface GaitEditor {
   /** The prefix of the editor's element ids. */
   prefix: 'gait' | 'path';
-  /** The edited gait; null if there is none. */
-  made(): EditedGait | null;
-  /** Sets one of the valid values that a refusal offers. */
+  /** Returns the edited gait; null if there is none. */
+  editedGait(): EditedGait | null;
+  /** Sets a number of the gait to a valid value that a refusal offers. */
   change(key: Alternative, value: number): void;
 }
 
+/** Formats a number with a unit; null stands for a displacement that is not certain. */
 const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
-/** Formats the figures of a trial; the speed is in deg/s for a turn on the spot. */
-export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
+/** Formats the figures of a trial; the speed is forward for the unit mm/s, and else that of the turn. */
+export function formatFigures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
   const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
     way: formatNumber(forward, ' mm'),
@@ -33,14 +35,16 @@ export function figures({ forward, turn, period, least, limit, margin, servo, sp
   };
 }
 
-const OFFERS: Record<Alternative, (value: number) => string> = {
+/** The label of a button that offers a valid value. */
+const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
   amplitude: (value) => `Amplitude ${value}° would do`,
   size: (value) => `A size of ${(100 * value).toFixed(0)} % would do`,
   period: (value) => `A cycle of ${value} s would do`,
 };
 
 export class TrialView {
-  private trials: LatestQuestion<OnFloor & { made: EditedGait }, Trial | NoTrial | null> | null = null;
+  private trialQuestion: LatestQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null> | null = null;
+  /** The last answer; null if the gait was refused. */
   private trial: Trial | null = null;
 
   constructor(
@@ -51,24 +55,25 @@ export class TrialView {
     private readonly editor: GaitEditor,
   ) {
     this.element('try').addEventListener('click', () => void this.tryEditedGait());
-    this.element('write').addEventListener('click', () => void this.write());
-    this.element('copy').addEventListener('click', () => void this.copy());
+    this.element('write').addEventListener('click', () => void this.writeToBoard());
+    this.element('copy').addEventListener('click', () => void this.copyTable());
   }
 
   /** Requests a trial of the edited gait. */
   predict(): void {
     const { toml, floor, servos } = this.session();
-    const gait = this.editor.made();
+    const gait = this.editor.editedGait();
     if (!gait || toml === '') return;
-    this.trials ??= this.start();
-    this.trials.ask({ toml, floor, servos, made: gait });
+    this.trialQuestion ??= this.createTrialQuestion();
+    this.trialQuestion.ask({ toml, floor, servos, gait });
   }
 
-  private start(): NonNullable<typeof this.trials> {
+  private createTrialQuestion(): NonNullable<typeof this.trialQuestion> {
     const helper = robotHelper(this.module);
     return new LatestQuestion((question) => helper.ask<Trial | NoTrial | null>((robot) => robot.trial(question)), (trial) => this.handleAnswer(trial));
   }
 
+  /** Shows a message beside the editor's buttons. */
   say(text: string): void {
     this.element('said').textContent = text;
   }
@@ -83,27 +88,27 @@ export class TrialView {
     this.trial = validTrial;
     for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !validTrial;
     const setText = (name: string, text: string) => (this.element(name).textContent = text);
-    const shownFigures = validTrial && figures(validTrial);
+    const shownFigures = validTrial && formatFigures(validTrial);
     for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) setText(name, shownFigures?.[name] ?? '–');
     setText('table', validTrial?.table ?? '');
     this.element('no').hidden = refusal === null;
     setText('refusal', refusal?.refused ?? '');
     this.element('instead').replaceChildren(
-      ...(refusal?.instead ?? []).map(({ what, value }) => button(OFFERS[what](value), () => this.editor.change(what, value))),
+      ...(refusal?.instead ?? []).map(({ what, value }) => button(OFFER_LABELS[what](value), () => this.editor.change(what, value))),
     );
     this.say('');
   }
 
   private async tryEditedGait(): Promise<void> {
-    const gait = this.editor.made();
+    const gait = this.editor.editedGait();
     if (!gait) return;
     this.say('The robot restarts with this gait…');
     const refusal = await tryGait(this.session(), gait, this.ask);
     this.say(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
   }
 
-  private async write(): Promise<void> {
-    const gait = this.editor.made();
+  private async writeToBoard(): Promise<void> {
+    const gait = this.editor.editedGait();
     if (!gait) return;
     const session = this.session();
     if (!session.isReal) return this.say(NO_BOARD);
@@ -114,7 +119,7 @@ export class TrialView {
     this.say(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 
-  private async copy(): Promise<void> {
+  private async copyTable(): Promise<void> {
     try {
       await navigator.clipboard.writeText(this.trial?.table ?? '');
       this.say('The table for robot.toml is copied.');

@@ -1,17 +1,17 @@
-// Lengths that were tried: their text, the reason of a refusal, and buttons for valid alternatives.
+// Lengths that the user tried: their text, the reason for a refusal, and buttons for valid alternatives.
 import type { Edits, Length, Refused, TriedLengths } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
 
-/** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin. */
-export function withTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
+/** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin on the other side. */
+export function editsWithTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
   const twin = lengths.find((length) => length.key === key)?.twin ?? key;
   return [...new Set(isSymmetric ? [key, twin] : [key])].map((editedKey) => [editedKey, value]);
 }
 
-/** Lists lengths as a text, grouped by value, such as `l1 = l4 = 30 mm`. */
-export function words(edits: Edits, lengths: Length[]): string {
+/** Formats lengths as a text, grouped by value, such as `l1 = l4 = 30 mm`. */
+export function formatLengths(edits: Edits, lengths: Length[]): string {
   const keysByValue = new Map<number, string[]>();
   for (const [key, value] of edits) keysByValue.set(value, [...(keysByValue.get(value) ?? []), key]);
   const unitOf = (key = '') => lengths.find((length) => length.key === key)?.unit ?? 'mm';
@@ -19,10 +19,10 @@ export function words(edits: Edits, lengths: Length[]): string {
 }
 
 /**
- * Describes why lengths are refused, beginning with the consequence for the robot; `lengthsText` names the user's
- * lengths.
+ * Returns a sentence that says why lengths are refused; `lengthsText` names the lengths, and `lengths` are those of the
+ * current robot.
  */
-export function refusalOf(lengthsText: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
+export function describeRefusal(lengthsText: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
   const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
   const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
   const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
@@ -32,12 +32,12 @@ export function refusalOf(lengthsText: string, edits: Edits, { refused, meaning,
   return `${lengthsText} is ${judgement}: ${reason}.`;
 }
 
-/** Shows a button for each valid alternative to refused lengths; removes the buttons for null. */
+/** Shows a button for each valid alternative to refused lengths; for null, removes the buttons. */
 export function showOffers(alternatives: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
   const { nearest = null, without = null } = alternatives ?? {};
   const changeTo = (text: string) => () => void session.change(text);
   element('lengths-instead').replaceChildren(
-    ...(nearest ? [button(`Try ${words(nearest.lengths, session.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, changeTo(nearest.text))] : []),
+    ...(nearest ? [button(`Try ${formatLengths(nearest.lengths, session.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, changeTo(nearest.text))] : []),
     ...(without ? [button(`Drop “${without.gait.replaceAll('-', ' ')}”`, changeTo(without.text))] : []),
   );
 }

@@ -1,7 +1,7 @@
 // The list of problems, one line for each cause. A line stays until its cause is gone or the user dismisses it.
 import type { Cause } from '../trouble';
 import { element } from './canvas';
-import { button, make, words } from './make';
+import { button, make, paragraph } from './make';
 
 /** A button that solves a problem. */
 export interface Remedy {
@@ -13,7 +13,7 @@ export class Troubles {
   private readonly box = element('trouble');
   private readonly lines = new Map<Cause, HTMLElement>();
 
-  /** Shows the message for a cause, replacing the last one; null removes it. */
+  /** Shows the message for a cause in place of its previous one; null removes it. */
   say(cause: Cause, message: string | null, remedy: Remedy | null = null): void {
     const previousLine = this.lines.get(cause);
     if (message !== null && previousLine?.firstChild?.textContent === message) return;
@@ -25,7 +25,7 @@ export class Troubles {
 
   private addLine(cause: Cause, message: string, remedy: Remedy | null): HTMLElement {
     const buttons = [...(remedy ? [button(remedy.label, remedy.act)] : []), button('Dismiss', () => this.say(cause, null))];
-    const line = words(make('span', {}, message), ...buttons);
+    const line = paragraph(make('span', {}, message), ...buttons);
     this.box.append(line);
     return line;
   }

@@ -1,21 +1,21 @@
-// Writes firmware or robot to a board, and shows progress and result in the caller's elements.
+// Writes firmware or robot to a board, and shows the progress and the result in the caller's elements.
 import type { Progress, Session } from '../session';
 import { messageOf } from '../trouble';
 
-/** The elements that show progress and result. */
+/** The elements that show the progress and the result. */
 export interface Display {
   progress: HTMLProgressElement;
   message: HTMLElement;
 }
 
-/** The page's robot alone, the firmware with it, or the image of a chosen file. */
+/** What is written: the page's robot alone, the firmware and the robot, or the image of a chosen file. */
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
 /** The message when no board is connected. */
 export const NO_BOARD = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
 
-/** The message of each step, and the part of the progress bar where the step begins and ends. */
-const STEPS = {
+/** The message of each step, and the percentages of the progress bar at which the step begins and ends. */
+const PROGRESS_STEPS = {
   again: ['no answer; the board is called again…', 0, 0],
   reading: ['reading what the board has…', 0, 25],
   writing: ['writing…', 25, 75],
@@ -25,10 +25,10 @@ const STEPS = {
 export class Writer {
   private isWriting = false;
 
-  /** `busy` is called with true when the boot loader takes the link, and with false when the link is free again. */
+  /** `onBusyChange` is called with true when the boot loader takes the link, and with false when it is free again. */
   constructor(
     private readonly session: () => Session,
-    private readonly busy: (isBusy: boolean) => void,
+    private readonly onBusyChange: (isBusy: boolean) => void,
   ) {}
 
   /** True while the boot loader uses the link. */
@@ -36,7 +36,7 @@ export class Writer {
     return this.isWriting;
   }
 
-  /** Writes and verifies, then waits for the board's banner; returns true if all of it succeeded. */
+  /** Writes and verifies, then waits for the board's banner; returns true if all of this succeeded. */
   async write(content: WriteContent, { progress, message }: Display): Promise<boolean> {
     if (this.isWriting) return false;
     const session = this.session();
@@ -45,21 +45,21 @@ export class Writer {
     const start = performance.now();
     const hash = typeof content === 'string' ? session.description.hash : null;
     this.isWriting = true;
-    this.busy(true);
+    this.onBusyChange(true);
     progress.hidden = false;
     progress.value = 0;
     message.textContent = 'calling the boot loader…';
     let isWritten = false;
-    const show: Progress = (step, done, total) => {
-      const [text, from, to] = STEPS[step];
-      // The page with which the program starts is written after all others were verified.
+    const showProgress: Progress = (step, done, total) => {
+      const [text, from, to] = PROGRESS_STEPS[step];
+      // The bar never goes back, although the first page of the program is written after all others were verified.
       progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
       if (message.textContent !== text) message.textContent = text;
     };
     try {
-      await (content === 'robot' ? session.flash(session.section, true, show) : session.flash(content === 'all' ? session.image : content, false, show));
+      await (content === 'robot' ? session.flash(session.robotSection, true, showProgress) : session.flash(content === 'all' ? session.image : content, false, showProgress));
       isWritten = true;
-      // The simulation must not be mistaken for a board.
+      // The name shows that a simulation was written, not a board.
       const targetText = isReal ? '' : ` to the ${name}`;
       message.textContent = `written${targetText} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
@@ -67,9 +67,9 @@ export class Writer {
     }
     progress.hidden = true;
     this.isWriting = false;
-    this.busy(false);
+    this.onBusyChange(false);
     if (!isWritten) return false;
-    const problem = await session.waitForBanner(hash);
+    const problem = await session.checkWrittenBoard(hash);
     if (problem === null) return true;
     message.textContent = `written and verified; ${problem}`;
     return false;

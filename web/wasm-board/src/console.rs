@@ -1,4 +1,4 @@
-//! The page's connection to a robot as a console.
+//! The page's connection to a robot's console, for a calibration.
 
 use std::time::Duration;
 
@@ -9,9 +9,9 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
 const CONSOLE: &str = "
-/** A connection to a robot's console. Times are in ms, of the robot: a simulated one may be slower than this machine. */
+/** A connection to a robot's console. Times are in ms by the robot's clock: a simulated robot may run slower than real time. */
 export interface Console {
-  /** Sends a line; returns the robot's answer and the lines with # before it. Rejects if there is no answer. */
+  /** Sends a line; returns the answer as `text`, and the `#` lines that came before it. Rejects if there is no answer. */
   ask(line: string): Promise<{ notes: string[]; text: string }>;
   wait(time: number): Promise<void>;
 }
@@ -30,7 +30,7 @@ extern "C" {
     async fn wait(this: &Console, time: f64) -> Result<JsValue, JsValue>;
 }
 
-/// A robot at the page's connection; an error is that of the page.
+/// The robot at the other end of the page's connection. Its errors are those that the page throws.
 #[derive(Debug)]
 pub(crate) struct JsConsole(pub(crate) Console);
 
@@ -41,8 +41,8 @@ impl lizard_calibrate::Console for JsConsole {
         let answer = self.0.ask(line).await?;
         let notes = Array::from(&Reflect::get(&answer, &"notes".into())?);
         Ok(Reply {
-            notes: notes.iter().map(text).collect(),
-            answer: text(Reflect::get(&answer, &"text".into())?),
+            notes: notes.iter().map(string_or_empty).collect(),
+            answer: string_or_empty(Reflect::get(&answer, &"text".into())?),
         })
     }
 
@@ -51,29 +51,29 @@ impl lizard_calibrate::Console for JsConsole {
     }
 }
 
-/// A string of JavaScript; anything else is empty.
-fn text(value: JsValue) -> String {
+/// Converts a string from JavaScript; returns an empty string for any other value.
+fn string_or_empty(value: JsValue) -> String {
     value
         .dyn_into::<JsString>()
         .map_or(String::new(), Into::into)
 }
 
-/// The error that the page gets: its own, or a sentence.
-pub(crate) fn thrown(error: ConsoleError<JsValue>) -> JsValue {
+/// Converts an error to the one that is thrown: the page's own, or a sentence about the robot's reply.
+pub(crate) fn error_to_js(error: ConsoleError<JsValue>) -> JsValue {
     match error {
         ConsoleError::Reply(BadReply::Refused { line, reason }) => {
-            // The code is for programs.
+            // The digits at the start are the error's code, which is for programs.
             let reason = reason.trim_start_matches(|c: char| c.is_ascii_digit());
-            sentence(&format!("The robot refuses \"{line}\":{reason}."))
+            js_error(&format!("The robot refuses \"{line}\":{reason}."))
         }
         ConsoleError::Reply(BadReply::Unclear { .. }) => {
-            sentence("The robot does not answer as this page knows it: write this firmware first.")
+            js_error("The robot does not answer as this page knows it: write this firmware first.")
         }
         ConsoleError::Link(error) => error,
     }
 }
 
-/// A sentence as an error of JavaScript.
-pub(crate) fn sentence(text: &str) -> JsValue {
+/// Makes an error of JavaScript with this message.
+pub(crate) fn js_error(text: &str) -> JsValue {
     JsError::new(text).into()
 }

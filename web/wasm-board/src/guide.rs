@@ -1,14 +1,14 @@
-//! A calibration in progress as JavaScript sees it: a class by wasm-bindgen.
+//! The class with which JavaScript calibrates a robot.
 #![allow(clippy::missing_errors_doc)] // each rejects with the page's own error, or with the robot's refusal as a sentence
 
 use lizard_calibrate::{SCALE_TURNS, SIGN_TURNS, SendError};
 use wasm_bindgen::prelude::*;
 
-use crate::calibration::{js, rust};
-use crate::console::{Console, JsConsole, sentence, thrown};
+use crate::calibration::{from_js, to_js};
+use crate::console::{Console, JsConsole, error_to_js, js_error};
 
-/// A calibration in progress. Angles are in deg, counter-clockwise; a servo is 0 to 3 for A1 to A4. One function at a
-/// time: until its promise has settled, every other one throws.
+/// A calibration in progress. Angles are in deg, counter-clockwise; servos 0 to 3 are A1 to A4. Only one function can
+/// run at a time: until its promise has settled, every other call throws.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Guide(lizard_calibrate::Guide<JsConsole>);
@@ -18,17 +18,17 @@ impl Guide {
     /// Reads the robot's calibration; nothing moves.
     pub async fn begin(console: Console) -> Result<Self, JsValue> {
         let guide = lizard_calibrate::Guide::begin(JsConsole(console)).await;
-        guide.map(Self).map_err(thrown)
+        guide.map(Self).map_err(error_to_js)
     }
 
     /// The robot's calibration, saved or not.
     #[must_use]
     #[wasm_bindgen(getter, unchecked_return_type = "Calibration")]
     pub fn calibration(&self) -> JsValue {
-        js(self.0.calibration())
+        to_js(self.0.calibration())
     }
 
-    /// True if the calibration is not saved, or may not be.
+    /// True if the calibration is not saved, or if it is uncertain whether it is.
     #[must_use]
     #[wasm_bindgen(getter, js_name = isChanged)]
     pub fn is_changed(&self) -> bool {
@@ -37,47 +37,47 @@ impl Guide {
 
     /// Makes the robot stand.
     pub async fn stand(&mut self) -> Result<(), JsValue> {
-        self.0.stand().await.map(drop).map_err(thrown)
+        self.0.stand().await.map(drop).map_err(error_to_js)
     }
 
-    /// Ends the pulses, so that no servo starts when the servos get power.
+    /// Ends the pulses, so that no servo moves when the servos get power.
     pub async fn rest(&mut self) -> Result<(), JsValue> {
-        self.0.rest().await.map_err(thrown)
+        self.0.rest().await.map_err(error_to_js)
     }
 
     /// Moves every servo to its middle, without its trim, for fitting the horns.
     pub async fn center(&mut self) -> Result<(), JsValue> {
-        self.0.center().await.map_err(thrown)
+        self.0.center().await.map_err(error_to_js)
     }
 
-    /// Turns one servo from its neutral angle far enough to see its sign; returns the turn.
+    /// Turns one servo from its neutral angle far enough to see its direction; returns the turn.
     #[wasm_bindgen(js_name = turnForSign)]
     pub async fn turn_for_sign(&mut self, servo: usize) -> Result<f64, JsValue> {
-        self.0.turn(servo, &SIGN_TURNS).await.map_err(thrown)
+        self.0.turn(servo, &SIGN_TURNS).await.map_err(error_to_js)
     }
 
     /// Turns one servo from its neutral angle far enough to measure its scale; returns the turn.
     #[wasm_bindgen(js_name = turnForScale)]
     pub async fn turn_for_scale(&mut self, servo: usize) -> Result<f64, JsValue> {
-        self.0.turn(servo, &SCALE_TURNS).await.map_err(thrown)
+        self.0.turn(servo, &SCALE_TURNS).await.map_err(error_to_js)
     }
 
     /// Moves one servo to an angle, and the others to neutral; returns the angle, 0 to 360.
     pub async fn point(&mut self, servo: usize, degrees: f64) -> Result<f64, JsValue> {
-        self.0.point(servo, degrees).await.map_err(thrown)
+        self.0.point(servo, degrees).await.map_err(error_to_js)
     }
 
     /// Reverses the sign of a servo.
     pub async fn reverse(&mut self, servo: usize) -> Result<(), JsValue> {
-        self.0.reverse(servo).await.map_err(thrown)
+        self.0.reverse(servo).await.map_err(error_to_js)
     }
 
     /// Changes a servo's trim by this angle.
     pub async fn trim(&mut self, servo: usize, change: f64) -> Result<(), JsValue> {
-        self.0.trim(servo, change).await.map_err(thrown)
+        self.0.trim(servo, change).await.map_err(error_to_js)
     }
 
-    /// Sets the scale of a servo that has turned by `measured` when told to turn by `told`; returns it, us per deg.
+    /// Sets the scale of a servo that turned by `measured` when told to turn by `told`; returns the scale, us per deg.
     #[wasm_bindgen(js_name = scaleByTurn)]
     pub async fn scale_by_turn(
         &mut self,
@@ -86,39 +86,39 @@ impl Guide {
         measured: f64,
     ) -> Result<f64, JsValue> {
         let scale = self.0.scale_by_turn(servo, told, measured).await;
-        scale.map_err(thrown)
+        scale.map_err(error_to_js)
     }
 
     /// Sets a servo's travel, counter-clockwise from the first angle to the second.
     pub async fn limit(&mut self, servo: usize, from: f64, to: f64) -> Result<(), JsValue> {
-        self.0.limit(servo, [from, to]).await.map_err(thrown)
+        self.0.limit(servo, [from, to]).await.map_err(error_to_js)
     }
 
-    /// Starts `walk`, or the first gait that moves; returns its name, undefined if there is none.
+    /// Starts `walk`, or else the first gait that moves; returns the gait's name, undefined if no gait moves.
     pub async fn walk(&mut self) -> Result<Option<String>, JsValue> {
-        self.0.walk().await.map_err(thrown)
+        self.0.walk().await.map_err(error_to_js)
     }
 
-    /// Saves the calibration in the board.
+    /// Saves the calibration in the board's EEPROM.
     pub async fn save(&mut self) -> Result<(), JsValue> {
-        self.0.save().await.map_err(thrown)
+        self.0.save().await.map_err(error_to_js)
     }
 
-    /// Makes the robot stand, and restores the calibration of the beginning or of the last save; returns true if
-    /// another one was in effect.
+    /// Makes the robot stand, and restores the calibration as it was at the beginning or at the last save; returns true
+    /// if another one was in effect.
     pub async fn restore(&mut self) -> Result<bool, JsValue> {
-        self.0.restore().await.map_err(thrown)
+        self.0.restore().await.map_err(error_to_js)
     }
 
-    /// Replaces the calibration by another one, unsaved. If it is refused, the robot gets the previous one again.
+    /// Replaces the calibration without saving it. If the robot refuses the new one, it gets the previous one again.
     pub async fn replace(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Calibration")] calibration: JsValue,
     ) -> Result<(), JsValue> {
-        let result = self.0.replace(&rust(&calibration)?).await;
-        result.map_err(|error| match error {
-            SendError::Refused(error) | SendError::Mixed(error) => thrown(error),
-            SendError::Differs => sentence("The robot did not accept all of it."),
+        let outcome = self.0.replace(&from_js(&calibration)?).await;
+        outcome.map_err(|error| match error {
+            SendError::Refused(error) | SendError::Mixed(error) => error_to_js(error),
+            SendError::Differs => js_error("The robot did not accept all of it."),
         })
     }
 }

@@ -1,8 +1,8 @@
-//! What the page does with a board: it writes firmware and robot, and calibrates the servos.
+//! The page's work on a board: writing the firmware and the robot, and calibrating the servos.
 //!
-//! The page has the serial line, by Web Serial or to its simulated UNO, and its time; [`Line`] is what an upload sees of
-//! it, and [`Console`] what a calibration sees. This crate is a WebAssembly module of its own, which the page loads when
-//! it writes to a board, identifies one, or reads its calibration.
+//! The page provides the serial line (by Web Serial, or to its simulated UNO) and keeps the time: as a [`Line`] for an
+//! upload, and as a [`Console`] for a calibration. This crate is a WebAssembly module of its own, which the page loads
+//! when it writes to a board, identifies one, or reads its calibration.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A program in Rust uses `lizard-upload` and

@@ -1,4 +1,4 @@
-//! The page's serial line as a board.
+//! The page's serial line to a board, for an upload.
 
 use std::time::Duration;
 
@@ -9,14 +9,14 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
 const LINE: &str = "
-/** A serial line to a board. Times are in ms, of the board: a simulated one may be slower than this machine. */
+/** A serial line to a board. Times are in ms by the board's clock: a simulated board may run slower than real time. */
 export interface Line {
   /** Resets the board and sets the speed of the line. */
   reset(baud: number): Promise<void>;
   write(bytes: Uint8Array): Promise<void>;
-  /** Returns this number of bytes, or those that arrive in the time. */
+  /** Returns `count` bytes, or fewer if no more arrive in the time. */
   read(count: number, time: number): Promise<Uint8Array>;
-  /** Waits for the time and drops what has been received until then. */
+  /** Waits for the time and drops all bytes received until then. */
   discard(time: number): Promise<void>;
 }
 ";
@@ -38,7 +38,7 @@ extern "C" {
     async fn discard(this: &Line, time: f64) -> Result<JsValue, JsValue>;
 }
 
-/// A board at the page's serial line.
+/// The board at the other end of the page's serial line.
 #[derive(Debug)]
 pub(crate) struct JsBoard(pub(crate) Line);
 
@@ -48,21 +48,21 @@ impl Board for JsBoard {
     }
 
     async fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
-        let sent = self.0.write(Uint8Array::from(bytes)).await;
-        sent.map(drop).map_err(board_error)
+        let result = self.0.write(Uint8Array::from(bytes)).await;
+        result.map(drop).map_err(board_error)
     }
 
     async fn read(&mut self, bytes: &mut [u8], time: Duration) -> Result<usize, BoardError> {
-        let read = self.0.read(bytes.len() as u32, milliseconds(time)).await;
-        let read = Uint8Array::new(&read.map_err(board_error)?);
-        let count = read.length() as usize;
-        read.copy_to(&mut bytes[..count]);
+        let result = self.0.read(bytes.len() as u32, milliseconds(time)).await;
+        let received = Uint8Array::new(&result.map_err(board_error)?);
+        let count = received.length() as usize;
+        received.copy_to(&mut bytes[..count]);
         Ok(count)
     }
 
     async fn discard(&mut self, time: Duration) -> Result<(), BoardError> {
-        let waited = self.0.discard(milliseconds(time)).await;
-        waited.map(drop).map_err(board_error)
+        let result = self.0.discard(milliseconds(time)).await;
+        result.map(drop).map_err(board_error)
     }
 }
 
@@ -70,7 +70,7 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1000.0
 }
 
-/// The page's own sentence about its line.
+/// Converts an error of the page's line; keeps the page's message.
 fn board_error(error: JsValue) -> BoardError {
     BoardError::Other(match error.dyn_into::<Error>() {
         Ok(error) => error.message().into(),

@@ -1,8 +1,8 @@
-//! Firmware and robot to a board of the page: the order of pages and the words of `lizard flash`, in a browser.
+//! The upload of firmware and robot to a board from a browser: with the page order and the messages of `lizard flash`.
 
 use js_sys::Function;
 use lizard_core::numbers::mark::Mark;
-use lizard_upload::{Event, Image, Kind, Loader, Model, Step, Target};
+use lizard_upload::{Event, Image, Loader, LoaderKind, Model, Step, Target};
 use wasm_bindgen::prelude::*;
 
 use crate::line::{JsBoard, Line};
@@ -22,7 +22,7 @@ pub fn is_lizard(image: &[u8]) -> bool {
     Mark::find(image).is_some()
 }
 
-/// True if an image from address 0 on reaches into the boot section of a Nano.
+/// True if an image from address 0 up to `end` reaches into the boot section of a Nano.
 #[wasm_bindgen(js_name = needsUno)]
 pub fn needs_uno(end: usize) -> bool {
     end > lizard_upload::NANO_BOOT_ADDRESS
@@ -40,12 +40,12 @@ pub enum Board {
     Nano,
 }
 
-/// Writes an image from address 0 on, or a robot's section alone, to a board, reads it back and starts it. `report`
-/// gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and of all; or `again`, if the
-/// board is reset for another attempt.
+/// Writes an image from address 0 on, or only a robot's section, to a board, reads it back and starts the program.
+/// `report` gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and the number of
+/// all; or `again`, if the board is reset for another attempt.
 ///
 /// # Errors
-/// Rejects with a sentence for the user, which says what the flash holds now.
+/// Rejects with a sentence for the user that says what the flash holds now.
 #[wasm_bindgen]
 pub async fn upload(
     line: Line,
@@ -85,17 +85,17 @@ pub async fn upload(
     Ok(())
 }
 
-/// Resets a board and returns its model by its boot loader; then starts its program.
+/// Resets a board, finds its model by its boot loader, and starts its program; returns `UNO` or `Nano`.
 ///
 /// # Errors
-/// Rejects with a sentence for the user, unless it is a board with the chip of a UNO.
+/// Rejects with a sentence for the user if the board is no UNO or Nano, or does not answer.
 #[wasm_bindgen]
 pub async fn identify(line: Line) -> Result<String, JsError> {
     let mut loader = Loader::new(JsBoard(line));
     let kind = lizard_upload::identify(&mut loader).await?;
     Ok(match kind {
-        Kind::Optiboot => "UNO",
-        Kind::AtmegaBoot => "Nano",
+        LoaderKind::Optiboot => "UNO",
+        LoaderKind::AtmegaBoot => "Nano",
     }
     .to_owned())
 }

@@ -1,7 +1,7 @@
-//! The film that the page takes, and the reports of the gaits in it.
+//! The film that the page takes, and the measurement of the gaits in it.
 
 use lizard_film::{Film, Picture, Setup, Tag, sheet};
-use lizard_measure::{Gaits, Report, WatchedFilm, height_of_board};
+use lizard_measure::{Gaits, NamedFilm, Report, board_height};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
@@ -26,7 +26,7 @@ impl Refused {
 pub struct TagEntry {
     /// Its id on the sheet.
     pub id: usize,
-    /// Its corners, px: top left, top right, bottom right, bottom left, as it is printed.
+    /// Its corners, px: those that are top left, top right, bottom right and bottom left on the printed sheet.
     #[tsify(type = "[Pixel, Pixel, Pixel, Pixel]")]
     pub corners: [[f64; 2]; 4],
 }
@@ -34,16 +34,16 @@ pub struct TagEntry {
 /// A request to measure gaits in the film.
 #[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
 pub struct Asked {
-    /// The robot.toml.
+    /// The text of the robot.toml.
     pub toml: String,
-    /// The pace, percent.
+    /// The pace, percent of a gait's own pace.
     pub speed: u8,
-    /// Height of the deck's tag above the floor, mm; `None` for that of the board.
+    /// Height of the deck's tag above the floor, mm; `None` if the tag lies on the robot's board.
     pub height: Option<f64>,
-    /// Measured length of the sheet's line that should be 100 mm long, mm.
+    /// Measured length, mm, of the line on the sheet that should be 100 mm long.
     pub ruler: f64,
-    /// The walks. If empty, the film is split at its rests, and each walk is assigned the gait that it clearly
-    /// resembles.
+    /// The walks to measure. If empty, the film is split where the robot rests, and each walk is assigned the gait
+    /// that it clearly resembles.
     pub walks: Vec<AskedWalk>,
 }
 
@@ -52,7 +52,7 @@ pub struct Asked {
 pub struct AskedWalk {
     /// The gait's name.
     pub gait: String,
-    /// Begin and end of the walk on the film's clock, s; `None` for the whole film.
+    /// Start and end of the walk on the film's clock, s; `None` for the whole film.
     pub during: Option<[f64; 2]>,
 }
 
@@ -62,7 +62,7 @@ pub struct Results {
     /// The gaits as `lizard measure --json` writes them; walks of the same gait count together.
     #[tsify(type = "Report[]")]
     pub gaits: serde_json::Value,
-    /// The reasons why walks cannot be measured, as sentences with their gaits.
+    /// For each walk that cannot be measured, a sentence with its gait and the reason.
     pub troubles: Vec<String>,
 }
 
@@ -70,24 +70,28 @@ pub struct Results {
 #[derive(Debug, Default)]
 pub struct Camera {
     film: Film,
-    /// The path in the film with its setup; `None` if it must be computed again, since the film has a new picture.
-    watched: Option<(Setup, WatchedFilm)>,
+    /// The analysis of the film, and the setup that it is valid for; `None` after a new picture.
+    cached_analysis: Option<(Setup, NamedFilm)>,
 }
 
 impl Camera {
-    /// Finds the tags of a picture that is not added to the film.
-    pub fn look(&mut self, picture: &Picture) -> Vec<TagEntry> {
+    /// Finds the tags in a picture without adding it to the film.
+    pub fn find_tags(&mut self, picture: &Picture) -> Vec<TagEntry> {
         let tags = self.film.find_tags(picture).into_iter();
         tags.map(|Tag { id, corners }| TagEntry { id, corners })
             .collect()
     }
 
-    /// Adds the next picture to the film, taken at this time, s, and finds its tags.
+    /// Adds the next picture, taken at `seconds`, to the film, and returns its tags.
     ///
     /// # Errors
     /// Fails if the picture does not belong to the film, or shows a tag twice.
-    pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<Vec<TagEntry>, Refused> {
-        self.watched = None;
+    pub fn add_picture(
+        &mut self,
+        picture: &Picture,
+        seconds: f64,
+    ) -> Result<Vec<TagEntry>, Refused> {
+        self.cached_analysis = None;
         let tags = self.film.add(seconds, picture).map_err(Refused::of)?;
         let entry_of = |(id, corners): (usize, &Option<_>)| {
             Some(TagEntry {
@@ -105,40 +109,40 @@ impl Camera {
     /// walk without a given gait does not clearly resemble one.
     pub fn measure(&mut self, request: &Asked) -> Result<Results, Refused> {
         let robot = Robot::parse(&request.toml).map_err(Refused::of)?;
-        let gait_of = |walk: &AskedWalk| {
-            let gait = robot.gait(&walk.gait).filter(|gait| gait.moves());
+        let find_gait = |walk: &AskedWalk| {
+            let gait = robot.gait(&walk.gait).filter(|gait| gait.has_movement());
             gait.ok_or_else(|| Refused::of(format!("no gait `{}` moves this robot", walk.gait)))
         };
         let named_gaits: Vec<_> = request
             .walks
             .iter()
-            .map(gait_of)
+            .map(find_gait)
             .collect::<Result<_, _>>()?;
         let setup = Setup {
-            scale: request.ruler / sheet::RULER,
-            height: request.height.unwrap_or_else(|| height_of_board(&robot)),
+            print_scale: request.ruler / sheet::RULER_LENGTH,
+            deck_height: request.height.unwrap_or_else(|| board_height(&robot)),
         };
         let gaits = Gaits::new(&robot, &named_gaits, f64::from(request.speed) / 100.0);
-        let film = match self.watched.take() {
-            Some((watched_setup, film)) if watched_setup == setup => film,
-            _ => WatchedFilm {
+        let film = match self.cached_analysis.take() {
+            Some((cached_setup, film)) if cached_setup == setup => film,
+            _ => NamedFilm {
                 name: "the film".to_owned(),
-                watched: self.film.watch(setup).map_err(Refused::of)?,
+                analysis: self.film.analyse(setup).map_err(Refused::of)?,
             },
         };
-        let (_, film) = self.watched.insert((setup, film));
+        let (_, film) = self.cached_analysis.insert((setup, film));
         let films = std::slice::from_ref(&*film);
         let mut troubles = Vec::new();
         let walks = match request.walks.is_empty() {
-            true => gaits.walks(films).map_err(Refused::of)?,
+            true => gaits.measure_walks(films).map_err(Refused::of)?,
             false => {
                 let measured_walks =
                     request
                         .walks
                         .iter()
                         .enumerate()
-                        .filter_map(|(i, asked_walk)| {
-                            let walk = gaits.walk(i, &films[0], asked_walk.during);
+                        .filter_map(|(gait_index, asked_walk)| {
+                            let walk = gaits.measure_walk(gait_index, &films[0], asked_walk.during);
                             walk.map_err(|reason| {
                                 troubles.push(format!("{}: {reason}", asked_walk.gait))
                             })

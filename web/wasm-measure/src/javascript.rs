@@ -1,4 +1,4 @@
-//! The camera as JavaScript sees it: a class by wasm-bindgen.
+//! The class with which JavaScript films the robot and measures its gaits.
 
 use js_sys::JSON;
 use lizard_film::Picture;
@@ -12,38 +12,38 @@ use crate::camera::{Camera, Refused};
 const TYPES: &str = "
 /** A point of a picture, px. */
 export type Pixel = [number, number];
-/** A part of a cycle's movement: mm or deg. */
+/** A component of a cycle's movement: mm or deg. */
 export interface Part {
   mean: number;
-  /** Standard deviation of single cycles. */
+  /** Standard deviation of the single cycles. */
   sd: number;
   /** Standard error of the mean. */
   error: number;
   predicted: number | null;
-  /** The mean less the prediction, in standard errors. */
+  /** The mean minus the prediction, in standard errors. */
   differs: number | null;
   agrees: boolean | null;
 }
 /** A gait as `lizard measure --json` prints it. */
 export interface Report {
   gait: string;
-  /** Percent. */
+  /** The pace, percent of the gait's own pace. */
   speed: number;
   cycles: number;
   forward: Part;
   left: Part;
   turn: Part;
-  /** The movement per cycle by MuJoCo with ideal servos: mm ahead and to the left, deg; known only for some robots. */
+  /** The movement per cycle that MuJoCo computes with ideal servos: mm ahead, mm to the left, deg; known only for some robots. */
   mujoco?: [number, number, number];
   range?: Range;
 }
-/** The range of the predicted distance or turn per cycle when one assumption at a time is changed: mm or deg. */
+/** The range of the predicted distance or turn per cycle, mm or deg, when one assumption at a time is changed. */
 export interface Range {
-  /** Its name and unit. */
+  /** Name and unit of the distance or turn. */
   part: string;
   least: number;
   most: number;
-  /** The assumption that gives each bound; null if it is that of robot.toml. */
+  /** The changed assumption that gives each bound; null if the values of robot.toml give it. */
   least_by: string | null;
   most_by: string | null;
 }
@@ -55,12 +55,12 @@ impl From<Refused> for JsError {
     }
 }
 
-fn js(answer: impl Serialize) -> JsValue {
-    let text = serde_json::to_string(&answer).unwrap_or_default();
+fn to_js(value: impl Serialize) -> JsValue {
+    let text = serde_json::to_string(&value).unwrap_or_default();
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
-/// The page's camera: finds tags in pictures, and adds pictures to a film.
+/// The page's camera: finds tags in pictures, adds pictures to a film, and measures the gaits in it.
 #[wasm_bindgen(js_name = Camera)]
 #[derive(Default)]
 pub struct PageCamera(Camera);
@@ -74,11 +74,11 @@ impl PageCamera {
         Self::default()
     }
 
-    /// Finds the tags of a picture that was taken at a time, s; if `is_kept`, adds the picture to the film. A grey
+    /// Finds the tags in a picture that was taken at `seconds`; if `is_kept`, adds the picture to the film. A grey
     /// picture has one byte per pixel, a picture in colour has four.
     ///
     /// # Errors
-    /// Fails if the picture is incomplete; or if it is kept, and does not belong to the film or shows a tag twice.
+    /// Fails if the picture is incomplete, or if it is to be kept but does not belong to the film or shows a tag twice.
     #[wasm_bindgen(unchecked_return_type = "TagEntry[]")]
     pub fn look(
         &mut self,
@@ -92,10 +92,10 @@ impl PageCamera {
             true => Picture::new(width, height, pixels),
             false => Picture::of_colours(width, height, &pixels),
         };
-        let picture = picture.ok_or_else(|| JsError::new("the picture is not whole"))?;
-        Ok(js(match is_kept {
-            true => self.0.add(&picture, seconds)?,
-            false => self.0.look(&picture),
+        let picture = picture.ok_or_else(|| JsError::new("the picture is incomplete"))?;
+        Ok(to_js(match is_kept {
+            true => self.0.add_picture(&picture, seconds)?,
+            false => self.0.find_tags(&picture),
         }))
     }
 
@@ -110,13 +110,13 @@ impl PageCamera {
     ) -> Result<JsValue, JsError> {
         let json = JSON::stringify(asked).map_err(|_| JsError::new("this is no JSON"))?;
         let request = serde_json::from_str(&String::from(json))?;
-        Ok(js(self.0.measure(&request)?))
+        Ok(to_js(self.0.measure(&request)?))
     }
 
     /// Returns the sheet of tags as PDF, for paper of 11 x 8.5 inches if `is_letter`, else for A4.
     #[must_use]
     pub fn sheet(is_letter: bool) -> Vec<u8> {
         let paper = if is_letter { Paper::Letter } else { Paper::A4 };
-        paper.sheet()
+        paper.tag_sheet_pdf()
     }
 }

@@ -1,4 +1,4 @@
-//! The parts as JavaScript sees them: a class by wasm-bindgen. A refusal is thrown as a [`Refused`].
+//! The class with which JavaScript gets a robot's parts. A refusal is thrown as a [`Refused`].
 
 use js_sys::{Function, JSON};
 use serde::Serialize;
@@ -9,25 +9,25 @@ use crate::solids::Triangles;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
-/** Two parts that meet. */
+/** Two parts that overlap or come too close. */
 export interface Meeting {
   first: string;
   second: string;
-  /** Their distance, mm; below 0 they overlap. */
+  /** Their distance, mm; negative if they overlap. */
   mm: number;
-  /** Servo angles there, deg; null if it is so at every pose, or none is known. */
+  /** Servo angles at which they do, deg; null if they do so at every pose, or if no such pose is known. */
   pose: number[] | null;
 }
 ";
 
-fn js(answer: impl Serialize) -> JsValue {
-    let text = serde_json::to_string(&answer).unwrap_or_default();
+fn to_js(value: impl Serialize) -> JsValue {
+    let text = serde_json::to_string(&value).unwrap_or_default();
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
 impl From<Refused> for JsValue {
     fn from(refused: Refused) -> Self {
-        js(refused)
+        to_js(refused)
     }
 }
 
@@ -60,7 +60,7 @@ impl Parts {
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "ModelEntry")]
     pub fn entry(&self) -> JsValue {
-        js(self.0.entry())
+        to_js(self.0.entry())
     }
 
     /// Makes the triangles of the solids, in the order of `BodyEntry.solid`.
@@ -71,8 +71,8 @@ impl Parts {
         self.0.solids()
     }
 
-    /// Returns x, y, cosine and sine of every mount, at angles and lags in deg; undefined if a loop does not close,
-    /// or if an array does not have four numbers.
+    /// Returns x, y, cosine and sine of every mount, at servo angles and leg lags in deg; undefined if a loop does not
+    /// close, or if an array does not have four numbers.
     #[must_use]
     pub fn pose(
         &self,
@@ -81,12 +81,12 @@ impl Parts {
     ) -> Option<Vec<f64>> {
         let places = self
             .0
-            .pose(angles.try_into().ok()?, lags.try_into().ok()?)?;
+            .mount_places(angles.try_into().ok()?, lags.try_into().ok()?)?;
         Some(places.into_flattened())
     }
 
-    /// Proves that no two parts overlap or come too close; returns the least distance, mm, undefined if no pair was
-    /// checked. Calls `progress` with the number of finished checks and their total.
+    /// Proves that no two parts overlap or come too close; returns the least distance, mm, or undefined if no pair was
+    /// checked. Calls `progress` with the number of finished checks and the number of all.
     ///
     /// # Errors
     /// Returns the two parts that overlap or come too close.
@@ -102,7 +102,7 @@ impl Parts {
         Ok(proof.least)
     }
 
-    /// Makes a group of the files; `number` is the group's index, below `ModelEntry.files`.
+    /// Makes one group of files; `number` is the group's index, below `ModelEntry.files`.
     ///
     /// # Errors
     /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.

@@ -2,11 +2,11 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, BuildProblem, File, Meeting, Mount, Part, Placement, PrintToBody, Step, coupon,
-    papers, part_files, steps,
+    Assembly, Bill, BuildProblem, CollidingPair, File, Mount, Part, Placement, PrintToBody, Step,
+    coupon, documents, part_files, steps,
 };
 use lizard_robot::Robot;
-use lizard_robot::servo::FORWARD;
+use lizard_robot::servo::FORWARD_TURN_SIGN;
 use serde::Serialize;
 use tsify::Tsify;
 
@@ -17,7 +17,7 @@ pub struct Refused {
     pub refused: String,
     /// The two parts that overlap or come too close; `None` if the reason is another one.
     #[tsify(type = "Meeting | null")]
-    pub meeting: Option<Meeting>,
+    pub meeting: Option<CollidingPair>,
 }
 
 impl Refused {
@@ -32,7 +32,7 @@ impl Refused {
 impl From<BuildProblem> for Refused {
     fn from(problem: BuildProblem) -> Self {
         Self {
-            meeting: problem.meeting(),
+            meeting: problem.colliding_pair(),
             ..Self::of(problem)
         }
     }
@@ -51,9 +51,9 @@ pub struct BodyEntry {
     pub servo: Option<usize>,
     /// The number of the guide's step that adds the body, from 1; 0 if no step adds it.
     pub step: usize,
-    /// Lift in the guide's exploded picture, as a share.
+    /// Height by which the guide's exploded picture lifts the body, as a share of the picture's full lift.
     pub lift: f64,
-    /// The index of the printed part; `None` for bought bodies.
+    /// The index of the body's printed part; `None` for bought bodies.
     pub part: Option<usize>,
     /// The solid's pose in the mount's frame: the columns of a homogeneous 4 x 4 matrix.
     pub place: [f64; 16],
@@ -114,7 +114,7 @@ impl Model {
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
-        assembly.check_measures()?;
+        assembly.check_dimensions()?;
         let mut mounts: Vec<Mount> = Vec::new();
         for body in assembly.bodies() {
             if !mounts.contains(&body.mount) {
@@ -133,11 +133,11 @@ impl Model {
     #[must_use]
     pub fn entry(&self) -> ModelEntry {
         let mut sole_z: f64 = 0.0;
-        let mut next_bought = self.needed().count();
+        let mut next_bought = self.needed_parts().count();
         let bodies = self.assembly.bodies().iter().map(|body| {
             sole_z = sole_z.min(body.z()[0]);
-            let has_body = |part: &Part| part.bodies.contains(&body.name);
-            let part = self.needed().position(has_body);
+            let has_body = |part: &Part| part.body_names.contains(&body.name);
+            let part = self.needed_parts().position(has_body);
             let motion = part.map(|part| self.parts[part].print_to_body(body));
             let step = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
@@ -147,7 +147,7 @@ impl Model {
             BodyEntry {
                 name: body.name.clone(),
                 kind: body.kind.word(),
-                mount: self.mount(body.mount),
+                mount: self.mount_index(body.mount),
                 servo: body.mount.servo(),
                 step: step.map_or(0, |step| step + 1),
                 lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
@@ -159,16 +159,16 @@ impl Model {
         let bodies = bodies.collect();
         let part_entry = |part: &Part| PartEntry {
             name: part.name.clone(),
-            file: part.file(),
+            file: part.file_stem(),
             count: part.count(),
         };
         let step_entry = |step: &Step| StepEntry {
             title: step.title,
-            words: step.words.clone(),
+            words: step.instructions.clone(),
         };
         ModelEntry {
             bodies,
-            parts: self.needed().map(part_entry).collect(),
+            parts: self.needed_parts().map(part_entry).collect(),
             steps: self.steps.iter().map(step_entry).collect(),
             mounts: self.mounts.len(),
             floor: -sole_z,
@@ -182,28 +182,28 @@ impl Model {
         &self.assembly
     }
 
-    /// The parts that the robot is built of, without the alternatives to them.
-    pub(crate) fn needed(&self) -> impl Iterator<Item = &Part> {
+    /// Returns the parts that the robot is built of, without the alternatives to them.
+    pub(crate) fn needed_parts(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.instead_of.is_none())
     }
 
-    fn mount(&self, mount: Mount) -> usize {
+    fn mount_index(&self, mount: Mount) -> usize {
         let index = self.mounts.iter().position(|candidate| *candidate == mount);
-        index.expect("a body's own")
+        index.expect("every body's mount is in the list")
     }
 
-    /// Returns the place of every mount at angles of the servos (deg, chassis frame) and lags of the
-    /// legs behind them (deg, foot forward positive): x and y in mm, and the direction of the x
-    /// axis. `None` if a loop does not close.
+    /// Returns the place of every mount in the chassis frame: x and y of its origin, mm, and the unit vector of its x
+    /// axis. `angles` are those of the servos (deg, chassis frame), `lags` those of the legs behind them (deg, foot
+    /// forward positive). `None` if a loop does not close.
     #[must_use]
-    pub fn pose(&self, angles: [f64; 4], lag: [f64; 4]) -> Option<Vec<[f64; 4]>> {
+    pub fn mount_places(&self, angles: [f64; 4], lags: [f64; 4]) -> Option<Vec<[f64; 4]>> {
         let pose = self.assembly.robot().lizard().solve(&angles.into()).ok()?;
         let plans = &self.assembly.layout().legs;
         let places = self.mounts.iter().map(|&mount| {
             let driven_place = self.assembly.place(mount, &pose);
             let leg_at = |servo: usize| {
-                let angle = angles[servo] - FORWARD[servo] * lag[servo];
-                (angle, plans[servo].at(angles[servo], angle))
+                let angle = angles[servo] - FORWARD_TURN_SIGN[servo] * lags[servo];
+                (angle, plans[servo].place_at(angles[servo], angle))
             };
             let Placement { origin, x_axis } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
@@ -215,7 +215,7 @@ impl Model {
                     ..driven_place
                 },
                 Mount::Strut(servo) => {
-                    let [from, to] = leg_at(servo).1.strut;
+                    let [from, to] = leg_at(servo).1.strut_anchors;
                     let direction = to - from;
                     Placement {
                         origin: from,
@@ -229,14 +229,15 @@ impl Model {
         Some(places.collect())
     }
 
-    /// All parts in the order in which `lizard parts` makes them: the coupon, if any, then also the alternatives.
+    /// Returns all parts in the order in which `lizard parts` makes them: the coupon, if any, and the robot's parts
+    /// with their alternatives.
     fn ordered_parts(&self) -> impl Iterator<Item = Part> {
         let coupon = coupon(self.assembly.robot().parts());
         coupon.into_iter().chain(self.parts.iter().cloned())
     }
 
-    /// Makes a group of the files that `lizard parts` writes: the files of one part, or in the last group the
-    /// bill and the guide. Empty for a larger `number`.
+    /// Makes one group of the files that `lizard parts` writes: the files of one part, or, as the last group, the
+    /// bill of materials and the guide. Empty for a larger `number`.
     ///
     /// # Errors
     /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
@@ -251,21 +252,21 @@ impl Model {
         }
         let pose = robot
             .lizard()
-            .solve(&robot.neutral())
+            .solve(&robot.neutral_pose())
             .map_err(Refused::of)?;
         let bill = Bill::of(&self.assembly, &self.parts, &pose);
-        Ok(papers(&self.assembly, &bill, &pose)?)
+        Ok(documents(&self.assembly, &bill, &pose)?)
     }
 
     /// Proves that no two parts overlap or come too close at any pose that the guard accepts.
     ///
     /// # Errors
-    /// Returns the worst two parts.
+    /// Returns the two parts that overlap most, or else come closest.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
         proof.judge().map_err(BuildProblem::from)?;
         Ok(Proved {
-            least: proof.nearest().map(|pair| pair.proved),
+            least: proof.nearest_separate_pair().map(|pair| pair.proved),
         })
     }
 }
@@ -277,18 +278,18 @@ pub struct Proved {
     pub least: Option<f64>,
 }
 
-/// Returns the homogeneous matrix, by columns, of a solid's pose in its mount's frame; the identity for `None`.
+/// Returns the homogeneous matrix, column by column, of a solid's pose in its mount's frame; the identity for `None`.
 fn matrix_of(motion: Option<PrintToBody>) -> [f64; 16] {
-    let unmoved = PrintToBody {
-        flipped: false,
+    let identity = PrintToBody {
+        is_flipped: false,
         lift: 0.0,
         frame: Placement::CHASSIS,
     };
     let PrintToBody {
-        flipped,
+        is_flipped: flipped,
         lift,
         frame,
-    } = motion.unwrap_or(unmoved);
+    } = motion.unwrap_or(identity);
     let Placement { origin, x_axis } = frame;
     let z_sign = if flipped { -1.0 } else { 1.0 };
     let y_axis = x_axis.rotated_left() * z_sign;

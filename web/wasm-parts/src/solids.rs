@@ -1,4 +1,4 @@
-//! The triangles of all solids, as the numbers that a graphics chip needs.
+//! The triangles of all solids, as the arrays that a graphics chip needs.
 
 use lizard_parts::{Body, Mesh, Prism, Solid};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -23,7 +23,7 @@ impl Model {
     /// Fails for a part whose layers make no closed body.
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         let printed = self
-            .needed()
+            .needed_parts()
             .map(|part| triangles_of(&part.name, &part.printed_layers().0));
         let bought = self
             .bought_bodies()
@@ -31,16 +31,21 @@ impl Model {
         printed.chain(bought).collect()
     }
 
+    /// Returns the bodies that belong to no needed part.
     fn bought_bodies(&self) -> impl Iterator<Item = &Body> {
         let bodies = self.assembly().bodies().iter();
-        bodies.filter(|body| !self.needed().any(|part| part.bodies.contains(&body.name)))
+        bodies.filter(|body| {
+            !self
+                .needed_parts()
+                .any(|part| part.body_names.contains(&body.name))
+        })
     }
 }
 
 fn triangles_of(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
     let mesh = Mesh::of(&Solid::of(prisms));
     if !mesh.is_closed() {
-        return Err(lizard_parts::BuildProblem::Surface(name.to_owned()).into());
+        return Err(lizard_parts::BuildProblem::OpenSurface(name.to_owned()).into());
     }
     let corners = mesh.corners.as_flattened().iter();
     let triangles = mesh.triangles.as_flattened().iter();

@@ -1,48 +1,48 @@
-//! A robot's calibration as JavaScript sees it, and its file.
+//! The conversion of a robot's calibration between JavaScript and its file.
 
 use lizard_robot::Calibration;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
-use crate::javascript::{js, rust};
+use crate::javascript::{from_js, to_js};
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
 export interface ServoSettings {
-  /** The counter-clockwise turn that the horn needs, deg. */
+  /** The turn that corrects the horn's mounting angle, deg, counter-clockwise. */
   trim: number;
   /** Ends of the travel, deg, chassis frame. */
   limit: [number, number];
   /** The direction in which a longer pulse turns the servo: '+' for counter-clockwise. */
   dir: '+' | '-';
-  /** Pulse for a degree, us. */
+  /** Pulse width per degree, us. */
   scale: number;
 }
 /** The settings that `save` stores. */
 export interface Calibration {
   /** The action after power-on: a gait, or rest. */
   boot: string;
-  /** Time without a line after which a gait ends, ms; 0 for never. */
+  /** Time without a line from the host after which a gait ends, ms; 0 for never. */
   deadman: number;
   servos: Four<ServoSettings>;
 }
 ";
 
-/// Reads a calibration from the text of a file; `name` is the file's name in the error.
+/// Reads a calibration from the text of a file; `name` is the file's name, for the error message.
 ///
 /// # Errors
 /// Fails with the first mistake in the text.
 #[wasm_bindgen(js_name = parseCalibration, unchecked_return_type = "Calibration")]
 pub fn parse_calibration(text: &str, name: &str) -> Result<JsValue, JsError> {
-    Ok(js(Calibration::parse(text, name)?))
+    Ok(to_js(Calibration::parse(text, name)?))
 }
 
 /// Formats a calibration as the text of its file.
 ///
 /// # Errors
-/// Fails if it is no calibration.
+/// Fails if the value is not a calibration.
 #[wasm_bindgen(js_name = calibrationText)]
 pub fn calibration_text(
     #[wasm_bindgen(unchecked_param_type = "Calibration")] calibration: &JsValue,
 ) -> Result<String, JsError> {
-    Ok(rust::<Calibration>(calibration)?.text())
+    Ok(from_js::<Calibration>(calibration)?.to_toml())
 }

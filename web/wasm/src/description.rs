@@ -1,11 +1,11 @@
-//! The description of a robot that the page reads before anything moves.
+//! The description of a robot, which the page reads before anything moves.
 
 use lizard_core::console::text::Text;
 use lizard_core::console::word::Word;
-use lizard_core::numbers::section::START;
+use lizard_core::numbers::section::START_ADDRESS;
 use lizard_kinematics::Check;
-use lizard_robot::edit::HIPS;
-use lizard_robot::servo::{LEGS, NAMES};
+use lizard_robot::edit::HIP_KEYS;
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 use lizard_robot::{Plate, Robot, ServoType, healthy_rail_mv};
 use lizard_twin::ServoModel;
 use serde::Serialize;
@@ -36,7 +36,7 @@ pub struct LinkEntry {
     pub key: String,
     /// Name shown to the user.
     pub label: &'static str,
-    /// Key of the length on the other side, or that must be equal; the length's own key if there is none.
+    /// Key of the length that must be equal, such as that on the other side; the length's own key if there is none.
     pub twin: String,
     /// Unit: mm, or deg for an angle.
     pub unit: &'static str,
@@ -49,7 +49,7 @@ pub struct LinkEntry {
 pub struct MarginEntry {
     /// Name of the margin.
     pub name: &'static str,
-    /// Smallest safe value, a sine.
+    /// Smallest allowed value, the sine of an angle.
     pub limit: f64,
 }
 
@@ -68,9 +68,10 @@ pub struct ServoEntry {
     pub travel: (f64, f64),
 }
 
-/// Names of two servo models: the servos of robot.toml, and servos that follow their pulses exactly.
-const OWN: &str = "own";
-const IDEAL: &str = "ideal";
+/// Name of the servo model with the servos of robot.toml.
+const OWN_SERVOS: &str = "own";
+/// Name of the servo model with servos that follow their pulses exactly.
+const IDEAL_SERVOS: &str = "ideal";
 
 /// A model of the servos.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
@@ -94,21 +95,21 @@ impl ModelEntry {
                 servo.volts,
             ]),
         };
-        let mut models = vec![entry_of(OWN, robot.servo_type())];
+        let mut models = vec![entry_of(OWN_SERVOS, robot.servo_type())];
         models.extend(
             ServoType::ALL
                 .iter()
                 .map(|servo| entry_of(servo.model, servo)),
         );
         models.push(Self {
-            name: IDEAL,
+            name: IDEAL_SERVOS,
             figures: None,
         });
         models
     }
 }
 
-/// Returns the servo model with a name for a robot. A name such as `copy at 4.2` sets another supply, V.
+/// Returns the servo model that has this name, for a robot. A name such as `copy at 4.2` also sets the supply, V.
 /// `None` for an unknown name, or a supply that robot.toml does not allow.
 pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
     let (name, supply) = match name.split_once(" at ") {
@@ -116,14 +117,14 @@ pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
         None => (name, None),
     };
     let servo = match name {
-        IDEAL => return Some(ServoModel::Ideal),
-        OWN => robot.servo_type(),
+        IDEAL_SERVOS => return Some(ServoModel::Ideal),
+        OWN_SERVOS => robot.servo_type(),
         _ => ServoType::ALL.iter().find(|servo| servo.model == name)?,
     };
     let volts = supply.unwrap_or(servo.volts);
-    let (min, max) = ServoType::SUPPLIES;
-    let is_possible = (min..=max).contains(&volts);
-    is_possible.then(|| ServoModel::Motors(robot.motors_of(servo, volts)))
+    let (min, max) = ServoType::VOLTS_RANGE;
+    let is_allowed = (min..=max).contains(&volts);
+    is_allowed.then(|| ServoModel::Motors(robot.motors_of_type(servo, volts)))
 }
 
 /// The chassis seen from above, as [`Plate`]: mm, chassis frame.
@@ -147,12 +148,12 @@ impl From<Plate> for PlateEntry {
     fn from(plate: Plate) -> Self {
         let arms = plate.arms.as_flattened().iter();
         Self {
-            half: plate.half.into(),
-            corner: plate.corner,
+            half: plate.half_size.into(),
+            corner: plate.corner_radius,
             arms: arms.map(|arm| arm.map(Spot::from)).collect(),
-            arm: plate.arm,
-            cases: plate.cases.map(Spot::from),
-            case: plate.case.into(),
+            arm: plate.arm_half_width,
+            cases: plate.case_centres.map(Spot::from),
+            case: plate.case_size.into(),
         }
     }
 }
@@ -183,14 +184,14 @@ pub struct Description {
     pub margins: Vec<MarginEntry>,
     /// Least and greatest travel of the sliders, mm from nominal.
     pub stroke: (f64, f64),
-    /// Voltages of the board's supply below which the robot slows down, stops, and rests, V.
+    /// Supply voltages of the board below which the robot slows down, stops, and rests, V.
     pub supply: [f64; 3],
-    /// Pace limit below the first of these voltages, percent of a gait's own pace.
+    /// Pace limit below the first voltage of `supply`, percent of a gait's own pace.
     pub slow_pace: u8,
     /// Analog channel that measures the servos' rail, and the voltage at its pin with a healthy rail,
     /// V; `None` if the rail is not measured.
     pub rail: Option<(u8, f64)>,
-    /// The inputs: name, and Arduino number of the pin.
+    /// Name of each input, and the Arduino number of its pin.
     pub inputs: Vec<(&'static str, u8)>,
     /// Floor, mass, feet, and the drive of the legs.
     pub floor: Floor,
@@ -209,8 +210,8 @@ impl Description {
             .iter()
             .enumerate()
             .map(|(i, servo)| ServoEntry {
-                name: NAMES[i],
-                leg: LEGS[i],
+                name: SERVO_NAMES[i],
+                leg: LEG_NAMES[i],
                 pin: servo.pin,
                 neutral: servo.neutral,
                 travel: servo.travel(),
@@ -219,7 +220,7 @@ impl Description {
             name: gait.name().to_string(),
             command: gait.name().replace('-', " "),
             period: gait.period(),
-            moves: gait.moves(),
+            moves: gait.has_movement(),
             reversed: gait.is_reversed(),
         });
         let routines = robot.routines().iter();
@@ -237,7 +238,7 @@ impl Description {
             hash: format!("{:08x}", core.hash()),
             name: robot.name().to_string(),
             version: version(),
-            start: START,
+            start: START_ADDRESS,
             servos: servos.collect(),
             gaits: gaits.collect(),
             routines: routines
@@ -255,9 +256,9 @@ impl Description {
             rail: healthy_rail_mv(&core.supplies())
                 .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
-            inputs: robot.inputs().each().collect(),
+            inputs: robot.inputs().named_pins().collect(),
             slow_pace: core.slow_pace(),
-            supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
+            supply: [board.slow_mv, board.stop_mv, board.rest_mv].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot),
             models: ModelEntry::all(robot),
             words: reserved_words(),
@@ -265,7 +266,7 @@ impl Description {
     }
 }
 
-/// Returns the version of the core.
+/// Returns the core's version as text.
 fn version() -> String {
     let mut version = String::new();
     Text::Version.print(&mut version);
@@ -278,8 +279,8 @@ fn reserved_words() -> Vec<&'static str> {
     words.map(|word| word.text()).collect()
 }
 
-/// The label of each link, l0 to l19, and the number of the mirrored link.
-const LINKS: [(&str, usize); 20] = [
+/// The label of each link, l0 to l19, and the number of its mirror image (its own for a base).
+const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),
     ("head coupler, left", 3),
@@ -302,9 +303,10 @@ const LINKS: [(&str, usize); 20] = [
     ("front arm, right", 14),
 ];
 
+/// Returns the lengths of a robot that may be changed, with their present values.
 fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
     let values = robot.lizard().links.to_array();
-    let links = LINKS.iter().zip(values).enumerate();
+    let links = LINK_LABELS_AND_TWINS.iter().zip(values).enumerate();
     let links = links.map(|(i, ((label, twin), value))| LinkEntry {
         key: format!("links.l{i}"),
         label,
@@ -320,7 +322,7 @@ fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
         unit: if key == "leg.mount" { "deg" } else { "mm" },
         value,
     };
-    let [forward_key, side_key] = HIPS;
+    let [forward_key, side_key] = HIP_KEYS;
     let [front_side, hind_side] = feet.hip_side;
     let legs = [
         entry_of("leg.ground", "leg ground link", "leg.coupler", leg.ground),
@@ -341,7 +343,7 @@ fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
         "leg.mount",
         "outward sweep of the legs",
         "leg.mount",
-        feet.mount,
+        feet.mount_angle,
     );
     links
         .chain(legs)
@@ -356,13 +358,14 @@ mod tests {
 
     #[test]
     fn a_length_is_the_twin_of_its_twin() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         let lengths = Description::of(&robot).lengths;
         for length in &lengths {
             let twin = lengths
                 .iter()
                 .find(|candidate| candidate.key == length.twin);
-            let twin = twin.expect("it is there");
+            let twin = twin.expect("every twin is one of the lengths");
             assert_eq!((&twin.twin, twin.value), (&length.key, length.value));
         }
     }

@@ -1,8 +1,8 @@
 //! A drawn gait: the end point of head or tail follows a closed line.
 //!
 //! A line drawn by hand has corners, which no servo can follow. So the line is sampled at even
-//! distances and only its first few harmonics are kept. The angles of the two servos follow from
-//! the robot's inverse kinematics, and every sample is checked as for any gait of a robot.toml.
+//! distances, and only the first few harmonics of the samples are kept. The angles of the two servos
+//! follow from the robot's inverse kinematics, and the gait is checked like any gait of a robot.toml.
 
 use std::f64::consts::TAU;
 
@@ -11,23 +11,23 @@ use lizard_robot::{Harmonic, Path, Robot};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
-use crate::room::neutral;
+use crate::reach_area::neutral_point;
 
 /// Number of points at which a line is sampled.
-const SAMPLES: usize = 256;
-/// Number of points of the path that is shown.
-const SHOWN_POINTS: usize = 128;
+const SAMPLE_COUNT: usize = 256;
+/// Number of points with which the path is shown.
+const SHOWN_POINT_COUNT: usize = 128;
 /// Smallest amplitude of a harmonic that is written to robot.toml, mm.
-const MIN_AMPLITUDE: f64 = 0.05;
+const MIN_AMPLITUDE_MM: f64 = 0.05;
 /// Largest number of harmonics in a robot.toml.
-const MAX_TERMS: usize = 16;
+const MAX_HARMONIC_COUNT: usize = 16;
 
-/// A gait whose end point of head or tail follows a drawn line.
+/// A gait in which the end point of head or tail follows a drawn line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct DrawnGait {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// Five-bar whose end point follows the line: `head` or `tail`.
+    /// The five-bar whose end point follows the line: `head` or `tail`.
     #[tsify(type = "'head' | 'tail'")]
     pub end: String,
     /// Time of a cycle, s.
@@ -47,7 +47,7 @@ impl DrawnGait {
 
     /// Returns the path that the end point follows; `None` for an unknown `end`, or if the line has no length.
     fn smoothed_path(&self, robot: &Robot) -> Option<Path> {
-        let neutral = neutral(robot, self.end()?);
+        let neutral = neutral_point(robot, self.end()?);
         let scale_point = |[x, y]: &[f64; 2]| {
             let scale_about_neutral =
                 |axis: usize, value: f64| neutral[axis] + self.size * (value - neutral[axis]);
@@ -55,12 +55,12 @@ impl DrawnGait {
         };
         let points: Vec<[f64; 2]> = self.points.iter().map(scale_point).collect();
         let even_points = sample_evenly(&points)?;
-        let terms = self.terms.clamp(1, MAX_TERMS);
-        let [(cx, x), (cy, y)] = [0, 1].map(|axis| {
+        let terms = self.terms.clamp(1, MAX_HARMONIC_COUNT);
+        let [(centre_x, x), (centre_y, y)] = [0, 1].map(|axis| {
             let values: Vec<f64> = even_points.iter().map(|point| point[axis]).collect();
             harmonics_of(&values, terms)
         });
-        let centre = [cx, cy];
+        let centre = [centre_x, centre_y];
         Some(Path { centre, x, y })
     }
 
@@ -69,7 +69,9 @@ impl DrawnGait {
     pub fn table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed_path(robot)?;
         let series_text = |terms: &[Harmonic]| {
-            let kept_terms = terms.iter().filter(|term| term.amplitude >= MIN_AMPLITUDE);
+            let kept_terms = terms
+                .iter()
+                .filter(|term| term.amplitude >= MIN_AMPLITUDE_MM);
             let term_text = |Harmonic {
                                  k,
                                  amplitude,
@@ -89,24 +91,24 @@ impl DrawnGait {
         ))
     }
 
-    /// Returns points of the path that the end point follows, mm in the frame of head or tail; `None` for an
-    /// unknown `end`, or if the line has no length.
+    /// Returns evenly timed points of the path that the end point follows, mm in the frame of head or tail; `None` for
+    /// an unknown `end`, or if the line has no length.
     #[must_use]
-    pub fn path(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
+    pub fn shown_points(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
         let path = self.smoothed_path(robot)?;
         let point_at = |i: usize| {
-            let Vector { x, y } = path.at(i as f64 / SHOWN_POINTS as f64);
+            let Vector { x, y } = path.point_at(i as f64 / SHOWN_POINT_COUNT as f64);
             [x, y]
         };
-        Some((0..SHOWN_POINTS).map(point_at).collect())
+        Some((0..SHOWN_POINT_COUNT).map(point_at).collect())
     }
 }
 
-/// Returns the mean of values that are evenly spaced over a cycle, and their first harmonics.
+/// Returns the mean of values that are evenly spaced over a cycle, and their first `terms` harmonics.
 fn harmonics_of(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
     let mean_of = |value_of: &dyn Fn(f64, f64) -> f64| {
-        let indexed = values.iter().enumerate();
-        let sum: f64 = indexed
+        let indexed_values = values.iter().enumerate();
+        let sum: f64 = indexed_values
             .map(|(i, value)| value_of(*value, i as f64 / values.len() as f64))
             .sum();
         sum / values.len() as f64
@@ -118,7 +120,7 @@ fn harmonics_of(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
         Harmonic {
             k,
             amplitude: cosine.hypot(sine),
-            // Rounded to the digits of the text, without the sign of a zero.
+            // Rounded to the digits that are written; adding 0.0 removes the sign of a negative zero.
             shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
         }
     };
@@ -138,21 +140,22 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     if !(total_length > 1e-6 && total_length.is_finite()) {
         return None;
     }
-    let mut even_points = Vec::with_capacity(SAMPLES);
-    let (mut segment, mut passed) = (0, 0.0);
-    for i in 0..SAMPLES {
-        let distance = total_length * i as f64 / SAMPLES as f64;
-        while segment + 1 < lengths.len() && passed + lengths[segment] < distance {
-            passed += lengths[segment];
+    let mut even_points = Vec::with_capacity(SAMPLE_COUNT);
+    let (mut segment, mut passed_length) = (0, 0.0);
+    for i in 0..SAMPLE_COUNT {
+        let distance = total_length * i as f64 / SAMPLE_COUNT as f64;
+        while segment + 1 < lengths.len() && passed_length + lengths[segment] < distance {
+            passed_length += lengths[segment];
             segment += 1;
         }
-        let share = if lengths[segment] > 0.0 {
-            (distance - passed) / lengths[segment]
+        let segment_share = if lengths[segment] > 0.0 {
+            (distance - passed_length) / lengths[segment]
         } else {
             0.0
         };
         let (from, to) = (points[segment], next_point(segment));
-        even_points.push([0, 1].map(|axis| from[axis] + share.min(1.0) * (to[axis] - from[axis])));
+        even_points
+            .push([0, 1].map(|axis| from[axis] + segment_share.min(1.0) * (to[axis] - from[axis])));
     }
     Some(even_points)
 }
@@ -160,12 +163,12 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paper::{TEXT, paper, with_twin};
+    use crate::paper::{PAPER_TOML, paper_robot, paper_robot_and_twin};
     use crate::trial::EditedGait;
 
     /// Makes a gait along a circle about the neutral point of head or tail.
-    fn circle(robot: &Robot, end: End, radius: f64) -> DrawnGait {
-        let [x, y] = neutral(robot, end);
+    fn circular_gait(robot: &Robot, end: End, radius: f64) -> DrawnGait {
+        let [x, y] = neutral_point(robot, end);
         let point_at = |i: usize| {
             let angle = TAU * i as f64 / 90.0;
             [x + radius * angle.cos(), y + radius * angle.sin()]
@@ -181,27 +184,32 @@ mod tests {
     }
 
     #[test]
-    fn the_point_of_a_robot_with_the_gait_follows_the_drawn_circle() {
-        let (robot, twin) = with_twin();
+    fn the_end_point_follows_the_drawn_circle() {
+        let (robot, twin) = paper_robot_and_twin();
         for end in End::ALL {
-            let drawn_gait = circle(&robot, end, 6.0);
+            let drawn_gait = circular_gait(&robot, end, 6.0);
             let edited_gait = EditedGait::DrawnGait(drawn_gait);
-            let trial = edited_gait.trial(&twin).expect("a line").expect("it goes");
+            let trial = edited_gait
+                .try_on(&twin)
+                .expect("the line has a length")
+                .expect("the gait is valid");
             assert!(
                 trial.table.contains(&format!("[gait.mine.{end}]")),
                 "{}",
                 trial.table
             );
-            let text = edited_gait.put_into(TEXT, &robot).expect("a line");
-            let robot = Robot::parse(&text).expect("right");
-            let gait = robot.gait("mine").expect("there");
-            let [x, y] = neutral(&robot, end);
+            let text = edited_gait
+                .put_into(PAPER_TOML, &robot)
+                .expect("the line has a length");
+            let robot = Robot::parse(&text).expect("the robot with the gait is valid");
+            let gait = robot.gait("mine").expect("the gait was added");
+            let [x, y] = neutral_point(&robot, end);
             for i in 0..50 {
                 let pose = gait.pose(f64::from(i) / 50.0);
                 let point = robot
                     .lizard()
                     .solve(&pose)
-                    .expect("it closes")
+                    .expect("every loop closes")
                     .end(end)
                     .end_point;
                 let distance = (point.x - x).hypot(point.y - y);
@@ -211,32 +219,35 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_is_one_harmonic_and_its_line_is_the_circle() {
-        let robot = paper();
-        let drawn_gait = circle(&robot, End::Head, 6.0);
-        let table = drawn_gait.table(&robot).expect("a line");
+    fn a_circle_has_one_harmonic_and_its_path_is_the_circle() {
+        let robot = paper_robot();
+        let drawn_gait = circular_gait(&robot, End::Head, 6.0);
+        let table = drawn_gait.table(&robot).expect("the line has a length");
         assert!(
             table.contains("k = 1") && !table.contains("k = 2"),
             "{table}"
         );
-        let [x, y] = neutral(&robot, End::Head);
-        for [px, py] in drawn_gait.path(&robot).expect("a line") {
+        let [x, y] = neutral_point(&robot, End::Head);
+        for [px, py] in drawn_gait
+            .shown_points(&robot)
+            .expect("the line has a length")
+        {
             assert!(((px - x).hypot(py - y) - 6.0).abs() < 0.02);
         }
     }
 
     #[test]
-    fn a_refusal_offers_the_nearest_size_and_the_nearest_time_that_are_possible() {
-        let (robot, twin) = with_twin();
-        let drawn_gait = circle(&robot, End::Head, 40.0);
+    fn a_refusal_offers_the_nearest_size_and_the_nearest_period_that_are_valid() {
+        let (robot, twin) = paper_robot_and_twin();
+        let drawn_gait = circular_gait(&robot, End::Head, 40.0);
         let try_gait = |drawn_gait: &DrawnGait| {
             EditedGait::DrawnGait(drawn_gait.clone())
-                .trial(&twin)
-                .expect("a line")
+                .try_on(&twin)
+                .expect("the line has a length")
         };
-        let refusal = try_gait(&drawn_gait).expect_err("it is too large");
+        let refusal = try_gait(&drawn_gait).expect_err("the circle is too large");
         let [size] = refusal.instead.as_slice() else {
-            panic!("no time would do: {:?}", refusal.instead);
+            panic!("only a size is offered, no period: {:?}", refusal.instead);
         };
         assert_eq!(size.what, "size");
         let with_size = |size: f64| DrawnGait {
@@ -251,14 +262,14 @@ mod tests {
         );
         let fast_gait = DrawnGait {
             period: 0.2,
-            ..circle(&robot, End::Head, 8.0)
+            ..circular_gait(&robot, End::Head, 8.0)
         };
-        let refusal = try_gait(&fast_gait).expect_err("it is too fast");
+        let refusal = try_gait(&fast_gait).expect_err("the gait is too fast");
         let offer = refusal
             .instead
             .iter()
             .find(|instead| instead.what == "period");
-        let slow_period = offer.expect("a longer time does").value;
+        let slow_period = offer.expect("a longer period is offered").value;
         let with_period = |period: f64| DrawnGait {
             period,
             ..fast_gait.clone()
@@ -270,15 +281,15 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_no_line() {
-        let (robot, twin) = with_twin();
-        let mut drawn_gait = circle(&robot, End::Tail, 0.0);
+    fn a_line_without_length_makes_no_gait() {
+        let (robot, twin) = paper_robot_and_twin();
+        let mut drawn_gait = circular_gait(&robot, End::Tail, 0.0);
         assert!(
             EditedGait::DrawnGait(drawn_gait.clone())
-                .trial(&twin)
+                .try_on(&twin)
                 .is_none()
         );
         drawn_gait.points.clear();
-        assert!(drawn_gait.path(&robot).is_none() && drawn_gait.table(&robot).is_none());
+        assert!(drawn_gait.shown_points(&robot).is_none() && drawn_gait.table(&robot).is_none());
     }
 }

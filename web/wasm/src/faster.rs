@@ -1,9 +1,9 @@
 //! The search for a gait that walks faster than the edited one.
 //!
-//! The search of `lizard tune` takes minutes, and the page has one thread for it. So this search tries
-//! one gait per call: its caller can show the progress and the best gait so far, and stop at any
-//! time. The kinds of gait take turns, round by round; they do not depend on each other, so the
-//! final gait equals that of `lizard tune` with the same parameters.
+//! A search takes minutes, and the page has one thread for it. So this search tries one gait per call:
+//! its caller can show the progress and the best gait so far, and stop at any time. The kinds of gait
+//! take turns, round by round. Their searches do not depend on each other, so the final gait equals
+//! that of `lizard tune` with the same parameters.
 
 use lizard_robot::Bars;
 use lizard_tune::{Comparison, Kind, ScoredParameters, Search, Tuning, TuningError, trials};
@@ -18,11 +18,11 @@ use crate::refused::Refused;
 pub struct SearchTask {
     /// The gait to beat.
     pub bars: Bars,
-    /// Largest speed of a servo, deg/s; `None` for the largest speed in the given gait.
+    /// Speed that no servo may exceed, deg/s; `None` for the largest servo speed in the gait to beat.
     pub rate: Option<f64>,
-    /// Rounds of the search, as `lizard tune --rounds` has them.
+    /// Number of rounds, as for `lizard tune --rounds`.
     pub rounds: usize,
-    /// Seed of the random numbers, as `lizard tune --seed` has it.
+    /// Seed of the random numbers, as for `lizard tune --seed`.
     pub seed: u64,
 }
 
@@ -31,7 +31,7 @@ pub struct SearchTask {
 pub struct SearchExtent {
     /// Number of gaits that the search tries.
     pub all: usize,
-    /// Largest speed of a servo, deg/s.
+    /// Speed that no servo may exceed, deg/s.
     pub rate: f64,
 }
 
@@ -40,43 +40,44 @@ pub struct SearchExtent {
 pub struct Progress {
     /// Number of gaits that the search has tried.
     pub done: usize,
-    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` while no
-    /// gait was valid.
+    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` until a
+    /// gait is valid.
     pub best: Option<f64>,
 }
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Found {
-    /// The gait that was found, with the name of the given one.
+    /// The gait that was found, with the name of the gait to beat.
     pub bars: Bars,
-    /// Comparison of the found and the given gait on random robots that the search has not used.
+    /// Comparison of the found gait with the gait to beat, on random robots that the search has not used.
     #[tsify(type = "{ unit: string; rate: number; robots: number; faster: number }")]
     pub comparison: Comparison,
-    /// True if the found gait is faster than the given gait.
+    /// True if the found gait is faster than the gait to beat.
     pub better: bool,
-    /// Gain in the speed that 95 % of the robots exceed, as a share.
+    /// Relative gain in the speed that 95 % of the robots exceed; 0.1 is 10 % faster.
     pub gain: f64,
 }
 
 /// A search in progress.
 #[derive(Debug, Clone)]
-pub struct Faster {
+pub struct FasterSearch {
     tuning: Tuning,
+    /// The searches by kind of gait, in the order of [`Kind::ALL`].
     searches: [Search; Kind::ALL.len()],
-    /// Index of the kind of gait that is being tried.
-    turn: usize,
-    /// Scores of the current round of that kind so far.
+    /// Index of the kind whose gaits are being tried.
+    kind_index: usize,
+    /// Scores of this kind's gaits in the current round, so far.
     scores: Vec<Option<f64>>,
     progress: Progress,
-    all: usize,
+    trial_count: usize,
 }
 
-impl Faster {
+impl FasterSearch {
     /// Prepares a search with the robot and the floor of a twin; takes as long as a few trials.
     ///
     /// # Errors
-    /// Returns the limit that the given gait breaks, or the reason why it cannot be made faster.
+    /// Returns the limit that the gait to beat breaks, or the reason why it cannot be made faster.
     pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refused> {
         let refusal_of = |key: &str, reason: String| Refused {
             refused: reason,
@@ -84,7 +85,7 @@ impl Faster {
             line: None,
             key: key.to_string(),
         };
-        let robot = twin.robot().with_gait(&task.bars.table());
+        let robot = twin.robot().with_gait(&task.bars.to_toml());
         let robot = robot.map_err(Refused::of_gait)?;
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, task.rate, &task.bars.name, task.seed);
@@ -95,30 +96,30 @@ impl Faster {
         Ok(Self {
             searches: Kind::ALL.map(|kind| tuning.search(kind)),
             tuning,
-            turn: 0,
+            kind_index: 0,
             scores: Vec::new(),
             progress: Progress {
                 done: 0,
                 best: None,
             },
-            all: Kind::ALL.len() * trials(task.rounds),
+            trial_count: Kind::ALL.len() * trials(task.rounds),
         })
     }
 
     /// Returns the extent of this search.
-    pub fn begun(&self) -> SearchExtent {
+    pub fn extent(&self) -> SearchExtent {
         SearchExtent {
-            all: self.all,
+            all: self.trial_count,
             rate: self.tuning.rate(),
         }
     }
 
-    /// Tries the next gait, unless all are tried.
-    pub fn step(&mut self) -> Progress {
-        if self.progress.done < self.all {
-            let search = &mut self.searches[self.turn];
+    /// Tries the next gait, unless all have been tried; returns the progress.
+    pub fn try_next(&mut self) -> Progress {
+        if self.progress.done < self.trial_count {
+            let search = &mut self.searches[self.kind_index];
             let parameters = &search.trials()[self.scores.len()];
-            let score = self.tuning.score(Kind::ALL[self.turn], parameters);
+            let score = self.tuning.score(Kind::ALL[self.kind_index], parameters);
             self.scores.push(score);
             self.progress.done += 1;
             if score > self.progress.best {
@@ -126,21 +127,21 @@ impl Faster {
             }
             if self.scores.len() == search.trials().len() {
                 search.score(self.scores.drain(..));
-                self.turn = (self.turn + 1) % Kind::ALL.len();
+                self.kind_index = (self.kind_index + 1) % Kind::ALL.len();
             }
         }
         self.progress.clone()
     }
 
-    /// Compares the best gait so far with the given one, on a number of random robots; `None`
-    /// until a gait is within the robot's limits.
-    pub fn found(&self, robots: usize) -> Option<Found> {
+    /// Compares the best gait so far with the gait to beat, on this number of random robots; `None`
+    /// until a gait is valid.
+    pub fn best_so_far(&self, robots: usize) -> Option<Found> {
         let mut searches = self.searches.clone();
         if !self.scores.is_empty() {
-            searches[self.turn].score(self.scores.iter().copied());
+            searches[self.kind_index].score(self.scores.iter().copied());
         }
         let kinds = Kind::ALL.into_iter().zip(&searches);
-        let scored = kinds.flat_map(|(kind, search)| {
+        let scored_parameters = kinds.flat_map(|(kind, search)| {
             let found = search.found().into_iter();
             found.map(move |(score, parameters)| ScoredParameters {
                 kind,
@@ -148,7 +149,7 @@ impl Faster {
                 parameters,
             })
         });
-        let best = self.tuning.best(scored.collect())?;
+        let best = self.tuning.best(scored_parameters.collect())?;
         let comparison = self.tuning.compare(&best, robots);
         Some(Found {
             bars: best.gait().bars()?,
@@ -162,65 +163,76 @@ impl Faster {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paper::{paper, with_twin};
+    use crate::paper::{paper_robot, paper_robot_and_twin};
     use crate::trial::EditedGait;
 
     fn task_of(name: &str) -> SearchTask {
-        let gait = paper().gait(name).cloned().expect(name);
+        let gait = paper_robot().gait(name).cloned().expect(name);
         SearchTask {
-            bars: gait.bars().expect("bars"),
+            bars: gait.bars().expect("the gait has bars"),
             rate: None,
             rounds: 0,
             seed: 3,
         }
     }
 
-    fn refusal_of(task: &SearchTask) -> String {
-        Faster::begin(&with_twin().1, task)
-            .expect_err("refused")
+    fn refusal_text(task: &SearchTask) -> String {
+        FasterSearch::begin(&paper_robot_and_twin().1, task)
+            .expect_err("the search is refused")
             .refused
     }
 
     #[test]
-    fn a_stopped_search_has_the_best_gait_so_far() {
-        let (robot, twin) = with_twin();
-        let mut faster = Faster::begin(&twin, &task_of("walk")).expect("it begins");
-        assert_eq!(faster.begun().all, 40);
-        assert_eq!(faster.found(20), None, "nothing is tried yet");
-        let best = (0..3).map(|_| faster.step()).last().expect("three").best;
-        let found = faster.found(20).expect("one");
-        // The same trials by the search of `lizard tune`.
-        let walk = robot.gait("walk").expect("there");
-        let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3).expect("straight");
-        let trials = tuning.search(Kind::Wave).trials().to_vec();
-        let scored = trials.into_iter().take(3).filter_map(|parameters| {
-            let kind = Kind::Wave;
-            let score = tuning.score(kind, &parameters)?;
-            Some(ScoredParameters {
-                kind,
-                score,
-                parameters,
-            })
-        });
-        let scored: Vec<_> = scored.collect();
-        let scores = scored.iter().map(|entry| entry.score);
+    fn an_unfinished_search_has_the_best_gait_so_far() {
+        let (robot, twin) = paper_robot_and_twin();
+        let mut search =
+            FasterSearch::begin(&twin, &task_of("walk")).expect("the gait can be made faster");
+        assert_eq!(search.extent().all, 40);
+        assert_eq!(search.best_so_far(20), None, "nothing is tried yet");
+        let best = (0..3)
+            .map(|_| search.try_next())
+            .last()
+            .expect("three gaits were tried")
+            .best;
+        let found = search.best_so_far(20).expect("a gait was valid");
+        // The same gaits, tried by the search of `lizard tune`.
+        let walk = robot.gait("walk").expect("the robot has this gait");
+        let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3)
+            .expect("`walk` goes straight ahead");
+        let round_parameters = tuning.search(Kind::Wave).trials().to_vec();
+        let tried_parameters = round_parameters
+            .into_iter()
+            .take(3)
+            .filter_map(|parameters| {
+                let kind = Kind::Wave;
+                let score = tuning.score(kind, &parameters)?;
+                Some(ScoredParameters {
+                    kind,
+                    score,
+                    parameters,
+                })
+            });
+        let tried_parameters: Vec<_> = tried_parameters.collect();
+        let scores = tried_parameters.iter().map(|entry| entry.score);
         assert_eq!(best, Some(scores.fold(f64::NEG_INFINITY, f64::max)));
-        let best_tuned = tuning.best(scored).expect("it walks");
+        let best_tuned = tuning.best(tried_parameters).expect("a gait was valid");
         assert_eq!(found.comparison, tuning.compare(&best_tuned, 20));
         // The page takes over exactly the gait that was found.
-        assert_eq!(found.bars.table(), best_tuned.table());
-        let trial = EditedGait::Bars(found.bars).trial(&twin).expect("bars");
-        let trial = trial.expect("it walks");
+        assert_eq!(found.bars.to_toml(), best_tuned.table());
+        let trial = EditedGait::Bars(found.bars)
+            .try_on(&twin)
+            .expect("bars always have a table");
+        let trial = trial.expect("the gait is valid");
         assert_eq!(trial.speed, found.comparison.tuned.rate);
-        assert_eq!(faster.step().done, 4, "it can go on");
+        assert_eq!(search.try_next().done, 4, "the search goes on");
     }
 
     #[test]
     fn a_gait_that_cannot_be_made_faster_is_refused_with_the_reason() {
-        assert!(refusal_of(&task_of("arc-left")).contains("goes ahead and turns"));
+        assert!(refusal_text(&task_of("arc-left")).contains("goes ahead and turns"));
         let rate = Some(900.0);
         assert_eq!(
-            refusal_of(&SearchTask {
+            refusal_text(&SearchTask {
                 rate,
                 ..task_of("walk")
             }),
@@ -229,9 +241,9 @@ mod tests {
         let mut wide_task = task_of("walk");
         wide_task.bars.amplitude = 60.0;
         assert!(
-            refusal_of(&wide_task).starts_with("in \"walk\" "),
+            refusal_text(&wide_task).starts_with("in \"walk\" "),
             "{}",
-            refusal_of(&wide_task)
+            refusal_text(&wide_task)
         );
     }
 }

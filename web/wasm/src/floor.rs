@@ -17,7 +17,7 @@ pub enum Legs {
 impl Legs {
     /// Returns the name of the kind in robot.toml.
     #[must_use]
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Rigid => "rigid",
             Self::Strut => "strut",
@@ -32,10 +32,10 @@ impl Legs {
     }
 }
 
-/// The floor, the mass, the feet and the leg drive. All other values of the ground are the robot's own.
+/// The values of the sliders. All other values of the ground are the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Floor {
-    /// Friction of a pad that slides forward, above 0.
+    /// Friction coefficient of a pad that slides forward, above 0.
     pub friction: f64,
     /// Ratio of backward to forward friction of a pad, above 0.
     pub ratio: f64,
@@ -51,20 +51,20 @@ pub struct Floor {
     pub play: f64,
     /// Stiffness of a foot, N/mm, above 0.
     pub leaf: f64,
-    /// Excess length of the front left foot, mm.
+    /// Length by which the front left foot is too long, mm.
     pub twist: f64,
 }
 
 impl Floor {
-    /// Returns the values of a robot.
+    /// Returns a robot's own values.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
-        let own_strut = robot.strut_of(&robot.parts().spring);
+        let own_strut = robot.strut_with_coil(&robot.parts().spring);
         let strut = ground.drive.strut().unwrap_or(&own_strut);
         Self {
-            friction: ground.friction,
-            ratio: ground.ratio,
+            friction: ground.friction_coefficient,
+            ratio: ground.friction_ratio,
             mass: ground.body.mass,
             kind: Legs::of(&ground.drive.kind),
             force: strut.force,
@@ -109,8 +109,8 @@ impl Floor {
     pub fn ground_for(self, robot: &Robot) -> Ground {
         let (floor, ground) = (self.with_valid_values(robot), robot.ground());
         Ground {
-            friction: floor.friction,
-            ratio: floor.ratio,
+            friction_coefficient: floor.friction,
+            friction_ratio: floor.ratio,
             body: Body {
                 mass: floor.mass,
                 ..ground.body
@@ -136,14 +136,15 @@ impl Floor {
 mod tests {
     use super::*;
 
-    const PAPER: &str = include_str!("../../../robots/paper.toml");
+    const PAPER_TOML: &str = include_str!("../../../robots/paper.toml");
 
     fn robot_with(extra_toml: &str) -> Robot {
-        Robot::parse(&format!("{PAPER}\n{extra_toml}")).expect("right")
+        Robot::parse(&format!("{PAPER_TOML}\n{extra_toml}"))
+            .expect("paper.toml with these keys is valid")
     }
 
     #[test]
-    fn a_value_out_of_range_is_the_robots_own() {
+    fn a_value_out_of_range_is_replaced_by_the_robots_own() {
         for extra_toml in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
             let robot = robot_with(extra_toml);
             let invalid_floor = Floor {
@@ -162,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_floor_of_a_robot_is_its_ground() {
+    fn the_floor_of_a_robot_gives_back_its_ground() {
         for extra_toml in [
             "",
             "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",
@@ -174,7 +175,7 @@ mod tests {
                 *robot.ground(),
                 "{extra_toml}"
             );
-            assert_eq!(Floor::of(&robot).kind.word(), robot.drive().word());
+            assert_eq!(Floor::of(&robot).kind.name(), robot.drive().kind_name());
         }
     }
 }

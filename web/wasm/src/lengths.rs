@@ -1,8 +1,8 @@
 //! Changed lengths of a robot and, if they are refused, valid alternatives.
 //!
-//! There are two alternatives, each checked as a complete robot: the accepted lengths nearest to the
-//! wanted ones, on the line from the lengths in the text; and the wanted lengths without the gait that
-//! forbids them.
+//! There are two alternatives, each checked as a complete robot: the accepted lengths that are nearest
+//! to the wanted ones, between the lengths in the text and those; and the wanted lengths without the
+//! gait that forbids them.
 
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
@@ -13,10 +13,10 @@ use crate::description::Description;
 use crate::refused::Refused;
 
 /// Step of the offered lengths, mm, or deg for an angle.
-const STEP: f64 = 0.5;
+const LENGTH_STEP: f64 = 0.5;
 
 /// Lengths, mm or deg, by their keys, such as `links.l2`.
-type Wanted = [(String, f64)];
+type WantedLengths = [(String, f64)];
 
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
@@ -25,14 +25,14 @@ pub struct Lengths {
     text: String,
     /// The refusal of `text`; `None` if it is a valid robot.
     refusal: Option<Refused>,
-    /// The nearest lengths that are accepted; `None` if none are needed, searched or found.
+    /// The accepted lengths nearest to the wanted ones; `None` if they were not needed, not searched for, or not found.
     nearest: Option<NearestLengths>,
-    /// The wanted lengths without the gait that forbids them; `None` if not needed or not searched, or if the text
+    /// The wanted lengths without the gait that forbids them; `None` if not needed or not searched for, or if the text
     /// without the gait is refused, too.
     without: Option<WithoutGait>,
 }
 
-/// The nearest lengths that are accepted.
+/// The accepted lengths that are nearest to the wanted ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct NearestLengths {
     /// The lengths by their keys.
@@ -53,10 +53,10 @@ pub struct WithoutGait {
 impl Lengths {
     /// Sets lengths in the text of a robot.toml; if `searches`, also looks for valid alternatives.
     #[must_use]
-    pub fn of(text: &str, wanted: &Wanted, searches: bool) -> Self {
+    pub fn of(text: &str, wanted: &WantedLengths, searches: bool) -> Self {
         let changed_text = match with_lengths(text, wanted) {
             Ok(text) => text,
-            Err(missing) => return Self::of_refusal(text.to_string(), missing.into()),
+            Err(unknown_key) => return Self::of_refusal(text.to_string(), unknown_key.into()),
         };
         let Err(error) = Robot::parse(&changed_text) else {
             return Self {
@@ -70,7 +70,9 @@ impl Lengths {
         let gait = gait.and_then(|rest| rest.split('.').next());
         let gait = gait.filter(|_| searches).map(str::to_string);
         Self {
-            nearest: searches.then(|| find_nearest(text, wanted)).flatten(),
+            nearest: searches
+                .then(|| find_nearest_lengths(text, wanted))
+                .flatten(),
             without: gait.and_then(|gait| {
                 let text = without_gait(&changed_text, &gait);
                 Robot::parse(&text).ok()?;
@@ -90,11 +92,11 @@ impl Lengths {
     }
 }
 
-/// Returns the least and the greatest value, mm or deg, with which the lengths of all `keys` are accepted.
+/// Returns the least and the greatest value, mm or deg, that the lengths of all `keys` may have together.
 /// The search covers half to twice the present value; for an angle, 45 deg to either side. `None`
-/// if the text is no valid robot or has no such length.
+/// if the text is not a valid robot or has no such length.
 #[must_use]
-pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
+pub fn accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let lengths = Description::of(&Robot::parse(text).ok()?).lengths;
     let length = lengths
         .iter()
@@ -103,8 +105,8 @@ pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
         "deg" => (length.value - 45.0, length.value + 45.0),
         _ => (0.5 * length.value, 2.0 * length.value),
     };
-    let accepted_near = |value: f64| {
-        let value = (value / STEP).round() * STEP;
+    let nearest_accepted = |value: f64| {
+        let value = (value / LENGTH_STEP).round() * LENGTH_STEP;
         let wanted: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
         let result = Lengths::of(text, &wanted, true);
         let nearest = result
@@ -116,10 +118,11 @@ pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
             (Some(_), None) => length.value,
         }
     };
-    Some((accepted_near(smallest), accepted_near(largest)))
+    Some((nearest_accepted(smallest), nearest_accepted(largest)))
 }
 
-fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
+/// Returns the text with the wanted lengths.
+fn with_lengths(text: &str, wanted: &WantedLengths) -> Result<String, NoSuchKey> {
     let mut text = text.to_string();
     for (key, value) in wanted {
         text = with_number(&text, key, *value)?;
@@ -127,25 +130,25 @@ fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
     Ok(text)
 }
 
-/// Bisects from the lengths in the text to the wanted ones, down to a step; `None` if no lengths in between are
-/// accepted.
-fn find_nearest(text: &str, wanted: &Wanted) -> Option<NearestLengths> {
-    let own_lengths = Description::of(&Robot::parse(text).ok()?).lengths;
+/// Bisects between the lengths in the text and the wanted ones, until they are less than [`LENGTH_STEP`] apart;
+/// `None` if no lengths in between are accepted.
+fn find_nearest_lengths(text: &str, wanted: &WantedLengths) -> Option<NearestLengths> {
+    let present_lengths = Description::of(&Robot::parse(text).ok()?).lengths;
     let changes: Vec<(&String, f64, f64)> = wanted
         .iter()
         .map(|(key, to)| {
-            let own_length = own_lengths.iter().find(|length| length.key == *key);
-            (key, own_length.map_or(*to, |length| length.value), *to)
+            let present_length = present_lengths.iter().find(|length| length.key == *key);
+            (key, present_length.map_or(*to, |length| length.value), *to)
         })
         .collect();
     let distances = changes.iter().map(|(_, from, to)| (to - from).abs());
     let (mut accepted_share, mut refused_share) = (0.0, 1.0);
     let mut nearest = None;
-    let share_step = STEP / distances.fold(0.0, f64::max);
+    let share_step = LENGTH_STEP / distances.fold(0.0, f64::max);
     while refused_share - accepted_share > share_step {
         let share = f64::midpoint(accepted_share, refused_share);
         let length_at = |(key, from, to): &(&String, f64, f64)| {
-            let value = ((from + (to - from) * share) / STEP).round() * STEP;
+            let value = ((from + (to - from) * share) / LENGTH_STEP).round() * LENGTH_STEP;
             ((*key).clone(), value)
         };
         let lengths: Vec<_> = changes.iter().map(length_at).collect();
@@ -164,7 +167,7 @@ fn find_nearest(text: &str, wanted: &Wanted) -> Option<NearestLengths> {
 mod tests {
     use super::*;
 
-    const PAPER: &str = include_str!("../../../robots/paper.toml");
+    const PAPER_TOML: &str = include_str!("../../../robots/paper.toml");
 
     /// Returns a length for a leg's crank and for the follower, which must equal it.
     fn crank_lengths(mm: f64) -> [(String, f64); 2] {
@@ -172,70 +175,78 @@ mod tests {
     }
 
     #[test]
-    fn lengths_that_are_accepted_need_nothing_else() {
-        let result = Lengths::of(PAPER, &crank_lengths(41.0), true);
+    fn accepted_lengths_need_no_alternative_and_an_unknown_key_is_refused() {
+        let result = Lengths::of(PAPER_TOML, &crank_lengths(41.0), true);
         assert_eq!(
             (result.refusal, result.nearest, result.without),
             (None, None, None)
         );
         assert!(result.text.contains("crank = 41.0") && result.text.contains("follower = 41.0"));
-        let missing = Lengths::of(PAPER, &[("links.l99".to_string(), 1.0)], true);
-        assert_eq!(missing.text, PAPER);
-        let refusal = missing.refusal.expect("no such length");
+        let with_unknown_key = Lengths::of(PAPER_TOML, &[("links.l99".to_string(), 1.0)], true);
+        assert_eq!(with_unknown_key.text, PAPER_TOML);
+        let refusal = with_unknown_key.refusal.expect("an unknown key is refused");
         assert_eq!(refusal.refused, "robot.toml has no number links.l99");
     }
 
     #[test]
-    fn a_length_is_refused_with_the_nearest_half_millimetre_that_is_a_robot() {
+    fn the_refusal_of_a_length_offers_the_longest_accepted_half_millimetre() {
         let slider_lengths = |mm| ["links.l12", "links.l17"].map(|key| (key.to_string(), mm));
-        let result = Lengths::of(PAPER, &slider_lengths(80.0), true);
-        let meaning = result.refusal.expect("too long").meaning;
+        let result = Lengths::of(PAPER_TOML, &slider_lengths(80.0), true);
+        let meaning = result.refusal.expect("the lengths are refused").meaning;
         assert_eq!(
             meaning.as_deref(),
             Some("in the neutral pose the left slider would run into its end")
         );
         assert_eq!(result.without, None, "no gait is in the way");
-        let NearestLengths { lengths, text } = result.nearest.expect("shorter ones");
+        let NearestLengths { lengths, text } =
+            result.nearest.expect("shorter lengths are accepted");
         let [(_, left_half), (_, right_half)] = lengths[..] else {
-            panic!("two lengths")
+            panic!("there are two lengths")
         };
         assert_eq!(left_half, right_half);
         assert!(45.0 < left_half && left_half < 80.0, "{left_half}");
         assert!(Robot::parse(&text).is_ok());
-        let longer = Lengths::of(PAPER, &slider_lengths(left_half + STEP), false);
-        assert!(longer.refusal.is_some(), "{left_half} is not the longest");
-        assert_eq!(longer.nearest, None, "not asked for");
+        let longer_lengths =
+            Lengths::of(PAPER_TOML, &slider_lengths(left_half + LENGTH_STEP), false);
+        assert!(
+            longer_lengths.refusal.is_some(),
+            "{left_half} is not the longest"
+        );
+        assert_eq!(longer_lengths.nearest, None, "the search was not asked for");
     }
 
     #[test]
     fn the_range_of_a_length_ends_where_half_a_millimetre_more_is_refused() {
         let keys: Vec<_> = crank_lengths(0.0).into_iter().map(|(key, _)| key).collect();
-        let (smallest, largest) = range(PAPER, &keys).expect("a crank");
+        let (smallest, largest) = accepted_range(PAPER_TOML, &keys).expect("the robot has cranks");
         assert!(smallest < 45.0 && 45.0 < largest, "{smallest} to {largest}");
         let is_refused = |mm: f64| {
-            Lengths::of(PAPER, &crank_lengths(mm), false)
+            Lengths::of(PAPER_TOML, &crank_lengths(mm), false)
                 .refusal
                 .is_some()
         };
         assert!(!is_refused(smallest) && !is_refused(largest));
         assert!(
-            smallest == 22.5 || is_refused(smallest - STEP),
+            smallest == 22.5 || is_refused(smallest - LENGTH_STEP),
             "{smallest}"
         );
-        assert!(largest == 90.0 || is_refused(largest + STEP), "{largest}");
-        assert_eq!(range(PAPER, &["links.l99".to_string()]), None);
+        assert!(
+            largest == 90.0 || is_refused(largest + LENGTH_STEP),
+            "{largest}"
+        );
+        assert_eq!(accepted_range(PAPER_TOML, &["links.l99".to_string()]), None);
     }
 
     #[test]
-    fn a_gait_that_alone_forbids_a_length_may_be_given_up() {
+    fn a_length_that_only_one_gait_forbids_is_offered_without_that_gait() {
         let coupler_lengths = ["links.l2", "links.l3"].map(|key| (key.to_string(), 60.0));
-        let result = Lengths::of(PAPER, &coupler_lengths, true);
-        let meaning = result.refusal.expect("too long").meaning;
-        let expected = "in \"look\" the left front leg would lock";
-        assert_eq!(meaning.as_deref(), Some(expected));
-        let WithoutGait { gait, text } = result.without.expect("look alone");
+        let result = Lengths::of(PAPER_TOML, &coupler_lengths, true);
+        let meaning = result.refusal.expect("the lengths are refused").meaning;
+        let expected_meaning = "in \"look\" the left front leg would lock";
+        assert_eq!(meaning.as_deref(), Some(expected_meaning));
+        let WithoutGait { gait, text } = result.without.expect("only `look` forbids the lengths");
         assert_eq!(gait, "look");
-        let robot = Robot::parse(&text).expect("a robot");
+        let robot = Robot::parse(&text).expect("the robot without the gait is valid");
         assert_eq!(robot.gait("look"), None);
         assert_eq!(robot.lizard().links.l2, 60.0);
     }

@@ -1,10 +1,10 @@
-//! The robot for the page: everything that the browser computes of a robot. This crate has no formula
-//! of its own; it calls those of the project's other crates.
+//! The robot for the page: everything that the browser computes about a robot. This crate has almost no
+//! formulas of its own; it calls the project's other crates.
 //!
 //! The page gives the text of a robot.toml and then, fifty times per second, the four pulse widths at
-//! the pins of a UNO. It gets back the place of every joint, the margin to every
-//! singularity, the guard's refusal of the pose, and the place of the body on the floor. [`Page`]
-//! holds this state; [`Robot`] is its class for JavaScript.
+//! the pins of a UNO. It gets back the place of every joint, the margin to every singularity, the limit
+//! that the pose breaks, if any, and the place of the body on the floor. [`Page`] holds this state;
+//! [`Robot`] is its class for JavaScript.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A program in Rust uses `lizard-robot`
@@ -25,8 +25,8 @@ mod page;
 mod paper;
 mod place;
 mod prediction;
+mod reach_area;
 mod refused;
-mod room;
 mod round;
 mod scene;
 mod trial;
@@ -35,7 +35,7 @@ pub use core_run::{CoreFrame, CoreRun};
 pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, ServoEntry};
 pub use drawn::DrawnGait;
 #[cfg(feature = "tune")]
-pub use faster::{Faster, Found, Progress, SearchExtent, SearchTask};
+pub use faster::{FasterSearch, Found, Progress, SearchExtent, SearchTask};
 pub use floor::{Floor, Legs};
 pub use javascript::Robot;
 pub use lengths::{Lengths, NearestLengths, WithoutGait};
@@ -43,8 +43,8 @@ pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page};
 pub use place::Place;
 pub use prediction::{GaitPrediction, Movement};
+pub use reach_area::ReachArea;
 pub use refused::Refused;
-pub use room::ReachArea;
 pub use round::RoundPath;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};
 pub use trial::{Alternative, EditedGait, NoTrial, Trial};

@@ -6,15 +6,16 @@ use lizard_robot::Robot;
 use serde::Serialize;
 use tsify::Tsify;
 
-/// Step between adjacent points of the map, deg.
-const STEP: f64 = 1.5;
-/// The map's range of each crank angle, deg: from one change point of the legs to the other.
-const FROM: f64 = 0.0;
-const TO: f64 = 180.0;
-/// Step of the curves, deg.
-const CURVE_STEP: f64 = 0.5;
+/// Distance between adjacent points of the map, deg.
+const GRID_STEP_DEG: f64 = 1.5;
+/// Smallest angle of either crank on the map: one change point of the leg's four-bar.
+const MIN_ANGLE_DEG: f64 = 0.0;
+/// Greatest angle of either crank on the map: the other change point.
+const MAX_ANGLE_DEG: f64 = 180.0;
+/// Step of the left crank's angle along a curve.
+const CURVE_STEP_DEG: f64 = 0.5;
 
-/// A point of the map: left and right crank, deg, in the end's own frame.
+/// A point of the map: the angles of the two cranks in the end's own frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct MapPoint(
     /// Angle of the left crank, deg.
@@ -23,12 +24,12 @@ pub struct MapPoint(
     pub f64,
 );
 
-/// The singular positions of one kind.
+/// The singular poses of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Curve {
     /// Name of the links that are in line.
     pub kind: &'static str,
-    /// The positions, in no particular order.
+    /// The poses, in no particular order.
     pub points: Vec<MapPoint>,
 }
 
@@ -41,14 +42,14 @@ pub struct Map {
     pub from: f64,
     /// Greatest angle of either crank, deg.
     pub to: f64,
-    /// Number of columns, which is also that of rows; the first column and the first row are at `from`.
+    /// Number of columns, and of rows; the first column and the first row are at `from`.
     pub size: usize,
     /// Smallest margin at each point, in hundredths, column by column: for each left crank angle, all
     /// right ones. `None` if the loop does not close.
     pub margins: Vec<Option<i8>>,
     /// True at points within the limits, in the order of `margins`.
     pub safe: Vec<bool>,
-    /// The singular positions.
+    /// The singular poses.
     pub curves: Vec<Curve>,
 }
 
@@ -56,12 +57,12 @@ impl Map {
     /// Computes the map of an end.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
-        let size = ((TO - FROM) / STEP) as usize + 1;
-        let angle_at = |i: usize| FROM + STEP * i as f64;
+        let size = ((MAX_ANGLE_DEG - MIN_ANGLE_DEG) / GRID_STEP_DEG) as usize + 1;
+        let angle_at = |i: usize| MIN_ANGLE_DEG + GRID_STEP_DEG * i as f64;
         let points = (0..size).flat_map(|left| (0..size).map(move |right| (left, right)));
         let (margins, safe) = points
             .map(|(left, right)| {
-                evaluate(
+                evaluate_point(
                     robot.lizard(),
                     robot.limits(),
                     end,
@@ -72,8 +73,8 @@ impl Map {
             .unzip();
         Self {
             end: end.to_string(),
-            from: FROM,
-            to: TO,
+            from: MIN_ANGLE_DEG,
+            to: MAX_ANGLE_DEG,
             size,
             margins,
             safe,
@@ -84,7 +85,7 @@ impl Map {
 
 /// Computes the smallest margin of an end at its crank angles, in hundredths; the bool is true if the limits
 /// allow these angles.
-fn evaluate(
+fn evaluate_point(
     lizard: &Lizard,
     limits: &Limits,
     end: End,
@@ -95,21 +96,22 @@ fn evaluate(
         return (None, false);
     };
     let margins = bars.conditions(end).into_iter();
-    let smallest = margins
+    let smallest_margin = margins
         .filter(|(check, _)| !Check::UNCROSSED.contains(check))
         .fold(1.0f64, |smallest, (_, value)| smallest.min(value));
     let is_safe = limits.end_violations(end, &bars).next().is_none();
-    (Some((smallest * 100.0).round() as i8), is_safe)
+    (Some((smallest_margin * 100.0).round() as i8), is_safe)
 }
 
+/// Finds the singular poses of an end within the map.
 fn curves_of(robot: &Robot, end: End) -> Vec<Curve> {
     let bars = robot.lizard().end(end);
-    let steps = ((TO - FROM) / CURVE_STEP) as usize;
-    let poses: Vec<SingularPose> = (0..=steps)
-        .flat_map(|i| bars.singular_with(FROM + CURVE_STEP * i as f64))
-        .chain(bars.coinciding_tips())
+    let step_count = ((MAX_ANGLE_DEG - MIN_ANGLE_DEG) / CURVE_STEP_DEG) as usize;
+    let poses: Vec<SingularPose> = (0..=step_count)
+        .flat_map(|i| bars.singular_poses_with(MIN_ANGLE_DEG + CURVE_STEP_DEG * i as f64))
+        .chain(bars.poses_with_coinciding_tips())
         .filter(|pose| {
-            let is_inside = |theta: f64| (FROM..=TO).contains(&theta);
+            let is_inside = |theta: f64| (MIN_ANGLE_DEG..=MAX_ANGLE_DEG).contains(&theta);
             is_inside(pose.theta_left) && is_inside(pose.theta_right)
         })
         .collect();
@@ -132,7 +134,7 @@ fn curves_of(robot: &Robot, end: End) -> Vec<Curve> {
 
 /// Returns the point of a pose on the map of an end: left and right crank, deg, 0 to 360.
 #[must_use]
-pub fn place(end: End, pose: &Pose) -> MapPoint {
+pub fn map_point(end: End, pose: &Pose) -> MapPoint {
     let angles: [f64; 4] = (*pose).into();
     let [left, right] = end
         .pick(angles)
@@ -145,20 +147,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn home_is_safe_on_both_maps_and_the_coinciding_tips_are_not() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+    fn the_neutral_pose_is_safe_on_both_maps_and_coinciding_tips_are_not() {
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         for end in End::ALL {
             let map = Map::of(&robot, end);
             let cell_of = |MapPoint(left, right): MapPoint| {
-                let index_of = |theta: f64| ((theta - map.from) / STEP).round() as usize;
+                let index_of = |theta: f64| ((theta - map.from) / GRID_STEP_DEG).round() as usize;
                 index_of(left) * map.size + index_of(right)
             };
-            let home = place(end, &robot.neutral());
+            let neutral_point = map_point(end, &robot.neutral_pose());
             assert!(
-                (home.0 - 138.59).abs() < 0.01 && (home.1 - 41.41).abs() < 0.01,
-                "{home:?}"
+                (neutral_point.0 - 138.59).abs() < 0.01 && (neutral_point.1 - 41.41).abs() < 0.01,
+                "{neutral_point:?}"
             );
-            assert!(map.safe[cell_of(home)] && map.margins[cell_of(home)] > Some(60));
+            assert!(
+                map.safe[cell_of(neutral_point)] && map.margins[cell_of(neutral_point)] > Some(60)
+            );
             assert!(!map.safe[cell_of(MapPoint(70.5, 109.5))]);
             let couplers = &map.curves[0].points;
             assert!(

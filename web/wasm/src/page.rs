@@ -1,11 +1,11 @@
-//! The state of the page: a robot, its body on the floor, and perhaps the core running without
-//! a chip.
+//! The state of the page: a robot, its body on the floor, and perhaps the firmware's core without a
+//! simulated chip.
 
 use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
-use lizard_robot::edit::{with_number, with_steps, with_word, without_key};
-use lizard_robot::servo::FORWARD;
-use lizard_robot::{Bars, Place as Walked, Robot};
+use lizard_robot::edit::{with_number, with_steps, with_string, without_key};
+use lizard_robot::servo::FORWARD_TURN_SIGN;
+use lizard_robot::{Bars, Place as RobotPlace, Robot};
 use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
 use tsify::Tsify;
@@ -14,13 +14,13 @@ use crate::core_run::{CoreFrame, CoreRun};
 use crate::description::{Description, servo_model};
 use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
-use crate::faster::{Faster, SearchExtent, SearchTask};
+use crate::faster::{FasterSearch, SearchExtent, SearchTask};
 use crate::floor::{Floor, Legs};
 use crate::map::Map;
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
+use crate::reach_area::ReachArea;
 use crate::refused::Refused;
-use crate::room::ReachArea;
 use crate::round::RoundPath;
 use crate::scene::Scene;
 use crate::trial::{EditedGait, NoTrial, Trial};
@@ -28,12 +28,12 @@ use crate::trial::{EditedGait, NoTrial, Trial};
 /// CPU cycles in a microsecond.
 const CYCLES_PER_US: f64 = 16.0;
 
-/// A frame of the robot on the floor.
+/// The state of the robot on the floor after a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Frame {
     /// The robot at the pose of its servos; `None` if a loop does not close.
     scene: Option<Scene>,
-    /// The message for the loop that does not close.
+    /// The message about the loop that does not close, if any.
     fault: Option<String>,
     /// Place of the body on the floor.
     place: Place,
@@ -41,7 +41,7 @@ pub struct Frame {
     slides: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive, servo order.
     lag: [f64; 4],
-    /// Target angle by the pulse less the angle of each servo, deg.
+    /// Target angle by the pulse minus actual angle of each servo, deg.
     errors: [f64; 4],
 }
 
@@ -61,34 +61,34 @@ impl Edited {
     }
 }
 
-/// The page's robot, its place on the floor, and the programs that run on it.
+/// The page's robot on the floor, its core, and the search for a faster gait.
 #[derive(Default)]
 pub struct Page {
     twin: Option<Twin>,
     /// Latest target angles of the servos, deg, chassis frame.
     targets: [f64; 4],
-    /// Name of the servo model that the page has set; `None` for the robot's own.
-    model: Option<String>,
-    run: Option<CoreRun>,
+    /// Name of the servo model that the page has set; `None` for the robot's own servos.
+    model_name: Option<String>,
+    core_run: Option<CoreRun>,
     #[cfg(feature = "tune")]
-    faster: Option<Faster>,
+    search: Option<FasterSearch>,
 }
 
 impl Page {
     /// Reads a robot.toml and puts the robot at the start of the floor, its servos at neutral.
     ///
     /// # Errors
-    /// Returns the first mistake in the text; the previous robot stays.
+    /// Returns the first mistake in the text; the page keeps the previous robot.
     pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
         let robot = Robot::parse(text)?;
         let description = Description::of(&robot);
-        self.targets = robot.neutral().into();
-        self.run = None;
+        self.targets = robot.neutral_pose().into();
+        self.core_run = None;
         #[cfg(feature = "tune")]
         {
-            self.faster = None;
+            self.search = None;
         }
-        let model_name = self.model.as_deref();
+        let model_name = self.model_name.as_deref();
         let model = model_name.and_then(|name| servo_model(&robot, name));
         self.twin = Some(Twin::new(
             &robot,
@@ -101,8 +101,8 @@ impl Page {
         self.twin.as_ref().map(Twin::robot)
     }
 
-    /// Makes the robot's section of flash; `None` without a robot. Takes some hundredths of a second, for the
-    /// proof of the guard's certified cells.
+    /// Makes the robot's section of flash; `None` without a robot. Takes some hundredths of a second, since the
+    /// guard's certified cells must be proved.
     #[must_use]
     pub fn section(&self) -> Option<Vec<u8>> {
         Some(self.robot()?.section())
@@ -112,16 +112,16 @@ impl Page {
     /// Values that do not change stay as they are written. The page's robot does not change.
     ///
     /// # Errors
-    /// Fails if the text is no valid robot, or if one of the numbers cannot be added to it.
+    /// Fails if the text is not a valid robot, or if one of the numbers cannot be added to it.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
         let own_floor = Floor::of(&robot);
         // Values out of range are replaced by the robot's own.
         let new_floor = floor.with_valid_values(&robot);
         let mut text = text.to_string();
-        let kind = new_floor.kind.word();
+        let kind = new_floor.kind.name();
         if new_floor.kind != own_floor.kind {
-            text = with_word(&text, "leg.drive.kind", kind)?;
+            text = with_string(&text, "leg.drive.kind", kind)?;
         }
         for (key, own_value, new_value) in [
             ("leg.drive.force", own_floor.force, new_floor.force),
@@ -129,7 +129,7 @@ impl Page {
         ] {
             text = match floor.kind {
                 Legs::Rigid => without_key(&text, key)?,
-                Legs::Strut if kind != robot.drive().word() || own_value != new_value => {
+                Legs::Strut if kind != robot.drive().kind_name() || own_value != new_value => {
                     with_number(&text, key, new_value)?
                 }
                 Legs::Strut => text,
@@ -154,9 +154,9 @@ impl Page {
         Ok(Edited::of(text))
     }
 
-    /// Follows the pulses of a frame: widths in CPU cycles, 0 for no pulse, which leaves a
-    /// servo where it is. `None` without a robot.
-    pub fn pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
+    /// Moves the robot for one frame with these pulse widths in CPU cycles; 0 is no pulse, which leaves a servo where
+    /// it is. `None` without a robot.
+    pub fn follow_pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         let to_us = |width: u32| f64::from(width) / CYCLES_PER_US;
         let state = twin.push(widths.map(|width| (width > 0).then(|| to_us(width))));
@@ -164,24 +164,23 @@ impl Page {
         Some(frame_of(twin, &state, state.slip))
     }
 
-    /// Follows a pose that a robot reports: angles in deg, chassis frame, `frames` frames after the
-    /// previous pose. The frames in between are interpolated. `None` without a robot, or if an angle is
-    /// not finite.
-    pub fn pose(&mut self, angles: [f64; 4], frames: u32) -> Option<Frame> {
+    /// Moves the robot to a pose that a real robot reports `frames` frames after its previous pose; angles in deg,
+    /// chassis frame. The frames in between are interpolated. `None` without a robot, or if an angle is not finite.
+    pub fn follow_pose(&mut self, angles: [f64; 4], frames: u32) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         if angles.iter().any(|angle| !angle.is_finite()) {
             return None;
         }
         let from = twin.robot().sweeps(self.targets);
         let to = twin.robot().sweeps(angles);
-        let neutral: [f64; 4] = twin.robot().neutral().into();
-        let frames = frames.clamp(1, MAX_FRAMES);
+        let neutral: [f64; 4] = twin.robot().neutral_pose().into();
+        let frames = frames.clamp(1, MAX_INTERPOLATED_FRAMES);
         let mut slides = [0.0; 4];
         let mut advance = |n: u32| {
             let share = f64::from(n) / f64::from(frames);
             let sweep_at = |i: usize| from[i] + share * (to[i] - from[i]);
             let state = twin.push_angles(std::array::from_fn(|i| {
-                neutral[i] + FORWARD[i] * sweep_at(i)
+                neutral[i] + FORWARD_TURN_SIGN[i] * sweep_at(i)
             }));
             slides = std::array::from_fn(|i| slides[i] + state.slip[i]);
             state
@@ -197,7 +196,7 @@ impl Page {
     /// Puts the robot back to its start on the floor.
     pub fn restart(&mut self) {
         if let Some(twin) = &mut self.twin {
-            twin.set_place(Walked::START);
+            twin.set_place(RobotPlace::START);
         }
     }
 
@@ -212,16 +211,16 @@ impl Page {
     /// voltage. An unknown name has no effect.
     pub fn set_servos(&mut self, name: &str) {
         let Some(twin) = &mut self.twin else {
-            self.model = Some(name.to_owned());
+            self.model_name = Some(name.to_owned());
             return;
         };
         if let Some(model) = servo_model(twin.robot(), name) {
-            self.model = Some(name.to_owned());
+            self.model_name = Some(name.to_owned());
             twin.set_servos(model);
         }
     }
 
-    /// Predicts a cycle of a gait, by its index, on the current floor with the current servos; `None` without a
+    /// Predicts a cycle of the gait with this index, on the current floor with the current servos; `None` without a
     /// robot or such a gait.
     pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
         let twin = self.twin.as_ref()?;
@@ -229,8 +228,8 @@ impl Page {
         Some(GaitPrediction::of(twin, gait))
     }
 
-    /// Returns a gait, by its index, as bars; `None` without a robot or such a gait, or if the gait stands or follows
-    /// a path.
+    /// Returns the gait with this index as bars; `None` without a robot or such a gait, or if the gait stands or
+    /// follows a path.
     pub fn bars(&self, gait: usize) -> Option<Bars> {
         self.robot()?.gaits().get(gait)?.bars()
     }
@@ -238,13 +237,13 @@ impl Page {
     /// Tries a gait on the page's robot; `None` if no robot was read, or the drawn line has no length.
     ///
     /// # Errors
-    /// Returns the first limit that the gait breaks, with possible values.
-    pub fn trial(&self, edited_gait: &EditedGait) -> Option<Result<Trial, NoTrial>> {
-        edited_gait.trial(self.twin.as_ref()?)
+    /// Returns the first limit that the gait breaks, with valid alternatives.
+    pub fn try_gait(&self, edited_gait: &EditedGait) -> Option<Result<Trial, NoTrial>> {
+        edited_gait.try_on(self.twin.as_ref()?)
     }
 
-    /// Returns the text of a robot.toml with a gait, in place of the gait of the same name or at the
-    /// end; `None` if no robot was read, or the drawn line has no length.
+    /// Returns the text of a robot.toml with this gait: it replaces the gait of the same name, or else is added at the
+    /// end. `None` if no robot was read, or the drawn line has no length.
     pub fn put_gait(&self, text: &str, edited_gait: &EditedGait) -> Option<String> {
         edited_gait.put_into(text, self.robot()?)
     }
@@ -258,33 +257,33 @@ impl Page {
 
     /// Simulates one round of a routine on the current floor with the current servos; `None`
     /// without a robot or the routine.
-    pub fn round(&self, routine: &str) -> Option<RoundPath> {
+    pub fn round_path(&self, routine: &str) -> Option<RoundPath> {
         RoundPath::of(self.twin.as_ref()?, routine)
     }
 
-    /// Prepares the search for a faster gait for the page's robot; `None` without a robot.
+    /// Prepares the search for a faster gait of the page's robot; `None` without a robot.
     ///
     /// # Errors
-    /// Returns the reason why there is nothing to search.
+    /// Returns the reason why the search cannot begin.
     #[cfg(feature = "tune")]
-    pub fn make_faster(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
-        let search = Faster::begin(self.twin.as_ref()?, task);
-        Some(search.map(|faster| self.faster.insert(faster).begun()))
+    pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
+        let search = FasterSearch::begin(self.twin.as_ref()?, task);
+        Some(search.map(|search| self.search.insert(search).extent()))
     }
 
-    /// The search that was prepared last; `None` if none was since the robot was read.
+    /// Returns the search that was prepared last; `None` if none was prepared since the robot was read.
     #[cfg(feature = "tune")]
-    pub fn faster(&mut self) -> Option<&mut Faster> {
-        self.faster.as_mut()
+    pub fn search(&mut self) -> Option<&mut FasterSearch> {
+        self.search.as_mut()
     }
 
-    /// Returns the path that the end point of head or tail follows in a drawn gait; `None` without a robot, or if the
-    /// drawn line has no length.
-    pub fn path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
-        drawn_gait.path(self.robot()?)
+    /// Returns points of the path that the end point of head or tail follows in a drawn gait; `None` without a robot,
+    /// or if the drawn line has no length.
+    pub fn drawn_path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
+        drawn_gait.shown_points(self.robot()?)
     }
 
-    /// Returns the area that the end point of the head (0) or the tail (1) may reach; `None` without a robot.
+    /// Returns the area that the end point of the head (0) or the tail (1) can reach; `None` without a robot.
     pub fn reach_area(&self, end: usize) -> Option<ReachArea> {
         Some(ReachArea::of(self.robot()?, *End::ALL.get(end)?))
     }
@@ -294,26 +293,27 @@ impl Page {
         Some(Map::of(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// Starts the core at power-on with this robot; the EEPROM keeps the content of the previous run, if the robot
-    /// was not read again since.
+    /// Starts the core as at power-on with this robot; the EEPROM keeps the content of the previous run, unless the
+    /// robot has been read again since.
     pub fn run_core(&mut self) {
         let memory = self
-            .run
+            .core_run
             .take()
             .map_or_else(Eeprom::default, CoreRun::into_memory);
         let robot = self.robot();
-        self.run = robot.map(|robot| CoreRun::begin(*robot.firmware(), memory));
+        self.core_run = robot.map(|robot| CoreRun::begin(*robot.firmware(), memory));
     }
 
-    /// Runs a frame of the core at a supply in V, after it has received bytes from the serial line; `None` before
-    /// [`Page::run_core`].
+    /// Runs the core for a frame with a board supply of `volts`, after it has received `bytes` from the serial line;
+    /// `None` before [`Page::run_core`].
     pub fn core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
-        Some(self.run.as_mut()?.frame(bytes, volts))
+        Some(self.core_run.as_mut()?.run_frame(bytes, volts))
     }
 }
 
-/// Largest number of interpolated frames between two poses; after a longer pause the motion is unknown anyway.
-const MAX_FRAMES: u32 = 50;
+/// Largest number of frames that are interpolated from one pose to the next; after a longer pause, the motion is
+/// unknown.
+const MAX_INTERPOLATED_FRAMES: u32 = 50;
 
 fn frame_of(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
     let scene = Scene::of(twin);

@@ -1,6 +1,6 @@
 //! The place of the body on the floor, in the page's coordinates.
 
-use lizard_robot::{Place as Walked, Travel};
+use lizard_robot::{Place as RobotPlace, Travel};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
@@ -19,12 +19,12 @@ impl Place {
     /// Returns the displacement from this place to another, in the frame of this place.
     #[must_use]
     pub fn movement_to(self, other: Self) -> Travel {
-        Walked::from(other).seen_from(self.into())
+        RobotPlace::from(other).travel_from(self.into())
     }
 }
 
-impl From<Walked> for Place {
-    fn from(place: Walked) -> Self {
+impl From<RobotPlace> for Place {
+    fn from(place: RobotPlace) -> Self {
         Self {
             x: -place.left,
             y: place.forward,
@@ -33,7 +33,7 @@ impl From<Walked> for Place {
     }
 }
 
-impl From<Place> for Walked {
+impl From<Place> for RobotPlace {
     fn from(place: Place) -> Self {
         Self {
             forward: place.y,
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_body_that_faces_left_and_goes_ahead_moves_to_the_left() {
+    fn movement_is_in_the_frame_of_the_first_place_and_conversion_is_reversible() {
         let place_at = |x, y, heading| Place { x, y, heading };
         let movement = place_at(0.0, 0.0, 90.0).movement_to(place_at(-10.0, -2.0, 95.0));
         let error = (movement.forward - 10.0)
@@ -56,9 +56,9 @@ mod tests {
             .hypot(movement.turn - 5.0);
         assert!(error < 1e-12, "{movement:?}");
         let place = place_at(3.0, -4.0, 170.0);
-        let converted = Place::from(Walked::from(place));
-        let error =
-            (converted.x - 3.0).hypot(converted.y + 4.0) + (converted.heading - 170.0).abs();
-        assert!(error < 1e-12, "{converted:?}");
+        let converted_place = Place::from(RobotPlace::from(place));
+        let error = (converted_place.x - 3.0).hypot(converted_place.y + 4.0)
+            + (converted_place.heading - 170.0).abs();
+        assert!(error < 1e-12, "{converted_place:?}");
     }
 }

@@ -1,12 +1,12 @@
-//! The prediction of a gait as the page reads it: the displacement per cycle on the current floor, and the share of
-//! their torque-speed line that the servos use at each pace.
+//! The prediction of a gait for the page: the displacement per cycle on the current floor, and the share of their
+//! torque-speed line that the servos use at each pace.
 
 use lizard_robot::{CheckedGait, Effort, Ground, Prediction, SpringCost, Travel};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 use tsify::Tsify;
 
-/// The displacement per cycle as the page reads it.
+/// The displacement of the body per cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct Movement {
     /// Ahead, mm; `None` if it is undetermined.
@@ -43,7 +43,7 @@ impl From<Prediction> for Movement {
 }
 
 impl Movement {
-    /// The distance ahead, mm; `None` if it is undetermined.
+    /// Returns the distance ahead, mm; `None` if it is undetermined.
     #[must_use]
     pub fn forward(&self) -> Option<f64> {
         self.forward
@@ -51,7 +51,7 @@ impl Movement {
 }
 
 /// Number of steps of the page's pace slider up to the gait's own pace.
-const PACES: usize = 20;
+const PACE_COUNT: usize = 20;
 
 /// The prediction of a cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
@@ -59,28 +59,30 @@ pub struct GaitPrediction {
     /// Displacement of the body per cycle.
     #[serde(flatten)]
     pub movement: Movement,
-    /// Largest lag of a leg, deg; `None` if legs are rigid.
+    /// Largest lag of a leg behind its servo, deg; `None` with rigid legs.
     pub lag: Option<f64>,
-    /// The displacement relative to that with rigid legs; `None` if legs are rigid, or if the displacement with
-    /// rigid legs is zero.
+    /// The displacement as a share of that with rigid legs; `None` with rigid legs, or if the displacement with rigid
+    /// legs is zero.
     pub share: Option<f64>,
-    /// Largest share of its torque-speed line that a servo uses, at each step of the pace; `None` with ideal servos.
+    /// Largest share of its torque-speed line that any servo uses, at each step of the pace slider; `None` with ideal
+    /// servos.
     #[tsify(type = "number[] | null")]
-    pub lines: Option<[f64; PACES]>,
+    pub lines: Option<[f64; PACE_COUNT]>,
 }
 
 impl GaitPrediction {
     /// Predicts a gait with the current floor and servos of a twin.
     #[must_use]
     pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
-        let prediction = Self::ideal(gait, twin.ground());
+        let prediction = Self::with_ideal_servos(gait, twin.ground());
         let ServoModel::Motors(motors) = twin.servos() else {
             return prediction;
         };
         let movement = prediction.movement;
         let travel = twin.cycle(gait).travel();
         let effort = Effort::of(gait, twin.ground(), &motors);
-        let line_share = |step: usize| effort.line_share((step + 1) as f64 / PACES as f64, 1.0);
+        let line_share =
+            |step: usize| effort.line_share((step + 1) as f64 / PACE_COUNT as f64, 1.0);
         Self {
             movement: Movement {
                 forward: movement.forward.and(Some(travel.forward)),
@@ -93,12 +95,12 @@ impl GaitPrediction {
     }
 
     /// Predicts a gait with ideal servos.
-    fn ideal(gait: &CheckedGait, ground: &Ground) -> Self {
+    fn with_ideal_servos(gait: &CheckedGait, ground: &Ground) -> Self {
         match SpringCost::of(gait, ground) {
             Some(SpringCost {
                 movement,
-                lag,
-                share,
+                max_lag: lag,
+                share_of_rigid: share,
             }) => Self {
                 movement: movement.into(),
                 lag: Some(lag),

@@ -1,4 +1,4 @@
-//! The refusal of a robot.toml, a length or a gait.
+//! The refusal of a robot.toml, of a length or of a gait.
 
 use lizard_robot::Error;
 use lizard_robot::edit::NoSuchKey;
@@ -10,7 +10,7 @@ use tsify::Tsify;
 pub struct Refused {
     /// The message for the user: what is wrong, and where.
     pub refused: String,
-    /// The consequence for the robot, without keys and figures; `None` if the message has none.
+    /// The consequence for the robot, without keys and figures; `None` if the message names no consequence.
     pub meaning: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,

@@ -1,15 +1,15 @@
 //! The path of one round of a routine, on the page's floor with the page's servos.
 
-use lizard_robot::servo::FORWARD;
-use lizard_robot::{FRAMES_PER_SECOND, Place as Walked, Robot};
+use lizard_robot::servo::FORWARD_TURN_SIGN;
+use lizard_robot::{FRAMES_PER_SECOND, Place as RobotPlace, Robot};
 use lizard_twin::Twin;
 use serde::Serialize;
 use tsify::Tsify;
 
 use crate::place::Place;
 
-/// Largest number of frames of a path, two minutes: a step may wait forever, and a routine may last
-/// for hours.
+/// Largest number of frames of a path, which take two minutes: a routine may last for hours, and one of its steps may
+/// even wait forever.
 const MAX_FRAMES: usize = 6_000;
 
 /// Number of frames from one place of the path to the next: a tenth of a second.
@@ -20,36 +20,36 @@ const FRAMES_PER_PLACE: usize = 5;
 pub struct RoundPath {
     /// Places in the order of time, the last one at the end of the path.
     pub places: Vec<Place>,
-    /// Time of the path, s.
+    /// Duration of the path, s.
     pub seconds: f64,
     /// True if the round goes on beyond the path.
     pub is_cut: bool,
 }
 
 impl RoundPath {
-    /// Simulates one round of a routine, with the floor and the servos of a twin, whose own place and pose do not
-    /// change; `None` without the routine.
+    /// Simulates one round of a routine with the floor and the servos of a twin; the twin's own place and pose do not
+    /// change. `None` if there is no such routine.
     #[must_use]
     pub fn of(twin: &Twin, name: &str) -> Option<Self> {
         let robot: &Robot = twin.robot();
-        let mut walker = Twin::new(robot, twin.servos());
-        walker.set_ground(*twin.ground());
-        let neutral: [f64; 4] = robot.neutral().into();
-        let mut sweeps = lizard_robot::Round::sweeps(robot, robot.routine(name)?);
-        let (mut places, mut frames, mut place) = (Vec::new(), 0, Walked::START);
-        for sweeps in sweeps.by_ref().take(MAX_FRAMES) {
+        let mut simulated_twin = Twin::new(robot, twin.servos());
+        simulated_twin.set_ground(*twin.ground());
+        let neutral: [f64; 4] = robot.neutral_pose().into();
+        let mut sweeps_by_frame = lizard_robot::Round::simulate_sweeps(robot, robot.routine(name)?);
+        let (mut places, mut frames, mut place) = (Vec::new(), 0, RobotPlace::START);
+        for sweeps in sweeps_by_frame.by_ref().take(MAX_FRAMES) {
             if frames % FRAMES_PER_PLACE == 0 {
                 places.push(place.into());
             }
             frames += 1;
-            let angles = std::array::from_fn(|i| neutral[i] + FORWARD[i] * sweeps[i]);
-            place = walker.push_angles(angles).place;
+            let angles = std::array::from_fn(|i| neutral[i] + FORWARD_TURN_SIGN[i] * sweeps[i]);
+            place = simulated_twin.push_angles(angles).place;
         }
         places.push(place.into());
         Some(Self {
             places,
             seconds: frames as f64 / FRAMES_PER_SECOND,
-            is_cut: sweeps.next().is_some(),
+            is_cut: sweeps_by_frame.next().is_some(),
         })
     }
 }
@@ -59,19 +59,19 @@ mod tests {
     use lizard_twin::ServoModel;
 
     use super::*;
-    use crate::paper::TEXT;
+    use crate::paper::PAPER_TOML;
 
     fn path_of(steps: &str) -> RoundPath {
-        let text = format!("{TEXT}\n[routine.one]\nsteps = [{steps}]\n");
-        let robot = Robot::parse(&text).expect("right");
-        RoundPath::of(&Twin::new(&robot, ServoModel::Ideal), "one").expect("there")
+        let text = format!("{PAPER_TOML}\n[routine.one]\nsteps = [{steps}]\n");
+        let robot = Robot::parse(&text).expect("the robot with the routine is valid");
+        RoundPath::of(&Twin::new(&robot, ServoModel::Ideal), "one").expect("the routine was added")
     }
 
     #[test]
-    fn a_path_leads_as_far_as_its_gaits() {
+    fn a_path_ends_where_its_gaits_lead() {
         let square = path_of("\"walk 3\", \"left 6\", \"walk 3\"");
         let Some(Place { x, y, heading }) = square.places.last() else {
-            panic!("no end")
+            panic!("the path has places")
         };
         // 34.17 mm and 15.34 deg per cycle; the transitions between the gaits move the robot by some mm, too.
         let turned_rad = (6.0_f64 * 15.34).to_radians();
@@ -84,12 +84,12 @@ mod tests {
     }
 
     #[test]
-    fn a_path_without_an_end_is_cut() {
+    fn a_path_longer_than_two_minutes_is_cut() {
         let long_path = path_of("\"walk 2\", \"stand 999 s\"");
         assert!(long_path.is_cut);
         assert_eq!(long_path.seconds, 120.0);
         let short_path = path_of("\"walk 2\", \"stand 1 s\"");
-        let end_y = |path: &RoundPath| path.places.last().expect("an end").y;
+        let end_y = |path: &RoundPath| path.places.last().expect("the path has places").y;
         assert!((end_y(&long_path) - end_y(&short_path)).abs() < 0.1);
     }
 }

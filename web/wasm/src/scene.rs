@@ -32,7 +32,7 @@ pub struct LegScene {
     pub joints: [Spot; 2],
     /// Place of the foot.
     pub foot: Spot,
-    /// Anchors of the strut: on the servo's link and on the leg's crank.
+    /// Anchors of the strut: on the servo's crank and on the leg's crank.
     pub strut: [Spot; 2],
     /// True if the strut has a spring; false if it is rigid.
     pub sprung: bool,
@@ -56,7 +56,7 @@ pub struct SliderScene {
 pub struct Margin {
     /// Name, such as `type2_head`.
     pub name: &'static str,
-    /// Value, a sine.
+    /// Value, the sine of an angle.
     pub value: f64,
 }
 
@@ -81,7 +81,7 @@ pub struct Scene {
     pub margins: Vec<Margin>,
     /// The smallest margin.
     pub smallest: Margin,
-    /// The message for the limit that this pose breaks; `None` if it is allowed.
+    /// The message about the limit that this pose breaks; `None` if the pose is allowed.
     pub refusal: Option<String>,
     /// The pose's points on the maps of singularities of head and tail.
     pub map: [MapPoint; 2],
@@ -91,7 +91,7 @@ impl Scene {
     /// Computes the scene of a twin's current pose.
     ///
     /// # Errors
-    /// Returns the message for the loop that does not close.
+    /// Returns the message about the loop that does not close.
     pub fn of(twin: &Twin) -> Result<Self, String> {
         let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);
@@ -117,7 +117,7 @@ impl Scene {
             margins: solution.margins.iter().map(margin_of).collect(),
             smallest: margin_of(solution.margins.min()),
             refusal: refusal_of(robot.limits(), &solution),
-            map: End::ALL.map(|end| map::place(end, &pose)),
+            map: End::ALL.map(|end| map::map_point(end, &pose)),
         })
     }
 }
@@ -135,7 +135,7 @@ impl LegScene {
             pivots: leg.pivots.map(Spot::from),
             joints: leg.joints.map(Spot::from),
             foot: leg.foot.into(),
-            strut: leg.strut.map(Spot::from),
+            strut: leg.strut_anchors.map(Spot::from),
             sprung,
         }
     }
@@ -163,18 +163,18 @@ mod tests {
     use lizard_twin::ServoModel;
 
     use super::*;
-    use crate::paper::{TEXT, paper};
+    use crate::paper::{PAPER_TOML, paper_robot};
 
     fn scene_at(robot: &Robot, angles: [f64; 4]) -> Scene {
         let mut twin = Twin::new(robot, ServoModel::Ideal);
         twin.push_angles(angles);
-        Scene::of(&twin).expect("closes")
+        Scene::of(&twin).expect("every loop closes")
     }
 
     #[test]
-    fn the_neutral_pose_is_the_papers() {
-        let robot = paper();
-        let scene = scene_at(&robot, robot.neutral().into());
+    fn the_neutral_pose_has_the_papers_head_point_and_no_refusal() {
+        let robot = paper_robot();
+        let scene = scene_at(&robot, robot.neutral_pose().into());
         assert!(
             (scene.points[0].1 - (67.5 + 57.840)).abs() < 1e-3,
             "{:?}",
@@ -192,24 +192,28 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_near_a_singularity_says_why_not() {
-        let scene = scene_at(&paper(), [75.0, 105.0, 318.59, 221.41]);
-        let refusal = scene.refusal.expect("refused");
+    fn the_refusal_of_a_pose_near_a_singularity_names_its_margin() {
+        let scene = scene_at(&paper_robot(), [75.0, 105.0, 318.59, 221.41]);
+        let refusal = scene.refusal.expect("the pose is refused");
         assert!(refusal.contains("type2_head"), "{refusal}");
     }
 
     #[test]
     fn a_loop_that_does_not_close_is_named() {
         // Couplers that barely reach each other in the neutral pose.
-        let short_toml = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
-            text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
-        });
-        let gaits_start = short_toml.find("[gait.walk]").expect("walk");
+        let short_toml = ["l2", "l3"]
+            .iter()
+            .fold(PAPER_TOML.to_string(), |text, link| {
+                text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
+            });
+        let gaits_start = short_toml
+            .find("[gait.walk]")
+            .expect("paper.toml has this gait");
         let loose_toml = short_toml[..gaits_start].replace("type2 = 0.3", "type2 = 0.1");
-        let robot = Robot::parse(&loose_toml).expect("it stands");
+        let robot = Robot::parse(&loose_toml).expect("the neutral pose is allowed");
         let mut twin = Twin::new(&robot, ServoModel::Ideal);
         twin.push_angles([170.0, 10.0, 318.59, 221.41]);
-        let fault = Scene::of(&twin).expect_err("out of reach");
+        let fault = Scene::of(&twin).expect_err("the couplers cannot meet");
         assert!(fault.contains("head"), "{fault}");
     }
 }

@@ -1,9 +1,9 @@
 //! The trial of an edited gait on a robot, before the gait is written to any file.
 //!
-//! Only the edited gait is checked, so that the answer comes while the user drags. A
+//! Only the edited gait is checked, so that the answer comes while the user still drags the value. A
 //! refusal offers the nearest smaller gait and the nearest longer period that are valid.
 
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{Bars, Robot, edit};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
@@ -13,10 +13,10 @@ use crate::drawn::DrawnGait;
 use crate::prediction::GaitPrediction;
 use crate::refused::Refused;
 
-/// Smallest gait that is offered: tenths of a degree of amplitude, or hundredths of the drawn size.
-const MIN_SIZE: i64 = 5;
-/// Longest period that is offered, in hundredths of a second.
-const MAX_PERIOD: i64 = 1000;
+/// Size of the smallest gait that is offered, in tenths of a degree of amplitude or hundredths of the drawn size.
+const MIN_SIZE_STEPS: i64 = 5;
+/// The longest period that is offered, in hundredths of a second.
+const MAX_PERIOD_HUNDREDTHS: i64 = 1000;
 
 /// An edited gait.
 #[derive(Clone, Debug, PartialEq, Deserialize, Tsify)]
@@ -24,7 +24,7 @@ const MAX_PERIOD: i64 = 1000;
 pub enum EditedGait {
     /// A gait along a line that was drawn.
     DrawnGait(DrawnGait),
-    /// A gait of four bars.
+    /// A gait whose legs have one waveform, each with its own start and gain.
     Bars(Bars),
 }
 
@@ -36,27 +36,27 @@ pub struct Trial {
     pub outlook: GaitPrediction,
     /// The gait's table for robot.toml.
     pub table: String,
-    /// Name of the margin that is nearest to its limit.
+    /// Name of the margin that comes nearest to its limit.
     pub margin: &'static str,
-    /// Least value of that margin, a sine.
+    /// Least value of that margin, the sine of an angle.
     pub least: f64,
-    /// Limit of that margin, a sine.
+    /// Limit of that margin, also a sine.
     pub limit: f64,
     /// Name of the servo that turns fastest.
     pub servo: &'static str,
-    /// Speed of that servo, deg/s.
+    /// Largest speed of that servo, deg/s.
     pub speed: f64,
     /// Time of a cycle, s.
     pub period: f64,
 }
 
-/// A valid value in place of one in a refused gait.
+/// A value that makes a refused gait valid.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Alternative {
     /// Name of the value that changes: `amplitude`, `size` or `period`.
     #[tsify(type = "'amplitude' | 'size' | 'period'")]
     pub what: &'static str,
-    /// The value in deg, as a share, or in s.
+    /// The value: an amplitude in deg, a size as a factor, or a period in s.
     pub value: f64,
 }
 
@@ -66,7 +66,7 @@ pub struct NoTrial {
     /// The refusal.
     #[serde(flatten)]
     pub refused: Refused,
-    /// The nearest valid values; each is valid if it alone is changed.
+    /// The nearest valid values; each of them makes the gait valid on its own.
     pub instead: Vec<Alternative>,
 }
 
@@ -74,12 +74,12 @@ impl EditedGait {
     fn table(&self, robot: &Robot) -> Option<String> {
         match self {
             Self::DrawnGait(drawn_gait) => drawn_gait.table(robot),
-            Self::Bars(bars) => Some(bars.table()),
+            Self::Bars(bars) => Some(bars.to_toml()),
         }
     }
 
-    /// Returns the text of a robot.toml with this gait, in place of the gait of the same name or at the
-    /// end; `None` if the drawn line has no length.
+    /// Returns the text of a robot.toml with this gait: it replaces the gait of the same name, or else is added at the
+    /// end. `None` if the drawn line has no length.
     #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
         let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
@@ -92,17 +92,17 @@ impl EditedGait {
     /// # Errors
     /// Returns the first limit that the gait breaks, with valid alternatives.
     #[must_use]
-    pub fn trial(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
+    pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
         let table = self.table(twin.robot())?;
         Some(try_table(table, twin).map_err(|refused| NoTrial {
             refused,
-            instead: self.alternatives(twin.robot()),
+            instead: self.find_alternatives(twin.robot()),
         }))
     }
 
     /// Finds the nearest smaller gait and the nearest longer period that are valid.
-    fn alternatives(&self, robot: &Robot) -> Vec<Alternative> {
-        let is_possible = |change: &dyn Fn(&mut Self)| {
+    fn find_alternatives(&self, robot: &Robot) -> Vec<Alternative> {
+        let is_valid_after = |change: &dyn Fn(&mut Self)| {
             let mut changed_gait = self.clone();
             change(&mut changed_gait);
             let table = changed_gait.table(robot);
@@ -113,41 +113,41 @@ impl EditedGait {
             Self::Bars(bars) => ("amplitude", bars.amplitude, 10.0, bars.period),
         };
         let is_size_possible = |step: i64| {
-            is_possible(&|gait| match gait {
+            is_valid_after(&|gait| match gait {
                 Self::DrawnGait(drawn_gait) => drawn_gait.size = step as f64 / steps_per_unit,
                 Self::Bars(bars) => bars.amplitude = step as f64 / steps_per_unit,
             })
         };
         let is_period_possible = |hundredths: i64| {
-            is_possible(&|gait| match gait {
+            is_valid_after(&|gait| match gait {
                 Self::DrawnGait(DrawnGait { period, .. }) | Self::Bars(Bars { period, .. }) => {
                     *period = hundredths as f64 / 100.0;
                 }
             })
         };
-        let size = nearest_possible(
+        let size_steps = find_nearest_possible(
             (size * steps_per_unit).ceil() as i64 - 1,
-            MIN_SIZE,
+            MIN_SIZE_STEPS,
             is_size_possible,
         );
-        let period = nearest_possible(
+        let period_hundredths = find_nearest_possible(
             (period * 100.0).floor() as i64 + 1,
-            MAX_PERIOD,
+            MAX_PERIOD_HUNDREDTHS,
             is_period_possible,
         );
-        let alternative = |what, value: Option<i64>, steps_per_unit: f64| {
+        let alternative_of = |what, value: Option<i64>, steps_per_unit: f64| {
             value.map(|value| Alternative {
                 what,
                 value: value as f64 / steps_per_unit,
             })
         };
-        let size = alternative(what, size, steps_per_unit);
-        let period = alternative("period", period, 100.0);
+        let size = alternative_of(what, size_steps, steps_per_unit);
+        let period = alternative_of("period", period_hundredths, 100.0);
         size.into_iter().chain(period).collect()
     }
 }
 
-/// Tries the gait of a table in the format of robot.toml.
+/// Tries a gait, given as its table in the format of robot.toml.
 fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
     let mut trial_twin = Twin::new(&robot, twin.servos());
@@ -162,33 +162,33 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     let (nearest_margin, limit) = margins
         .into_iter()
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
-        .expect("three margins");
+        .expect("there are three margins");
     Ok(Trial {
         outlook: GaitPrediction::of(&trial_twin, gait),
         table,
-        margin: nearest_margin.what.name(),
+        margin: nearest_margin.check.name(),
         least: nearest_margin.value,
         limit,
-        servo: NAMES[audit.peak.servo],
-        speed: audit.peak.speed,
+        servo: SERVO_NAMES[audit.peak_speed.servo],
+        speed: audit.peak_speed.speed,
         period: gait.period(),
     })
 }
 
-/// Finds the possible number nearest to `from`, by bisection from `from` to `to`: if a number is possible, so must be
-/// all numbers nearer to `to`. `None` if `to` is not possible, or equals `from`.
-fn nearest_possible(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
-    let step = (to - from).signum();
-    if step == 0 || !is_possible(to) {
+/// Finds the possible number nearest to `from`, by bisection between `from` and `to`; if a number is possible, all
+/// numbers between it and `to` must be. `None` if `to` is not possible, or equals `from`.
+fn find_nearest_possible(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
+    let direction = (to - from).signum();
+    if direction == 0 || !is_possible(to) {
         return None;
     }
-    let (mut impossible, mut possible) = (from - step, to);
+    let (mut impossible, mut possible) = (from - direction, to);
     while (possible - impossible).abs() > 1 {
-        let middle = i64::midpoint(impossible, possible);
-        if is_possible(middle) {
-            possible = middle
+        let midpoint = i64::midpoint(impossible, possible);
+        if is_possible(midpoint) {
+            possible = midpoint
         } else {
-            impossible = middle
+            impossible = midpoint
         }
     }
     Some(possible)

@@ -3,93 +3,96 @@
 use super::*;
 use proptest::prelude::*;
 
-use crate::lag_energy::{Side, Stretch};
+use crate::lag_energy::{Resistance, StrutTriangle};
 
 const EVEN_LOADS: [f64; 4] = [1.0; 4];
-/// Torque of a stop: more than that of a pad at the end of a leg of 45 mm.
+/// Torque of a stop: more than the largest torque of a pad at the end of a leg of 45 mm.
 const STOP_TORQUE: f64 = 250.0;
 const PAD_POSITIONS: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
-/// Pads with equal loads and frictions, on rigid legs.
-fn rigid_pads(positions: [Point; 4], swing: [Point; 4]) -> Pads {
+/// Pads with equal loads and the same friction in all directions, on rigid legs.
+fn rigid_pads(positions: [Point; 4], swings: [Point; 4]) -> Pads {
     Pads {
-        at: positions,
-        swing,
-        ratio: 1.0,
-        load: EVEN_LOADS,
+        positions,
+        swings,
+        friction_ratio: 1.0,
+        loads: EVEN_LOADS,
         compliance: None,
-        body: None,
+        inertia: None,
     }
 }
 
-/// The friction's work and the springs' energy.
+/// The sum of the friction's work and the springs' energy.
 fn cost_of(pads: &Pads, displacement: &Displacement) -> f64 {
     let length_of = |slide: Point| {
-        let weight = pads.weight(slide);
-        (weight[0] * slide[0]).hypot(weight[1] * slide[1])
+        let weights = pads.slide_weights(slide);
+        (weights[0] * slide[0]).hypot(weights[1] * slide[1])
     };
-    let slides = pads.slides(displacement).into_iter().zip(pads.load);
+    let slides = pads.slides(displacement).into_iter().zip(pads.loads);
     let friction: f64 = slides.map(|(slide, load)| load * length_of(slide)).sum();
     let energy_of = |compliance: Compliance| -> f64 {
-        let lags = displacement.lag.iter();
-        lags.zip(compliance.lag_energy)
+        let lags = displacement.lags.iter();
+        lags.zip(compliance.lag_energies)
             .map(|(lag, drive)| drive.expand(*lag, 0.0).0)
             .sum()
     };
     friction + pads.compliance.map_or(0.0, energy_of)
 }
 
-/// Computes by duality a lower bound of the minimum cost, from the friction forces of a displacement's slides. If the
-/// sum and the torque of these forces are zero, no movement of the body costs less than their work `sum f . swing`,
-/// minus the largest gain of their torques on the springs. Returns the sum and the torque, and the displacement's
-/// cost minus this lower bound.
-fn certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
-    let eps = largest(&pads.swing) * MIN_ROUNDING;
-    let (mut work, mut net) = (0.0, [0.0; 3]);
+/// Computes a lower bound of the minimum cost by duality, from the friction forces of a displacement's slides. If
+/// these forces balance each other, no movement of the body costs less than their work `sum f . swing` minus the
+/// largest energy that their torques can release from the springs. Returns the net force and torque, and the duality
+/// gap: the displacement's cost minus this lower bound.
+fn dual_certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
+    let eps = max_component(&pads.swings) * MIN_ROUNDING;
+    let (mut lower_bound, mut net_force) = (0.0, [0.0; 3]);
     for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
-        let weight = pads.weight(slide);
-        let length = (weight[0] * slide[0])
-            .hypot(weight[1] * slide[1])
+        let weights = pads.slide_weights(slide);
+        let length = (weights[0] * slide[0])
+            .hypot(weights[1] * slide[1])
             .hypot(eps);
         let force = [
-            weight[0] * weight[0] * slide[0] / length,
-            weight[1] * slide[1] / length,
+            weights[0] * weights[0] * slide[0] / length,
+            weights[1] * slide[1] / length,
         ];
         assert!(
-            (force[0] / weight[0]).hypot(force[1]) <= 1.0 + 1e-12,
-            "a pad cannot hold that"
+            (force[0] / weights[0]).hypot(force[1]) <= 1.0 + 1e-12,
+            "the force is greater than the pad's friction"
         );
-        let force = force.map(|component| pads.load[i] * component);
+        let force = force.map(|component| pads.loads[i] * component);
         let work_along = |[x, y]: Point| force[0] * x + force[1] * y;
-        work += work_along(pads.swing[i]);
+        lower_bound += work_along(pads.swings[i]);
         if let Some(compliance) = pads.compliance {
-            let torque = work_along(compliance.lag_derivatives[i]);
-            work +=
-                torque * compliance.previous_lags[i] - compliance.lag_energy[i].conjugate(torque);
+            let torque = work_along(compliance.sweep_derivatives[i]);
+            lower_bound +=
+                torque * compliance.previous_lags[i] - compliance.lag_energies[i].conjugate(torque);
         }
-        net[0] += force[0];
-        net[1] += force[1];
-        net[2] += (pads.at[i][0] * force[1] - pads.at[i][1] * force[0]) / 100.0;
+        net_force[0] += force[0];
+        net_force[1] += force[1];
+        net_force[2] += (pads.positions[i][0] * force[1] - pads.positions[i][1] * force[0]) / 100.0;
     }
-    (net, cost_of(pads, displacement) - work)
+    (net_force, cost_of(pads, displacement) - lower_bound)
 }
 
 fn assert_minimal(pads: &Pads) {
-    let (net, gap) = certificate_of(pads, &pads.minimum());
+    let (net, duality_gap) = dual_certificate_of(pads, &pads.minimise_cost());
     assert!(
         net.iter().all(|component| component.abs() < 1e-5),
-        "forces out of balance: {net:?}"
+        "the forces do not balance: {net:?}"
     );
-    assert!(gap.abs() < 1e-5 * largest(&pads.swing), "gap {gap}");
+    assert!(
+        duality_gap.abs() < 1e-5 * max_component(&pads.swings),
+        "gap {duality_gap}"
+    );
 }
 
 #[test]
-fn a_near_tie_of_two_feet_against_two_is_decided_correctly() {
-    // A sine walk: at each instant two legs move in one direction about as fast as two in the other, so that
-    // only lever arms decide.
+fn the_minimum_is_found_in_near_ties_of_two_feet_against_two() {
+    // A gait of sine waves: at each instant two legs swing in one direction about as fast as the other two in the
+    // opposite direction, so that only lever arms decide.
     for step in 0..1000 {
         let (from, to) = (f64::from(step), f64::from(step + 1));
-        let foot_at = |i: usize, step: f64| {
+        let foot_position_at = |i: usize, step: f64| {
             let start = [0.25, 0.75, 0.5, 0.0][i];
             let psi = 0.35 * ((step / 1000.0 - start) * std::f64::consts::TAU).cos();
             let side = [1.0, -1.0, -1.0, 1.0][i];
@@ -98,21 +101,21 @@ fn a_near_tie_of_two_feet_against_two_is_decided_correctly() {
                 side * (35.0 + 45.0 * psi.cos()),
             ]
         };
-        let positions = std::array::from_fn(|i| foot_at(i, (from + to) / 2.0));
-        let swing = std::array::from_fn(|i| {
-            let (a, b) = (foot_at(i, from), foot_at(i, to));
+        let positions = std::array::from_fn(|i| foot_position_at(i, (from + to) / 2.0));
+        let swings = std::array::from_fn(|i| {
+            let (a, b) = (foot_position_at(i, from), foot_position_at(i, to));
             [b[0] - a[0], b[1] - a[1]]
         });
-        assert_minimal(&rigid_pads(positions, swing));
+        assert_minimal(&rigid_pads(positions, swings));
     }
 }
 
 #[test]
 fn three_pads_that_agree_hold_and_the_fourth_slides() {
     for odd_pad in 0..4 {
-        let mut swing = [[-1.0, 0.0]; 4];
-        swing[odd_pad] = [3.0, 0.0];
-        let twist = rigid_pads(PAD_POSITIONS, swing).minimum().twist;
+        let mut swings = [[-1.0, 0.0]; 4];
+        swings[odd_pad] = [3.0, 0.0];
+        let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
         assert!(
             (twist[0] - 1.0).abs() < 1e-7 && twist[1].abs() < 1e-7 && twist[2].abs() < 1e-9,
             "{twist:?}"
@@ -121,9 +124,9 @@ fn three_pads_that_agree_hold_and_the_fourth_slides() {
 }
 
 #[test]
-fn a_single_pad_that_swings_alone_moves_nothing() {
-    let swing = [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
-    let twist = rigid_pads(PAD_POSITIONS, swing).minimum().twist;
+fn a_single_pad_that_swings_does_not_move_the_body() {
+    let swings = [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
+    let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
     assert!(
         twist.iter().all(|component| component.abs() < 1e-7),
         "{twist:?}"
@@ -132,9 +135,9 @@ fn a_single_pad_that_swings_alone_moves_nothing() {
 
 #[test]
 fn legs_that_swing_against_each_other_turn_the_body() {
-    // The pads move as one rigid body that turns by -0.01 rad, so the body turns by 0.01 rad and no pad slides.
-    let swing = PAD_POSITIONS.map(|[x, y]| [0.01 * y, -0.01 * x]);
-    let twist = rigid_pads(PAD_POSITIONS, swing).minimum().twist;
+    // The pads turn by -0.01 rad about the body's centre, so the body turns by 0.01 rad and no pad slides.
+    let swings = PAD_POSITIONS.map(|[x, y]| [0.01 * y, -0.01 * x]);
+    let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
     assert!((twist[2] - 0.01).abs() < 1e-9 && twist[0].abs() < 1e-7 && twist[1].abs() < 1e-7);
 }
 
@@ -144,57 +147,57 @@ fn any_point(size: f64) -> impl Strategy<Value = Point> {
 
 proptest! {
     #[test]
-    fn no_twist_costs_less_than_the_balanced_forces_prove(
+    fn with_rigid_legs_the_minimum_cost_equals_the_dual_lower_bound(
         jitter in prop::array::uniform4(any_point(20.0)),
-        swing in prop::array::uniform4(any_point(5.0)),
-        ratio in 0.5f64..2.0,
-        load in prop::array::uniform4(0.8f64..1.2),
+        swings in prop::array::uniform4(any_point(5.0)),
+        friction_ratio in 0.5f64..2.0,
+        loads in prop::array::uniform4(0.8f64..1.2),
     ) {
         let positions = std::array::from_fn(|i| {
             [PAD_POSITIONS[i][0] + jitter[i][0], PAD_POSITIONS[i][1] + jitter[i][1]]
         });
-        assert_minimal(&Pads { at: positions, swing, ratio, load, compliance: None, body: None });
+        assert_minimal(&Pads { positions, swings, friction_ratio, loads, compliance: None, inertia: None });
     }
 
     #[test]
-    fn no_twist_nearby_costs_less(
-        swing in prop::array::uniform4(any_point(5.0)),
+    fn no_twist_near_the_minimum_costs_less(
+        swings in prop::array::uniform4(any_point(5.0)),
         nudge in prop::array::uniform3(-1.0f64..1.0),
         exponent in -6i32..1,
-        load in prop::array::uniform4(0.8f64..1.2),
+        loads in prop::array::uniform4(0.8f64..1.2),
     ) {
-        let pads = Pads { at: PAD_POSITIONS, swing, ratio: 1.3, load, compliance: None, body: None };
-        let minimum = pads.minimum();
+        let pads = Pads { positions: PAD_POSITIONS, swings, friction_ratio: 1.3, loads, compliance: None, inertia: None };
+        let minimum = pads.minimise_cost();
         let (twist, scale) = (minimum.twist, 10f64.powi(exponent));
         let nudged = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
         let nudged = Displacement { twist: nudged, ..minimum };
         prop_assert!(cost_of(&pads, &minimum) <= cost_of(&pads, &nudged) + 1e-6);
     }
 
-    // Every leg has play. Below it is a stop; above it is a stop, too, or a slotted strut.
+    // Every leg has play. At the play's lower end is a stop; at its upper end is another stop or a slotted strut.
     #[test]
-    fn no_place_within_the_play_or_the_slot_costs_less(
-        swing in prop::array::uniform4(any_point(5.0)),
-        load in prop::array::uniform4(0.5f64..1.5),
+    fn with_play_and_slotted_struts_the_minimum_cost_equals_the_dual_lower_bound(
+        swings in prop::array::uniform4(any_point(5.0)),
+        loads in prop::array::uniform4(0.5f64..1.5),
         play in 0.0f64..0.03,
         lag_shares in prop::array::uniform4(-1.0f64..1.0),
         force in prop::option::of(0.2f64..6.0),
         arm_deg in 40.0f64..85.0,
     ) {
-        prop_assume!(swing.iter().flatten().any(|component| component.abs() > 1e-3));
+        prop_assume!(swings.iter().flatten().any(|component| component.abs() > 1e-3));
         let (sin, cos) = arm_deg.to_radians().sin_cos();
-        let servo_end = [22.0 * cos - 30.2, 22.0 * sin];
-        let angle = servo_end[1].atan2(servo_end[0]) - arm_deg.to_radians();
-        let stretch = Stretch::new(servo_end[0].hypot(servo_end[1]), 22.0, angle);
-        // The spring of a robot of the paper's size. Without a rate, its torque would fall as the strut
-        // grows, because its lever shrinks.
-        let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
-        let drive = LagEnergy { play, stop: STOP_TORQUE, lower: Side::Stop, upper, motor: None };
+        let joint = [22.0 * cos - 30.2, 22.0 * sin];
+        let angle = joint[1].atan2(joint[0]) - arm_deg.to_radians();
+        let triangle = StrutTriangle::new(joint[0].hypot(joint[1]), 22.0, angle);
+        // A spring for a robot of the paper's size. Its rate makes the torque rise as the strut grows, although
+        // the lever shrinks: the energy must be convex.
+        let upper_resistance = force.map_or(Resistance::Stop, |force| Resistance::strut(triangle, force, 1.5, 5.0));
+        let drive = LagEnergy { play, stop_torque: STOP_TORQUE, lower_resistance: Resistance::Stop, upper_resistance, motor: None };
         let compliance = Some(Compliance {
-            lag_derivatives: [[45.0, 0.0]; 4],
+            sweep_derivatives: [[45.0, 0.0]; 4],
             previous_lags: lag_shares.map(|share| share * play),
-            lag_energy: [drive; 4],
+            lag_energies: [drive; 4],
         });
-        assert_minimal(&Pads { at: PAD_POSITIONS, swing, ratio: 1.0, load, compliance, body: None });
+        assert_minimal(&Pads { positions: PAD_POSITIONS, swings, friction_ratio: 1.0, loads, compliance, inertia: None });
     }
 }

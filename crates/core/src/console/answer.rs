@@ -1,9 +1,8 @@
 //! Answers: the robot's replies to a line.
 //!
-//! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`; some
-//! answers have other lines before it.
+//! Every answer ends with exactly one final line, `ok ...` or `err <code> <reason>`; some have other lines before it.
 
-use crate::console::command::Misread;
+use crate::console::command::LineError;
 use crate::control::refusal::Refusal;
 use crate::numbers::gaits::GaitId;
 
@@ -14,27 +13,27 @@ use crate::numbers::gaits::GaitId;
 pub enum Answer {
     /// `ok` and the line as the console understood it.
     Done = 1,
-    /// The gaits from this one on, as many as fit in a line.
+    /// A line of help that lists the gaits from this one on, as many as fit.
     HelpGaits(GaitId),
-    /// The words of the console.
+    /// The line of help that lists the words of the console.
     HelpWords,
-    /// The hint that ends the list of commands.
+    /// The hint that follows the list of commands.
     HelpHint,
-    /// The end of help, `ok help`.
+    /// The final line of help, `ok help`.
     HelpDone,
-    /// `ok`, the motion and its pose: the first of the three parts of a `status` line. Each part is written
+    /// The first of the three parts of a `status` line: `ok`, the motion and its pose. Each part is written
     /// separately, so that a frame is delayed by at most one of them.
     Status,
-    /// The second part of a `status` line: the margin, whose measurement takes most of a frame; the pace; the
+    /// The second part of a `status` line: the margin, whose computation takes most of a frame; the speed; the
     /// frame count.
     StatusMargin,
     /// The last part of a `status` line: counters, faults, restarts and supplies.
     StatusHealth,
-    /// A line of the settings, by its number; the line after the settings is `ok cal`.
+    /// The line of `cal` with this index, counted from 0; the last one is `ok cal`.
     Settings(u8),
-    /// `err`, since the line is not a command; nothing was changed.
-    Misread(Misread),
-    /// `err`, since the robot refuses the order; nothing was changed.
+    /// `err`, since the line is not a valid command; nothing has changed.
+    Invalid(LineError),
+    /// `err`, since the robot refuses the order; nothing has changed.
     Refused(Refusal),
 }
 

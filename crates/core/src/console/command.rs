@@ -1,19 +1,18 @@
 //! Parses lines into commands.
 //!
 //! A line is one command: a word of the console, or the name of a gait in `robot.toml`.
-//! This module only parses. A line that is not understood completely is an error and
-//! changes nothing.
+//! This module only parses, and a line is either understood completely or is an error.
 
 use lizard_avr::flash;
 
 use crate::console::text::Text;
-use crate::console::word::{Effect, RESERVED, Word};
+use crate::console::word::{Effect, RESERVED_COUNT, Word};
 use crate::control::order::{Order, Setting};
 use crate::memory::settings::Boot;
 use crate::numbers::gaits::{GaitId, Name};
 use crate::numbers::part::Servo;
 use crate::numbers::robot::Robot;
-use crate::numbers::units::{Angle, Sweep, TURN_CENTIDEG};
+use crate::numbers::units::{Angle, CENTIDEG_PER_TURN, Sweep};
 
 /// A command whose arguments have passed the checks of syntax and range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,39 +29,39 @@ pub enum Command {
     Order(Order),
 }
 
-/// The reason why a line is not a command.
+/// The reason why a line is not a valid command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Misread {
+pub enum LineError {
     /// A byte of the line was garbled.
     Garbled,
     /// The line is too long.
     TooLong,
     /// The first word is not a command.
     UnknownCommand,
-    /// A command that takes no argument has one.
+    /// A command that takes no argument was given one.
     UnexpectedArgument,
-    /// The first words of a gait's name, without the others.
+    /// The line has the first words of a gait's name but not the others.
     IncompleteName,
-    /// An argument is missing, malformed or superfluous; the message describes the correct
+    /// An argument is missing, malformed or superfluous; the text describes the correct
     /// arguments.
     WrongArguments(Text),
-    /// An argument is out of range; the message gives the range.
+    /// An argument is out of range; the text gives the range.
     OutOfRange(Text),
-    /// The angle of this servo is more than a turn.
+    /// The angle for this servo in a `pose` command is more than a turn.
     AngleOutOfRange(Servo),
 }
 
-/// The longest interval of `watch`, frames: 200 s.
+/// The longest interval that `watch` accepts, frames: 200 s.
 pub const MAX_WATCH_FRAMES: u16 = 10_000;
 
-/// The largest count of cycles that a gait accepts.
+/// The largest number of cycles that a gait accepts.
 pub const MAX_CYCLES: u16 = 999;
 
-/// The longest time that `deadman` allows, ms: a minute.
+/// The longest time that `deadman` accepts, ms: a minute.
 pub const MAX_DEADMAN_MS: u16 = 60_000;
 
-/// The largest angle: one turn in either direction. A larger one counts as a mistake.
-const MAX_CENTIDEG: u16 = TURN_CENTIDEG as u16;
+/// The largest magnitude of an angle: one turn. A larger one is taken for a typing error.
+const MAX_CENTIDEG: u16 = CENTIDEG_PER_TURN as u16;
 
 /// The syntax of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,39 +77,40 @@ enum Syntax {
     Sign,
 }
 
-/// The arguments of a command.
+/// The form of a command's arguments: their number, syntax and range.
 #[derive(Clone, Copy)]
-struct Form {
+struct ArgumentForm {
     /// True if the first argument is a servo's number.
     takes_servo: bool,
-    /// The number of arguments, without the servo.
-    count: u8,
-    /// The syntax of each argument except the servo.
+    /// The number of arguments without the servo; all of them are numbers in the same range.
+    number_count: u8,
+    /// The syntax of these arguments.
     syntax: Syntax,
-    /// The smallest and the largest magnitude of each argument except the servo.
+    /// The smallest magnitude of these arguments; in hundredths, unless they are whole numbers.
     min: u16,
+    /// The largest magnitude of these arguments; in hundredths, unless they are whole numbers.
     max: u16,
     /// The message for arguments that do not match this form.
-    usage: Text,
-    /// The message for an argument out of range.
-    range: Text,
+    usage_message: Text,
+    /// The message for an argument that is out of range.
+    range_message: Text,
 }
 
 flash! {
     /// All forms, in the order of [`form_index`].
-    const FORMS: [Form; 8] = [
-        Form { takes_servo: false, count: 4, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage: Text::PoseWants, range: Text::Nothing },
-        Form { takes_servo: false, count: 1, syntax: Syntax::Whole, min: 10, max: 100, usage: Text::SpeedWants, range: Text::SpeedRange },
-        Form { takes_servo: false, count: 1, syntax: Syntax::Whole, min: 0, max: MAX_WATCH_FRAMES, usage: Text::WatchWants, range: Text::WatchRange },
-        Form { takes_servo: true, count: 1, syntax: Syntax::Degrees, min: 0, max: 2000, usage: Text::TrimWants, range: Text::TrimRange },
-        Form { takes_servo: true, count: 2, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage: Text::LimitWants, range: Text::LimitRange },
-        Form { takes_servo: true, count: 1, syntax: Syntax::Sign, min: 0, max: 1, usage: Text::DirWants, range: Text::Nothing },
-        Form { takes_servo: true, count: 1, syntax: Syntax::Hundredths, min: 500, max: 2000, usage: Text::ScaleWants, range: Text::ScaleRange },
-        Form { takes_servo: false, count: 1, syntax: Syntax::Whole, min: 0, max: MAX_DEADMAN_MS, usage: Text::DeadmanWants, range: Text::DeadmanRange },
+    const FORMS: [ArgumentForm; 8] = [
+        ArgumentForm { takes_servo: false, number_count: 4, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage_message: Text::PoseUsage, range_message: Text::Nothing },
+        ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 10, max: 100, usage_message: Text::SpeedUsage, range_message: Text::SpeedRange },
+        ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 0, max: MAX_WATCH_FRAMES, usage_message: Text::WatchUsage, range_message: Text::WatchRange },
+        ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Degrees, min: 0, max: 2000, usage_message: Text::TrimUsage, range_message: Text::TrimRange },
+        ArgumentForm { takes_servo: true, number_count: 2, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage_message: Text::LimitUsage, range_message: Text::LimitRange },
+        ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Sign, min: 0, max: 1, usage_message: Text::DirUsage, range_message: Text::Nothing },
+        ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Hundredths, min: 500, max: 2000, usage_message: Text::ScaleUsage, range_message: Text::ScaleRange },
+        ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 0, max: MAX_DEADMAN_MS, usage_message: Text::DeadmanUsage, range_message: Text::DeadmanRange },
     ];
 }
 
-/// The index into `FORMS` for a command that takes arguments.
+/// The index into `FORMS` of a word; `None` for a word that takes no arguments, and for `boot`, which takes a name.
 const fn form_index(word: Word) -> Option<usize> {
     match word {
         Word::Pose => Some(0),
@@ -125,29 +125,29 @@ const fn form_index(word: Word) -> Option<usize> {
     }
 }
 
-/// Reads a line that is trimmed, not empty and in lower case.
+/// Parses a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
-/// Returns the reason why the line is not a command.
-pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
-    parse_among::<RESERVED>(line, robot)
+/// Returns the reason why the line is not a valid command.
+pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, LineError> {
+    parse_with_priority::<RESERVED_COUNT>(line, robot)
 }
 
-/// Parses a line; a gait has priority over a word of the same name whose number is
-/// `FIRST_YIELDING` or more.
+/// Parses a line. A gait has priority over a word of the same name if the word's index in [`Word::ALL`] is
+/// `FIRST_YIELDING_INDEX` or more.
 #[inline(never)]
-fn parse_among<const FIRST_YIELDING: usize>(
+fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
     line: &[u8],
     robot: &Robot,
-) -> Result<Command, Misread> {
+) -> Result<Command, LineError> {
     let mut words = Words(line);
     let word = Word::find(words.next()).filter(|word| {
-        // Costs no instruction as long as no word yields.
-        FIRST_YIELDING >= Word::ALL.len()
-            || (*word as usize) < FIRST_YIELDING
+        // Compiles to nothing as long as no word yields.
+        FIRST_YIELDING_INDEX >= Word::ALL.len()
+            || (*word as usize) < FIRST_YIELDING_INDEX
             || matches!(
                 parse_gait(line, robot),
-                Err(Misread::UnknownCommand | Misread::IncompleteName)
+                Err(LineError::UnknownCommand | LineError::IncompleteName)
             )
     });
     let Some(word) = word else {
@@ -155,36 +155,38 @@ fn parse_among<const FIRST_YIELDING: usize>(
         return Ok(Command::Order(Order::Gait(gait, cycles)));
     };
     let Arguments { servo, numbers } = match form_index(word) {
-        Some(index) => Arguments::read(word, words, &FORMS.at(index).load())?,
-        None if word != Word::Boot && !words.is_done() => return Err(Misread::UnexpectedArgument),
+        Some(index) => Arguments::parse(word, words, &FORMS.at(index).load())?,
+        None if word != Word::Boot && !words.is_exhausted() => {
+            return Err(LineError::UnexpectedArgument);
+        }
         None => Arguments::NONE,
     };
-    let [number, second, ..] = numbers;
+    let [first_number, second_number, ..] = numbers;
     let order_of = |setting| Order::Set(servo, setting);
     Ok(Command::Order(match word {
         Word::Help | Word::QuestionMark => return Ok(Command::Help),
         Word::Status => return Ok(Command::Status),
         Word::Cal => return Ok(Command::Cal),
-        Word::Watch => return Ok(Command::Watch(number)),
+        Word::Watch => return Ok(Command::Watch(first_number)),
         Word::Stop => Order::Stop,
         Word::Rest => Order::Rest,
         Word::Pose => Order::Pose(numbers.map(Angle)),
         Word::Center => Order::Center,
-        Word::Speed => Order::Speed(number as u8),
-        Word::Trim => order_of(Setting::Trim(Sweep(number as i16))),
-        Word::Limit => order_of(Setting::Limit(Angle(number), Angle(second))),
-        Word::Dir => order_of(Setting::Direction(number != 0)),
-        Word::Scale => order_of(Setting::Scale(number)),
+        Word::Speed => Order::Speed(first_number as u8),
+        Word::Trim => order_of(Setting::Trim(Sweep(first_number as i16))),
+        Word::Limit => order_of(Setting::Limit(Angle(first_number), Angle(second_number))),
+        Word::Dir => order_of(Setting::Direction(first_number != 0)),
+        Word::Scale => order_of(Setting::Scale(first_number)),
         Word::Save => Order::Save,
         Word::Load => Order::Load,
         Word::Factory => Order::Factory,
         Word::Boot => Order::Boot(parse_boot(words.0.trim_ascii(), robot)?),
-        Word::Deadman => Order::Deadman(number),
+        Word::Deadman => Order::Deadman(first_number),
     }))
 }
 
 /// The effect of a line on the servos: the effect of its word; [`Effect::Moves`] for a gait;
-/// [`Effect::None`] for a line that is not a command.
+/// [`Effect::None`] for a line that is not a valid command.
 pub fn effect(line: &str, robot: &Robot) -> Effect {
     let line = line.as_bytes();
     match parse(line, robot) {
@@ -194,23 +196,23 @@ pub fn effect(line: &str, robot: &Robot) -> Effect {
     }
 }
 
-/// Reads the argument of `boot`.
-fn parse_boot(argument: &[u8], robot: &Robot) -> Result<Boot, Misread> {
+/// Parses the argument of `boot`.
+fn parse_boot(argument: &[u8], robot: &Robot) -> Result<Boot, LineError> {
     if Word::find(argument) == Some(Word::Rest) {
         return Ok(Boot::Rest);
     }
     match parse_gait(argument, robot) {
         Ok((gait, 0)) => Ok(Boot::Gait(gait)),
-        _ => Err(Misread::WrongArguments(Text::BootWants)),
+        _ => Err(LineError::WrongArguments(Text::BootUsage)),
     }
 }
 
-/// The arguments of a command, read and checked.
+/// The arguments of a command, parsed and checked.
 struct Arguments {
-    /// The servo that is to be set.
+    /// The servo to which a setting applies.
     servo: Servo,
-    /// The numbers: percentages, frames, milliseconds and hundredths unchanged; `+` as 1 and
-    /// `-` as 0; degrees as an [`Angle`].
+    /// The numbers: percentages, frames, milliseconds and hundredths as written; `+` as 1 and
+    /// `-` as 0; degrees as steps of an [`Angle`].
     numbers: [u16; 4],
 }
 
@@ -221,10 +223,10 @@ impl Arguments {
         numbers: [0; 4],
     };
 
-    /// Reads the arguments that follow `word`.
+    /// Parses the arguments that follow `word`.
     #[inline(never)]
-    fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
-        let usage_error = Err(Misread::WrongArguments(form.usage));
+    fn parse(word: Word, mut words: Words, form: &ArgumentForm) -> Result<Self, LineError> {
+        let usage_error = Err(LineError::WrongArguments(form.usage_message));
         let mut arguments = Self::NONE;
         if form.takes_servo {
             arguments.servo = match words.next() {
@@ -232,8 +234,8 @@ impl Arguments {
                 _ => return usage_error,
             };
         }
-        let mut wrong_index = None;
-        for (index, number) in (0..form.count).zip(&mut arguments.numbers) {
+        let mut out_of_range_index = None;
+        for (index, number) in (0..form.number_count).zip(&mut arguments.numbers) {
             let Some((magnitude, is_negative)) = parse_number(words.next(), form.syntax) else {
                 return usage_error;
             };
@@ -246,15 +248,15 @@ impl Arguments {
                 is_in_range &= !is_negative;
             }
             if !is_in_range {
-                wrong_index = wrong_index.or(Some(index));
+                out_of_range_index = out_of_range_index.or(Some(index));
             }
         }
-        match wrong_index {
-            _ if !words.is_done() => usage_error,
+        match out_of_range_index {
+            _ if !words.is_exhausted() => usage_error,
             Some(index) if word == Word::Pose => {
-                Err(Misread::AngleOutOfRange(Servo::at(usize::from(index))))
+                Err(LineError::AngleOutOfRange(Servo::at(usize::from(index))))
             }
-            Some(_) => Err(Misread::OutOfRange(form.range)),
+            Some(_) => Err(LineError::OutOfRange(form.range_message)),
             None => Ok(arguments),
         }
     }
@@ -265,7 +267,7 @@ impl Arguments {
 struct Words<'a>(&'a [u8]);
 
 impl<'a> Words<'a> {
-    /// The next word; empty at the end of the line.
+    /// Takes the next word; returns an empty one at the end of the line.
     fn next(&mut self) -> &'a [u8] {
         let rest = self.0.trim_ascii_start();
         let length = rest
@@ -277,61 +279,62 @@ impl<'a> Words<'a> {
         word
     }
 
-    fn is_done(mut self) -> bool {
+    /// True if no word is left.
+    fn is_exhausted(mut self) -> bool {
         self.next().is_empty()
     }
 }
 
-/// Finds the gait whose name begins the line, and reads the number of cycles after the name; 0 if there is none.
-/// Any blanks between words are accepted. If a gait's name is that of another gait and a number, the longer name
-/// has priority.
+/// Finds the gait with whose name the line begins, and parses the number of cycles after the name; 0 if there is none.
+/// Words may be separated by any blanks. If a gait's name is that of another gait followed by a number, the longer
+/// name has priority.
 #[inline(never)]
-fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
+fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), LineError> {
     let line = line.trim_ascii_start();
-    let mut parsed = Err(Misread::UnknownCommand);
+    let mut best_result = Err(LineError::UnknownCommand);
     for id in GaitId::all(robot.gait_count()) {
-        match match_gait_name(line, robot.name(id)) {
-            Err(Misread::UnknownCommand) => {}
+        match match_gait_name(line, robot.gait_name(id)) {
+            Err(LineError::UnknownCommand) => {}
             Ok(0) => return Ok((id, 0)),
-            result if parsed.is_err() => parsed = result.map(|cycles| (id, cycles)),
+            result if best_result.is_err() => best_result = result.map(|cycles| (id, cycles)),
             _ => {}
         }
     }
-    parsed
+    best_result
 }
 
-/// Compares a line with a name, and reads the number of cycles after the name; 0 if there is none.
+/// Compares a line with a name, and parses the number of cycles after the name; 0 if there is none.
 /// Stops at the first byte that differs: there may be many names, and a frame may be due.
 #[inline(never)]
-fn match_gait_name(line: &[u8], name: Name) -> Result<u16, Misread> {
+fn match_gait_name(line: &[u8], name: Name) -> Result<u16, LineError> {
     let mut rest = line;
     for byte in name {
         match rest {
-            [] if byte == b' ' => return Err(Misread::IncompleteName),
+            [] if byte == b' ' => return Err(LineError::IncompleteName),
             [first, ..] if byte == b' ' && first.is_ascii_whitespace() => {
                 rest = rest.trim_ascii_start();
             }
             [first, tail @ ..] if *first == byte => rest = tail,
-            _ => return Err(Misread::UnknownCommand),
+            _ => return Err(LineError::UnknownCommand),
         }
     }
     match rest {
         [] => return Ok(0),
-        [first, ..] if !first.is_ascii_whitespace() => return Err(Misread::UnknownCommand),
+        [first, ..] if !first.is_ascii_whitespace() => return Err(LineError::UnknownCommand),
         _ => {}
     }
     let mut words = Words(rest);
     let number = parse_number(words.next(), Syntax::Whole);
     match number {
-        Some((cycles @ 1..=MAX_CYCLES, _)) if words.is_done() => Ok(cycles),
-        _ => Err(Misread::WrongArguments(Text::CountWants)),
+        Some((cycles @ 1..=MAX_CYCLES, _)) if words.is_exhausted() => Ok(cycles),
+        _ => Err(LineError::WrongArguments(Text::CountUsage)),
     }
 }
 
-/// Number of decimals of hundredths.
-const DECIMALS: u8 = 2;
+/// The number of decimals of a number in hundredths.
+const DECIMAL_COUNT: u8 = 2;
 
-/// Reads a word as a magnitude and a bool that is true for a minus sign. A magnitude of more than
+/// Parses a word as a magnitude and a bool that is true for a minus sign. A magnitude of more than
 /// sixteen bits becomes 65535. Returns `None` if the word does not have this syntax.
 #[inline(never)]
 fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
@@ -346,34 +349,34 @@ fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
         return (word.len() == 1 && digits.is_empty()).then_some((u16::from(!is_negative), false));
     }
     let mut magnitude = None;
-    let mut decimals = None;
+    let mut decimal_count = None;
     for byte in digits {
         match byte {
             b'0'..=b'9' => magnitude = Some(append_digit(magnitude.unwrap_or(0), byte - b'0')),
-            b'.' if syntax != Syntax::Whole && magnitude.is_some() && decimals.is_none() => {
-                decimals = Some(0);
+            b'.' if syntax != Syntax::Whole && magnitude.is_some() && decimal_count.is_none() => {
+                decimal_count = Some(0);
                 continue;
             }
             _ => return None,
         }
-        if let Some(decimals) = &mut decimals {
-            *decimals += 1;
+        if let Some(decimal_count) = &mut decimal_count {
+            *decimal_count += 1;
         }
     }
     let mut magnitude = magnitude?;
     if syntax != Syntax::Whole {
         // Zeros in place of the missing decimals.
-        for _ in 0..DECIMALS.checked_sub(decimals.unwrap_or(0))? {
+        for _ in 0..DECIMAL_COUNT.checked_sub(decimal_count.unwrap_or(0))? {
             magnitude = append_digit(magnitude, 0);
         }
     }
     Some((magnitude, is_negative))
 }
 
-/// Appends a digit to a number; saturates at 65535.
+/// Appends a decimal digit to a number; saturates at 65535.
 #[inline(never)]
 fn append_digit(number: u16, digit: u8) -> u16 {
-    // 6553 followed by a digit may exceed sixteen bits.
+    // 6553 followed by another digit may exceed sixteen bits.
     if number < 6553 {
         number * 10 + u16::from(digit)
     } else {

@@ -1,14 +1,14 @@
 //! The console: one line in, one answer out.
 //!
 //! While the console has nothing to write, the caller passes bytes to it. When the serial
-//! line has room for a whole line, the caller lets it write one. So nothing waits: a long
-//! list comes line by line between the frames, and a slow listener never delays a frame.
+//! line has room for a whole line of text, the caller lets the console write one. So nothing blocks: a long
+//! list is written line by line between the frames, and a slow listener never delays a frame.
 
 use crate::console::answer::{Answer, Counters};
-use crate::console::command::{self, Command, Misread};
+use crate::console::command::{self, Command, LineError};
 use crate::console::digits;
 use crate::console::finder::RateFinder;
-use crate::console::line::{GARBLED, Line, LineEnd};
+use crate::console::line::{GARBLED_BYTE, Line, LineEnd};
 use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;
@@ -19,21 +19,21 @@ use crate::control::order::Acceptance;
 use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
 use crate::numbers::gaits::GaitId;
-use crate::numbers::rate::Rate;
+use crate::numbers::rate::BaudRate;
 use crate::numbers::units::FRAME_MS;
 
-/// The longest line that [`Console::write_line`] writes, with its line end: a
-/// `status` whose every number has all its digits.
-pub const LONGEST_LINE: u8 = 250;
+/// The largest length of a line that [`Console::write_line`] writes, with its line end: that of a
+/// `status` line whose numbers all have their largest number of digits.
+pub const MAX_OUTPUT_LINE_BYTES: u8 = 250;
 
-/// A line that waits to be written, in order of priority.
+/// A line that waits to be written. The variants are in order of priority.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pending {
+enum PendingLine {
     /// The firmware's version and the robot's name, once after power-on.
     Banner,
     /// The answer to the last line received, or a part of it.
     Answer(Answer),
-    /// A notice that comes without a command.
+    /// A notice, which no command has asked for.
     Notice(Notice),
     /// The reason why the guard holds the robot.
     HoldReason,
@@ -41,14 +41,15 @@ enum Pending {
     PoseReport,
 }
 
-/// The console at one serial line: the line being received, and the answer being written.
+/// The console of a serial line: the line being received, and the answer being written.
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
-    /// Time since the last byte, ms.
-    silence: u16,
+    /// Time since the last byte.
+    silence_ms: u16,
     rate_finder: RateFinder,
-    has_greeted: bool,
+    has_printed_banner: bool,
+    /// The next part of the answer to the last line; `None` if nothing is left to be written.
     answer: Option<Answer>,
     watch: Watch,
 }
@@ -64,43 +65,42 @@ impl Console {
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
-            silence: 0,
-            rate_finder: RateFinder::new(Rate::Fastest),
-            has_greeted: false,
+            silence_ms: 0,
+            rate_finder: RateFinder::new(BaudRate::Fastest),
+            has_printed_banner: false,
             answer: None,
             watch: Watch::new(0),
         }
     }
 
-    /// Sets the rate with which the serial line starts.
-    pub const fn begin(&mut self, rate: Rate) {
+    /// Sets the baud rate at which the serial line starts.
+    pub const fn set_initial_rate(&mut self, rate: BaudRate) {
         self.rate_finder = RateFinder::new(rate);
     }
 
     /// Advances the timer of `watch` and the time since the last byte by a frame. Returns the new
-    /// rate of the serial line; `None` if the rate stays.
-    pub fn frame(&mut self, control: &Control) -> Option<Rate> {
+    /// baud rate of the serial line; `None` if it stays the same.
+    pub fn advance_frame(&mut self, control: &Control) -> Option<BaudRate> {
         self.watch.count_frame();
-        self.silence = self.silence.saturating_add(FRAME_MS);
-        let deadman = control.deadman();
-        if deadman != 0 && self.silence >= deadman {
-            // If the link breaks within `walk 12`, noise that comes later must not complete the line as
-            // `walk 1`.
-            self.line.garble_unfinished();
+        self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
+        let deadman_ms = control.deadman_ms();
+        if deadman_ms != 0 && self.silence_ms >= deadman_ms {
+            // If the link breaks within `walk 12`, later noise must not complete the line as `walk 1`.
+            self.line.garble_unfinished_line();
         }
         if self.has_output(control) {
-            self.rate_finder.note_unread();
+            self.rate_finder.note_unread_bytes();
         }
         let rate = self.rate_finder.end_frame()?;
-        // The next line end may end a line that began at the previous rate.
-        self.line.push(GARBLED);
+        // The next line end may complete a line that began at the previous rate.
+        self.line.push(GARBLED_BYTE);
         Some(rate)
     }
 
     /// True while a line waits to be written. Meanwhile the caller passes no byte on, since the answer may
-    /// still need the line that it answers.
+    /// quote the received line.
     pub const fn has_output(&self, control: &Control) -> bool {
-        self.next_pending(control).is_some()
+        self.next_pending_line(control).is_some()
     }
 
     /// Takes a byte from the serial line; if the byte ends a line of text, executes that line.
@@ -108,28 +108,28 @@ impl Console {
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
         control.note_byte();
-        self.silence = 0;
+        self.silence_ms = 0;
         self.rate_finder.note_byte(byte);
         let Some(line_end) = self.line.push(byte) else {
             return;
         };
         let answer = match line_end {
             LineEnd::Line => self.execute_line(control),
-            LineEnd::TooLong => Err(Answer::Misread(Misread::TooLong)),
-            LineEnd::Garbled => Err(Answer::Misread(Misread::Garbled)),
+            LineEnd::TooLong => Err(Answer::Invalid(LineError::TooLong)),
+            LineEnd::Garbled => Err(Answer::Invalid(LineError::Garbled)),
         };
         self.answer = answer.unwrap_or_else(Some);
     }
 
-    /// Executes the received line. Returns `Ok(None)` if the order has to wait for the EEPROM; then
-    /// [`Console::finish_order`] has to follow.
+    /// Executes the received line. Returns `Ok(None)` if the order has to wait for the EEPROM; the caller then reports
+    /// its outcome with [`Console::finish_order`].
     #[inline(never)]
     fn execute_line(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
         let text = self.line.text();
         let mut command = command::parse(text, robot);
         if command.is_ok() && !self.rate_finder.note_command(text.len()) {
-            command = Err(Misread::Garbled);
+            command = Err(LineError::Garbled);
         }
         let needs_no_robot = matches!(
             command,
@@ -138,9 +138,9 @@ impl Console {
         if robot.is_none() && !needs_no_robot {
             return Err(Answer::Refused(Refusal::NoRobot));
         }
-        let command = command.map_err(Answer::Misread)?;
-        // Only a valid command shows that somebody is at the other end, so `deadman` ignores noise and parts of
-        // lines.
+        let command = command.map_err(Answer::Invalid)?;
+        // Only a valid command shows that there is somebody at the other end, so noise and incomplete lines do not
+        // restart the time of `deadman`.
         control.note_command();
         Ok(match command {
             Command::Help => Some(Answer::HelpGaits(GaitId::STAND)),
@@ -152,7 +152,7 @@ impl Console {
             }
             Command::Order(order) => match control.execute(&order).map_err(Answer::Refused)? {
                 Acceptance::Done => Some(Answer::Done),
-                Acceptance::Later => None,
+                Acceptance::Pending => None,
             },
         })
     }
@@ -165,56 +165,56 @@ impl Console {
         });
     }
 
-    /// Writes one waiting line, if any, at most [`LONGEST_LINE`] bytes: the banner, once after power-on; an
+    /// Writes one waiting line, if any, of at most [`MAX_OUTPUT_LINE_BYTES`] bytes: the banner, once after power-on; an
     /// answer or a part of it; a notice; the reason why the guard holds the robot; or the pose report of
     /// `watch`. The longest line, `status`, is written in parts, one per call.
     #[inline(never)]
     pub fn write_line(&mut self, control: &mut Control, out: &mut impl Output, counters: Counters) {
-        match self.next_pending(control) {
+        match self.next_pending_line(control) {
             None => return,
-            Some(Pending::Banner) => {
-                self.has_greeted = true;
-                print::banner(out, control.motion().robot());
+            Some(PendingLine::Banner) => {
+                self.has_printed_banner = true;
+                print::print_banner(out, control.motion().robot());
             }
-            Some(Pending::Answer(answer)) => {
-                self.answer = print::answer(out, answer, &self.line, control, counters);
+            Some(PendingLine::Answer(answer)) => {
+                self.answer = print::print_answer(out, answer, &self.line, control, counters);
                 if matches!(answer, Answer::Status | Answer::StatusMargin) {
                     return;
                 }
             }
-            Some(Pending::Notice(notice)) => {
+            Some(PendingLine::Notice(notice)) => {
                 control.note_printed(notice);
-                print::notice(out, notice, control);
+                print::print_notice(out, notice, control);
             }
-            Some(Pending::HoldReason) => {
+            Some(PendingLine::HoldReason) => {
                 if let Some(hazard) = control.take_hold_reason() {
                     Text::Held.print(out);
                     refusal::print_hazard(hazard, control.motion(), out);
                 }
             }
-            Some(Pending::PoseReport) => {
+            Some(PendingLine::PoseReport) => {
                 self.watch.is_due = false;
                 Text::WatchTime.print(out);
-                digits::print_number(out, control.motion().frames(), 0);
-                print::pose(out, control.motion());
+                digits::print_number(out, control.motion().frame_count(), 0);
+                print::print_pose(out, control.motion());
             }
         }
-        out.byte(b'\r');
-        out.byte(b'\n');
+        out.write_byte(b'\r');
+        out.write_byte(b'\n');
     }
 
-    /// The output to write next, in a fixed order of priority; `None` if nothing waits.
-    const fn next_pending(&self, control: &Control) -> Option<Pending> {
-        if !self.has_greeted {
-            Some(Pending::Banner)
+    /// The line to be written next, by priority; `None` if nothing waits.
+    const fn next_pending_line(&self, control: &Control) -> Option<PendingLine> {
+        if !self.has_printed_banner {
+            Some(PendingLine::Banner)
         } else if let Some(answer) = self.answer {
-            Some(Pending::Answer(answer))
-        } else if let Some(notice) = control.safety().notice() {
-            Some(Pending::Notice(notice))
+            Some(PendingLine::Answer(answer))
+        } else if let Some(notice) = control.safety().next_notice() {
+            Some(PendingLine::Notice(notice))
         } else if control.has_hold_reason() {
-            Some(Pending::HoldReason)
+            Some(PendingLine::HoldReason)
         } else if self.watch.is_due {
-            Some(Pending::PoseReport)
+            Some(PendingLine::PoseReport)
         } else {
             None
         }

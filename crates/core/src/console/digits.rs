@@ -9,10 +9,10 @@ use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
 
-/// Prints ASCII bytes; clears the highest bit of each.
+/// Prints bytes as ASCII: the highest bit of each is cleared.
 pub fn print_ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
     for byte in bytes {
-        out.byte(byte & 0x7f);
+        out.write_byte(byte & 0x7f);
     }
 }
 
@@ -20,21 +20,21 @@ pub fn print_ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
 pub fn print_angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
     for servo in Servo::all() {
         if servo != Servo::A1 {
-            out.byte(b',');
+            out.write_byte(b',');
         }
-        let angle = robot.neutral_of(servo).swept(*servo.of(&pose.0));
+        let angle = robot.neutral_angle_of(servo).swept(*servo.of(&pose.0));
         print_number(out, angle.centideg().into(), 2);
     }
 }
 
-/// Prints a number, the last `decimals` of its digits after a point.
+/// Prints a number with a decimal point before its last `decimals` digits; without one if `decimals` is 0.
 pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
     let mut remainder = value;
     let mut has_begun = false;
-    let mut position = DECADES.as_slice().len();
+    let mut position = POWERS_OF_TEN.as_slice().len();
     while position > 0 {
         position -= 1;
-        let unit = DECADES.at(position).load();
+        let unit = POWERS_OF_TEN.at(position).load();
         let mut digit = b'0';
         while remainder >= unit {
             remainder -= unit;
@@ -42,44 +42,44 @@ pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
         }
         has_begun |= digit != b'0' || position <= decimals;
         if has_begun {
-            out.byte(digit);
+            out.write_byte(digit);
             if position == decimals && position > 0 {
-                out.byte(b'.');
+                out.write_byte(b'.');
             }
         }
     }
 }
 
 flash! {
-    /// Powers of ten.
-    const DECADES: [u32; 10] = [
+    /// The powers of ten, by their exponent.
+    const POWERS_OF_TEN: [u32; 10] = [
         1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
     ];
 }
 
-/// Prints a text and a number after it, with two decimals.
+/// Prints a text, then a number of hundredths with two decimals.
 #[inline(never)]
 pub fn print_hundredths(out: &mut impl Output, text: Text, hundredths: u16) {
     text.print(out);
     print_number(out, hundredths.into(), 2)
 }
 
-/// Prints a text and a whole number after it.
+/// Prints a text, then a whole number.
 #[inline(never)]
 pub fn print_count(out: &mut impl Output, text: Text, count: u32) {
     text.print(out);
     print_number(out, count, 0)
 }
 
-/// Prints a number that may be negative, with `decimals` decimals.
+/// Prints a number that may be negative, with a decimal point as in [`print_number`].
 pub fn print_signed(out: &mut impl Output, value: i32, decimals: usize) {
     if value < 0 {
-        out.byte(b'-');
+        out.write_byte(b'-');
     }
     print_number(out, value.unsigned_abs(), decimals)
 }
 
-/// Prints a margin with three decimals.
+/// Prints a sine, such as a margin, with three decimals.
 pub fn print_sine(out: &mut impl Output, sine: Sine) {
     print_signed(out, sine.thousandths().into(), 3)
 }
@@ -113,12 +113,12 @@ mod tests {
     }
 
     #[test]
-    fn numbers_around_every_decade_are_printed_as_the_standard_library_would() {
-        let edges = (0..10).flat_map(|n| {
-            let decade = 10u32.pow(n);
-            [decade - 1, decade, decade + 1]
+    fn numbers_around_every_power_of_ten_are_printed_as_the_standard_library_would() {
+        let values = (0..10).flat_map(|n| {
+            let power = 10u32.pow(n);
+            [power - 1, power, power + 1]
         });
-        for value in edges.chain([u32::MAX - 1, u32::MAX]) {
+        for value in values.chain([u32::MAX - 1, u32::MAX]) {
             for decimals in 0..=3 {
                 assert_eq!(
                     print_to_string(value, decimals),
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_negative_number_has_its_sign_and_zero_has_none() {
+    fn only_a_negative_number_has_a_sign() {
         for value in (-33_000..33_000).chain([i32::MIN, i32::MAX]) {
             let mut text = String::new();
             print_signed(&mut text, value, 3);
@@ -146,7 +146,7 @@ mod tests {
         let mut text = String::new();
         let centideg = [0, 4_141, 31_860, 35_999];
         let robot = Sample::odd();
-        let pose = Pose::at(&centideg.map(Angle::from_centideg), &robot.neutral());
+        let pose = Pose::from_angles(&centideg.map(Angle::from_centideg), &robot.neutral_angles());
         print_angles(&mut text, &pose, &robot);
         assert_eq!(text, "0.00,41.41,318.60,359.99");
     }

@@ -5,30 +5,30 @@
 
 use heapless::Vec;
 
-/// The longest line, in bytes without the line end.
-pub const MAX_BYTES: usize = 63;
+/// The largest length of a received line, in bytes without the line end.
+pub const MAX_LINE_BYTES: usize = 63;
 
-/// The result of a line end.
+/// The kind of line that a line end completes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineEnd {
-    /// A line, to be read with [`Line::text`].
+    /// A usable line; its text is [`Line::text`].
     Line,
-    /// A line that was longer than [`MAX_BYTES`]; all of it is dropped.
+    /// A line that was longer than [`MAX_LINE_BYTES`]; all of it is dropped.
     TooLong,
-    /// A line with a garbled byte: its other bytes may form a command, but not the one that
+    /// A line with a garbled byte. Its other bytes may form a command, but not the one that
     /// was sent.
     Garbled,
 }
 
-/// The byte that a board passes on in place of a garbled one. Like any other byte that is not ASCII,
+/// The byte that a board passes on in place of one that arrived garbled. Like any other byte that is not ASCII,
 /// it makes its line garbled.
-pub const GARBLED: u8 = 0xff;
+pub const GARBLED_BYTE: u8 = 0xff;
 
 /// The line that is being received.
 #[derive(Clone, Debug, Default)]
 pub struct Line {
-    bytes: Vec<u8, MAX_BYTES>,
-    is_overlong: bool,
+    bytes: Vec<u8, MAX_LINE_BYTES>,
+    is_too_long: bool,
     is_garbled: bool,
     has_ended: bool,
 }
@@ -38,14 +38,14 @@ impl Line {
     pub const fn new() -> Self {
         Self {
             bytes: Vec::new(),
-            is_overlong: false,
+            is_too_long: false,
             is_garbled: false,
             has_ended: false,
         }
     }
 
-    /// Takes a byte; the byte after a line end begins a new line. Returns the result of a line end, or
-    /// `None` if the byte is no line end or the line is blank.
+    /// Takes a byte; the byte after a line end begins a new line. Returns the kind of line that the byte completes, or
+    /// `None` if it is not a line end or the line is blank.
     pub fn push(&mut self, byte: u8) -> Option<LineEnd> {
         if self.has_ended {
             *self = Self::new();
@@ -63,14 +63,14 @@ impl Line {
                 None
             }
             _ => {
-                self.is_overlong |= self.bytes.push(byte.to_ascii_lowercase()).is_err();
+                self.is_too_long |= self.bytes.push(byte.to_ascii_lowercase()).is_err();
                 None
             }
         }
     }
 
-    /// Marks an unfinished line as garbled, unless it is empty or blank.
-    pub fn garble_unfinished(&mut self) {
+    /// Marks the line as garbled if it is unfinished and not blank.
+    pub fn garble_unfinished_line(&mut self) {
         self.is_garbled |= !self.has_ended && !self.text().is_empty();
     }
 
@@ -83,7 +83,7 @@ impl Line {
         self.has_ended = true;
         if self.is_garbled {
             Some(LineEnd::Garbled)
-        } else if self.is_overlong {
+        } else if self.is_too_long {
             Some(LineEnd::TooLong)
         } else if self.text().is_empty() {
             None
@@ -102,7 +102,7 @@ mod tests {
 
     use super::*;
 
-    /// Every line that the bytes complete: its text, or `None` if it was too long or garbled.
+    /// The text of every line that the bytes complete; `None` for a line that is too long or garbled.
     fn completed_lines_of(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut lines = Vec::new();
@@ -118,8 +118,8 @@ mod tests {
         lines
     }
 
-    /// Every line that the bytes complete, split by a simpler second implementation.
-    fn split_simply(bytes: &[u8]) -> Vec<Option<String>> {
+    /// The same as [`completed_lines_of`], by a simple reference implementation.
+    fn split_by_reference_implementation(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
             let mut typed_text = String::new();
@@ -138,7 +138,8 @@ mod tests {
                 .to_ascii_lowercase();
             lines.push((!is_dropped).then_some(text));
         }
-        lines.pop(); // has not ended yet
+        // The last line has not ended yet.
+        lines.pop();
         lines.retain(|line| line.as_deref() != Some(""));
         lines
     }
@@ -147,10 +148,10 @@ mod tests {
     fn cr_lf_and_both_end_a_line_once_and_empty_lines_are_ignored() {
         for line_end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
             let bytes = std::format!("{line_end}one{line_end}two{line_end}");
-            let both_lines = ["one", "two"].map(|text| Some(text.to_string()));
+            let expected_lines = ["one", "two"].map(|text| Some(text.to_string()));
             assert_eq!(
                 completed_lines_of(bytes.as_bytes()),
-                both_lines,
+                expected_lines,
                 "{line_end:?}"
             );
         }
@@ -206,15 +207,15 @@ mod tests {
     fn a_line_with_a_garbled_byte_anywhere_is_dropped_despite_backspaces() {
         for index in 0..8 {
             let mut bytes = b"speed 90".to_vec();
-            bytes[index] = GARBLED;
+            bytes[index] = GARBLED_BYTE;
             for deletion in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
                 let sent_bytes = [&bytes, deletion.as_bytes(), b"\rstop\r"].concat();
-                let ends: Vec<LineEnd> = sent_bytes
+                let line_ends: Vec<LineEnd> = sent_bytes
                     .iter()
                     .filter_map(|byte| line.push(*byte))
                     .collect();
-                assert_eq!(ends, [LineEnd::Garbled, LineEnd::Line]);
+                assert_eq!(line_ends, [LineEnd::Garbled, LineEnd::Line]);
                 assert_eq!(line.text(), b"stop");
             }
         }
@@ -224,7 +225,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn random_bytes_are_split_as_by_a_simpler_second_implementation(
+        fn random_bytes_are_split_as_by_the_reference_implementation(
             pieces in prop::collection::vec(
                 prop_oneof![
                     prop::collection::vec(any::<u8>(), 0..40),
@@ -234,7 +235,7 @@ mod tests {
             ),
         ) {
             let bytes = pieces.concat();
-            prop_assert_eq!(completed_lines_of(&bytes), split_simply(&bytes));
+            prop_assert_eq!(completed_lines_of(&bytes), split_by_reference_implementation(&bytes));
         }
     }
 }

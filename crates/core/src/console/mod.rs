@@ -1,8 +1,8 @@
 //! The console: lines in, answers out.
 //!
-//! The highest of the core's six folders. It knows bytes, lines and messages, gives
+//! This module is the highest of the core's six layers: it reads bytes and lines, gives
 //! [orders](crate::control::order) to the robot and prints the answers. A board without a serial line does not
-//! need this module.
+//! need it.
 
 pub mod answer;
 pub mod command;
@@ -17,4 +17,4 @@ pub mod text;
 mod watch;
 pub mod word;
 
-pub use dialogue::{Console, LONGEST_LINE};
+pub use dialogue::{Console, MAX_OUTPUT_LINE_BYTES};

@@ -5,7 +5,7 @@ use crate::console::digits;
 use crate::console::line::Line;
 use crate::console::output::Output;
 use crate::console::text::Text;
-use crate::console::word::{RESERVED, Word};
+use crate::console::word::{RESERVED_COUNT, Word};
 use crate::control::Control;
 use crate::control::fault::Fault;
 use crate::control::safety::Notice;
@@ -18,21 +18,23 @@ use crate::motion::{Activity, Motion};
 use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
 use crate::numbers::robot::Robot;
-use crate::numbers::section::Damage;
+use crate::numbers::section::SectionError;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The longest line of gait names, in characters without the line end. It is limited since a frame
+/// The largest length of a line of gait names, without the line end. It is limited since a frame
 /// may have to wait until the line is written.
-pub(super) const LONGEST_NAMES: u8 = 125;
+pub(super) const MAX_GAITS_LINE_BYTES: u8 = 125;
 
-/// The numbers of `cal`'s last lines; lines 0 to 3 are those of the servos.
-const CAL_BOOT: u8 = 4;
-const CAL_DEADMAN: u8 = 5;
-const CAL_END: u8 = 6;
+/// The index of the line of `cal` for `boot`; lines 0 to 3 are those of the servos.
+const CAL_BOOT_LINE: u8 = 4;
+/// The index of the line of `cal` for `deadman`.
+const CAL_DEADMAN_LINE: u8 = 5;
+/// The index of the line `ok cal`.
+const CAL_LAST_LINE: u8 = 6;
 
-/// Prints a line of an answer; returns the part that is still to be printed.
+/// Prints a line, or a part of one, of an answer; returns what is to be printed next, if anything.
 #[inline(never)]
-pub(super) fn answer(
+pub(super) fn print_answer(
     out: &mut impl Output,
     answer: Answer,
     line: &Line,
@@ -40,9 +42,9 @@ pub(super) fn answer(
     counters: Counters,
 ) -> Option<Answer> {
     match answer {
-        Answer::Misread(misread) => {
+        Answer::Invalid(line_error) => {
             Text::Err.print(out);
-            misread.print(control.motion(), out);
+            line_error.print(control.motion(), out);
         }
         Answer::Refused(refusal) => {
             Text::Err.print(out);
@@ -54,7 +56,7 @@ pub(super) fn answer(
         }
         Answer::HelpWords => {
             Text::HelpWords.print(out);
-            Word::print_all::<RESERVED>(out, control.motion().robot());
+            Word::print_all::<RESERVED_COUNT>(out, control.motion().robot());
             return Some(Answer::HelpHint);
         }
         Answer::HelpHint => {
@@ -84,23 +86,23 @@ pub(super) fn answer(
     None
 }
 
-/// Prints `# gaits: stand|walk|...`, as many names as fit in a line; returns the first
+/// Prints `# gaits: stand|walk|...`, with as many names as fit in a line; returns the first
 /// gait that did not fit.
 fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Option<GaitId> {
     Text::HelpGaits.print(out);
-    // Without a robot, the bytes in the flash are not a name.
+    // Without a robot, the flash contains no names.
     if robot.is_none() {
         return None;
     }
     let mut length = Text::HelpGaits.length();
     let mut gait = first_gait;
     loop {
-        let name = robot.name(gait);
-        if name.remaining() >= LONGEST_NAMES - length {
+        let name = robot.gait_name(gait);
+        if name.remaining() >= MAX_GAITS_LINE_BYTES - length {
             return Some(gait);
         }
         length += 1 + name.remaining();
-        out.byte(if gait == first_gait { b' ' } else { b'|' });
+        out.write_byte(if gait == first_gait { b' ' } else { b'|' });
         digits::print_ascii(out, name);
         match gait.next(robot.gait_count()) {
             Some(next) => gait = next,
@@ -109,6 +111,7 @@ fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Opti
     }
 }
 
+/// Prints `ok gait=walk phase=0.250 pose=138.59,41.41,318.59,221.41`.
 #[inline(never)]
 fn print_status(out: &mut impl Output, control: &Control) {
     let motion = control.motion();
@@ -117,7 +120,7 @@ fn print_status(out: &mut impl Output, control: &Control) {
     match control.activity() {
         // A gait's name as a value without a blank: `arc-left`.
         Activity::Gait(gait) => {
-            let bytes = robot.name(gait);
+            let bytes = robot.gait_name(gait);
             digits::print_ascii(
                 out,
                 bytes.map(|byte| if byte == b' ' { b'-' } else { byte }),
@@ -133,7 +136,7 @@ fn print_status(out: &mut impl Output, control: &Control) {
     }
     Text::StatusPhase.print(out);
     digits::print_number(out, thousandths_from_phase(motion.phase()).into(), 3);
-    pose(out, motion)
+    print_pose(out, motion)
 }
 
 /// Prints ` margin=0.661 speed=100 frames=321`.
@@ -144,8 +147,8 @@ fn print_margin(out: &mut impl Output, motion: &Motion) {
     }
     Text::StatusMargin.print(out);
     digits::print_sine(out, Clearance::of(robot, motion.pose()).smallest_margin());
-    digits::print_count(out, Text::StatusSpeed, motion.speed().into());
-    digits::print_count(out, Text::StatusFrames, motion.frames())
+    digits::print_count(out, Text::StatusSpeed, motion.speed_percent().into());
+    digits::print_count(out, Text::StatusFrames, motion.frame_count())
 }
 
 /// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
@@ -166,8 +169,8 @@ fn print_health(out: &mut impl Output, control: &Control, counters: Counters) {
         .map_or(Text::FaultNone, fault_word)
         .print(out);
     Text::StatusReset.print(out);
-    cause_word(control.cause()).print(out);
-    digits::print_count(out, Text::StatusResets, control.resets().into());
+    cause_word(control.reset_cause()).print(out);
+    digits::print_count(out, Text::StatusResets, control.reset_count().into());
     let robot = control.motion().robot();
     let reading = control.safety().supply().reading();
     // Without a robot the reference voltage is unknown, so no voltage can be computed.
@@ -176,87 +179,92 @@ fn print_health(out: &mut impl Output, control: &Control, counters: Counters) {
     }
     let supplies = robot.supplies();
     let board_voltage = Voltage::of_board(reading, &supplies);
-    digits::print_hundredths(out, Text::StatusVcc, board_voltage.hundredths());
-    if supplies.rail_reference != 0 {
+    digits::print_hundredths(out, Text::StatusVcc, board_voltage.centivolts());
+    if supplies.rail_reference_mv != 0 {
         let rail_voltage = Voltage::of_rail(reading, &supplies);
-        digits::print_hundredths(out, Text::StatusRail, rail_voltage.hundredths());
+        digits::print_hundredths(out, Text::StatusRail, rail_voltage.centivolts());
     }
 }
 
-/// Prints a line of `cal`; returns false after the last one, which is `ok cal`.
+/// Prints the line of `cal` with this index; returns false after the last one, which is `ok cal`.
 #[inline(never)]
-fn print_settings_line(out: &mut impl Output, line: u8, control: &Control) -> bool {
+fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Control) -> bool {
     let settings = control.settings();
-    match line {
-        CAL_BOOT => {
+    match line_index {
+        CAL_BOOT_LINE => {
             Text::CalBoot.print(out);
             print_boot(out, control);
         }
-        CAL_DEADMAN => {
-            digits::print_count(out, Text::CalDeadman, settings.deadman().into());
+        CAL_DEADMAN_LINE => {
+            digits::print_count(out, Text::CalDeadman, settings.deadman_ms().into());
         }
-        CAL_END.. => {
+        CAL_LAST_LINE.. => {
             Text::Ok.print(out);
             Text::Cal.print(out);
             return false;
         }
         _ => {
-            let servo = Servo::at(usize::from(line));
-            let adjustment = settings.servo(servo);
-            let neutral = control.motion().robot().neutral_of(servo);
+            let servo = Servo::at(usize::from(line_index));
+            let adjustment = settings.adjustment(servo);
+            let neutral = control.motion().robot().neutral_angle_of(servo);
             Text::Information.print(out);
-            out.byte(b'A');
-            out.byte(b'1' + line);
+            out.write_byte(b'A');
+            out.write_byte(b'1' + line_index);
             Text::CalTrim.print(out);
             print_sweep(out, adjustment.trim);
             digits::print_hundredths(
                 out,
                 Text::CalLimit,
-                neutral.swept(adjustment.min).centideg(),
+                neutral.swept(adjustment.travel_min).centideg(),
             );
-            digits::print_hundredths(out, Text::Blank, neutral.swept(adjustment.max).centideg());
+            digits::print_hundredths(
+                out,
+                Text::Blank,
+                neutral.swept(adjustment.travel_max).centideg(),
+            );
             Text::CalDir.print(out);
-            out.byte(if adjustment.is_direct() { b'+' } else { b'-' });
+            out.write_byte(if adjustment.is_direct() { b'+' } else { b'-' });
             digits::print_hundredths(out, Text::CalScale, adjustment.scale());
         }
     }
     true
 }
 
+/// Prints the value of the setting `boot`.
 fn print_boot(out: &mut impl Output, control: &Control) {
     let robot = control.motion().robot();
     match control.settings().boot(robot) {
         Boot::Rest => Text::Rest.print(out),
-        Boot::Gait(id) => digits::print_ascii(out, robot.name(id)),
+        Boot::Gait(id) => digits::print_ascii(out, robot.gait_name(id)),
     }
 }
 
-/// Prints a notice, a line that comes without a command.
-pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
+/// Prints a notice, which is a line that no command has asked for.
+pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Control) {
     match notice {
-        Notice::Memory => match control.saved_settings() {
+        Notice::SavedSettings => match control.saved_state() {
             SavedState::Latest | SavedState::Blank => Text::MemoryBlank,
-            SavedState::OneCopy => Text::MemoryOther,
+            SavedState::OneCopy => Text::MemoryOneCopy,
             SavedState::Damaged => Text::MemoryDamaged,
             SavedState::Foreign => Text::MemoryForeign,
             SavedState::Unfit => Text::MemoryUnfit,
         }
         .print(out),
-        Notice::NotKept => Text::MemoryNotKept.print(out),
+        Notice::RestPoseNotKept => Text::MemoryNotKept.print(out),
         Notice::Fault => {
             Text::NoticeFault.print(out);
             let fault = control.safety().fault();
             match control.damage() {
-                Some(Damage::Format) => Text::WhyRobotFormat,
-                Some(Damage::Damaged | Damage::Impossible) => Text::WhyRobotDamaged,
+                Some(SectionError::OtherFormat) => Text::WhyRobotFormat,
+                Some(SectionError::Damaged | SectionError::Impossible) => Text::WhyRobotDamaged,
                 _ => fault.map_or(Text::FaultNone, fault_message),
             }
             .print(out)
         }
         Notice::Supply => {
-            digits::print_hundredths(out, Text::NoticeSupply, control.voltage().hundredths());
-            out.byte(b' ');
-            out.byte(b'V');
+            digits::print_hundredths(out, Text::NoticeSupply, control.voltage().centivolts());
+            out.write_byte(b' ');
+            out.write_byte(b'V');
             match control.safety().supply().level() {
                 Level::Good => Text::LevelGood.print(out),
                 Level::Slow => {
@@ -274,7 +282,7 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
         Notice::Done => Text::NoticeDone.print(out),
         Notice::Waiting => {
             Text::NoticeWaiting.print(out);
-            match control.input().is_nose() {
+            match control.awaited_input().is_nose() {
                 true => Text::Nose,
                 false => Text::Button,
             }
@@ -284,7 +292,7 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
 }
 
 /// Prints ` pose=` and the chassis angles of the four servos.
-pub(super) fn pose(out: &mut impl Output, motion: &Motion) {
+pub(super) fn print_pose(out: &mut impl Output, motion: &Motion) {
     Text::WatchPose.print(out);
     digits::print_angles(out, motion.pose(), motion.robot())
 }
@@ -297,16 +305,16 @@ fn print_sweep(out: &mut impl Output, sweep: Sweep) {
 }
 
 /// Prints `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
-pub(super) fn banner(out: &mut impl Output, robot: &Robot) {
+pub(super) fn print_banner(out: &mut impl Output, robot: &Robot) {
     Text::Banner.print(out);
     Text::Version.print(out);
     if robot.is_none() {
-        Text::BannerNone.print(out);
+        Text::BannerNoRobot.print(out);
         return Text::BannerEnd.print(out);
     }
     Text::BannerRobot.print(out);
     digits::print_ascii(out, robot.robot_name());
-    out.byte(b' ');
+    out.write_byte(b' ');
     let hash = robot.hash();
     for digit in 0..8 {
         let nibble = (hash >> (28 - 4 * digit)) as u8 & 0xf;
@@ -315,7 +323,7 @@ pub(super) fn banner(out: &mut impl Output, robot: &Robot) {
         } else {
             b'a' - 10 + nibble
         };
-        out.byte(character);
+        out.write_byte(character);
     }
     Text::BannerEnd.print(out)
 }
@@ -327,7 +335,7 @@ const fn fault_word(fault: Fault) -> Text {
         Fault::Supply => Text::FaultSupply,
         Fault::Link => Text::FaultLink,
         Fault::Watchdog => Text::FaultWatchdog,
-        Fault::Late => Text::FaultLate,
+        Fault::LateEdge => Text::FaultLate,
         Fault::Stack => Text::FaultStack,
         Fault::BrownOut => Text::FaultBrownOut,
         Fault::Robot => Text::FaultRobot,
@@ -341,7 +349,7 @@ const fn fault_message(fault: Fault) -> Text {
         Fault::Supply => Text::WhySupply,
         Fault::Link => Text::WhyLink,
         Fault::Watchdog => Text::WhyWatchdog,
-        Fault::Late => Text::WhyLate,
+        Fault::LateEdge => Text::WhyLate,
         Fault::Stack => Text::WhyStack,
         Fault::BrownOut => Text::WhyBrownOut,
         Fault::Robot => Text::WhyRobot,

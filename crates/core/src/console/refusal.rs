@@ -1,8 +1,8 @@
-//! Errors and refusals as the user reads them: a number and a reason.
+//! Errors and refusals as the user reads them: a code and a reason.
 //!
 //! The codes are part of the protocol and never change their meaning.
 
-use crate::console::command::Misread;
+use crate::console::command::LineError;
 use crate::console::digits::{print_hundredths, print_number, print_signed, print_sine};
 use crate::console::output::Output;
 use crate::console::text::Text;
@@ -10,20 +10,20 @@ use crate::control::refusal::Refusal;
 use crate::guard::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::Reach;
+use crate::numbers::calibration::NeededTravel;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::robot::Robot;
 use crate::numbers::slider::Slider;
 
-impl Misread {
-    /// Prints the protocol's number of this error, and the reason.
+impl LineError {
+    /// Prints the protocol's code of this error, and the reason.
     #[inline(never)]
     pub fn print(self, motion: &Motion, out: &mut impl Output) {
         let (code, text) = match self {
-            Self::UnknownCommand => (1, Text::Unknown),
+            Self::UnknownCommand => (1, Text::UnknownCommand),
             Self::Garbled => (1, Text::Garbled),
-            Self::UnexpectedArgument => (2, Text::Surplus),
-            Self::IncompleteName => (2, Text::Incomplete),
+            Self::UnexpectedArgument => (2, Text::UnexpectedArgument),
+            Self::IncompleteName => (2, Text::IncompleteName),
             Self::WrongArguments(text) => (2, text),
             Self::OutOfRange(text) => (3, text),
             Self::AngleOutOfRange(servo) => {
@@ -38,7 +38,7 @@ impl Misread {
 }
 
 impl Refusal {
-    /// The protocol's number of this refusal.
+    /// The protocol's code of this refusal.
     const fn code(self) -> u8 {
         match self {
             Self::Unsafe(Hazard::Travel(_))
@@ -48,56 +48,61 @@ impl Refusal {
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
             Self::Resting => 7,
             Self::Supply => 8,
-            Self::NotKept | Self::NothingSaved => 9,
+            Self::SettingsNotKept | Self::NothingSaved => 9,
             Self::NoRobot => 10,
         }
     }
 
-    /// Prints the protocol's number of this refusal, and the reason.
+    /// Prints the protocol's code of this refusal, and the reason.
     pub fn print(self, motion: &Motion, out: &mut impl Output) {
         print_code(self.code(), out);
         match self {
             Self::Unsafe(hazard) => print_hazard(hazard, motion, out),
             Self::TravelTooNarrow(servo) => {
                 print_servo(servo, out);
-                Text::Needed.print(out);
-                let needed_reach = motion.robot().reach(servo);
-                print_range(servo, &needed_reach, motion, out)
+                Text::TooNarrowForGaits.print(out);
+                let needed_travel = motion.robot().needed_travel(servo);
+                print_range(servo, &needed_travel, motion, out)
             }
             Self::PoseOutsideTravel(servo) => {
                 print_servo(servo, out);
-                Text::NotHere.print(out)
+                Text::TooNarrowForPose.print(out)
             }
             Self::Resting => Text::Resting.print(out),
             Self::Supply => Text::LowSupply.print(out),
-            Self::NotKept => Text::NotKept.print(out),
+            Self::SettingsNotKept => Text::NotKept.print(out),
             Self::NothingSaved => Text::NothingSaved.print(out),
             Self::NoRobot => Text::NoRobot.print(out),
         }
     }
 }
 
-/// Prints the protocol's number of an error and a blank.
+/// Prints an error code and a blank.
 fn print_code(code: u8, out: &mut impl Output) {
     print_number(out, code.into(), 0);
-    out.byte(b' ')
+    out.write_byte(b' ')
 }
+
 /// Prints `A2 reaches 311.41..131.41`.
 fn print_travel(servo: Servo, motion: &Motion, out: &mut impl Output) {
     print_servo(servo, out);
     Text::Reaches.print(out);
-    let Calibration { min, max, .. } = *servo.of(motion.calibration());
-    print_range(servo, &Reach { min, max }, motion, out)
+    let Calibration {
+        travel_min: min,
+        travel_max: max,
+        ..
+    } = *servo.of(motion.calibration());
+    print_range(servo, &NeededTravel { min, max }, motion, out)
 }
 
 /// Prints a range of sweeps as two chassis angles, such as `311.41..131.41`.
-fn print_range(servo: Servo, reach: &Reach, motion: &Motion, out: &mut impl Output) {
-    let neutral = motion.robot().neutral_of(servo);
-    print_hundredths(out, Text::Nothing, neutral.swept(reach.min).centideg());
-    print_hundredths(out, Text::Dots, neutral.swept(reach.max).centideg())
+fn print_range(servo: Servo, range: &NeededTravel, motion: &Motion, out: &mut impl Output) {
+    let neutral = motion.robot().neutral_angle_of(servo);
+    print_hundredths(out, Text::Nothing, neutral.swept(range.min).centideg());
+    print_hundredths(out, Text::Dots, neutral.swept(range.max).centideg())
 }
 
-/// Prints the hazard of a pose: the travel, margin or stroke, with its limit.
+/// Prints the hazard of a pose: the travel, margin or stroke that is violated, with its limits.
 #[inline(never)]
 pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
     let robot = motion.robot();
@@ -140,24 +145,29 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
                 Side::Right => Text::Right,
             }
             .print(out);
-            let Slider { min, max, .. } = robot.side(side);
-            print_stroke(Text::Slider, length, side, robot, out);
-            print_stroke(Text::Within, min, side, robot, out);
+            let Slider {
+                stroke_min: min,
+                stroke_max: max,
+                ..
+            } = robot.slider(side);
+            print_stroke(Text::SliderPosition, length, side, robot, out);
+            print_stroke(Text::StrokeRange, min, side, robot, out);
             print_stroke(Text::Dots, max, side, robot, out)
         }
     }
 }
 
-/// Prints `text`, then the difference of a slider's length from nominal, mm.
+/// Prints `text`, then the difference of a slider's length from its nominal length, mm.
 #[inline(never)]
 fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
     text.print(out);
-    print_signed(out, robot.side(side).travel(length), 2)
+    print_signed(out, robot.slider(side).travel(length), 2)
 }
 
+/// Prints a servo's name, such as `A2`.
 fn print_servo(servo: Servo, out: &mut impl Output) {
-    out.byte(b'A');
-    out.byte(b'1' + servo.index() as u8)
+    out.write_byte(b'A');
+    out.write_byte(b'1' + servo.index() as u8)
 }
 
 #[cfg(test)]
@@ -181,41 +191,41 @@ mod tests {
     }
 
     #[test]
-    fn every_error_has_its_code_and_its_message() {
-        use Misread::{AngleOutOfRange, OutOfRange, WrongArguments};
-        for (misread, message) in [
+    fn errors_are_printed_with_their_code_and_message() {
+        use LineError::{AngleOutOfRange, OutOfRange, WrongArguments};
+        for (line_error, message) in [
             (
-                Misread::UnknownCommand,
+                LineError::UnknownCommand,
                 "1 unknown command, send help for the list",
             ),
-            (Misread::Garbled, "1 the line came garbled, send it again"),
+            (LineError::Garbled, "1 the line came garbled, send it again"),
             (
-                Misread::UnexpectedArgument,
+                LineError::UnexpectedArgument,
                 "2 this command takes no argument",
             ),
             (
-                Misread::IncompleteName,
+                LineError::IncompleteName,
                 "2 this command wants one more word",
             ),
             (
-                WrongArguments(Text::SpeedWants),
+                WrongArguments(Text::SpeedUsage),
                 "2 speed wants a whole number, 10..100",
             ),
             (OutOfRange(Text::SpeedRange), "3 speed must be 10..100"),
             (
-                WrongArguments(Text::WatchWants),
+                WrongArguments(Text::WatchUsage),
                 "2 watch wants a whole number, 0..10000",
             ),
             (OutOfRange(Text::WatchRange), "3 watch must be 0..10000"),
             (
-                WrongArguments(Text::PoseWants),
+                WrongArguments(Text::PoseUsage),
                 "2 pose wants four angles in degrees, at most two decimals",
             ),
             (AngleOutOfRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
-            (Misread::TooLong, "6 a line has at most 63 characters"),
+            (LineError::TooLong, "6 a line has at most 63 characters"),
         ] {
             assert_eq!(
-                print_to_string(|motion, out| misread.print(motion, out)),
+                print_to_string(|motion, out| line_error.print(motion, out)),
                 message
             );
         }
@@ -223,8 +233,8 @@ mod tests {
             refusal_text(Refusal::Resting),
             "7 servos are resting, send stand first"
         );
-        // The limits of the travel, rounded inwards to whole steps: A1 turns 71 deg clockwise from
-        // 132.37 deg and 83 deg counter-clockwise; the servo of A2 is reversed.
+        // The limits of the travel are rounded inwards to whole steps. A2 turns 66 deg clockwise from its neutral angle
+        // of 47.91 deg, and 88 deg counter-clockwise.
         for (servo, message) in [
             (Servo::A2, "3 A2 reaches 341.92..135.91"),
             (Servo::A3, "3 A3 reaches 235.64..18.64"),
@@ -238,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn every_hazard_is_reported_with_its_value_and_limit() {
+    fn margin_and_stroke_hazards_are_printed_with_their_value_and_limit() {
         use Margin::{Leg, Type1, Type2};
         for (margin, value, message) in [
             (
@@ -286,7 +296,7 @@ mod tests {
         }
         // The nominal lengths are 91 mm on the left and 98 mm on the right; a millimetre has 256 steps.
         assert_eq!(
-            Sample::odd().content.sides.map(|side| side.scale.bits),
+            Sample::odd().content.sliders.map(|side| side.scale.bits),
             [8, 8]
         );
         for (side, mm, message) in [

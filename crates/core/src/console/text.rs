@@ -1,8 +1,8 @@
 //! Every message that the robot prints, kept in flash.
 //!
-//! A string literal of an AVR program is copied to its 2 KiB of RAM at start. The messages here stay in flash
-//! and are packed: a frequent character has a code of four bits, any other character, or a phrase that several
-//! messages share, has one of eight. A message is unpacked while it is printed.
+//! An AVR program copies its string literals to its 2 KiB of RAM at start. The messages here stay in flash
+//! and are packed: a frequent character has a four-bit code; any other character, or a phrase that several
+//! messages share, has an eight-bit code. A message is unpacked while it is printed.
 
 use lizard_avr::flash;
 
@@ -25,7 +25,7 @@ texts! {
     Banner = "# lizard ";
     Version = env!("CARGO_PKG_VERSION");
     BannerRobot = " robot ";
-    BannerNone = " without a robot";
+    BannerNoRobot = " without a robot";
     BannerEnd = ", send help for the commands";
     WatchTime = "# t=";
     WatchPose = " pose=";
@@ -42,7 +42,7 @@ texts! {
 
     // Notices: lines that come without a command.
     MemoryBlank = "# calibration: none is saved, robot.toml's is in use";
-    MemoryOther = "# calibration: one of two copies is damaged, the other is in use";
+    MemoryOneCopy = "# calibration: one of two copies is damaged, the other is in use";
     MemoryDamaged = "# calibration: damaged, robot.toml's is in use";
     MemoryForeign = "# calibration: for other servos, robot.toml's is in use";
     MemoryUnfit = "# calibration: does not suit the gaits, robot.toml's is in use";
@@ -112,16 +112,16 @@ texts! {
     Err = "err ";
 
     // Reasons.
-    Unknown = "unknown command, send help for the list";
+    UnknownCommand = "unknown command, send help for the list";
     Garbled = "the line came garbled, send it again";
-    Surplus = "this command takes no argument";
-    Incomplete = "this command wants one more word";
-    CountWants = "a gait takes a count, 1..999";
-    SpeedWants = "speed wants a whole number, 10..100";
+    UnexpectedArgument = "this command takes no argument";
+    IncompleteName = "this command wants one more word";
+    CountUsage = "a gait takes a count, 1..999";
+    SpeedUsage = "speed wants a whole number, 10..100";
     SpeedRange = "speed must be 10..100";
-    WatchWants = "watch wants a whole number, 0..10000";
+    WatchUsage = "watch wants a whole number, 0..10000";
     WatchRange = "watch must be 0..10000";
-    PoseWants = "pose wants four angles in degrees, at most two decimals";
+    PoseUsage = "pose wants four angles in degrees, at most two decimals";
     Reaches = " reaches ";
     Type2Head = "type-2 margin of the head";
     Type2Tail = "type-2 margin of the tail";
@@ -132,23 +132,23 @@ texts! {
     AtLeast = ", at least ";
     Left = "left";
     Right = "right";
-    Slider = " slider is at ";
-    Within = " mm, stroke ";
+    SliderPosition = " slider is at ";
+    StrokeRange = " mm, stroke ";
     Dots = "..";
     TooLong = "a line has at most 63 characters";
     Resting = "servos are resting, send stand first";
-    TrimWants = "trim wants a servo 1..4 and degrees, at most two decimals";
+    TrimUsage = "trim wants a servo 1..4 and degrees, at most two decimals";
     TrimRange = "trim must be -20..20";
-    LimitWants = "limit wants a servo 1..4 and two angles in degrees, at most two decimals";
+    LimitUsage = "limit wants a servo 1..4 and two angles in degrees, at most two decimals";
     LimitRange = "limit wants angles of at most one turn";
-    DirWants = "dir wants a servo 1..4 and + or -";
-    ScaleWants = "scale wants a servo 1..4 and us per degree, at most two decimals";
+    DirUsage = "dir wants a servo 1..4 and + or -";
+    ScaleUsage = "scale wants a servo 1..4 and us per degree, at most two decimals";
     ScaleRange = "scale must be 5..20";
-    BootWants = "boot wants the name of a gait, or rest";
-    DeadmanWants = "deadman wants a whole number of milliseconds, 0..60000";
+    BootUsage = "boot wants the name of a gait, or rest";
+    DeadmanUsage = "deadman wants a whole number of milliseconds, 0..60000";
     DeadmanRange = "deadman must be 0..60000";
-    Needed = " would not reach what the gaits need, ";
-    NotHere = " would not reach where it is or goes, send stand first";
+    TooNarrowForGaits = " would not reach what the gaits need, ";
+    TooNarrowForPose = " would not reach where it is or goes, send stand first";
     LowSupply = "the supply is too low";
     NotKept = "the memory does not keep what is written";
     NoRobot = "no robot in the flash";
@@ -192,23 +192,27 @@ const PHRASES: &[&str] = &[
 /// Every character of the messages, the most frequent first.
 const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
 
-/// The number of characters with a code of four bits; the four-bit values that remain begin the codes of eight bits.
-const SHORT_CODES: u8 = 12;
+/// The number of characters with a four-bit code; the remaining four-bit values begin eight-bit codes.
+const SHORT_CODE_COUNT: u8 = 12;
 
 const MESSAGE_COUNT: usize = MESSAGES.len();
 
 /// The number of packed strings: the messages first, then the phrases.
 const STRING_COUNT: usize = MESSAGE_COUNT + PHRASES.len();
 
-/// Number of strings in a block. Only the start of each block and the length of each string are stored.
-const BLOCK_STRINGS: usize = 16;
+/// The number of strings in a block. Only the start of each block and the length of each string are stored.
+const STRINGS_PER_BLOCK: usize = 16;
 
-const PACKED: Packed = pack();
+const PACKED_STRINGS: PackedStrings = pack_strings();
 
 flash! {
-    const NIBBLES: [u8; PACKED.count.div_ceil(2)] = *PACKED.nibbles.first_chunk().unwrap();
-    const LENGTHS: [u8; STRING_COUNT] = PACKED.lengths;
-    const BLOCKS: [u16; STRING_COUNT.div_ceil(BLOCK_STRINGS)] = PACKED.blocks;
+    /// The nibbles of all strings, two in each byte.
+    const NIBBLES: [u8; PACKED_STRINGS.nibble_count.div_ceil(2)] = *PACKED_STRINGS.nibbles.first_chunk().unwrap();
+    /// The length of each string, nibbles.
+    const STRING_LENGTHS: [u8; STRING_COUNT] = PACKED_STRINGS.lengths;
+    /// The index of each block's first nibble.
+    const BLOCK_STARTS: [u16; STRING_COUNT.div_ceil(STRINGS_PER_BLOCK)] = PACKED_STRINGS.block_starts;
+    /// The characters, by their code.
     const CHARACTERS: [u8; ALPHABET.len()] = *ALPHABET;
 }
 
@@ -216,29 +220,31 @@ impl Text {
     /// Prints the message.
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
-        let mut current = PackedString::of(self as u8);
-        // The rest of the message, after the phrase that is being printed.
-        let mut message_rest = PackedString::NONE;
+        let mut current_string = PackedString::of(self as u8);
+        // The rest of the message after the phrase that is being printed.
+        let mut message_rest = PackedString::EMPTY;
         loop {
-            if current.nibbles_left == 0 {
-                current = message_rest;
+            if current_string.nibbles_left == 0 {
+                current_string = message_rest;
                 message_rest.nibbles_left = 0;
             }
-            if current.nibbles_left == 0 {
+            if current_string.nibbles_left == 0 {
                 return;
             }
-            let mut code = current.next();
-            if code >= SHORT_CODES {
-                code = SHORT_CODES + (code - SHORT_CODES) * 16 + current.next();
+            let mut code = current_string.next_nibble();
+            if code >= SHORT_CODE_COUNT {
+                code = SHORT_CODE_COUNT
+                    + (code - SHORT_CODE_COUNT) * 16
+                    + current_string.next_nibble();
             }
             match code.checked_sub(ALPHABET.len() as u8) {
                 None => {
                     let character = CHARACTERS.at(usize::from(code)).load();
-                    out.byte(character);
+                    out.write_byte(character);
                 }
-                Some(phrase) => {
-                    message_rest = current;
-                    current = PackedString::of(MESSAGE_COUNT as u8 + phrase);
+                Some(phrase_index) => {
+                    message_rest = current_string;
+                    current_string = PackedString::of(MESSAGE_COUNT as u8 + phrase_index);
                 }
             }
         }
@@ -253,13 +259,14 @@ impl Text {
 /// The nibbles of a string that are still to be read.
 #[derive(Clone, Copy)]
 struct PackedString {
-    at: u16,
+    /// The index of the next nibble.
+    nibble_index: u16,
     nibbles_left: u8,
 }
 
 impl PackedString {
-    const NONE: Self = Self {
-        at: 0,
+    const EMPTY: Self = Self {
+        nibble_index: 0,
         nibbles_left: 0,
     };
 
@@ -267,76 +274,78 @@ impl PackedString {
     #[inline(never)]
     fn of(string_index: u8) -> Self {
         let string_index = usize::from(string_index);
-        let length_of = |string_index| LENGTHS.at(string_index).load();
-        let mut nibble_index = BLOCKS.at(string_index / BLOCK_STRINGS).load();
-        for earlier_index in string_index / BLOCK_STRINGS * BLOCK_STRINGS..string_index {
+        let length_of = |string_index| STRING_LENGTHS.at(string_index).load();
+        let mut nibble_index = BLOCK_STARTS.at(string_index / STRINGS_PER_BLOCK).load();
+        for earlier_index in string_index / STRINGS_PER_BLOCK * STRINGS_PER_BLOCK..string_index {
             nibble_index += u16::from(length_of(earlier_index));
         }
         Self {
-            at: nibble_index,
+            nibble_index,
             nibbles_left: length_of(string_index),
         }
     }
 
     /// Reads the next nibble.
     #[inline(always)]
-    fn next(&mut self) -> u8 {
-        let nibbles = NIBBLES.at(usize::from(self.at >> 1)).load();
-        let nibble = if self.at & 1 == 0 {
+    fn next_nibble(&mut self) -> u8 {
+        let nibbles = NIBBLES.at(usize::from(self.nibble_index >> 1)).load();
+        let nibble = if self.nibble_index & 1 == 0 {
             nibbles
         } else {
             nibbles >> 4
         };
-        self.at += 1;
+        self.nibble_index += 1;
         self.nibbles_left -= 1;
         nibble & 0xf
     }
 }
 
-/// All strings as nibbles; the first of each pair is in the lower half of a byte.
-struct Packed {
+/// All strings as nibbles; the first of each two is in the lower half of a byte.
+struct PackedStrings {
     nibbles: [u8; BUFFER_BYTES],
-    count: usize,
+    nibble_count: usize,
+    /// The length of each string, nibbles.
     lengths: [u8; STRING_COUNT],
-    blocks: [u16; STRING_COUNT.div_ceil(BLOCK_STRINGS)],
+    /// The index of each block's first nibble.
+    block_starts: [u16; STRING_COUNT.div_ceil(STRINGS_PER_BLOCK)],
 }
 
-/// The size of the buffer used at compile time, in bytes: more than the strings need.
+/// The size of the buffer at compile time, which is more than the strings need.
 const BUFFER_BYTES: usize = 4096;
 
-impl Packed {
-    const fn push(&mut self, nibble: u8) {
-        self.nibbles[self.count / 2] |= nibble << (4 * (self.count & 1));
-        self.count += 1;
+impl PackedStrings {
+    const fn push_nibble(&mut self, nibble: u8) {
+        self.nibbles[self.nibble_count / 2] |= nibble << (4 * (self.nibble_count & 1));
+        self.nibble_count += 1;
     }
 
-    /// Appends the code of a character or of a phrase; the codes of phrases follow those of all characters.
-    const fn append(&mut self, code: usize) {
-        assert!(code < SHORT_CODES as usize + (16 - SHORT_CODES as usize) * 16);
+    /// Appends the code of a character or of a phrase. The codes of phrases follow those of all characters.
+    const fn push_code(&mut self, code: usize) {
+        assert!(code < SHORT_CODE_COUNT as usize + (16 - SHORT_CODE_COUNT as usize) * 16);
         let code = code as u8;
-        if code < SHORT_CODES {
-            self.push(code);
+        if code < SHORT_CODE_COUNT {
+            self.push_nibble(code);
         } else {
-            self.push(SHORT_CODES + (code - SHORT_CODES) / 16);
-            self.push((code - SHORT_CODES) % 16);
+            self.push_nibble(SHORT_CODE_COUNT + (code - SHORT_CODE_COUNT) / 16);
+            self.push_nibble((code - SHORT_CODE_COUNT) % 16);
         }
     }
 }
 
-/// Packs all strings, at compile time: messages with codes for phrases, and the phrases letter by letter.
-#[allow(long_running_const_eval, reason = "a second at most")]
-const fn pack() -> Packed {
-    let mut packed = Packed {
+/// Packs all strings at compile time: messages with codes for their phrases, and phrases character by character.
+#[allow(long_running_const_eval, reason = "it takes a second at most")]
+const fn pack_strings() -> PackedStrings {
+    let mut packed = PackedStrings {
         nibbles: [0; BUFFER_BYTES],
-        count: 0,
+        nibble_count: 0,
         lengths: [0; STRING_COUNT],
-        blocks: [0; _],
+        block_starts: [0; _],
     };
     let mut string_index = 0;
     while string_index < STRING_COUNT {
-        let start = packed.count;
-        if string_index % BLOCK_STRINGS == 0 {
-            packed.blocks[string_index / BLOCK_STRINGS] = start as u16;
+        let start = packed.nibble_count;
+        if string_index % STRINGS_PER_BLOCK == 0 {
+            packed.block_starts[string_index / STRINGS_PER_BLOCK] = start as u16;
         }
         let is_phrase = string_index >= MESSAGE_COUNT;
         let text = if is_phrase {
@@ -346,29 +355,30 @@ const fn pack() -> Packed {
         };
         let mut remaining_text = text;
         while let [first, after_first @ ..] = remaining_text {
-            match phrase_of(remaining_text) {
-                Some((phrase, after_phrase)) if !is_phrase => {
-                    packed.append(ALPHABET.len() + phrase);
+            match find_phrase(remaining_text) {
+                Some((phrase_index, after_phrase)) if !is_phrase => {
+                    packed.push_code(ALPHABET.len() + phrase_index);
                     remaining_text = after_phrase;
                 }
                 _ => {
-                    packed.append(character_code(*first));
+                    packed.push_code(character_code(*first));
                     remaining_text = after_first;
                 }
             }
         }
-        assert!(packed.count - start <= 255);
-        packed.lengths[string_index] = (packed.count - start) as u8;
+        assert!(packed.nibble_count - start <= 255);
+        packed.lengths[string_index] = (packed.nibble_count - start) as u8;
         string_index += 1;
     }
     packed
 }
 
-/// The first phrase that a text begins with, and the rest of the text; `None` if it begins with no phrase.
-const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
-    let mut phrase = 0;
-    while phrase < PHRASES.len() {
-        let mut pattern = PHRASES[phrase].as_bytes();
+/// Finds the first phrase with which a text begins. Returns its index and the rest of the text; `None` if the text
+/// begins with no phrase.
+const fn find_phrase(text: &[u8]) -> Option<(usize, &[u8])> {
+    let mut phrase_index = 0;
+    while phrase_index < PHRASES.len() {
+        let mut pattern = PHRASES[phrase_index].as_bytes();
         let mut remaining_text = text;
         while let ([expected_byte, pattern_rest @ ..], [byte, text_rest @ ..]) =
             (pattern, remaining_text)
@@ -377,9 +387,9 @@ const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
             (pattern, remaining_text) = (pattern_rest, text_rest);
         }
         if pattern.is_empty() {
-            return Some((phrase, remaining_text));
+            return Some((phrase_index, remaining_text));
         }
-        phrase += 1;
+        phrase_index += 1;
     }
     None
 }
@@ -405,7 +415,10 @@ mod tests {
         for (text, expected) in [
             (Text::Banner, "# lizard "),
             (Text::Version, env!("CARGO_PKG_VERSION")),
-            (Text::Unknown, "unknown command, send help for the list"),
+            (
+                Text::UnknownCommand,
+                "unknown command, send help for the list",
+            ),
             (Text::Resting, "servos are resting, send stand first"),
         ] {
             let mut printed_text = String::new();

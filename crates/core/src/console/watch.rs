@@ -1,9 +1,9 @@
-//! The pose reports that `watch` asks for.
+//! The timer of the pose reports that `watch` asks for.
 
 /// The timer of the pose reports.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// Frames from one report to the next; 0 for none.
+    /// Frames from one report to the next; 0 for no reports.
     interval_frames: u16,
     /// Frames until the next report.
     frames_left: u16,
@@ -12,7 +12,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Makes a timer that reports once every `interval_frames` frames, first after as many; 0 for never.
+    /// A timer for one report every `interval_frames` frames, the first after as many; for none if it is 0.
     pub(super) const fn new(interval_frames: u16) -> Self {
         Self {
             interval_frames,
@@ -21,6 +21,7 @@ impl Watch {
         }
     }
 
+    /// Counts a frame; a report becomes due at the end of each interval.
     pub(super) fn count_frame(&mut self) {
         if self.interval_frames > 0 {
             self.frames_left -= 1;

@@ -6,12 +6,12 @@ use crate::console::output::Output;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::robot::Robot;
 
-/// The effect of a command on the servos, if the robot carries it out.
+/// The effect on the servos of a command that the robot carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// No pulse changes: a question, or a setting for later.
+    /// No pulse changes: the command is a question, or a setting that takes effect later.
     None,
-    /// A motion begins, with pulses for every servo.
+    /// A motion begins, and every servo gets pulses.
     Moves,
     /// The pose is frozen.
     Freezes,
@@ -25,17 +25,16 @@ pub enum Effect {
 
 macro_rules! words {
     (
-        reserved: { $($old:ident = $old_word:literal $old_arguments:literal, $old_effect:ident;)* }
-        later: { $($new:ident = $new_word:literal $new_arguments:literal, $new_effect:ident;)* }
+        reserved: { $($reserved:ident = $reserved_word:literal $reserved_arguments:literal, $reserved_effect:ident;)* }
+        yielding: { $($yielding:ident = $yielding_word:literal $yielding_arguments:literal, $yielding_effect:ident;)* }
     ) => {
         words! { @all
-            $($old = $old_word $old_arguments, $old_effect;)*
-            $($new = $new_word $new_arguments, $new_effect;)*
+            $($reserved = $reserved_word $reserved_arguments, $reserved_effect;)*
+            $($yielding = $yielding_word $yielding_arguments, $yielding_effect;)*
         }
 
-        /// The number of words at the beginning of [`Word::ALL`] that no gait's name may begin
-        /// with.
-        pub(crate) const RESERVED: usize = [$(Word::$old),*].len();
+        /// The number of reserved words, which no gait's name may begin with. They come first in [`Word::ALL`].
+        pub(crate) const RESERVED_COUNT: usize = [$(Word::$reserved),*].len();
     };
     (@all $($name:ident = $word:literal $arguments:literal, $effect:ident;)*) => {
         /// A word of the console.
@@ -53,7 +52,7 @@ macro_rules! words {
                 match self { $(Self::$name => $word),* }
             }
 
-            /// The word's effect on the servos, declared only here; for a whole line see
+            /// The effect of the word's command on the servos; for that of a whole line, see
             /// [`crate::console::command::effect`].
             pub const fn effect(self) -> Effect {
                 match self { $(Self::$name => Effect::$effect),* }
@@ -66,7 +65,7 @@ macro_rules! words {
         }
 
         /// All words, each followed by a bar.
-        const LIST: &str = concat!($($word, "|"),*);
+        const WORD_LIST: &str = concat!($($word, "|"),*);
     };
 }
 
@@ -95,33 +94,33 @@ words! {
         Boot = "boot" " rest", None;
         Deadman = "deadman" " 2000", None;
     }
-    // These yield to a gait of the same name.
-    later: {
+    // Words of later versions: each yields to a gait of the same name.
+    yielding: {
     }
 }
 
-/// The character after each word of the list.
+/// The character after each word of `WORD_LIST`.
 const BAR: u8 = b'|';
 
 flash! {
-    const CHARACTERS: [u8; LIST.len()] = *LIST.as_bytes().first_chunk().unwrap();
+    const CHARACTERS: [u8; WORD_LIST.len()] = *WORD_LIST.as_bytes().first_chunk().unwrap();
     const WORDS: [Word; Word::ALL.len()] = *Word::ALL.first_chunk().unwrap();
 }
 
 impl Word {
     /// Finds the word with this spelling.
     #[inline(never)]
-    pub fn find(written: &[u8]) -> Option<Self> {
-        let mut number = 0;
-        // The part of `written` not matched yet; `None` once it differs from the current word.
-        let mut unmatched = Some(written);
-        for index in 0..LIST.len() {
+    pub fn find(spelling: &[u8]) -> Option<Self> {
+        let mut word_index = 0;
+        // The part of `spelling` that is not matched yet; `None` once it differs from the current word.
+        let mut unmatched = Some(spelling);
+        for index in 0..WORD_LIST.len() {
             let character = CHARACTERS.at(index).load();
             unmatched = match unmatched {
-                Some([]) if character == BAR => return Some(WORDS.at(number).load()),
+                Some([]) if character == BAR => return Some(WORDS.at(word_index).load()),
                 _ if character == BAR => {
-                    number += 1;
-                    Some(written)
+                    word_index += 1;
+                    Some(spelling)
                 }
                 Some([first, rest @ ..]) if *first == character => Some(rest),
                 _ => None,
@@ -132,35 +131,39 @@ impl Word {
 
     /// True for a word that no gait's name may begin with.
     pub const fn is_reserved(self) -> bool {
-        (self as usize) < RESERVED
+        (self as usize) < RESERVED_COUNT
     }
 
-    /// Prints all words, with bars in between. Leaves out a word if its number is `FIRST_YIELDING` or more and
+    /// Prints all words, with bars between them. Leaves out a word if its index is `FIRST_YIELDING_INDEX` or more and
     /// the robot has a gait of the same name.
-    pub(crate) fn print_all<const FIRST_YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
-        let mut number = 0;
+    pub(crate) fn print_all<const FIRST_YIELDING_INDEX: usize>(
+        out: &mut impl Output,
+        robot: &Robot,
+    ) {
+        let mut word_index = 0;
         let mut is_printed = true;
-        for index in 0..LIST.len() - 1 {
+        for index in 0..WORD_LIST.len() - 1 {
             let character = CHARACTERS.at(index).load();
             // Compiles to nothing while no word yields.
-            if FIRST_YIELDING < Self::ALL.len() && character == BAR {
-                number += 1;
-                is_printed = number < FIRST_YIELDING || !is_gait(index + 1, robot);
+            if FIRST_YIELDING_INDEX < Self::ALL.len() && character == BAR {
+                word_index += 1;
+                is_printed =
+                    word_index < FIRST_YIELDING_INDEX || !is_gait_name_at(index + 1, robot);
             }
             if is_printed {
-                out.byte(character);
+                out.write_byte(character);
             }
         }
     }
 }
 
-/// True if the word that begins at `index` is the name of a gait.
-fn is_gait(index: usize, robot: &Robot) -> bool {
+/// True if the word that begins at this index of `WORD_LIST` is the name of a gait.
+fn is_gait_name_at(index: usize, robot: &Robot) -> bool {
     GaitId::all(robot.gait_count()).any(|id| {
-        let letters = (index..LIST.len()).map(|index| CHARACTERS.at(index).load());
+        let letters = (index..WORD_LIST.len()).map(|index| CHARACTERS.at(index).load());
         letters
             .take_while(|letter| *letter != BAR)
-            .eq(robot.name(id))
+            .eq(robot.gait_name(id))
     })
 }
 
@@ -172,15 +175,15 @@ mod tests {
     use super::*;
     use crate::sample::Sample;
 
-    /// The words of the first versions, which every later version keeps.
-    const FIRST_RESERVED: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
+    /// The reserved words of the first version, which every later version keeps.
+    const FIRST_VERSION_WORDS: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
         scale|cal|center|save|load|factory|boot|deadman";
 
     #[test]
     fn the_reserved_words_are_those_of_the_first_versions_and_no_other() {
         let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
-        let reserved: Vec<&str> = reserved.map(|word| word.text()).collect();
-        assert_eq!(reserved.join("|"), FIRST_RESERVED);
+        let reserved_words: Vec<&str> = reserved.map(|word| word.text()).collect();
+        assert_eq!(reserved_words.join("|"), FIRST_VERSION_WORDS);
     }
 
     #[test]
@@ -198,28 +201,31 @@ mod tests {
         }
     }
 
-    /// Checks that the list has all words except those left out.
-    fn assert_lists_all_but<const FIRST_YIELDING: usize>(robot: &Robot, omitted_words: &[Word]) {
+    /// Checks that all words are printed except these.
+    fn assert_lists_all_but<const FIRST_YIELDING_INDEX: usize>(
+        robot: &Robot,
+        omitted_words: &[Word],
+    ) {
         let words = Word::ALL
             .iter()
             .filter(|word| !omitted_words.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
-        Word::print_all::<FIRST_YIELDING>(&mut list, robot);
+        Word::print_all::<FIRST_YIELDING_INDEX>(&mut list, robot);
         assert_eq!(list, words.join("|"));
     }
 
     #[test]
     fn a_word_that_yields_is_left_out_where_a_gait_has_its_whole_name() {
         let robot = Sample::paper();
-        assert_lists_all_but::<RESERVED>(&robot, &[]);
+        assert_lists_all_but::<RESERVED_COUNT>(&robot, &[]);
         assert_lists_all_but::<1>(&robot, &[]);
         let mut robot = robot;
         for name in ["stop", "trim", "deadman", "sav", "loads", "boot on"] {
             robot = robot.with_gait(name);
         }
         let yielding_words = [Word::Stop, Word::Trim, Word::Deadman];
-        assert_lists_all_but::<RESERVED>(&robot, &[]);
+        assert_lists_all_but::<RESERVED_COUNT>(&robot, &[]);
         assert_lists_all_but::<1>(&robot, &yielding_words);
         assert_lists_all_but::<3>(&robot, &yielding_words[1..]);
         assert_lists_all_but::<9>(&robot, &yielding_words[2..]);

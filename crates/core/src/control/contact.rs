@@ -3,55 +3,55 @@
 //! Contacts bounce for some milliseconds, and long wires pick up noise. So a level counts once
 //! it has held for three successive frames, at most 60 ms after it began.
 //!
-//! A button that is stuck must not start the robot. So a wait ends only when its contact closes: the contact
-//! must have been open since the wait began. A step that goes on until there is an obstacle also has to end if
-//! the obstacle is there already.
+//! A button that is stuck must not start the robot. So a step that waits for a contact ends only if the contact was
+//! open at some time during the step and then closes. In contrast, a step that goes on until there is an obstacle also
+//! ends if the obstacle is there from the start.
 
 use crate::numbers::gaits::Input;
 
-/// The bits with the levels of the last three frames, the latest in bit 0; a closed contact is 1.
-const LEVELS: u8 = 0b111;
+/// The bits that hold the levels of the last three frames, the latest in bit 0; 1 is a closed contact.
+const LEVEL_BITS: u8 = 0b111;
 
-/// The bit that is set once the contact has been open for three frames, or need not be: only then may it end the
-/// step.
+/// The bit that is set once the contact may end the step: it has been open for three frames, or need not be.
 const READY_BIT: u8 = 0b1000;
 
-/// The contact that is awaited, and its levels in the last frames.
+/// The contact that may end a step, and its levels in the last frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
     /// The contact's input.
     pub input: Input,
+    /// The last levels in [`LEVEL_BITS`], and [`READY_BIT`].
     history: u8,
 }
 
 impl Contact {
-    /// No contact. While its level is given as open, it ends no step.
+    /// No contact. It ends no step as long as its level is reported as open.
     pub const NONE: Self = Self {
         input: Input::NONE,
         history: 0,
     };
 
-    /// A contact that must be open first, and then close.
+    /// A contact that ends its step by closing after it was open.
     pub const fn waiting_to_close(input: Input) -> Self {
         Self {
             input,
-            history: LEVELS,
+            history: LEVEL_BITS,
         }
     }
 
-    /// A contact that must be closed, even if it has been closed from the start.
+    /// A contact that ends its step by being closed, even if it is closed from the start.
     pub const fn waiting_while_open(input: Input) -> Self {
         Self { input, history: 0 }
     }
 
-    /// Adds the level of a frame; returns true once the contact has closed.
-    pub fn count_frame(&mut self, is_closed: bool) -> bool {
-        if self.history & LEVELS == 0 {
+    /// Adds the level of a frame. Returns true if the contact ends the step.
+    pub fn add_level(&mut self, is_closed: bool) -> bool {
+        if self.history & LEVEL_BITS == 0 {
             self.history |= READY_BIT;
         }
         let levels = self.history << 1 | u8::from(is_closed);
-        self.history = self.history & READY_BIT | levels & LEVELS;
-        self.history == READY_BIT | LEVELS
+        self.history = self.history & READY_BIT | levels & LEVEL_BITS;
+        self.history == READY_BIT | LEVEL_BITS
     }
 }
 
@@ -62,15 +62,15 @@ mod tests {
 
     use super::*;
 
-    /// The frames in which a contact counts as closed; in `levels`, `#` is a frame with a closed contact.
+    /// The frames in which a contact would end its step; in `levels`, `#` stands for a frame with a closed contact.
     fn closing_frames_of(mut contact: Contact, levels: &str) -> Vec<usize> {
         let level_frames = levels.bytes().enumerate();
-        let closed_frames = level_frames.filter(|(_, level)| contact.count_frame(*level == b'#'));
+        let closed_frames = level_frames.filter(|(_, level)| contact.add_level(*level == b'#'));
         closed_frames.map(|(frame, _)| frame).collect()
     }
 
     #[test]
-    fn a_contact_closes_in_the_third_frame_in_a_row() {
+    fn a_contact_counts_as_closed_in_its_third_closed_frame_in_a_row() {
         let input = Input::button(15);
         for contact in [
             Contact::waiting_to_close(input),
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contact_closed_from_the_start_ends_a_walk_but_no_wait_until_it_was_open() {
+    fn a_contact_closed_from_the_start_ends_a_walk_but_ends_a_wait_only_after_it_has_opened() {
         let input = Input::nose(16);
         assert_eq!(
             closing_frames_of(Contact::waiting_while_open(input), "###"),
@@ -95,7 +95,7 @@ mod tests {
             closing_frames_of(Contact::waiting_to_close(input), "####...###"),
             [9]
         );
-        // Too short to have been open.
+        // Two open frames are too few to count as open.
         assert!(closing_frames_of(Contact::waiting_to_close(input), "####..####.##").is_empty());
     }
 }

@@ -1,9 +1,8 @@
 //! The robot as a whole: it carries out orders, computes frames, and reacts to faults.
 //!
-//! A console on a serial line, or something else, gives orders to the robot and learns
+//! A console on a serial line, or another source, gives orders to the robot and learns
 //! which of them are refused. Fifty times a second the robot computes a frame and watches
-//! for faults; in between it does the work of the memory. Nothing here knows of lines or
-//! answers.
+//! for faults; in between it reads and writes its EEPROM. Nothing here depends on the text of commands or answers.
 
 use lizard_avr::Region;
 
@@ -17,15 +16,15 @@ use crate::control::supervisor::{
 };
 use crate::control::supply::Voltage;
 use crate::guard::hazard::Hazard;
-use crate::memory::copies::{self, REST_POSE, SavedState};
-use crate::memory::record::{Memory, Writing};
+use crate::memory::copies::{self, REST_POSE_ADDRESS, SavedState};
+use crate::memory::record::{Memory, RecordWrite};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::{Boot, Settings};
 use crate::motion::{Activity, Motion};
 use crate::numbers::gaits::GaitId;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::robot::Robot;
-use crate::numbers::section::Damage;
+use crate::numbers::section::SectionError;
 
 use job::Job;
 use routine::Routine;
@@ -38,39 +37,39 @@ mod routine;
 /// Frames without a reset after which the supply counts as good again: 30 s.
 const GOOD_SUPPLY_FRAMES: u32 = 1500;
 
-/// Frames after a start within which all servos wake: 0.6 s.
+/// Frames after a start of the program within which all servos wake: 0.6 s.
 const WAKING_FRAMES: u32 = 30;
 
-/// The robot: its motion, settings, safety, and the EEPROM operation in progress.
+/// The control of the robot: its motion, settings, safety, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
 pub struct Control {
     motion: Motion,
     settings: Settings,
     /// The reason why the flash holds no usable robot.
-    damage: Option<Damage>,
+    damage: Option<SectionError>,
     /// The state of the saved settings at power-on.
-    saved_settings: SavedState,
+    saved_state: SavedState,
     safety: Safety,
     /// The cause of the last reset.
-    cause: Cause,
-    /// Resets since power-on.
-    restarts: u8,
-    /// True if a weak supply may have caused the last reset; false again once a command has shown that a computer
-    /// opened the port.
-    may_be_supply: bool,
+    reset_cause: Cause,
+    /// Resets since power-on, at most 255.
+    reset_count: u8,
+    /// True if a weak supply may have caused the last reset. Becomes false once a command shows that a computer opened
+    /// the port.
+    is_supply_suspected: bool,
     /// Consecutive resets, including the last one, that a weak supply may have caused.
     brown_outs: u8,
-    /// True if a command has come since the start.
+    /// True if a command has come since the program started.
     has_heard_command: bool,
     routine: Routine,
-    /// The contact that the last step of a routine waited for.
+    /// The contact that may end the latest step of a routine.
     contact: Contact,
     /// True if `boot` started the current activity, and no command has come since.
     is_unattended: bool,
     /// The EEPROM operation that an order has started.
     job: Option<Job>,
-    /// The record of the rest pose that is being written or invalidated.
-    rest_record: Option<Writing>,
+    /// The write or invalidation of the rest pose's record, if one is in progress.
+    rest_pose_write: Option<RecordWrite>,
     /// The reason why the guard holds the robot, until it is printed.
     hold_reason: Option<Hazard>,
 }
@@ -82,44 +81,44 @@ impl Default for Control {
 }
 
 impl Control {
-    /// A control without a robot; [`Control::begin`] has to follow.
+    /// A control without a robot; [`Control::begin`] must follow.
     pub const fn new() -> Self {
         Self {
             settings: Settings::NONE,
             motion: Motion::unstarted(Robot::NONE),
             damage: None,
-            saved_settings: SavedState::Latest,
+            saved_state: SavedState::Latest,
             safety: Safety::new(),
-            cause: Cause::Power,
-            restarts: 0,
-            may_be_supply: false,
+            reset_cause: Cause::Power,
+            reset_count: 0,
+            is_supply_suspected: false,
             brown_outs: 0,
             has_heard_command: false,
             routine: Routine::NONE,
             contact: Contact::NONE,
             is_unattended: false,
             job: None,
-            rest_record: None,
+            rest_pose_write: None,
             hold_reason: None,
         }
     }
 
-    /// Loads the robot's section from `flash` if it is valid, then restores settings and rest
-    /// pose from the EEPROM, and the servos' state from before the reset. Without a robot it
-    /// never sends pulses.
+    /// Loads the robot's section from `flash`, then restores the settings and the rest pose from the EEPROM, and the
+    /// servos' state from before the reset. If the section is not valid, there is no robot, and the control never
+    /// sends pulses.
     #[inline(never)]
     pub fn begin<M: Memory>(&mut self, flash: Region<'static>, memory: &M, restart: &Restart) {
-        self.cause = restart.cause;
-        self.restarts = restart.count;
-        if let Err(damage) = self.motion.take_robot(flash) {
+        self.reset_cause = restart.cause;
+        self.reset_count = restart.reset_count;
+        if let Err(damage) = self.motion.load_robot(flash) {
             self.damage = Some(damage);
             self.safety.record_fault(Fault::Robot);
             return;
         }
-        self.may_be_supply = restart.may_be_supply;
-        self.saved_settings = copies::load(self.motion.robot(), memory, &mut self.settings);
-        if self.saved_settings != SavedState::Latest {
-            self.safety.notify(Notice::Memory);
+        self.is_supply_suspected = restart.is_supply_suspected;
+        self.saved_state = copies::load(self.motion.robot(), memory, &mut self.settings);
+        if self.saved_state != SavedState::Latest {
+            self.safety.notify(Notice::SavedSettings);
         }
         self.apply_calibration();
         let servos_before = match &restart.stance_before {
@@ -128,7 +127,7 @@ impl Control {
             Some(_) => ServosBefore::Held,
         };
         let brown_outs = restart.brown_outs.min(BROWN_OUTS_TO_REST - 1);
-        self.brown_outs = match restart.may_be_supply {
+        self.brown_outs = match restart.is_supply_suspected {
             true => brown_outs + 1,
             false => restart.brown_outs.min(BROWN_OUTS_TO_REST),
         };
@@ -150,25 +149,25 @@ impl Control {
             _ => false,
         };
         if is_awake {
-            self.rest_record = Some(REST_POSE.start_invalidation());
+            self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());
             return;
         }
-        // A program that hung before its first frame has moved nothing since the rest.
+        // A program that was reset before its first frame has not moved the robot since its last rest.
         let rest_stance = rest_pose.map(|pose| Stance {
             pose,
             ..Stance::RESTING
         });
         self.motion.resume_rest(stance.or(rest_stance.as_ref()));
-        // The pose may not have reached the memory yet.
+        // The reset may have come before the pose was in the EEPROM.
         let is_saved = servos_before == ServosBefore::Unknown
             || rest_pose.as_ref() == Some(self.motion.pose());
-        self.rest_record = (!is_saved).then(|| REST_POSE.start_write());
+        self.rest_pose_write = (!is_saved).then(|| REST_POSE_ADDRESS.start_write());
     }
 
-    /// Computes the pulses of the next frame. To be called 50 times a second.
+    /// Computes the pulses of the next frame. Must be called 50 times a second.
     // Out of line, so that a simulator can time it by its name.
     #[inline(never)]
-    pub fn frame(&mut self, health: &Health) -> Pulses {
+    pub fn compute_frame(&mut self, health: &Health) -> Pulses {
         self.check_health(health);
         let was_held = self.motion.hazard().is_some();
         let pulses = self.motion.tick();
@@ -177,19 +176,19 @@ impl Control {
             self.hold_reason = Some(hazard);
         }
         if self.routine.is_under_way() {
-            self.advance_routine(health.is_closed);
-        } else if self.motion.has_ended() {
+            self.advance_routine(health.is_contact_closed);
+        } else if self.motion.has_come_to_standstill() {
             self.safety.notify(Notice::Done);
         }
-        let frames = self.motion.frames();
+        let frames = self.motion.frame_count();
         if frames == GOOD_SUPPLY_FRAMES {
             self.brown_outs = 0;
         }
-        // Opening the port resets the board, and then a line comes. By radio, lines come at any
-        // time, so a reset while the servos wake still counts against the supply.
-        let is_external = self.may_be_supply && self.cause == Cause::External;
-        if is_external && self.has_heard_command && frames > WAKING_FRAMES {
-            self.may_be_supply = false;
+        // A computer that opens the port resets the board and then sends a line. By radio, lines come at any time, so a
+        // line while the servos wake is no evidence against a weak supply.
+        let may_be_port_reset = self.is_supply_suspected && self.reset_cause == Cause::External;
+        if may_be_port_reset && self.has_heard_command && frames > WAKING_FRAMES {
+            self.is_supply_suspected = false;
             self.brown_outs = self.brown_outs.saturating_sub(1);
         }
         self.safety.advance_led(hazard.is_some());
@@ -201,12 +200,12 @@ impl Control {
         self.safety.is_lit()
     }
 
-    /// Time without a command after which a gait ends, ms; 0 for never.
-    pub fn deadman(&self) -> u16 {
-        self.settings.deadman()
+    /// The time without a command after which a gait ends, ms; 0 for never.
+    pub fn deadman_ms(&self) -> u16 {
+        self.settings.deadman_ms()
     }
 
-    /// Notes that a byte was received, so a computer is connected.
+    /// Notes that a byte was received, which means that a computer is connected.
     pub fn note_byte(&mut self) {
         self.safety.note_byte();
     }
@@ -218,12 +217,12 @@ impl Control {
         self.has_heard_command = true;
     }
 
-    /// Takes the reason why the guard holds the robot; `None` if there is none or it was taken before.
+    /// Takes the reason why the guard holds the robot. Returns `None` if there is none, or if it was taken before.
     pub fn take_hold_reason(&mut self) -> Option<Hazard> {
         self.hold_reason.take()
     }
 
-    /// True while the guard's reason waits to be printed.
+    /// True while the reason why the guard holds the robot waits to be printed.
     pub const fn has_hold_reason(&self) -> bool {
         self.hold_reason.is_some()
     }
@@ -233,7 +232,7 @@ impl Control {
         self.safety.note_printed(notice);
     }
 
-    /// The voltage of the supply, the chip's or the servos' rail, that restricts the robot more.
+    /// The voltage of the chip's supply or of the servos' rail, whichever restricts the robot more.
     #[inline(never)]
     pub fn voltage(&self) -> Voltage {
         self.safety
@@ -275,7 +274,7 @@ impl Control {
         let deadman_ms = if self.is_unattended && self.routine.is_under_way() {
             0
         } else {
-            self.settings.deadman()
+            self.settings.deadman_ms()
         };
         match self
             .safety
@@ -300,9 +299,9 @@ impl Control {
             Boot::Gait(GaitId::STAND) if !is_resting => return,
             Boot::Rest if is_resting => return,
             Boot::Gait(gait) => {
-                self.start(gait, 0);
+                self.start_gait(gait, 0);
                 self.is_unattended = true;
-                self.rest_record = Some(REST_POSE.start_invalidation());
+                self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());
             }
             Boot::Rest => self.rest(),
         }
@@ -312,7 +311,7 @@ impl Control {
     /// Carries out an order.
     ///
     /// # Errors
-    /// Returns the reason of the refusal; nothing has changed.
+    /// Returns the reason for the refusal; nothing has changed.
     #[inline(never)]
     pub fn execute(&mut self, order: &Order) -> Result<Acceptance, Refusal> {
         if self.motion.robot().is_none() {
@@ -325,10 +324,10 @@ impl Control {
                     _ => Event::Move,
                 })?;
                 self.note_motion();
-                self.start(*gait, *cycles);
+                self.start_gait(*gait, *cycles);
             }
             Order::Pose(angles) => {
-                let pose = Pose::at(angles, &self.motion.robot().neutral());
+                let pose = Pose::from_angles(angles, &self.motion.robot().neutral_angles());
                 self.go_to(&pose)?;
             }
             Order::Center => {
@@ -350,28 +349,29 @@ impl Control {
             Order::Speed(percent) => self.motion.set_speed(*percent),
             Order::Set(servo, setting) => self.set_servo(*servo, *setting)?,
             Order::Boot(boot) => self.settings.set_boot(*boot, self.motion.robot()),
-            Order::Deadman(ms) => self.settings.set_deadman(*ms),
+            Order::Deadman(ms) => self.settings.set_deadman_ms(*ms),
             Order::Factory => {
                 let factory_settings = Settings::of(self.motion.robot());
                 self.replace_settings(&factory_settings)?;
             }
             Order::Save => {
                 self.check_allowed(Event::Save)?;
-                self.job = Some(Job::Save);
-                return Ok(Acceptance::Later);
+                self.job = Some(Job::ChooseCopy);
+                return Ok(Acceptance::Pending);
             }
             Order::Load => {
                 self.job = Some(Job::Load);
-                return Ok(Acceptance::Later);
+                return Ok(Acceptance::Pending);
             }
         }
         Ok(Acceptance::Done)
     }
 
-    /// Looks the order up in the supervisor's table; true if it is to be obeyed, false if there is nothing to do.
+    /// Looks up an event in the supervisor's table. Returns true if the order is to be obeyed, false if there is
+    /// nothing to do.
     ///
     /// # Errors
-    /// Returns the reason of the refusal.
+    /// Returns the reason for the refusal.
     #[inline(never)]
     fn check_allowed(&self, event: Event) -> Result<bool, Refusal> {
         match self.safety.response(event, self.state()) {
@@ -381,8 +381,12 @@ impl Control {
         }
     }
 
+    /// Begins a move to a pose.
+    ///
+    /// # Errors
+    /// Returns the reason for the refusal; nothing has changed.
     fn go_to(&mut self, pose: &Pose) -> Result<(), Refusal> {
-        if let Some(servo) = pose.first_beyond_travel(self.motion.calibration()) {
+        if let Some(servo) = pose.first_servo_beyond_travel(self.motion.calibration()) {
             return Err(Refusal::Unsafe(Hazard::Travel(servo)));
         }
         self.check_allowed(Event::Move)?;
@@ -404,13 +408,13 @@ impl Control {
         self.routine = Routine::NONE;
         self.safety.clear_fault();
         self.brown_outs = 0;
-        self.rest_record = Some(REST_POSE.start_invalidation());
+        self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());
     }
 
     /// Ends the pulses and saves the pose for the next power-on.
     fn rest(&mut self) {
         self.routine = Routine::NONE;
         self.motion.rest();
-        self.rest_record = Some(REST_POSE.start_write());
+        self.rest_pose_write = Some(REST_POSE_ADDRESS.start_write());
     }
 }

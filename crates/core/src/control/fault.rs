@@ -1,8 +1,8 @@
 //! Faults, and the patterns by which the LED shows them.
 //!
 //! Without a cable, the LED on D13 is all that a person sees. It blinks slowly while all
-//! is well. After a fault it flashes as many times as the fault's code, pauses, and
-//! repeats that until the robot is told to move.
+//! is well. After a fault it flashes as many times as the fault's code says, pauses, and
+//! repeats that until a command moves the robot.
 
 /// A fault. Each of them stops the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub enum Fault {
     Watchdog,
     /// An edge of a pulse came late. A late rising edge is left out, so its pulse is
     /// missing; a late falling edge makes its pulse longer.
-    Late,
+    LateEdge,
     /// The stack has grown into the data.
     Stack,
     /// Several resets in a row by a weak supply or, where a boot loader hides the cause, by the
@@ -35,13 +35,13 @@ impl Fault {
     }
 }
 
-/// Frames for which a flash is lit, and frames for which the LED is dark after it.
+/// Frames for which the LED is lit in a flash, and then dark.
 const FLASH_FRAMES: u8 = 8;
 
-/// Frames of the pause after the flashes.
+/// Frames of the additional pause after the last flash.
 const PAUSE_FRAMES: u8 = 48;
 
-/// Frames for which the slow beat of a robot without a fault is lit, and then dark.
+/// Frames for which the LED is lit, and then dark, in the slow beat of a robot without a fault.
 const BEAT_FRAMES: u8 = 32;
 
 /// The pattern that the LED shows.
@@ -54,12 +54,12 @@ pub struct Led {
 }
 
 impl Led {
-    /// At power-on: the slow beat, lit first.
+    /// The pattern at power-on: the slow beat, lit first.
     pub const fn new() -> Self {
         Self { frames: 0, code: 0 }
     }
 
-    /// Advances the pattern by a frame; true if the LED is lit in it.
+    /// Advances the pattern by a frame. Returns true if the LED is lit in this frame.
     pub fn advance(&mut self, fault: Option<Fault>) -> bool {
         let code = fault.map_or(0, Fault::code);
         let period = match code {
@@ -91,13 +91,13 @@ mod tests {
         Fault::Supply,
         Fault::Link,
         Fault::Watchdog,
-        Fault::Late,
+        Fault::LateEdge,
         Fault::Stack,
         Fault::BrownOut,
         Fault::Robot,
     ];
 
-    /// The LED's lit and dark runs over some frames: true for a lit one, and its length.
+    /// Advances the LED by some frames and returns its runs of equal frames: true if lit, and the number of frames.
     fn record_runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {
@@ -110,20 +110,20 @@ mod tests {
         runs
     }
 
-    /// The LED's state according to docs/faults.md, `frame` frames after a pattern began.
-    fn should_be_lit(fault: Option<Fault>, frame: usize) -> bool {
+    /// True if docs/faults.md has the LED lit `frame` frames after a pattern began.
+    fn must_be_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;
         };
-        let flashes = 16 * usize::from(fault.code());
-        let frame_in_period = frame % (flashes + 48);
-        frame_in_period < flashes && frame_in_period % 16 < 8
+        let flash_frames = 16 * usize::from(fault.code());
+        let frame_in_period = frame % (flash_frames + 48);
+        frame_in_period < flash_frames && frame_in_period % 16 < 8
     }
 
     #[test]
-    fn without_a_fault_it_beats_slowly() {
+    fn without_a_fault_the_led_beats_slowly() {
         let runs = record_runs(&mut Led::default(), None, 1000);
-        assert!(runs[0].0, "lit first");
+        assert!(runs[0].0, "the LED is lit first");
         assert!(
             runs[1..runs.len() - 1]
                 .iter()
@@ -132,32 +132,31 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_flashes_as_often_as_its_code_says_and_pauses() {
+    fn the_led_flashes_as_many_times_as_the_faults_code_and_then_pauses() {
         for (index, fault) in ALL_FAULTS.into_iter().enumerate() {
             assert_eq!(usize::from(fault.code()), index + 1);
             let mut led = Led::default();
             record_runs(&mut led, None, 13 * (index + 1));
             let runs = record_runs(&mut led, Some(fault), 1000);
             // The pauses separate the patterns.
-            let mut flashes = 0;
-            let mut patterns = Vec::new();
+            let mut flash_count = 0;
+            let mut flash_counts = Vec::new();
             for (is_lit, frames) in &runs[..runs.len() - 1] {
                 match (is_lit, frames) {
-                    (true, 8) => flashes += 1,
+                    (true, 8) => flash_count += 1,
                     (false, 8) => {}
                     (false, 56) => {
-                        patterns.push(flashes);
-                        flashes = 0;
+                        flash_counts.push(flash_count);
+                        flash_count = 0;
                     }
                     run => panic!("{fault:?}: {run:?}"),
                 }
             }
-            assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
-            assert!(patterns.iter().all(|n| *n == index + 1), "{fault:?}");
+            assert!(flash_counts.len() >= 5, "{fault:?} {runs:?}");
+            assert!(flash_counts.iter().all(|n| *n == index + 1), "{fault:?}");
         }
     }
 
-    /// A pattern may be interrupted at any frame.
     #[test]
     fn any_pattern_begins_at_once_at_any_frame_of_any_other_and_goes_on() {
         let shown_faults: Vec<Option<Fault>> =
@@ -174,7 +173,7 @@ mod tests {
                         let is_lit = led.advance(*second_fault);
                         assert_eq!(
                             is_lit,
-                            should_be_lit(*second_fault, frame),
+                            must_be_lit(*second_fault, frame),
                             "{first_fault:?} {second_fault:?} {frames}"
                         );
                     }

@@ -1,8 +1,8 @@
 //! The control: it carries out orders, computes a frame fifty times a second, and reacts
 //! to faults.
 //!
-//! It knows no text: it takes an [`order`] and may answer with a [`refusal`]. [`supervisor`] is the table
-//! of its decisions; [`safety`], [`supply`], [`contact`] and [`fault`] watch the hardware.
+//! It handles no text: it takes an [`order`] and may answer with a [`refusal`]. [`supervisor`] has the tables
+//! of its decisions; [`safety`], [`supply`] and [`contact`] watch the hardware; [`fault`] shows a fault on the LED.
 
 mod controller;
 

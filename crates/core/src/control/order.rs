@@ -5,20 +5,21 @@ use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
 use crate::numbers::units::{Angle, Sweep};
 
-/// An order, its arguments within their ranges.
+/// An order whose arguments are within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait for this many cycles, 0 for no limit; `stand` also wakes the servos.
+    /// Change to a gait for this many cycles, 0 for no limit; or begin a routine for this many rounds, 0 for the number
+    /// in robot.toml. `stand` also wakes the servos.
     Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
     /// Go to the neutral pulses without trims.
     Center,
-    /// Freeze.
+    /// Freeze the pose.
     Stop,
     /// End the pulses.
     Rest,
-    /// Set the pace of gaits, 10..=100 percent of their own.
+    /// Set the pace of gaits in percent of their own pace, 10..=100.
     Speed(u8),
     /// Change a setting of a servo.
     Set(Servo, Setting),
@@ -52,6 +53,6 @@ pub enum Setting {
 pub enum Acceptance {
     /// The order is done, or its motion has begun.
     Done,
-    /// The EEPROM is being written or read; the outcome follows later.
-    Later,
+    /// The EEPROM is still to be written or read; the outcome follows later.
+    Pending,
 }

@@ -10,14 +10,14 @@ pub enum Refusal {
     Unsafe(Hazard),
     /// The servos get no pulses.
     Resting,
-    /// With these settings, this servo would not reach a sweep that the gaits need.
+    /// With the new settings, this servo would not reach a sweep that the gaits need.
     TravelTooNarrow(Servo),
-    /// With these settings, this servo would have to leave its present pose or target.
+    /// With the new settings, the present pose or the target would be outside the travel of this servo.
     PoseOutsideTravel(Servo),
     /// The supply is too low.
     Supply,
-    /// The EEPROM does not keep the bytes that were written.
-    NotKept,
+    /// The EEPROM has not kept the settings that were written.
+    SettingsNotKept,
     /// The EEPROM holds no settings that could be loaded.
     NothingSaved,
     /// The flash holds no usable robot.

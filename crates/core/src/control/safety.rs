@@ -1,9 +1,9 @@
-//! Watches for faults in every frame: the supply, the line, the pulses, the stack. It also
-//! times the `boot` action after power-on.
+//! The watch for faults of the supply, the serial line, the pulses and the stack, in every frame. It also times the
+//! `boot` action after power-on.
 //!
-//! The table of [`supervisor`] gives the reaction to each event. A fault stops the motion and stays until a
-//! command moves the robot again. Nothing here begins a motion by itself, except the one that `boot` asks for,
-//! three seconds after the start.
+//! The table of [`supervisor`] gives the response to each event. A fault stops the motion and stays until a
+//! command moves the robot again. Nothing here begins a motion by itself, except the `boot` action three seconds after
+//! the start.
 
 use crate::control::fault::{Fault, Led};
 use crate::control::supervisor::{self, Event, Response, State};
@@ -20,8 +20,8 @@ pub struct Health {
     pub late_edges: u16,
     /// True while the stack has not grown into the data.
     pub is_stack_intact: bool,
-    /// True while the contact at the pin that the control waits for is closed.
-    pub is_closed: bool,
+    /// True while the contact that the control waits for is closed.
+    pub is_contact_closed: bool,
 }
 
 impl Default for Health {
@@ -31,15 +31,15 @@ impl Default for Health {
             supply: Reading::default(),
             late_edges: 0,
             is_stack_intact: true,
-            is_closed: false,
+            is_contact_closed: false,
         }
     }
 }
 
-/// The action that a frame requires; of several actions, the last one in this list counts.
+/// The reaction to a frame's events; of several reactions, the last one in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reaction {
-    /// No action.
+    /// Do nothing.
     None,
     /// Carry out the `boot` setting.
     Boot,
@@ -49,7 +49,7 @@ pub enum Reaction {
     EndPulses,
 }
 
-/// The state of the watch: supply, silence, faults, and the notices to be printed.
+/// The state of the watch: the supply, the time without a command, the fault, and the notices to print.
 #[derive(Clone, Debug)]
 pub struct Safety {
     supply: Supply,
@@ -60,20 +60,20 @@ pub struct Safety {
     handled_late_edges: u16,
     /// Milliseconds since the last command, up to 65535.
     silence_ms: u16,
-    /// Frames since power-on, up to [`FRAMES_TO_BOOT`]: then `boot` is done or cancelled.
+    /// Frames since power-on. [`FRAMES_TO_BOOT`] means that `boot` has been carried out or cancelled.
     boot_timer: u8,
-    /// The notices that wait to be printed, a bit for each [`Notice`].
+    /// The notices that wait to be printed, one bit for each [`Notice`].
     notices: u8,
 }
 
-/// A line that is printed without a command.
+/// A line that the robot prints without a command. The order of the variants is that of printing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Notice {
     /// The state of the saved settings at power-on.
-    Memory,
+    SavedSettings,
     /// The EEPROM has not kept the rest pose.
-    NotKept,
+    RestPoseNotKept,
     /// A fault has occurred.
     Fault,
     /// The supply's level has changed.
@@ -90,11 +90,11 @@ pub enum Notice {
 const NOTICE_COUNT: u8 = 7;
 
 impl Notice {
-    /// The notice at an index, in the order in which they are printed.
+    /// The notice at an index in this list.
     const fn at(index: u8) -> Self {
         match index {
-            0 => Self::Memory,
-            1 => Self::NotKept,
+            0 => Self::SavedSettings,
+            1 => Self::RestPoseNotKept,
             2 => Self::Fault,
             3 => Self::Supply,
             4 => Self::Boot,
@@ -128,7 +128,7 @@ impl Safety {
         }
     }
 
-    /// The fault that stopped the robot last, unless it has been ordered to move since.
+    /// The fault that stopped the robot last; `None` if the robot has been ordered to move since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
@@ -153,7 +153,7 @@ impl Safety {
         self.supply.measured_level() == Some(Level::Good)
     }
 
-    /// True if the EEPROM may be written at this moment, so not during a dip.
+    /// True if the EEPROM may be written at this moment: the supply is good enough, and there is no dip.
     pub fn allows_writing_now(&self) -> bool {
         self.allows_writing() && self.supply.is_steady()
     }
@@ -164,14 +164,14 @@ impl Safety {
         supervisor::response(event, self.supply.measured_level(), state)
     }
 
-    /// Checks a frame's health and returns the reaction. A gait ends after `deadman` milliseconds without a command
-    /// (0: never), and no sooner.
+    /// Checks a frame's health and returns the reaction. A gait ends once `deadman_ms` milliseconds have passed without
+    /// a command, and no sooner; 0 means never.
     pub fn check_frame(
         &mut self,
         health: &Health,
         supplies: &Supplies,
         state: State,
-        deadman: u16,
+        deadman_ms: u16,
     ) -> Reaction {
         let mut reaction = Reaction::None;
         self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
@@ -185,16 +185,16 @@ impl Safety {
                 reaction = Reaction::Boot;
             }
         }
-        // The last command may have come at the end of the first frame counted, so that frame is subtracted.
-        if deadman != 0 && self.silence_ms.saturating_sub(FRAME_MS) >= deadman {
+        // The last command may have come at the end of the first frame that was counted, so that frame is subtracted.
+        if deadman_ms != 0 && self.silence_ms.saturating_sub(FRAME_MS) >= deadman_ms {
             reaction = reaction.max(self.handle_event(Event::Silence, state));
         }
-        if self.supply.measure(health.supply, supplies) {
+        if self.supply.add_reading(health.supply, supplies) {
             self.notify(Notice::Supply);
             reaction = reaction.max(match self.supply.level() {
                 Level::Good | Level::Slow => Reaction::None,
-                Level::Stop => self.handle_event(Event::TooLow, state),
-                Level::Rest => self.handle_event(Event::Empty, state),
+                Level::Stop => self.handle_event(Event::TooLowToMove, state),
+                Level::Rest => self.handle_event(Event::TooLowToHold, state),
             });
         }
         if health.late_edges != self.handled_late_edges {
@@ -202,7 +202,7 @@ impl Safety {
             reaction = reaction.max(self.handle_event(Event::LateEdge, state));
         }
         if !health.is_stack_intact && self.fault != Some(Fault::Stack) {
-            reaction = reaction.max(self.handle_event(Event::Stack, state));
+            reaction = reaction.max(self.handle_event(Event::StackOverflow, state));
         }
         reaction
     }
@@ -223,7 +223,7 @@ impl Safety {
         }
     }
 
-    /// Advances the LED by a frame; `is_guarded` is true while the guard holds the robot.
+    /// Advances the LED by a frame. `is_guarded` is true while the guard holds the robot.
     pub fn advance_led(&mut self, is_guarded: bool) {
         let fault = if is_guarded {
             Some(Fault::Guard)
@@ -240,12 +240,12 @@ impl Safety {
         self.notify(Notice::Fault);
     }
 
-    /// Clears the fault, since an order moves the robot.
+    /// Clears the fault, because an order moves the robot.
     pub fn clear_fault(&mut self) {
         self.fault = None;
     }
 
-    /// Cancels `boot`: a received byte means that a computer is connected.
+    /// Notes that a byte was received. A computer is connected, so `boot` is cancelled.
     pub fn note_byte(&mut self) {
         self.boot_timer = FRAMES_TO_BOOT;
     }
@@ -261,7 +261,7 @@ impl Safety {
     }
 
     /// The notice to print next, if any.
-    pub const fn notice(&self) -> Option<Notice> {
+    pub const fn next_notice(&self) -> Option<Notice> {
         let mut index = 0;
         while index < NOTICE_COUNT {
             if self.notices & (1 << index) != 0 {

@@ -1,14 +1,15 @@
-//! The supervisor: a table with the reaction to every event in every state, and a table of resets.
+//! The supervisor: a table with the response to every event in every state, and a table with the first action after
+//! every reset.
 //!
-//! A person sends a command, the supply falls, the line breaks, the program hangs, and
-//! any two of these may happen in the same frame. So all reactions are in the table of events,
-//! and all other code looks them up there. docs/faults.md prints both tables.
+//! A person sends a command, the supply falls, the line breaks, the program hangs: any two of these may happen in the
+//! same frame. So all responses are in one table, and all other code looks them up there. docs/faults.md prints both
+//! tables.
 
 use crate::control::fault::Fault;
 use crate::control::supply::Level;
 use crate::memory::restart::Cause;
 
-/// The robot's state, as far as reactions depend on it.
+/// The robot's state, as far as responses depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// The servos get no pulses.
@@ -19,12 +20,12 @@ pub enum State {
     Walking,
 }
 
-/// An event that the supervisor reacts to.
+/// An event that the supervisor responds to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The command `stand`.
     Stand,
-    /// The command of a motion other than `stand`.
+    /// A command that orders a motion other than `stand`.
     Move,
     /// The command `stop`.
     Stop,
@@ -37,21 +38,21 @@ pub enum Event {
     /// No command has been received for the time that `deadman` sets.
     Silence,
     /// The supply has become too low to move.
-    TooLow,
+    TooLowToMove,
     /// The supply has become too low to hold a pose.
-    Empty,
+    TooLowToHold,
     /// An edge of a pulse came late.
     LateEdge,
-    /// The stack has reached the data.
-    Stack,
+    /// The stack has grown into the data.
+    StackOverflow,
     /// The next pose would not be safe.
     Unsafe,
 }
 
-/// The supervisor's reaction to an event.
+/// The supervisor's response to an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
-    /// No reaction.
+    /// Do nothing.
     Nothing,
     /// Carry out the command.
     Obey,
@@ -67,12 +68,12 @@ pub enum Response {
 }
 
 impl State {
-    /// All values, as the columns of the table.
+    /// All states, in the order of the columns of the table of events.
     pub const ALL: [Self; 3] = [Self::Resting, Self::Still, Self::Walking];
 }
 
 impl Event {
-    /// All values, as the rows of the table.
+    /// All events, in the order of the rows of the table of events.
     pub const ALL: [Self; 12] = [
         Self::Stand,
         Self::Move,
@@ -81,19 +82,19 @@ impl Event {
         Self::Save,
         Self::Boot,
         Self::Silence,
-        Self::TooLow,
-        Self::Empty,
+        Self::TooLowToMove,
+        Self::TooLowToHold,
         Self::LateEdge,
-        Self::Stack,
+        Self::StackOverflow,
         Self::Unsafe,
     ];
 }
 
-/// The table of events: the reaction to an event, given the supply's level, if it is
-/// measured already, and the state.
+/// The table of events: the response to an event in a state of the robot. `supply` is the supply's level, or `None`
+/// before it has been measured.
 #[rustfmt::skip]
 pub const fn response(event: Event, supply: Option<Level>, state: State) -> Response {
-    use Event::{Boot, Empty, LateEdge, Move, Rest, Save, Silence, Stack, Stand, Stop, TooLow, Unsafe};
+    use Event::{Boot, LateEdge, Move, Rest, Save, Silence, StackOverflow, Stand, Stop, TooLowToHold, TooLowToMove, Unsafe};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
     let can_move = matches!(supply, None | Some(Level::Good | Level::Slow));
     // Before the first measurement an order to write is accepted; the write waits for the measurement.
@@ -111,10 +112,10 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
         Boot if can_move         => [Obey,                    Obey,                    Obey],
         Boot                     => [Nothing,                 Nothing,                 Nothing],
         Silence                  => [Nothing,                 Nothing,                 Freeze(Fault::Link)],
-        TooLow                   => [Freeze(Fault::Supply),   Freeze(Fault::Supply),   Freeze(Fault::Supply)],
-        Empty                    => [EndPulses(Fault::Supply), EndPulses(Fault::Supply), EndPulses(Fault::Supply)],
-        LateEdge                 => [Freeze(Fault::Late),     Freeze(Fault::Late),     Freeze(Fault::Late)],
-        Stack                    => [Freeze(Fault::Stack),    Freeze(Fault::Stack),    Freeze(Fault::Stack)],
+        TooLowToMove             => [Freeze(Fault::Supply),   Freeze(Fault::Supply),   Freeze(Fault::Supply)],
+        TooLowToHold             => [EndPulses(Fault::Supply), EndPulses(Fault::Supply), EndPulses(Fault::Supply)],
+        LateEdge                 => [Freeze(Fault::LateEdge), Freeze(Fault::LateEdge), Freeze(Fault::LateEdge)],
+        StackOverflow            => [Freeze(Fault::Stack),    Freeze(Fault::Stack),    Freeze(Fault::Stack)],
         Unsafe                   => [Nothing,                 Freeze(Fault::Guard),    Freeze(Fault::Guard)],
     };
     match state {
@@ -124,8 +125,8 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     }
 }
 
-/// Consecutive resets by a possibly weak supply after which the robot rests: waking
-/// servos would pull the supply down again.
+/// Consecutive resets by a possibly weak supply after which the robot rests, because servos that wake would pull the
+/// supply down again.
 pub const BROWN_OUTS_TO_REST: u8 = 3;
 
 /// The servos' state before the reset.
@@ -154,26 +155,26 @@ pub enum FirstAction {
 }
 
 impl ServosBefore {
-    /// All values, as the columns of the table.
+    /// All values, in the order of the columns of the table of resets.
     pub const ALL: [Self; 3] = [Self::Unknown, Self::Rested, Self::Held];
 }
 
-/// The table of resets: the first action and the fault that is shown, given the cause, the
-/// consecutive resets that a weak supply may have caused, and the servos' state before the reset.
+/// The table of resets: the first action after a reset, and the fault to show. `brown_outs` is the number of
+/// consecutive resets that a weak supply may have caused.
 #[rustfmt::skip]
 pub const fn first_action(cause: Cause, brown_outs: u8, servos_before: ServosBefore) -> (FirstAction, Option<Fault>) {
     use FirstAction::{Hold, Rest, WakeInPlace, Wake};
-    let too_many = brown_outs >= BROWN_OUTS_TO_REST;
-    let ([nothing, rested, held], fault) = match cause {
-        // cause                                   nothing  rested  held
+    let must_rest = brown_outs >= BROWN_OUTS_TO_REST;
+    let ([unknown, rested, held], fault) = match cause {
+        // cause                                   unknown  rested  held
         Cause::Power                           => ([Wake,   Wake,   Wake],     None),
         Cause::Watchdog                        => ([Rest,   Rest,   Hold],     Some(Fault::Watchdog)),
         Cause::External | Cause::BrownOut
-            if too_many                        => ([Rest,   Rest,   Rest],     Some(Fault::BrownOut)),
+            if must_rest                       => ([Rest,   Rest,   Rest],     Some(Fault::BrownOut)),
         Cause::External | Cause::BrownOut      => ([Wake,   Rest,   WakeInPlace], None),
     };
     let action = match servos_before {
-        ServosBefore::Unknown => nothing,
+        ServosBefore::Unknown => unknown,
         ServosBefore::Rested => rested,
         ServosBefore::Held => held,
     };

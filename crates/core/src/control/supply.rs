@@ -1,9 +1,9 @@
-//! The supply's voltage: measured every frame, and turned into a level that limits the robot.
+//! The supply's voltage: measured in every frame, and turned into a level that limits the robot.
 //!
-//! Four servos that start at once pull a weak supply down. Below 2.7 V the chip resets; at well
-//! above 2.7 V a servo already loses its position and an EEPROM write its data. The chip
+//! Four servos that start at once pull a weak supply down. Below 2.7 V the chip resets. Well above 2.7 V, a servo
+//! already loses its position, and a write to the EEPROM may store a wrong byte. The chip
 //! can measure its own supply without any external part: it compares the supply with a
-//! reference of about 1.1 V on the chip. The servos' own rail can be measured if a
+//! reference of about 1.1 V on the chip. The servos' own rail can be measured if a voltage
 //! divider connects it to an analogue pin.
 //!
 //! The reference differs by up to a tenth from chip to chip. robot.toml has its measured
@@ -14,10 +14,10 @@ use lizard_avr::mul_unsigned;
 use crate::numbers::root::quotient;
 use crate::numbers::supplies::{Supplies, Thresholds};
 
-/// Steps of the analogue converter.
+/// Steps of the analogue-to-digital converter.
 const FULL_SCALE: u16 = 1024;
 
-/// Readings of the analogue converter, each 0..=1023; 0 before the first measurement.
+/// Readings of the analogue-to-digital converter, each 0..=1023; 0 before the first measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Reading {
     /// The chip's reference voltage, in 1/1024 of the supply.
@@ -40,11 +40,12 @@ pub enum Level {
     Rest,
 }
 
-/// A voltage as a quotient, so that a comparison takes no division.
+/// A voltage as a quotient of two integers, so that a comparison takes no division.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
     /// The voltage in mV, times `counts`.
     product: u32,
+    /// The converter's reading of the reference; 0 if the voltage is unknown.
     counts: u16,
 }
 
@@ -53,29 +54,30 @@ pub struct Voltage {
 pub struct Supply {
     reading: Reading,
     level: Level,
-    /// Consecutive frames that have measured another level.
+    /// Consecutive frames whose readings are at a worse level, or at a better one, than the present level.
     frames_at_other_level: u8,
-    /// The level nearest to the present one in the frames of `frames_at_other_level`.
+    /// The level nearest to the present one among those of these frames.
     nearest_other_level: Level,
-    /// Number of readings so far, up to [`FRAMES_TO_WORSE`].
-    readings: u8,
+    /// The number of valid readings so far, up to [`FRAMES_TO_WORSEN`].
+    reading_count: u8,
 }
 
 /// Frames for which a worse level must last before it counts: a servo's start pulls the
 /// supply down for a few milliseconds. If the rail is measured too, up to four frames share
 /// a reading, so a single dip changes nothing.
-const FRAMES_TO_WORSE: u8 = 6;
+const FRAMES_TO_WORSEN: u8 = 6;
 
-/// Frames for which a better level must last before it counts: a second.
-const FRAMES_TO_BETTER: u8 = 50;
-/// Voltage above a threshold that a better level needs, mV.
+/// Frames for which a better level must last before it counts: one second.
+const FRAMES_TO_IMPROVE: u8 = 50;
+
+/// Voltage above its threshold that a better level needs, mV.
 const HYSTERESIS_MV: u16 = 150;
 
 impl Voltage {
     /// The voltage of the chip's supply.
     pub fn of_board(reading: Reading, supplies: &Supplies) -> Self {
         Self {
-            product: mul_unsigned(FULL_SCALE, supplies.reference),
+            product: mul_unsigned(FULL_SCALE, supplies.reference_mv),
             counts: reading.reference,
         }
     }
@@ -83,7 +85,7 @@ impl Voltage {
     /// The voltage of the servos' rail.
     pub fn of_rail(reading: Reading, supplies: &Supplies) -> Self {
         Self {
-            product: mul_unsigned(reading.rail, supplies.rail_reference),
+            product: mul_unsigned(reading.rail, supplies.rail_reference_mv),
             counts: reading.reference,
         }
     }
@@ -93,27 +95,27 @@ impl Voltage {
         self.product < mul_unsigned(mv, self.counts)
     }
 
-    /// The voltage in hundredths of a volt, rounded down; 0 if unknown.
-    pub fn hundredths(self) -> u16 {
+    /// The voltage in hundredths of a volt, rounded down; 0 if it is unknown.
+    pub fn centivolts(self) -> u16 {
         if self.counts == 0 {
             return 0;
         }
-        let step = mul_unsigned(self.counts, 10) as u16;
-        quotient(self.product, step).min(MAX_HUNDREDTHS)
+        let divisor = mul_unsigned(self.counts, 10) as u16;
+        quotient(self.product, divisor).min(MAX_CENTIVOLTS)
     }
 }
 
 /// The largest voltage, hundredths of a volt: more than any supply that the chip survives.
-const MAX_HUNDREDTHS: u16 = (1 << 13) - 1;
+const MAX_CENTIVOLTS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
     /// The level of a voltage, with the thresholds raised by `raise_mv`, mV.
     fn level(&self, voltage: Voltage, raise_mv: u16) -> Level {
-        if !voltage.is_below(self.slow.wrapping_add(raise_mv)) {
+        if !voltage.is_below(self.slow_mv.wrapping_add(raise_mv)) {
             Level::Good
-        } else if !voltage.is_below(self.stop.wrapping_add(raise_mv)) {
+        } else if !voltage.is_below(self.stop_mv.wrapping_add(raise_mv)) {
             Level::Slow
-        } else if !voltage.is_below(self.rest.wrapping_add(raise_mv)) {
+        } else if !voltage.is_below(self.rest_mv.wrapping_add(raise_mv)) {
             Level::Stop
         } else {
             Level::Rest
@@ -125,7 +127,7 @@ impl Supplies {
     /// The level of the chip's supply or of the rail, whichever is worse.
     fn level(&self, reading: Reading, raise_mv: u16) -> Level {
         let board_level = self.board.level(Voltage::of_board(reading, self), raise_mv);
-        if self.rail_reference == 0 {
+        if self.rail_reference_mv == 0 {
             return board_level;
         }
         let rail_voltage = Voltage::of_rail(reading, self);
@@ -144,7 +146,7 @@ impl Supply {
             level: Level::Good,
             frames_at_other_level: 0,
             nearest_other_level: Level::Good,
-            readings: 0,
+            reading_count: 0,
         }
     }
 
@@ -158,59 +160,60 @@ impl Supply {
         self.level
     }
 
-    /// True if the last reading is at the present level; otherwise there may be a dip.
+    /// True if the last reading confirms the present level; false in a dip, and before the level changes.
     pub const fn is_steady(&self) -> bool {
         self.frames_at_other_level == 0
     }
 
     /// The present level; `None` until enough frames have measured it.
     pub const fn measured_level(&self) -> Option<Level> {
-        if self.readings < FRAMES_TO_WORSE {
+        if self.reading_count < FRAMES_TO_WORSEN {
             None
         } else {
             Some(self.level)
         }
     }
 
-    /// The voltage of the chip's supply or of the rail, whichever restricts the robot more.
+    /// The voltage of the chip's supply or of the servos' rail, whichever restricts the robot more.
     pub fn worst_voltage(&self, supplies: &Supplies) -> Voltage {
         let board_voltage = Voltage::of_board(self.reading, supplies);
         let rail_voltage = Voltage::of_rail(self.reading, supplies);
         let is_worse =
             supplies.rail.level(rail_voltage, 0) > supplies.board.level(board_voltage, 0);
-        if supplies.rail_reference != 0 && is_worse {
+        if supplies.rail_reference_mv != 0 && is_worse {
             rail_voltage
         } else {
             board_voltage
         }
     }
 
-    /// Takes a frame's reading; true if the level has changed. A change needs several frames,
-    /// so a single reading decides nothing.
-    pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
+    /// Adds a frame's reading. Returns true if the level has changed. A change takes several frames, so a single
+    /// reading does not change the level.
+    pub fn add_reading(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
-        if reading.reference > 0 && self.readings < FRAMES_TO_WORSE {
-            self.readings += 1;
+        if reading.reference > 0 && self.reading_count < FRAMES_TO_WORSEN {
+            self.reading_count += 1;
         }
         let reading_level = supplies.level(reading, 0);
-        let (level, frames_needed) = if reading_level > self.level {
-            (reading_level, FRAMES_TO_WORSE)
+        let (new_level, frames_needed) = if reading_level > self.level {
+            (reading_level, FRAMES_TO_WORSEN)
         } else if self.level > Level::Good {
-            (supplies.level(reading, HYSTERESIS_MV), FRAMES_TO_BETTER)
+            (supplies.level(reading, HYSTERESIS_MV), FRAMES_TO_IMPROVE)
         } else {
             (self.level, 0)
         };
         // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
-        if level == self.level || (frames_needed == FRAMES_TO_BETTER && level > self.level) {
+        if new_level == self.level || (frames_needed == FRAMES_TO_IMPROVE && new_level > self.level)
+        {
             self.frames_at_other_level = 0;
             return false;
         }
         let is_same_direction = self.frames_at_other_level > 0
-            && (self.nearest_other_level > self.level) == (level > self.level);
+            && (self.nearest_other_level > self.level) == (new_level > self.level);
         self.nearest_other_level = match is_same_direction {
-            false => level,
-            true if level > self.level => level.min(self.nearest_other_level),
-            true => level.max(self.nearest_other_level),
+            false => new_level,
+            true if new_level > self.level => new_level.min(self.nearest_other_level),
+            true => new_level.max(self.nearest_other_level),
         };
         self.frames_at_other_level = if is_same_direction {
             self.frames_at_other_level + 1

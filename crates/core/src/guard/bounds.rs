@@ -1,25 +1,25 @@
-//! The largest difference between integer and floating-point results: proved, not measured.
+//! Bounds of the difference between integer and floating-point results: proved, not measured.
 //!
-//! Each bound here adds up all roundings of one number, in the order in which they happen, each at its worst.
-//! Nothing in it is measured except the sines of [`crate::guard::trig`], which a test of that module compares at
-//! every angle. A test that finds an error beyond its bound has found a mistake in the code or in this derivation;
-//! chance is no explanation.
+//! Each bound adds up the largest effects of all roundings of a number, in the order in which they happen. Only the
+//! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares them at every angle. If a
+//! test finds an error beyond its bound, the code or this derivation is wrong; chance is no explanation.
 //!
-//! Lengths of a five-bar (head or tail) are counted in `U`, two steps of its bars, like the distance of the crank
-//! tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `a` and `b` are the couplers,
-//! `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the integer result for a true value.
+//! Lengths of a five-bar (head or tail) are given in `U`, two steps of its bars, the unit in which the code computes
+//! the distance of the crank tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and `c2`
+//! are the cranks, `a` and `b` the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the integer
+//! result for a true value.
 //!
-//! **1. Crank tips.** Base and cranks are rounded to a step, 1/4 U each. Half the base
-//! loses 1/2 U, the rounded sum of the products 1/2 U, and a direction is off by
-//! [`MAX_DIRECTION_ERROR`] in sine and cosine. So `k'` is within `e` of `k`:
+//! **1. Crank tips.** Base and cranks are rounded to whole steps, which changes each by at most 1/4 U. Halving the base
+//! loses up to 1/2 U, rounding the sum of the products up to 1/2 U, and the sine and cosine of a direction are off by
+//! up to `d`, [`MAX_DIRECTION_ERROR`]. So `k'` is within `e` of `k`:
 //!
 //! ```text
-//! e_x = 1/4 + 1/2 + 1/2 + (|cos| + |cos|) / 4 + DIRECTION (c1 + c2)
-//! e_y =             1/2 + (|sin| + |sin|) / 4 + DIRECTION (c1 + c2)
+//! e_x = 1/4 + 1/2 + 1/2 + (|cos| + |cos|) / 4 + d (c1 + c2)
+//! e_y =             1/2 + (|sin| + |sin|) / 4 + d (c1 + c2)
 //! ```
 //!
-//! **2. The triangle.** `c = cos(gamma) = (a^2 + b^2 - s) / 2ab` between the couplers.
-//! With couplers that are off by `x` and `y`, at most 1/4 U each, and `s` by `z`,
+//! **2. The triangle.** The angle `gamma` between the couplers has the cosine `c = (a^2 + b^2 - s) / 2ab`. If the
+//! couplers are off by `x` and `y`, at most 1/4 U each, and `s` is off by `z`,
 //!
 //! ```text
 //! c' - c = (2x (a - b c) + 2y (b - a c) + x^2 + y^2 - 2xyc - z) / 2a'b'
@@ -28,21 +28,21 @@
 //! where `a - b c` is the component of `k` along the coupler, so at most `|k|`. As `sin^2 = 1 - cos^2`, a sine
 //! of `m` becomes one between the roots of `m^2 - q` and of `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
 //!
-//! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`: that is the derivative of
-//! the triangle's angle by its sides, taken along a straight path from one triangle to the other, and on all of
-//! it the sine is at least the lower root. The line `k` itself turns by at most `asin(e / |k|)`.
+//! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`. This follows from the derivative of
+//! the triangle's angle by its sides, taken along a straight path from one triangle to the other; on all of that path
+//! the sine is at least the lower root. The line `k` itself turns by at most `asin(e / |k|)`.
 //!
-//! **3. The tables**, see [`LeanError`].
+//! **3. The tables.** See [`ShapeError`].
 //!
 //! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its step, each shift
 //! loses at most one unit of its result, and each reciprocal less than one unit of its own.
 //!
-//! **5. A range.** For many pairs of angles, only the distance of the crank tips is known, `k` in
-//! `[near, far]`; sines and cosines in `e` are at most 1. Every term above then counts at its worst: `z`, `|k|`
-//! and terms that grow with the distance at `far`; terms with the distance in the denominator at `near`. `c`
-//! falls as `k` grows, so the largest `|c|`, and with it the smallest sine, for which both roots are the
-//! farthest from it, is at an end of the range. So is the largest sine, unless `c` changes its sign in between.
-//! A single pair of angles is a range without width.
+//! **5. A range.** Of a set of many pairs of angles, only the range of the distance `|k|` is known, `[near, far]`;
+//! sines and cosines in `e` are at most 1. Every term above then has its largest value: `z`, `|k|` and terms that grow
+//! with the distance at `far`, terms with the distance in the denominator at `near`. As `|k|` grows, `c` falls. So
+//! `|c|` is largest at an end of the range. There the sine is smallest, and the two roots differ from it most. The
+//! largest sine is at an end of the range, too, unless `c` changes its sign within it. A single pair of angles is a
+//! range of width 0.
 
 use lizard_kinematics as kinematics;
 use lizard_kinematics::Vector;
@@ -50,130 +50,145 @@ use lizard_kinematics::Vector;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Scale;
 
-/// The error of a sine or a cosine; see the test of [`crate::guard::trig`].
+/// The largest error of a sine or a cosine; a test of [`crate::guard::trig`] finds it.
 pub const MAX_DIRECTION_ERROR: f64 = 4.5e-5;
 
-/// The step of a margin.
-pub const Q15: f64 = 1.0 / 32768.0;
+/// The step of a margin, a number in Q15.
+pub const Q15_STEP: f64 = 1.0 / 32768.0;
 
-/// The step of a value read from a table.
-const Q10: f64 = 1.0 / 1024.0;
+/// The step of a value read from a table, a number in Q10.
+const Q10_STEP: f64 = 1.0 / 1024.0;
 
-/// The type-2 margin below which the tables may have no value. Where the rise is read over `R - s`, that is at
-/// `R - s = R / 4096`, where the sine is `sqrt((R - s)(s - N)) / 2ab <= sqrt(R / 4096 . 4ab) / 2ab`, at most
-/// .05 with couplers of a ratio of 8, the largest that their steps allow; over `s - N` at `N / 1024`, where it
-/// is at most .077; over `s` at `R / 1024`, where it is at most .063, because that table is read there only if
-/// `N < R / 2048`. Nor is the rise above 32, the largest that an entry holds: a step that begins there ends at
-/// `17/16 R / 1024`, where the sine is at most .065. The value read in that step is too small. For couplers
-/// that differ by little, the table over `s` holds its largest rise below the peak, and that is too large
-/// there; the sine that it gives is at most .045, since the peak is below `2 N`.
+/// The type-2 margin below which the tables may have no correct value. The lower limit of each table's argument gives
+/// the largest margin, a sine, at which its value is missing:
 ///
-/// The true margin is then below a tenth: by part 2 of the derivation it is at most the root of `m'^2 + q`, and
-/// with the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched
-/// couplers of equal length, where `m'` is .031, and .0031 for folded ones of a ratio of 8, where it is .077.
+/// - The table over `R - s` ends at `R / 4096`. The sine there is `sqrt((R - s)(s - N)) / 2ab`, which is below
+///   `sqrt(4ab R / 4096) / 2ab`: at most .05 with couplers of a ratio of 8, the largest that their steps allow.
+/// - The table over `s - N` ends at `N / 1024`, where the sine is at most .077.
+/// - The table over `s` ends at `R / 1024`, where the sine is at most .063, because that part is read only if
+///   `N < R / 2048`.
+///
+/// Two kinds of values are wrong. A rise above 32, the largest that an entry holds, is cut off, so the value is too
+/// small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most .065. For couplers that differ
+/// by little, the table over `s` holds the largest rise at all arguments below the peak, so the value is too large; the
+/// sine that it gives is at most .045, since the peak is below `2 N`.
+///
+/// The true margin is then below a tenth. By part 2 of the derivation it is at most the root of `m'^2 + q`. With the
+/// shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched couplers of
+/// equal length, where `m'` is .031, and .0031 for folded ones of a ratio of 8, where `m'` is .077.
 pub const MIN_KNOWN_MARGIN: f64 = 0.08;
 
-/// The error of the tables of a pair of couplers.
+/// The largest errors of the triangle's shape that is read from the tables of a pair of couplers.
 ///
-/// A curve has sixteen steps to an octave. A straight line over a step `d` of a function
-/// `f` is off by at most `d^2 / 8` times its largest second derivative, and `d` is at
-/// most a sixteenth of the argument `t`, so by `|t^2 f''| / 2048`. For a product of
-/// powers `e` of straight lines `p + q t`, with `l = q t / (p + q t)`,
+/// A table has sixteen steps per octave. Over a step of length `d`, a straight line differs from a function `f` by at
+/// most `d^2 / 8` times the largest second derivative of `f`. As `d` is at most a sixteenth of the argument `t`, that
+/// is at most `|t^2 f''| / 2048`. For a product of powers of straight lines, where `n` is an exponent, `p + q t` a line
+/// and `l = q t / (p + q t)`,
 ///
 /// ```text
-/// t^2 f'' = f ((sum of e l)^2 - sum of e l^2)
+/// t^2 f'' = f ((sum of n l)^2 - sum of n l^2)
 /// ```
 ///
-/// which `Product::max_bend_and_value` bounds over the step by the ends of each `l`. The function is constant below
-/// its peak, where it has no bend at all. The roundings add to that: those of the entries and of the values read, 1
-/// together (1.5 for the skew, whose entries are rounded to nearest and whose value down); a share of the step of 16
-/// bits; and the quarter that `R` and `N` lose when they are rounded down to whole steps.
+/// `Product::max_bend_and_value` bounds this over a step from the ends of the range of each `l`. Below its peak the
+/// function is constant, so it has no bend. The following roundings add to the error: those of the entries and of the
+/// value read, together 1 unit of Q10 (1.5 for the skew, whose entries are rounded to nearest and whose value down);
+/// that of the position within a step to 16 bits; and that of `R` and `N` down to whole units, by at most 1/4.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct LeanError {
+pub struct ShapeError {
     /// The largest error of the rise, which has no unit.
     pub rise: f64,
     /// The largest error of the skew, which has no unit.
     pub skew: f64,
 }
 
-impl LeanError {
-    /// The error for couplers in whole steps, over a range of the squared distance of the crank tips, U^2.
-    pub fn of(left: i16, right: i16, [low, high]: [f64; 2]) -> Self {
+impl ShapeError {
+    /// The errors for couplers in whole steps, over a range of the squared distance of the crank tips, U^2.
+    pub fn of(left: i16, right: i16, [min_tips_sq, max_tips_sq]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
-        let reach = (a + b).powi(2).floor();
-        let min = (a - b).powi(2).floor();
+        let reach_sq = (a + b).powi(2).floor();
+        let folded_sq = (a - b).powi(2).floor();
         let root_of = |p: f64, q: f64| Factor { power: 0.5, p, q };
         let inverse_of = |p: f64, q: f64| Factor { power: -1.0, p, q };
-        // A table starts with the octave that contains a 1024th of the largest argument.
-        let octaves = 2048.0;
-        let mut rise = 0.0f64;
-        // `argument_range` is a range of the table's argument, `table_range` the part in which the table is read,
-        // `first_argument` the argument at which its function begins.
-        let mut add_reading_error = |product: Product,
-                                     argument_range: [f64; 2],
-                                     table_range: [f64; 2],
-                                     first_argument: f64| {
-            let argument_range = [
-                argument_range[0].max(table_range[0]),
-                argument_range[1].min(table_range[1]),
-            ];
-            if argument_range[0] <= argument_range[1] {
-                let [bend, max_value] = product.max_bend_and_value(argument_range, first_argument);
-                let error = bend / 2048.0 + max_value / 65536.0 + Q10;
-                // From rounding R and N down: a relative error, taken as twice its first-order term.
-                let end_distances = [
-                    (reach - high).max(reach / 4.0 / octaves),
-                    (low - min).max(min / octaves).max(1.0),
+        // A table begins with the octave that contains 1/1024 of the largest argument, so at 1/2048 of it or above.
+        let table_span = 2048.0;
+        let mut rise_error = 0.0f64;
+        // `argument_range` is the range of the table's argument for the given distances, `table_range` the range over
+        // which the table is read, `first_argument` the argument at which its function begins.
+        let mut include_reading_error =
+            |product: Product,
+             argument_range: [f64; 2],
+             table_range: [f64; 2],
+             first_argument: f64| {
+                let argument_range = [
+                    argument_range[0].max(table_range[0]),
+                    argument_range[1].min(table_range[1]),
                 ];
-                let relative_rounding = 0.25 / end_distances[0] + 0.25 / end_distances[1];
-                rise = rise.max(error + max_value * relative_rounding);
-            }
-        };
-        let peak = 2.0 * reach * min / (reach + min);
-        add_reading_error(
+                if argument_range[0] <= argument_range[1] {
+                    let [max_bend, max_value] =
+                        product.max_bend_and_value(argument_range, first_argument);
+                    let error = max_bend / 2048.0 + max_value / 65536.0 + Q10_STEP;
+                    // The relative error from rounding R and N down, taken as twice its first-order term.
+                    let end_distances = [
+                        (reach_sq - max_tips_sq).max(reach_sq / 4.0 / table_span),
+                        (min_tips_sq - folded_sq)
+                            .max(folded_sq / table_span)
+                            .max(1.0),
+                    ];
+                    let relative_rounding = 0.25 / end_distances[0] + 0.25 / end_distances[1];
+                    rise_error = rise_error.max(error + max_value * relative_rounding);
+                }
+            };
+        let peak_sq = 2.0 * reach_sq * folded_sq / (reach_sq + folded_sq);
+        include_reading_error(
             Product([
-                root_of(reach, -1.0),
-                root_of(-min, 1.0),
+                root_of(reach_sq, -1.0),
+                root_of(-folded_sq, 1.0),
                 inverse_of(0.0, 1.0),
             ]),
-            [low, high],
-            [(2.0 * min).max(reach / octaves), 0.75 * reach],
-            peak,
+            [min_tips_sq, max_tips_sq],
+            [
+                (2.0 * folded_sq).max(reach_sq / table_span),
+                0.75 * reach_sq,
+            ],
+            peak_sq,
         );
-        add_reading_error(
+        include_reading_error(
             Product([
                 root_of(0.0, 1.0),
-                root_of(reach - min, -1.0),
-                inverse_of(reach, -1.0),
+                root_of(reach_sq - folded_sq, -1.0),
+                inverse_of(reach_sq, -1.0),
             ]),
-            [reach - high, reach - low],
-            [reach / 4.0 / octaves, reach / 4.0],
+            [reach_sq - max_tips_sq, reach_sq - min_tips_sq],
+            [reach_sq / 4.0 / table_span, reach_sq / 4.0],
             0.0,
         );
-        add_reading_error(
+        include_reading_error(
             Product([
                 root_of(0.0, 1.0),
-                root_of(reach - min, -1.0),
-                inverse_of(min, 1.0),
+                root_of(reach_sq - folded_sq, -1.0),
+                inverse_of(folded_sq, 1.0),
             ]),
-            [low - min, high - min],
-            [min / octaves, min],
+            [min_tips_sq - folded_sq, max_tips_sq - folded_sq],
+            [folded_sq / table_span, folded_sq],
             0.0,
         );
-        let low = low.max(reach / octaves);
-        let skew = (reach * min).sqrt() / low;
-        // The bend of 1 / s is 2; a step begins at most a sixteenth below.
-        let bend = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
-        let skew = if left == right {
+        let min_argument = min_tips_sq.max(reach_sq / table_span);
+        let skew = (reach_sq * folded_sq).sqrt() / min_argument;
+        // For f = 1 / t, |t^2 f''| is 2 f; the step begins at most a sixteenth below the argument.
+        let reading_error = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
+        let skew_error = if left == right {
             0.0
         } else {
-            bend + 1.5 * Q10 + 1.0 / low
+            reading_error + 1.5 * Q10_STEP + 1.0 / min_argument
         };
-        Self { rise, skew }
+        Self {
+            rise: rise_error,
+            skew: skew_error,
+        }
     }
 }
 
-/// `(p + q t)^power`.
+/// The factor `(p + q t)^power` of a function.
 #[derive(Clone, Copy)]
 struct Factor {
     power: f64,
@@ -181,46 +196,52 @@ struct Factor {
     q: f64,
 }
 
+/// A function of `t` that is the product of three factors.
 struct Product([Factor; 3]);
 
 impl Product {
-    /// The largest `|t^2 f''|` and the largest value, over a range of `t` that is extended by a
-    /// step on either side, but not below `first_argument`.
+    /// Returns upper bounds of `|t^2 f''|` and of the value, over a range of `t` that is extended by a step at either
+    /// end, but not below `first_argument`.
     fn max_bend_and_value(&self, [low, high]: [f64; 2], first_argument: f64) -> [f64; 2] {
-        let ends = [(low * 16.0 / 17.0).max(first_argument), high * 17.0 / 16.0];
-        let (mut sum, mut squares, mut max_value) = ([0.0; 2], [0.0; 2], 1.0f64);
+        let t_ends = [(low * 16.0 / 17.0).max(first_argument), high * 17.0 / 16.0];
+        let (mut sum_range, mut square_sum_range, mut max_value) = ([0.0; 2], [0.0; 2], 1.0f64);
         for Factor { power, p, q } in self.0 {
-            // Keeps rounding from making the line 0 or negative at a limit of the range.
-            let line = ends.map(|t| (p + q * t).max(1e-9));
-            let mut l = [q * ends[0] / line[0], q * ends[1] / line[1]];
-            l.sort_by(f64::total_cmp);
-            let mut square = l.map(|l| l * l);
-            square.sort_by(f64::total_cmp);
-            let scale_by_power = |range: [f64; 2]| {
+            // At a limit of the range, rounding could make the line zero or negative.
+            let line_ends = t_ends.map(|t| (p + q * t).max(1e-9));
+            let mut l_range = [q * t_ends[0] / line_ends[0], q * t_ends[1] / line_ends[1]];
+            l_range.sort_by(f64::total_cmp);
+            let mut l_sq_range = l_range.map(|l| l * l);
+            l_sq_range.sort_by(f64::total_cmp);
+            let multiply_by_power = |range: [f64; 2]| {
                 let mut products = range.map(|end| power * end);
                 products.sort_by(f64::total_cmp);
                 products
             };
-            for (sum, terms) in [
-                (&mut sum, scale_by_power(l)),
-                (&mut squares, scale_by_power(square)),
+            for (total_range, term_range) in [
+                (&mut sum_range, multiply_by_power(l_range)),
+                (&mut square_sum_range, multiply_by_power(l_sq_range)),
             ] {
-                *sum = [sum[0] + terms[0], sum[1] + terms[1]];
+                *total_range = [
+                    total_range[0] + term_range[0],
+                    total_range[1] + term_range[1],
+                ];
             }
-            max_value *= line[0].powf(power).max(line[1].powf(power));
+            max_value *= line_ends[0].powf(power).max(line_ends[1].powf(power));
         }
-        let max_sq = sum[0].abs().max(sum[1].abs()).powi(2);
-        let min_sq = if sum[0] <= 0.0 && sum[1] >= 0.0 {
+        let max_sq = sum_range[0].abs().max(sum_range[1].abs()).powi(2);
+        let min_sq = if sum_range[0] <= 0.0 && sum_range[1] >= 0.0 {
             0.0
         } else {
-            sum[0].abs().min(sum[1].abs()).powi(2)
+            sum_range[0].abs().min(sum_range[1].abs()).powi(2)
         };
-        let bend = (max_sq - squares[0]).abs().max((min_sq - squares[1]).abs());
+        let bend = (max_sq - square_sum_range[0])
+            .abs()
+            .max((min_sq - square_sum_range[1]).abs());
         [bend * max_value, max_value]
     }
 }
 
-/// The rounded numbers of a five-bar, on which its errors depend besides its true bars.
+/// The rounded numbers of a five-bar. Its errors depend on them and on its true bars.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundedBars {
     /// The scale of the five-bar's lengths.
@@ -239,57 +260,59 @@ pub struct EndErrors {
     pub type1_left: f64,
     /// The error of the right crank's type-1 margin, a sine.
     pub type1_right: f64,
-    /// The error of the crank tips' distance along the base, mm.
-    pub along: f64,
-    /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close everywhere in the range.
+    /// The error of the distance of the crank tips along the base, mm.
+    pub gap_x: f64,
+    /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close everywhere in it.
     pub min_type2: f64,
-    /// True if the tables have a value at every true type-2 margin of the range.
-    pub is_known: bool,
+    /// True if the tables have a value everywhere in the range. If not, the computed margins may be too small by more
+    /// than these errors.
+    pub are_margins_known: bool,
 }
 
 impl EndErrors {
-    /// The errors for true bars, the integers made of them, and crank angles in the five-bar's own frame, deg. If
-    /// the loop does not close, `type2` is the largest margin that the integers may compute.
+    /// The errors for true bars in mm, the same bars rounded to steps, and crank angles in the five-bar's own frame,
+    /// deg. If the loop does not close, `type2` is the largest margin that the integer arithmetic may return.
     pub fn of(
         bars: &kinematics::FiveBar,
-        integers: impl Into<RoundedBars>,
+        rounded_bars: impl Into<RoundedBars>,
         angles: [f64; 2],
     ) -> Self {
         let [left, right] = angles.map(Vector::direction);
         let tip_of = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
         let (left_tip, right_tip) = (
-            tip_of(bars.crank_left, left),
-            tip_of(bars.crank_right, right),
+            tip_of(bars.left_crank_length, left),
+            tip_of(bars.right_crank_length, right),
         );
         let distance_mm =
             (bars.base + right_tip[0] - left_tip[0]).hypot(right_tip[1] - left_tip[1]);
         let direction_sums = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
-        Self::at(bars, integers.into(), direction_sums, [distance_mm; 2])
+        Self::compute(bars, rounded_bars.into(), direction_sums, [distance_mm; 2])
     }
 
-    /// The errors for all crank angles at which the distance of the crank tips is from `near` to `far`, mm.
+    /// The largest errors over all crank angles at which the distance of the crank tips is from `near` to `far`, mm.
     pub fn between(
         bars: &kinematics::FiveBar,
-        integers: impl Into<RoundedBars>,
+        rounded_bars: impl Into<RoundedBars>,
         [near, far]: [f64; 2],
     ) -> Self {
-        Self::at(bars, integers.into(), [2.0; 2], [near, far])
+        Self::compute(bars, rounded_bars.into(), [2.0; 2], [near, far])
     }
 
-    /// The errors for given sums of the directions' `|cos|` and `|sin|`.
-    fn at(
+    /// Computes the errors from the sums of the two crank directions' `|cos|` and `|sin|`, and the range of the
+    /// distance of the crank tips. Single letters are those of the module's derivation.
+    fn compute(
         bars: &kinematics::FiveBar,
-        integers: RoundedBars,
-        [cosines, sines]: [f64; 2],
+        rounded_bars: RoundedBars,
+        [cosine_sum, sine_sum]: [f64; 2],
         range_mm: [f64; 2],
     ) -> Self {
-        let u_per_mm = per_mm(integers.scale) / 2.0;
-        let cranks = u_per_mm * (bars.crank_left + bars.crank_right) + 0.5;
-        let e_x = 1.25 + cosines / 4.0 + MAX_DIRECTION_ERROR * cranks;
-        let e_y = 0.5 + sines / 4.0 + MAX_DIRECTION_ERROR * cranks;
+        let u_per_mm = steps_per_mm(rounded_bars.scale) / 2.0;
+        let crank_sum = u_per_mm * (bars.left_crank_length + bars.right_crank_length) + 0.5;
+        let e_x = 1.25 + cosine_sum / 4.0 + MAX_DIRECTION_ERROR * crank_sum;
+        let e_y = 0.5 + sine_sum / 4.0 + MAX_DIRECTION_ERROR * crank_sum;
         let e = e_x.hypot(e_y);
         let [near, far] = range_mm.map(|mm| u_per_mm * mm);
-        let [a, b] = [bars.coupler_left, bars.coupler_right].map(|mm| u_per_mm * mm);
+        let [a, b] = [bars.left_coupler_length, bars.right_coupler_length].map(|mm| u_per_mm * mm);
         let z = e * (2.0 * far + e);
         let tips_sq_range = [(near - e).max(0.0).powi(2), (far + e).powi(2)];
 
@@ -318,37 +341,38 @@ impl EndErrors {
         let sine_error = (m - low_root).max(root_of(m_sq + q) - m);
         let high_root = root_of(max_sine_sq + q);
 
-        let [left, right] = integers.couplers;
-        let lean = LeanError::of(left, right, tips_sq_range);
+        let [left, right] = rounded_bars.couplers;
+        let shape_error = ShapeError::of(left, right, tips_sq_range);
         let [left, right] = [left, right].map(f64::from);
         let mean_coupler = (left + right) / 2.0;
-        let square = 2f64.powi((mean_coupler * mean_coupler).log2().floor() as i32 - 14);
-        let rise =
-            2.0 * left / 2.0 * right / 2.0 * high_root / tips_sq_range[0].max(1.0) + lean.rise;
-        let product = (lean.rise * tips_sq_range[1] + rise * square / 2.0) / (left * right / 2.0);
-        let area = left * right / square;
-        let area_error = (1.0 / (area - 1.0) + Q15) * (high_root + product);
-        let type2 = sine_error + product + 2.0 * Q15 + area_error + Q15;
+        let square_step = 2f64.powi((mean_coupler * mean_coupler).log2().floor() as i32 - 14);
+        let max_rise = 2.0 * left / 2.0 * right / 2.0 * high_root / tips_sq_range[0].max(1.0)
+            + shape_error.rise;
+        let product_error = (shape_error.rise * tips_sq_range[1] + max_rise * square_step / 2.0)
+            / (left * right / 2.0);
+        let area = left * right / square_step;
+        let area_error = (1.0 / (area - 1.0) + Q15_STEP) * (high_root + product_error);
+        let type2_error = sine_error + product_error + 2.0 * Q15_STEP + area_error + Q15_STEP;
 
         let line_turn = (e / near.max(e)).asin();
-        let type1_of = |coupler: f64| {
+        let type1_error_of = |coupler: f64| {
             let a = coupler / 2.0;
             let tip_turn = (0.5 + e) / ((a - 0.25) * low_root.max(1e-9)) + line_turn;
             let (near, far) = (tips_sq_range[0].sqrt().max(1.0), far + e);
             let component_error = 0.5 + 2f64.sqrt() * MAX_DIRECTION_ERROR * far;
-            let opening_error = component_error
-                * (2f64.sqrt() * 2.0 * a / near + lean.rise + lean.skew)
-                + far * lean.rise.hypot(lean.skew)
+            let scaled_sine_error = component_error
+                * (2f64.sqrt() * 2.0 * a / near + shape_error.rise + shape_error.skew)
+                + far * shape_error.rise.hypot(shape_error.skew)
                 + 2.0;
-            tip_turn + opening_error / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15
+            tip_turn + scaled_sine_error / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15_STEP
         };
         Self {
-            type2,
-            type1_left: type1_of(left),
-            type1_right: type1_of(right),
-            along: e_x / u_per_mm,
+            type2: type2_error,
+            type1_left: type1_error_of(left),
+            type1_right: type1_error_of(right),
+            gap_x: e_x / u_per_mm,
             min_type2: m,
-            is_known: can_close && low_root >= MIN_KNOWN_MARGIN,
+            are_margins_known: can_close && low_root >= MIN_KNOWN_MARGIN,
         }
     }
 
@@ -358,16 +382,18 @@ impl EndErrors {
     }
 }
 
-/// The error of a slider's length, mm. In each coordinate the offset or the base and both arms are rounded to a
-/// step, half a step each, the sum of the products too, and the arms' directions are off by [`MAX_DIRECTION_ERROR`].
-pub fn slider_error(side: &kinematics::Slider, integers: &Slider) -> f64 {
-    let per_mm = per_mm(integers.scale);
-    let arms = (side.front * per_mm).round() + (side.rear * per_mm).round();
-    2f64.sqrt() * (0.5 + 0.5 + 0.5 + 0.5 + MAX_DIRECTION_ERROR * arms) / per_mm
+/// Returns the largest error of a slider's length, mm. In each coordinate, four roundings change the length by up to
+/// half a step each: that of the offset or the base, those of the two arms, and that of the sum of the products. The
+/// sines and cosines of the arms' directions are off by up to [`MAX_DIRECTION_ERROR`].
+pub fn slider_error(slider: &kinematics::Slider, rounded_slider: &Slider) -> f64 {
+    let steps_per_mm = steps_per_mm(rounded_slider.scale);
+    let arm_sum =
+        (slider.front_arm * steps_per_mm).round() + (slider.rear_arm * steps_per_mm).round();
+    2f64.sqrt() * (0.5 + 0.5 + 0.5 + 0.5 + MAX_DIRECTION_ERROR * arm_sum) / steps_per_mm
 }
 
-/// Steps of a scale in a millimetre.
-fn per_mm(scale: Scale) -> f64 {
+/// Returns the number of steps of a scale in a millimetre.
+fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
@@ -381,22 +407,21 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
 
-        /// Tests in [`crate::guard::clearance`] and [`crate::guard::five_bar`] check the bound of a single
-        /// pair of angles.
+        // Tests in `guard::clearance` and `guard::five_bar` check the bound at a single pair of angles.
         #[test]
         fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_it(
             (robot, pose) in Sample::random().prop_flat_map(|robot| {
-                let pose = robot.pose();
+                let pose = robot.any_pose();
                 (Just(robot), pose)
             }),
             share_below in 0.0..1.0f64,
             share_above in 0.0..1.0f64,
-            // Decimal logarithm of the range's width in mm: from nearly nothing to more than the crank tips
-            // move within a cell.
+            // The decimal logarithm of the range's width in mm. The widest range exceeds the change of the crank
+            // tips' distance within a certified cell.
             log_width in -4.0..0.7f64,
         ) {
             let [a1, a2, ..] = robot.degrees(&pose);
-            let bars = robot.measures.lizard.end(kinematics::End::Head);
+            let bars = robot.measurements.lizard.end(kinematics::End::Head);
             let Ok(exact_pose) = bars.forward(a1, a2) else {
                 return Ok(());
             };
@@ -405,15 +430,15 @@ mod tests {
             let errors_at_angles = EndErrors::of(&bars, &robot.ends[0], [a1, a2]);
             let errors_over_range = EndErrors::between(&bars, &robot.ends[0], range);
             prop_assert!(errors_over_range.min_type2 <= exact_pose.type2 + 1e-12);
-            if !errors_over_range.is_known {
+            if !errors_over_range.are_margins_known {
                 return Ok(());
             }
-            prop_assert!(errors_at_angles.is_known);
+            prop_assert!(errors_at_angles.are_margins_known);
             for (name, error, bound) in [
                 ("type-2", errors_at_angles.type2, errors_over_range.type2),
                 ("type-1 left", errors_at_angles.type1_left, errors_over_range.type1_left),
                 ("type-1 right", errors_at_angles.type1_right, errors_over_range.type1_right),
-                ("along", errors_at_angles.along, errors_over_range.along),
+                ("gap", errors_at_angles.gap_x, errors_over_range.gap_x),
             ] {
                 prop_assert!(error <= bound + 1e-12, "{name}: {error} of {bound}");
             }

@@ -1,4 +1,4 @@
-//! The singularity guard: measures how far a pose is from every hazard.
+//! The singularity guard: measures the distance of a pose from every hazard.
 //!
 //! Every frame passes the guard before it reaches a servo, whether it comes from a gait, a point-to-point move
 //! or a typed pose. The guard tests the pose itself, for any pose within the servos' travel; it does not
@@ -15,15 +15,16 @@ use crate::guard::trig::Direction;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
-use crate::numbers::root::root;
+use crate::numbers::root::isqrt;
 use crate::numbers::units::Sine;
 
 /// The number of margins of a pose.
 const MARGIN_COUNT: usize = 10;
 
-/// The indices of the first type-1 margin and of the first leg margin.
-const FIRST_TYPE1: usize = 2;
-const FIRST_LEG: usize = 6;
+/// The index of the first type-1 margin.
+const FIRST_TYPE1_INDEX: usize = 2;
+/// The index of the first leg margin.
+const FIRST_LEG_INDEX: usize = 6;
 
 flash! {
     /// The margins in the order in which they are checked.
@@ -41,8 +42,8 @@ flash! {
     ];
 }
 
-/// Returns the first limit that a pose breaks; `None` if it breaks none. A pose in certified cells is
-/// not measured: all poses in them were proved safe when the section was made.
+/// Returns the first limit that a pose breaks; `None` if it breaks none. A pose in certified cells is not measured,
+/// because all poses in them were proved safe when the section was made.
 #[inline(never)]
 pub fn find_hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
     if robot.is_certified(pose) {
@@ -59,7 +60,7 @@ pub struct Clearance {
     /// where the parallelogram may have flipped to its crossed form.
     pub margins: [Sine; MARGIN_COUNT],
     /// The squared lengths of the left and the right slider, each in squared steps of its own scale.
-    pub sliders_sq: [u32; 2],
+    pub slider_lengths_sq: [u32; 2],
 }
 
 impl Clearance {
@@ -69,7 +70,7 @@ impl Clearance {
         let mut cranks = [Direction { sin: 0, cos: 0 }; 4];
         let mut clearance = Self {
             margins: [Sine(0); MARGIN_COUNT],
-            sliders_sq: [0; 2],
+            slider_lengths_sq: [0; 2],
         };
         #[expect(
             clippy::needless_range_loop,
@@ -77,18 +78,18 @@ impl Clearance {
         )]
         for index in 0..cranks.len() {
             let servo = Servo::at(index);
-            let mut crank = Direction::of(robot.neutral_of(servo).swept(pose.0[index]));
+            let mut crank = Direction::of(robot.neutral_angle_of(servo).swept(pose.0[index]));
             if servo.is_rear() {
                 crank.sin = -crank.sin;
             }
             cranks[index] = crank;
-            clearance.margins[FIRST_LEG + index] = Sine(crank.sin);
+            clearance.margins[FIRST_LEG_INDEX + index] = Sine(crank.sin);
         }
         for end in End::ALL {
             clearance.measure_end(robot, end, &cranks);
         }
         for side in Side::ALL {
-            clearance.sliders_sq[side as usize] = slider_length_sq(robot, side, &cranks);
+            clearance.slider_lengths_sq[side as usize] = slider_length_sq(robot, side, &cranks);
         }
         clearance
     }
@@ -98,10 +99,12 @@ impl Clearance {
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
         let [left, right] = end.servos();
-        let margins = robot.end(end).margins(left.of(cranks), right.of(cranks));
+        let margins = robot
+            .five_bar(end)
+            .margins(left.of(cranks), right.of(cranks));
         self.margins[end as usize] = margins.type2;
-        self.margins[FIRST_TYPE1 + left.index()] = margins.type1_left;
-        self.margins[FIRST_TYPE1 + right.index()] = margins.type1_right;
+        self.margins[FIRST_TYPE1_INDEX + left.index()] = margins.type1_left;
+        self.margins[FIRST_TYPE1_INDEX + right.index()] = margins.type1_right;
     }
 
     /// The smallest of the ten margins.
@@ -113,15 +116,15 @@ impl Clearance {
         min_margin
     }
 
-    /// The first limit that this pose breaks: margins first, then the strokes left and right. `None` if it breaks
-    /// none.
+    /// The first limit that this pose breaks; `None` if it breaks none. The margins come before the strokes, which are
+    /// checked left before right.
     #[inline(never)]
     pub fn first_hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();
         for (index, value) in self.margins.iter().enumerate() {
             let limit = match index {
-                ..FIRST_TYPE1 => limits.type2,
-                FIRST_TYPE1..FIRST_LEG => limits.type1,
+                ..FIRST_TYPE1_INDEX => limits.type2,
+                FIRST_TYPE1_INDEX..FIRST_LEG_INDEX => limits.type1,
                 _ => limits.leg,
             };
             if *value < limit {
@@ -132,9 +135,9 @@ impl Clearance {
             }
         }
         for side in Side::ALL {
-            let length_sq = self.sliders_sq[side as usize];
-            if !robot.side(side).allows(length_sq) {
-                let length = root(length_sq);
+            let length_sq = self.slider_lengths_sq[side as usize];
+            if !robot.slider(side).allows(length_sq) {
+                let length = isqrt(length_sq);
                 return Some(Hazard::Stroke { side, length });
             }
         }
@@ -142,11 +145,11 @@ impl Clearance {
     }
 }
 
-/// The squared length of a side's slider.
+/// The squared length of a side's slider, in squared steps of its own scale.
 #[inline(never)]
 fn slider_length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
     let [mut front, mut rear] = side.servos().map(|servo| *servo.of(cranks));
-    let mut slider = robot.side(side);
+    let mut slider = robot.slider(side);
     if matches!(side, Side::Right) {
         slider = slider.mirrored();
         front = front.mirrored();

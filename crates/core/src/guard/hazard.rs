@@ -3,7 +3,7 @@
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::units::Sine;
 
-/// A margin of a pose.
+/// One of the ten margins of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Starts at 3, since the absence of a hazard has to be zero: see `Main::new`.
 #[repr(u8)]
@@ -17,15 +17,14 @@ pub enum Margin {
 }
 
 impl Margin {
-    /// True if the value was measured. If two couplers are nearly in line, or cannot be joined,
-    /// the guard knows only that their type-2 margin is below a tenth. See
-    /// [`crate::guard::five_bar::FiveBar::margins`].
+    /// True if `value` is a measured value. If two couplers are nearly in line, or cannot meet, the guard knows only
+    /// that their type-2 margin is below a tenth, and the value is 0; see [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)
     }
 }
 
-/// The first condition that a pose breaks.
+/// The first limit that a pose breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hazard {
     /// A margin is below its limit.

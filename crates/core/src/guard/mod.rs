@@ -1,7 +1,7 @@
-//! The guard: the geometry that tells safe poses from those that could break a linkage.
+//! The guard: the geometry that distinguishes safe poses from those that could break a linkage.
 //!
-//! [`clearance`] measures a pose: the singularity margins of each [five-bar](five_bar), the
-//! strokes of the [sliders](slider). [`hazard`] names the first limit that a pose breaks.
+//! [`clearance`] measures a pose: the singularity margins of each [five-bar](five_bar) and the lengths of the
+//! [sliders](slider). [`hazard`] describes the first limit that a pose breaks.
 
 #[cfg(any(test, feature = "host"))]
 pub mod bounds;

@@ -1,18 +1,17 @@
-//! The prismatic joint in each side of the body.
+//! The length of the slider, the prismatic joint on each side of the body.
 //!
-//! Between the arm of a front crank and the arm of the rear crank on the same
-//! side lies a slider of two halves (the RRPRR five-bar). It has no singularity
-//! of its own, since its block of the passive Jacobian is just its length; but the
-//! halves can be pulled apart or run into each other.
+//! The slider has two halves and connects an arm of the front crank to an arm of the rear crank on the same side (an
+//! RRPRR five-bar). It has no singularity of its own, since its block of the passive Jacobian is just its length. But
+//! its halves can be pulled apart or collide.
 
 use lizard_avr::{mul, mul_unsigned};
 
-use crate::guard::five_bar::upper;
+use crate::guard::five_bar::rounded_upper_half;
 use crate::guard::trig::Direction;
 use crate::numbers::slider::Slider;
 
 impl Slider {
-    /// The slider mirrored in the y axis of the chassis: a right one as a left one.
+    /// The slider mirrored in the y axis of the chassis, which turns a right one into a left one.
     pub const fn mirrored(self) -> Self {
         Self {
             offset: self.offset.wrapping_neg(),
@@ -20,17 +19,21 @@ impl Slider {
         }
     }
 
-    /// The slider's squared length in steps, with the front crank and the rear
-    /// one (in the tail's own frame) in these directions.
+    /// The slider's squared length, in squared steps, for these directions of the front crank and of the rear crank;
+    /// the latter in the tail's own frame.
     ///
-    /// Valid for the left side, where the front arm is a right angle ahead of its crank,
-    /// counter-clockwise; the right side has to be mirrored first.
+    /// Only for the left side, whose front arm is a right angle counter-clockwise of its crank; a right side has to be
+    /// mirrored first.
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
-        let arms_x = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
-        let arms_y = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
-        let x = self.offset.wrapping_add(arms_x).unsigned_abs();
-        let y = (i32::from(self.base) + i32::from(arms_y)).unsigned_abs() as u16;
+        let arm_sum_x = rounded_upper_half(
+            (mul(self.rear_arm, rear.sin) - mul(self.front_arm, front.sin)) << 1,
+        );
+        let arm_sum_y = rounded_upper_half(
+            (mul(self.front_arm, front.cos) + mul(self.rear_arm, rear.cos)) << 1,
+        );
+        let x = self.offset.wrapping_add(arm_sum_x).unsigned_abs();
+        let y = (i32::from(self.base) + i32::from(arm_sum_y)).unsigned_abs() as u16;
         mul_unsigned(x, x).wrapping_add(mul_unsigned(y, y))
     }
 }
@@ -42,10 +45,10 @@ mod tests {
 
     use super::*;
     use crate::numbers::units::Angle;
-    use crate::sample::{bounds, degrees, per_mm, side_of};
+    use crate::sample::{bounds, degrees, slider_in_steps, steps_per_mm};
 
-    /// The slider of any robot that hobby servos move, mm.
-    fn any_side() -> impl Strategy<Value = kinematics::Slider> {
+    /// Random sliders of robots that hobby servos can move, mm.
+    fn any_slider() -> impl Strategy<Value = kinematics::Slider> {
         (
             1.0..300.0f64,
             1.0..100.0f64,
@@ -54,11 +57,11 @@ mod tests {
             50.0..200.0f64,
         )
             .prop_map(|(base, front, rear, offset, nominal)| kinematics::Slider {
-                offset,
+                front_offset: offset,
                 base,
-                front,
-                rear,
-                nominal,
+                front_arm: front,
+                rear_arm: rear,
+                nominal_length: nominal,
             })
     }
 
@@ -66,70 +69,70 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(4000))]
 
         #[test]
-        fn the_length_is_the_distance_of_the_arm_tips(
-            side in any_side(),
+        fn the_length_is_the_distance_between_the_arm_tips(
+            slider in any_slider(),
             front: u16,
             rear: u16,
             is_mirrored: bool,
         ) {
-            let integers = side_of(&side, -10.0, 10.0);
+            let rounded_slider = slider_in_steps(&slider, -10.0, 10.0);
             let [front, rear] = [front, rear].map(Angle);
-            // Each crank in the frame of its end, so the rear one in the tail's.
+            // Each crank is in the frame of its end, so the rear one is in the tail's.
             let length = if is_mirrored {
                 let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
-                integers.mirrored().length_sq(&front, &rear)
+                rounded_slider.mirrored().length_sq(&front, &rear)
             } else {
-                integers.length_sq(&Direction::of(front), &Direction::of(rear))
+                rounded_slider.length_sq(&Direction::of(front), &Direction::of(rear))
             };
-            let (expected_side, turn) = if is_mirrored {
+            let (expected_side, turn_deg) = if is_mirrored {
                 (kinematics::Side::Right, -90.0)
             } else {
                 (kinematics::Side::Left, 90.0)
             };
-            prop_assert_eq!(expected_side.sign() * 90.0, turn);
-            let pose = side.forward(-degrees(rear) - turn, degrees(front) + turn).expect("a length");
-            let length_mm = f64::from(length).sqrt() / per_mm(integers.scale);
-            let max_error = bounds::slider_error(&side, &integers);
+            prop_assert_eq!(expected_side.sign() * 90.0, turn_deg);
+            let pose = slider.forward(-degrees(rear) - turn_deg, degrees(front) + turn_deg).expect("the slider has a length");
+            let length_mm = f64::from(length).sqrt() / steps_per_mm(rounded_slider.scale);
+            let max_error = bounds::slider_error(&slider, &rounded_slider);
             prop_assert!((length_mm - pose.d).abs() <= max_error, "{length_mm} for {} mm", pose.d);
         }
 
         #[test]
-        fn the_travel_is_printed_from_nominal_in_hundredths_of_a_millimetre(
-            side in any_side(),
+        fn the_travel_counts_hundredths_of_a_millimetre_from_the_nominal_length(
+            slider in any_slider(),
             length: u16,
         ) {
-            let side = side_of(&side, -10.0, 10.0);
-            let exact = (f64::from(length) - f64::from(side.nominal)) * 100.0 / per_mm(side.scale);
-            prop_assert!((f64::from(side.travel(length)) - exact).abs() <= 0.5);
+            let rounded_slider = slider_in_steps(&slider, -10.0, 10.0);
+            let exact = (f64::from(length) - f64::from(rounded_slider.nominal_length)) * 100.0 / steps_per_mm(rounded_slider.scale);
+            prop_assert!((f64::from(rounded_slider.travel(length)) - exact).abs() <= 0.5);
         }
 
         #[test]
-        fn a_stroke_has_its_ends_and_not_a_step_more(
+        fn a_stroke_includes_its_ends_and_not_a_step_more(
             min in 1u16..60_000,
             stroke_length in 1u16..5_000,
         ) {
             let max = min + stroke_length;
-            let side = Slider { min, max, ..side_of(&sample_side(), -10.0, 10.0) };
+            let slider = Slider { stroke_min: min, stroke_max: max, ..slider_in_steps(&sample_slider(), -10.0, 10.0) };
             let square_of = |length: u16| u32::from(length) * u32::from(length);
-            prop_assert!(side.allows(square_of(min)) && side.allows(square_of(max)));
-            prop_assert!(!side.allows(square_of(min) - 1) && !side.allows(square_of(max) + 1));
+            prop_assert!(slider.allows(square_of(min)) && slider.allows(square_of(max)));
+            prop_assert!(!slider.allows(square_of(min) - 1) && !slider.allows(square_of(max) + 1));
         }
     }
 
-    fn sample_side() -> kinematics::Slider {
+    fn sample_slider() -> kinematics::Slider {
         kinematics::Slider {
-            offset: 3.0,
+            front_offset: 3.0,
             base: 141.0,
-            front: 28.0,
-            rear: 33.0,
-            nominal: 91.0,
+            front_arm: 28.0,
+            rear_arm: 33.0,
+            nominal_length: 91.0,
         }
     }
 
     #[test]
-    fn a_mirrored_side_is_itself_again_and_only_its_offset_changes_sign() {
-        let side = side_of(&sample_side(), -10.0, 10.0);
-        assert_eq!(side.mirrored().offset, -side.offset);
-        assert_eq!(side.mirrored().mirrored(), side);
+    fn mirroring_negates_the_offset_and_mirroring_twice_changes_nothing() {
+        let slider = slider_in_steps(&sample_slider(), -10.0, 10.0);
+        assert_eq!(slider.mirrored().offset, -slider.offset);
+        assert_eq!(slider.mirrored().mirrored(), slider);
     }
 }

@@ -1,14 +1,14 @@
 //! Sine and cosine of an angle, from a quarter wave in flash.
 //!
-//! The guard needs the directions of four cranks in every frame. A table of 129 points
-//! with linear interpolation is within 4.5e-5 of the sine (one step of Q15 is 3.1e-5),
-//! two orders of magnitude below what affects the margins.
+//! The guard needs the directions of four cranks in every frame. A table of 129 points with linear interpolation is
+//! within 4.5e-5 of the sine (one step of Q15 is 3.1e-5). An error that matters to the margins would be a hundred times
+//! larger.
 
 use lizard_avr::flash;
 
 use crate::numbers::units::Angle;
 
-/// A direction as sine and cosine, Q15, 1.0 stored as 32767.
+/// A direction as sine and cosine, Q15; 1.0 is stored as 32767.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Direction {
     /// Sine of the angle.
@@ -18,23 +18,22 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Looks up the direction of an angle.
+    /// The direction of an angle, read from the table.
     pub fn of(angle: Angle) -> Self {
         let angle = angle.0;
         let quarter_angle = angle & 0x3fff;
-        let rising = quarter_sine(quarter_angle);
-        let falling = quarter_sine(0x4000 - quarter_angle);
+        let rising_sine = first_quadrant_sine(quarter_angle);
+        let falling_sine = first_quadrant_sine(0x4000 - quarter_angle);
         let (sin, cos) = match angle >> 14 {
-            0 => (rising, falling),
-            1 => (falling, -rising),
-            2 => (-rising, -falling),
-            _ => (-falling, rising),
+            0 => (rising_sine, falling_sine),
+            1 => (falling_sine, -rising_sine),
+            2 => (-rising_sine, -falling_sine),
+            _ => (-falling_sine, rising_sine),
         };
         Self { sin, cos }
     }
 
-    /// The direction mirrored in the y axis of the chassis: a crank of the right
-    /// side as one of the left.
+    /// The direction mirrored in the y axis of the chassis, which turns a crank of the right side into one of the left.
     pub const fn mirrored(self) -> Self {
         Self {
             sin: self.sin,
@@ -42,8 +41,8 @@ impl Direction {
         }
     }
 
-    /// The direction mirrored in the x axis of the chassis: a crank of the tail in the
-    /// tail's own frame, in which the tail is built like the head.
+    /// The direction mirrored in the x axis of the chassis: that of a tail crank in the tail's own frame, in which the
+    /// tail is built like the head.
     pub const fn in_tail_frame(self) -> Self {
         Self {
             sin: -self.sin,
@@ -53,14 +52,14 @@ impl Direction {
 }
 
 /// The number of steps in the table.
-const STEPS: usize = 128;
+const STEP_COUNT: usize = 128;
 
 /// The sine of an angle in the first quarter turn, 0..=0x4000.
-fn quarter_sine(quarter_angle: u16) -> i16 {
+fn first_quadrant_sine(quarter_angle: u16) -> i16 {
     let index = usize::from(quarter_angle >> 7);
-    let entry = QUARTER.at(index).load();
-    let next_entry = QUARTER.at(index + 1).load();
-    // A step is at most 402 high, more than a byte holds, so its two bytes are multiplied separately.
+    let entry = QUARTER_WAVE_SINES.at(index).load();
+    let next_entry = QUARTER_WAVE_SINES.at(index + 1).load();
+    // A step rises by at most 402, more than a byte holds, so its two bytes are multiplied separately.
     let step = (next_entry - entry) as u16;
     let fraction = (quarter_angle << 1) & 0xff;
     let rise = (step >> 8) * fraction + (((step & 0xff) * fraction + 0x80) >> 8);
@@ -68,15 +67,15 @@ fn quarter_sine(quarter_angle: u16) -> i16 {
 }
 
 flash! {
-    const QUARTER: [i16; STEPS + 1] = quarter_wave();
+    const QUARTER_WAVE_SINES: [i16; STEP_COUNT + 1] = quarter_wave();
 }
 
-/// The table of a quarter wave, computed at compile time: no float reaches the microcontroller.
-const fn quarter_wave() -> [i16; STEPS + 1] {
-    let mut table = [0; STEPS + 1];
+/// The table of a quarter wave, computed at compile time, so that no float reaches the microcontroller.
+const fn quarter_wave() -> [i16; STEP_COUNT + 1] {
+    let mut table = [0; STEP_COUNT + 1];
     let mut k = 0;
-    while k < STEPS {
-        let x = core::f64::consts::FRAC_PI_2 * k as f64 / STEPS as f64;
+    while k < STEP_COUNT {
+        let x = core::f64::consts::FRAC_PI_2 * k as f64 / STEP_COUNT as f64;
         // Taylor series; the last term kept is below 1e-13 on this interval.
         let mut term = x;
         let mut sum = x;
@@ -89,7 +88,7 @@ const fn quarter_wave() -> [i16; STEPS + 1] {
         table[k] = (sum * 32768.0 + 0.5) as i16;
         k += 1;
     }
-    table[STEPS] = i16::MAX;
+    table[STEP_COUNT] = i16::MAX;
     table
 }
 
@@ -104,19 +103,20 @@ mod tests {
         let (mut max_error, mut max_length_error) = (0.0f64, 0.0f64);
         for angle in (0..=u16::MAX).map(Angle) {
             let direction = Direction::of(angle);
-            let computed = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
+            let components = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
             let (sin, cos) = degrees(angle).to_radians().sin_cos();
             max_error = max_error
-                .max((computed[0] - sin).abs())
-                .max((computed[1] - cos).abs());
-            max_length_error = max_length_error.max((computed[0].hypot(computed[1]) - 1.0).abs());
+                .max((components[0] - sin).abs())
+                .max((components[1] - cos).abs());
+            max_length_error =
+                max_length_error.max((components[0].hypot(components[1]) - 1.0).abs());
         }
         assert!(max_error <= 4.5e-5, "{max_error}");
         assert!(max_length_error <= 6e-5, "{max_length_error}");
     }
 
     #[test]
-    fn the_four_right_angles_are_exact() {
+    fn the_four_axis_directions_are_exact() {
         let unit = i16::MAX;
         for (angle, sin, cos) in [
             (0, 0, unit),

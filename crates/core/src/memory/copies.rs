@@ -1,29 +1,29 @@
 //! The contents of the EEPROM: two copies of the settings, and the last rest pose.
 //!
-//! The two copies are written alternately, so that one is valid while the other is being written; the newer one
-//! counts. A damaged copy is not used. If neither copy can be used, robot.toml's numbers apply.
+//! The two copies are written alternately, so that one is valid while the other is being written. The newer valid copy
+//! counts. If neither copy can be used, robot.toml's numbers apply.
 //!
-//! | address | what |
+//! | address | content |
 //! |---|---|
 //! | 0 | settings, first copy |
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::memory::record::{Address, CONTENT_BYTES, Memory, RecordState, Writing};
-use crate::memory::settings::{SAVE_NUMBER, Settings};
+use crate::memory::record::{Address, CONTENT_BYTES, Memory, RecordState, RecordWrite};
+use crate::memory::settings::{SAVE_NUMBER_OFFSET, Settings};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
 /// The addresses of the two copies of the settings.
-pub const COPIES: [Address; 2] = [copy_address(0), copy_address(1)];
+pub const COPY_ADDRESSES: [Address; 2] = [copy_address(0), copy_address(1)];
 
-/// The address of the first copy for an even number, of the second for an odd one.
+/// The address of the first copy for an even number, of the second copy for an odd number.
 const fn copy_address(number: usize) -> Address {
     Address((number as u16 & 1) * 64)
 }
 
 /// The address of the rest pose.
-pub const REST_POSE: Address = Address(128);
+pub const REST_POSE_ADDRESS: Address = Address(128);
 
 /// The state of the saved settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub enum SavedState {
     Damaged,
     /// The settings are for other servos, or in the format of another firmware.
     Foreign,
-    /// With these settings some gait would leave a servo's travel.
+    /// With the saved settings some gait would leave a servo's travel.
     Unfit,
 }
 
@@ -46,8 +46,8 @@ pub enum SavedState {
 struct Copies {
     /// The result of checking each copy.
     states: [RecordState; 2],
-    /// The number of the copy that was saved last; without meaning if no copy is valid.
-    latest: usize,
+    /// The index of the valid copy that was saved last; meaningless if no copy is valid.
+    latest_index: usize,
 }
 
 impl Copies {
@@ -55,30 +55,33 @@ impl Copies {
     fn check<M: Memory>(memory: &M) -> Self {
         let states = [copy_address(0).check(memory), copy_address(1).check(memory)];
         let save_number_of =
-            |copy: usize| self::copy_address(copy).byte(memory, SAVE_NUMBER as u16);
-        let latest = match states {
+            |copy: usize| self::copy_address(copy).read_byte(memory, SAVE_NUMBER_OFFSET as u16);
+        let latest_index = match states {
             [RecordState::Valid, RecordState::Valid] => {
                 usize::from(save_number_of(1).wrapping_sub(save_number_of(0)) < 0x80)
             }
             [RecordState::Valid, _] => 0,
             _ => 1,
         };
-        Self { states, latest }
+        Self {
+            states,
+            latest_index,
+        }
     }
 
     fn has_no_valid_copy(&self) -> bool {
-        self.states[self.latest & 1] != RecordState::Valid
+        self.states[self.latest_index & 1] != RecordState::Valid
     }
 
-    fn address(&self) -> Address {
-        copy_address(self.latest)
+    fn latest_address(&self) -> Address {
+        copy_address(self.latest_index)
     }
 }
 
 /// Reads the settings saved last into `settings`, and returns their state. Without a valid copy, `settings` stay
 /// as they are.
 #[inline(never)]
-pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
+pub fn read_latest<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
         return match copies.states {
@@ -86,7 +89,9 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Sa
             _ => SavedState::Damaged,
         };
     }
-    copies.address().fetch(memory, settings.bytes_mut());
+    copies
+        .latest_address()
+        .read_content(memory, settings.bytes_mut());
     if !settings.is_for(robot) {
         SavedState::Foreign
     } else if copies.states.contains(&RecordState::Damaged) {
@@ -96,46 +101,48 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Sa
     }
 }
 
-/// Loads the settings to use: those saved last if all gaits work with them, else robot.toml's.
+/// Loads the settings to use into `settings`, and returns the state of the saved ones. The settings to use are those
+/// saved last if all gaits work with them, otherwise robot.toml's.
 #[inline(never)]
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
-    let mut outcome = read(robot, memory, settings);
-    if matches!(outcome, SavedState::Latest | SavedState::OneCopy) {
+    let mut state = read_latest(robot, memory, settings);
+    if matches!(state, SavedState::Latest | SavedState::OneCopy) {
         if settings.first_unfit_servo(robot).is_none() {
-            return outcome;
+            return state;
         }
-        outcome = SavedState::Unfit;
+        state = SavedState::Unfit;
     }
     *settings = Settings::of(robot);
-    outcome
+    state
 }
 
-/// Starts writing the settings over the older of the two copies; `None` if the newer one holds
+/// Starts to write the settings over the older of the two copies. Returns `None` if the newer copy holds
 /// the same settings.
-pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
+pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrite> {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
         settings.set_save_number(1);
         return Some(copy_address(0).start_write());
     }
-    let latest_address = copies.address();
-    let save_number = latest_address.byte(memory, SAVE_NUMBER as u16);
+    let latest_address = copies.latest_address();
+    let save_number = latest_address.read_byte(memory, SAVE_NUMBER_OFFSET as u16);
     settings.set_save_number(save_number);
-    let is_saved = |(index, byte): (usize, &u8)| latest_address.byte(memory, index as u16) == *byte;
+    let is_saved =
+        |(index, byte): (usize, &u8)| latest_address.read_byte(memory, index as u16) == *byte;
     if settings.bytes().iter().enumerate().all(is_saved) {
         return None;
     }
     settings.set_save_number(save_number.wrapping_add(1));
-    Some(copy_address(copies.latest ^ 1).start_write())
+    Some(copy_address(copies.latest_index ^ 1).start_write())
 }
 
 /// The pose of the last rest. `None` if the robot has moved since, or if the record is damaged or belongs to other
 /// servos.
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT_BYTES];
-    REST_POSE.fetch(memory, &mut bytes);
+    REST_POSE_ADDRESS.read_content(memory, &mut bytes);
     let saved_settings = Settings::from_bytes(bytes);
-    (REST_POSE.check(memory) == RecordState::Valid && saved_settings.is_for(robot))
+    (REST_POSE_ADDRESS.check(memory) == RecordState::Valid && saved_settings.is_for(robot))
         .then(|| saved_settings.pose())
 }
 

@@ -1,15 +1,15 @@
-//! A memory that keeps its bytes without power, and may lose power at any time.
+//! Records in a memory that keeps its bytes without power, and may lose power at any time.
 //!
 //! An EEPROM writes one byte in 3.4 ms. If power fails meanwhile, that byte may hold
-//! anything. So a record has a mark that is removed before its first byte changes and
-//! written again after the last one; without the mark the record does not count. A CRC
-//! finds other damage, such as bits that change over the years.
+//! any value. So a record has a mark that is removed before its first byte changes and
+//! written again after its last byte; without the mark the record does not count. A CRC
+//! detects other damage, such as bits that flip over the years.
 
 use crate::numbers::checksum::Checksum;
 
 /// A memory that keeps its bytes without power.
 pub trait Memory {
-    /// True once the last write has ended; only then may the memory be used.
+    /// True once the last write has ended; only then may the memory be read or written.
     fn is_ready(&self) -> bool;
 
     /// The byte at an address below 1024.
@@ -19,19 +19,19 @@ pub trait Memory {
     fn write(&mut self, address: u16, byte: u8);
 }
 
-/// The size of a memory in bytes.
-pub const SIZE: usize = 1024;
+/// The number of bytes of a memory.
+pub const MEMORY_BYTES: usize = 1024;
 
 /// The number of bytes in a record's content.
 pub const CONTENT_BYTES: usize = 42;
 
-// The parity of the step selects the byte of the CRC.
+// `RecordWrite::advance` takes the byte of the CRC from the parity of the step.
 const _: () = assert!(CONTENT_BYTES.is_multiple_of(2));
 
 /// The content of a record.
 pub type Content = [u8; CONTENT_BYTES];
 
-/// The number of bytes in a record: the mark, the content, the CRC.
+/// The number of bytes in a record: the mark, the content and the CRC.
 pub const RECORD_BYTES: u16 = CONTENT_BYTES as u16 + 3;
 
 /// The first byte of a valid record.
@@ -49,9 +49,9 @@ pub struct Address(pub u16);
 pub enum RecordState {
     /// The bytes of the record were never written.
     Blank,
-    /// A record that was invalidated, was not written to its end, or has changed since.
+    /// The record was invalidated, was not written to its end, or has changed since.
     Damaged,
-    /// A valid record.
+    /// The record's mark and CRC are correct.
     Valid,
 }
 
@@ -60,33 +60,33 @@ pub enum RecordState {
 pub enum Progress {
     /// There is more to write, or the memory is not ready.
     InProgress,
-    /// All bytes are written and read back.
+    /// All bytes have been written and read back.
     Done,
     /// The memory does not keep what was written.
     Failed,
 }
 
-/// The progress of the byte of the current step.
+/// The progress of the current step's byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Starts at 1, since `None` has to be zero: see `Main::new`.
+// Starts at 1, because `None::<RecordWrite>` has to be zero: see `Main::new`.
 #[repr(u8)]
 enum ByteState {
-    /// To be written, unless the memory holds this value already.
+    /// The byte is to be written, unless the memory holds its value already.
     ToWrite = 1,
-    /// Written, to be read back.
+    /// The byte has been written and is to be read back.
     Written,
 }
 
-/// A record that is being written, a byte at a time.
+/// A write or an invalidation of a record that is in progress, a byte at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Writing {
+pub struct RecordWrite {
     address: Address,
-    /// The step: 0 removes the mark, each of the next writes a byte, and the last one writes
+    /// The present step: step 0 removes the mark, each of the next steps writes a byte, and the last step writes
     /// the mark again.
     step: u8,
     /// The last step.
     last_step: u8,
-    byte: ByteState,
+    byte_state: ByteState,
 }
 
 impl Address {
@@ -94,7 +94,7 @@ impl Address {
     #[inline(never)]
     pub fn check<M: Memory>(self, memory: &M) -> RecordState {
         let mut content = [0; CONTENT_BYTES];
-        self.fetch(memory, &mut content);
+        self.read_content(memory, &mut content);
         let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT_BYTES as u16 + n));
         let mark = memory.read(self.0);
         if mark == VALID_MARK && crc == Checksum::of(&content).0.to_le_bytes() {
@@ -106,9 +106,9 @@ impl Address {
         }
     }
 
-    /// Reads the content without a check.
+    /// Reads the content without checking mark and CRC.
     #[inline(never)]
-    pub fn fetch<M: Memory>(self, memory: &M, content: &mut Content) {
+    pub fn read_content<M: Memory>(self, memory: &M, content: &mut Content) {
         let mut address = self.0;
         for byte in content {
             address += 1;
@@ -117,34 +117,34 @@ impl Address {
     }
 
     /// Reads a byte of the content.
-    pub fn byte<M: Memory>(self, memory: &M, index: u16) -> u8 {
+    pub fn read_byte<M: Memory>(self, memory: &M, index: u16) -> u8 {
         memory.read(self.0 + 1 + index)
     }
 
     /// Begins to write a record.
-    pub const fn start_write(self) -> Writing {
-        Writing {
+    pub const fn start_write(self) -> RecordWrite {
+        RecordWrite {
             address: self,
             step: 0,
             last_step: RECORD_BYTES as u8,
-            byte: ByteState::ToWrite,
+            byte_state: ByteState::ToWrite,
         }
     }
 
     /// Begins to invalidate a record.
-    pub const fn start_invalidation(self) -> Writing {
-        Writing {
+    pub const fn start_invalidation(self) -> RecordWrite {
+        RecordWrite {
             last_step: 0,
             ..self.start_write()
         }
     }
 }
 
-impl Writing {
-    /// Does a step: writes one byte at most, and none that the memory already holds.
-    /// `content` must be the same in every step.
+impl RecordWrite {
+    /// Advances by at most one byte; a byte that the memory already holds is not written.
+    /// `content` must be the same in every call.
     #[inline(never)]
-    pub fn step<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
+    pub fn advance<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
         if !memory.is_ready() {
             return Progress::InProgress;
         }
@@ -160,16 +160,16 @@ impl Writing {
         };
         let address = self.address.0 + offset;
         if memory.read(address) != byte {
-            if self.byte == ByteState::Written {
+            if self.byte_state == ByteState::Written {
                 return Progress::Failed;
             }
-            self.byte = ByteState::Written;
+            self.byte_state = ByteState::Written;
             memory.write(address, byte);
         } else if self.step == self.last_step {
             return Progress::Done;
         } else {
             self.step += 1;
-            self.byte = ByteState::ToWrite;
+            self.byte_state = ByteState::ToWrite;
         }
         Progress::InProgress
     }
@@ -199,20 +199,21 @@ mod tests {
     }
 
     /// Writes a record to its end.
-    fn write(eeprom: &mut Eeprom, content: &Content) -> Progress {
-        let mut writing = ADDRESS.start_write();
+    fn write_record(eeprom: &mut Eeprom, content: &Content) -> Progress {
+        let mut record_write = ADDRESS.start_write();
         for _ in 0..10_000 {
-            match writing.step(content, eeprom) {
+            match record_write.advance(content, eeprom) {
                 Progress::InProgress => {}
                 result => return result,
             }
         }
-        panic!("it never ends");
+        panic!("the write never ends");
     }
 
-    fn read(eeprom: &Eeprom) -> (RecordState, Content) {
+    /// The record's state, and its content even if the record is not valid.
+    fn read_record(eeprom: &Eeprom) -> (RecordState, Content) {
         let mut content = [0; CONTENT_BYTES];
-        ADDRESS.fetch(eeprom, &mut content);
+        ADDRESS.read_content(eeprom, &mut content);
         (ADDRESS.check(eeprom), content)
     }
 
@@ -221,27 +222,27 @@ mod tests {
 
         #[test]
         fn a_record_reads_back_as_written_and_no_other_byte_changes(
-            first in any_content(),
-            second in any_content(),
-            slowness in 0u16..4,
+            first_content in any_content(),
+            second_content in any_content(),
+            write_delay in 0u16..4,
         ) {
             let mut eeprom = Eeprom::blank();
-            eeprom.slowness = slowness;
-            prop_assert_eq!(read(&Eeprom::blank()).0, RecordState::Blank);
-            for content in [first, second] {
-                prop_assert_eq!(write(&mut eeprom, &content), Progress::Done);
-                eeprom.slowness = 0;
-                let eeprom = Eeprom::with(*eeprom.bytes());
-                prop_assert_eq!(read(&eeprom), (RecordState::Valid, content));
+            eeprom.write_delay = write_delay;
+            prop_assert_eq!(read_record(&Eeprom::blank()).0, RecordState::Blank);
+            for content in [first_content, second_content] {
+                prop_assert_eq!(write_record(&mut eeprom, &content), Progress::Done);
+                eeprom.write_delay = 0;
+                let eeprom = Eeprom::with_bytes(*eeprom.bytes());
+                prop_assert_eq!(read_record(&eeprom), (RecordState::Valid, content));
             }
             let is_outside = |address: &usize| !(64..64 + usize::from(RECORD_BYTES)).contains(address);
             prop_assert!((0..1024).filter(is_outside).all(|address| eeprom.bytes()[address] == ERASED));
         }
 
         #[test]
-        fn the_crc_is_that_of_the_catalogue(content in any_content()) {
+        fn the_crc_is_crc_16_ibm_3740(content in any_content()) {
             let mut eeprom = Eeprom::blank();
-            write(&mut eeprom, &content);
+            write_record(&mut eeprom, &content);
             // CRC-16/IBM-3740, bit by bit.
             let mut crc = 0xffffu16;
             for byte in content {
@@ -258,16 +259,16 @@ mod tests {
     fn rewriting_touches_only_the_mark_and_bytes_that_differ() {
         let mut eeprom = Eeprom::blank();
         let mut content = [7; CONTENT_BYTES];
-        write(&mut eeprom, &content);
+        write_record(&mut eeprom, &content);
         eeprom.log.clear();
-        write(&mut eeprom, &content);
+        write_record(&mut eeprom, &content);
         assert_eq!(
             eeprom.log,
             [(64, VALID_MARK, ERASED), (64, ERASED, VALID_MARK)]
         );
         eeprom.log.clear();
         content[5] = 8;
-        write(&mut eeprom, &content);
+        write_record(&mut eeprom, &content);
         let addresses: Vec<u16> = eeprom.log.iter().map(|(address, ..)| *address).collect();
         assert_eq!(addresses[0], 64);
         assert_eq!(addresses[1], 64 + 6);
@@ -282,17 +283,20 @@ mod tests {
     fn a_memory_that_keeps_nothing_is_detected() {
         let mut eeprom = Eeprom::blank();
         eeprom.is_worn = true;
-        assert_eq!(write(&mut eeprom, &[1; CONTENT_BYTES]), Progress::Failed);
+        assert_eq!(
+            write_record(&mut eeprom, &[1; CONTENT_BYTES]),
+            Progress::Failed
+        );
     }
 
     #[test]
-    fn a_removed_record_is_not_read_and_its_bytes_stay() {
+    fn an_invalidated_record_is_damaged_and_keeps_its_content() {
         let mut eeprom = Eeprom::blank();
-        write(&mut eeprom, &[3; CONTENT_BYTES]);
+        write_record(&mut eeprom, &[3; CONTENT_BYTES]);
         let bytes_before = *eeprom.bytes();
-        let mut writing = ADDRESS.start_invalidation();
-        while writing.step(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
-        assert_eq!(read(&eeprom).0, RecordState::Damaged);
+        let mut record_write = ADDRESS.start_invalidation();
+        while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
+        assert_eq!(read_record(&eeprom).0, RecordState::Damaged);
         assert_eq!(eeprom.bytes()[64], ERASED);
         assert_eq!(eeprom.bytes()[65..], bytes_before[65..]);
     }

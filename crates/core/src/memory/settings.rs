@@ -4,13 +4,13 @@
 //! In RAM the settings have the same bytes as in the EEPROM, so neither saving nor
 //! loading converts anything.
 //!
-//! | byte | what |
+//! | byte | content |
 //! |---|---|
-//! | 0 | [`FORMAT`] |
+//! | 0 | [`FORMAT_VERSION`] |
 //! | 1 | the save number, increased by every `save` that changes a setting |
-//! | 2 | hash of the servos that the settings are for, 4 bytes |
-//! | 6 | for each servo trim, gain, clockwise and counter-clockwise limit, 2 bytes each |
-//! | 38 | `boot`: 0 for `rest`, else the [`key`] of a gait |
+//! | 2 | the hash of the servos that the settings are for, 4 bytes |
+//! | 6 | for each servo the trim, the gain, the clockwise and the counter-clockwise limit, 2 bytes each |
+//! | 38 | `boot`: 0 for `rest`, otherwise the [`gait_key`] of a gait |
 //! | 40 | `deadman`, ms |
 
 use crate::memory::adjustment::Adjustment;
@@ -22,15 +22,15 @@ use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sweep;
 
-/// The format of the bytes, increased when their meaning changes.
-pub const FORMAT: u8 = 1;
+/// The version of the bytes' format, increased when their meaning changes.
+pub const FORMAT_VERSION: u8 = 1;
 
-/// The offset of the save number.
-pub const SAVE_NUMBER: usize = 1;
-const HASH: usize = 2;
-const SERVOS: usize = 6;
-const BOOT: usize = 38;
-const DEADMAN: usize = 40;
+/// The offset of the save number in the bytes; the other offsets are those of the table above.
+pub const SAVE_NUMBER_OFFSET: usize = 1;
+const HASH_OFFSET: usize = 2;
+const ADJUSTMENTS_OFFSET: usize = 6;
+const BOOT_OFFSET: usize = 38;
+const DEADMAN_OFFSET: usize = 40;
 
 /// The robot's action three seconds after power-on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,26 +59,26 @@ impl Settings {
         let mut settings = Self::NONE;
         settings.set_header(robot);
         for servo in Servo::all() {
-            settings.set_servo(servo, Adjustment::of(&robot.calibration_of(servo)));
+            settings.set_adjustment(servo, Adjustment::of(&robot.calibration_of(servo)));
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
         settings
     }
 
-    /// Sets format and servo hash to those of a robot.
+    /// Sets the format version, and the servo hash to that of a robot.
     fn set_header(&mut self, robot: &Robot) {
-        self.bytes[0] = FORMAT;
+        self.bytes[0] = FORMAT_VERSION;
         let hash = robot.servo_hash();
-        self.put(HASH, hash as u16);
-        self.put(HASH + 2, (hash >> 16) as u16);
+        self.put(HASH_OFFSET, hash as u16);
+        self.put(HASH_OFFSET + 2, (hash >> 16) as u16);
     }
 
-    /// A record that keeps a pose instead of settings: each servo's sweep takes the place of its trim.
+    /// A record that holds a pose instead of settings: each servo's sweep takes the place of its trim.
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
         let mut record = Self::NONE;
         record.set_header(robot);
-        let mut offset = SERVOS;
+        let mut offset = ADJUSTMENTS_OFFSET;
         for sweep in &pose.0 {
             record.put(offset, sweep.0 as u16);
             offset += 8;
@@ -86,11 +86,11 @@ impl Settings {
         record
     }
 
-    /// The trims as the sweeps of a pose; for a record of [`Settings::of_pose`], the pose that it keeps.
+    /// The trims as the sweeps of a pose; for a record of [`Settings::of_pose`], the pose that it holds.
     #[inline(never)]
     pub fn pose(&self) -> Pose {
         let mut pose = Pose::NEUTRAL;
-        let mut offset = SERVOS;
+        let mut offset = ADJUSTMENTS_OFFSET;
         for sweep in &mut pose.0 {
             sweep.0 = self.get(offset) as i16;
             offset += 8;
@@ -113,44 +113,44 @@ impl Settings {
         &mut self.bytes
     }
 
-    /// True if the settings have the format [`FORMAT`] and belong to the servos of this robot.
+    /// True if the settings have the format [`FORMAT_VERSION`] and belong to the servos of this robot.
     pub fn is_for(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
-        self.bytes[0] == FORMAT
-            && self.get(HASH) == hash as u16
-            && self.get(HASH + 2) == (hash >> 16) as u16
+        self.bytes[0] == FORMAT_VERSION
+            && self.get(HASH_OFFSET) == hash as u16
+            && self.get(HASH_OFFSET + 2) == (hash >> 16) as u16
     }
 
     /// The number of this save, modulo 256.
     pub const fn save_number(&self) -> u8 {
-        self.bytes[SAVE_NUMBER]
+        self.bytes[SAVE_NUMBER_OFFSET]
     }
 
     /// Sets the number of this save.
     pub const fn set_save_number(&mut self, number: u8) {
-        self.bytes[SAVE_NUMBER] = number;
+        self.bytes[SAVE_NUMBER_OFFSET] = number;
     }
 
     /// The adjustment of a servo.
-    pub fn servo(&self, servo: Servo) -> Adjustment {
-        let number_at = |n: usize| self.get(SERVOS + 8 * servo.index() + 2 * n) as i16;
+    pub fn adjustment(&self, servo: Servo) -> Adjustment {
+        let number_at = |n: usize| self.get(ADJUSTMENTS_OFFSET + 8 * servo.index() + 2 * n) as i16;
         Adjustment {
             trim: Sweep(number_at(0)),
             gain: number_at(1),
-            min: Sweep(number_at(2)),
-            max: Sweep(number_at(3)),
+            travel_min: Sweep(number_at(2)),
+            travel_max: Sweep(number_at(3)),
         }
     }
 
     /// Sets a servo's adjustment.
-    pub fn set_servo(&mut self, servo: Servo, adjustment: Adjustment) {
+    pub fn set_adjustment(&mut self, servo: Servo, adjustment: Adjustment) {
         let numbers = [
             adjustment.trim.0,
             adjustment.gain,
-            adjustment.min.0,
-            adjustment.max.0,
+            adjustment.travel_min.0,
+            adjustment.travel_max.0,
         ];
-        let mut offset = SERVOS + 8 * servo.index();
+        let mut offset = ADJUSTMENTS_OFFSET + 8 * servo.index();
         for number in numbers {
             self.put(offset, number as u16);
             offset += 2;
@@ -159,11 +159,12 @@ impl Settings {
 
     /// The action after power-on; `stand` in place of a gait that no longer exists.
     pub fn boot(&self, robot: &Robot) -> Boot {
-        let saved_key = self.get(BOOT);
+        let saved_key = self.get(BOOT_OFFSET);
         if saved_key == 0 {
             return Boot::Rest;
         }
-        let gait = GaitId::all(robot.gait_count()).find(|id| key(robot.name(*id)) == saved_key);
+        let gait =
+            GaitId::all(robot.gait_count()).find(|id| gait_key(robot.gait_name(*id)) == saved_key);
         Boot::Gait(gait.unwrap_or(GaitId::STAND))
     }
 
@@ -171,37 +172,38 @@ impl Settings {
     pub fn set_boot(&mut self, boot: Boot, robot: &Robot) {
         let saved_key = match boot {
             Boot::Rest => 0,
-            Boot::Gait(id) => key(robot.name(id)),
+            Boot::Gait(id) => gait_key(robot.gait_name(id)),
         };
-        self.put(BOOT, saved_key);
+        self.put(BOOT_OFFSET, saved_key);
     }
 
     /// The time without a command after which a gait ends, ms; 0 for never.
-    pub fn deadman(&self) -> u16 {
-        self.get(DEADMAN)
+    pub fn deadman_ms(&self) -> u16 {
+        self.get(DEADMAN_OFFSET)
     }
 
     /// Sets the time without a command after which a gait ends, ms; 0 for never.
-    pub fn set_deadman(&mut self, ms: u16) {
-        self.put(DEADMAN, ms);
+    pub fn set_deadman_ms(&mut self, ms: u16) {
+        self.put(DEADMAN_OFFSET, ms);
     }
 
     /// The calibration of a servo, with its adjustment applied.
     #[inline(never)]
     pub fn calibration(&self, servo: Servo, robot: &Robot) -> Calibration {
-        self.servo(servo).apply(&robot.calibration_of(servo))
+        self.adjustment(servo).apply(&robot.calibration_of(servo))
     }
 
-    /// The first servo whose travel does not include the neutral angle and all sweeps of the gaits; `None` if every
-    /// travel does.
+    /// The first servo whose travel does not include the neutral angle and all sweeps of the gaits; `None` if there is
+    /// no such servo.
     #[inline(never)]
     pub fn first_unfit_servo(&self, robot: &Robot) -> Option<Servo> {
         Servo::all().find(|servo| {
             let calibration = self.calibration(*servo, robot);
-            !robot.reach(*servo).is_within(&calibration)
+            !robot.needed_travel(*servo).is_within(&calibration)
         })
     }
 
+    /// The 16-bit number at an offset.
     fn get(&self, offset: usize) -> u16 {
         match self.bytes.get(offset..) {
             Some([low, high, ..]) => u16::from_le_bytes([*low, *high]),
@@ -209,6 +211,7 @@ impl Settings {
         }
     }
 
+    /// Stores a 16-bit number at an offset.
     fn put(&mut self, offset: usize, number: u16) {
         if let Some([low, high, ..]) = self.bytes.get_mut(offset..) {
             [*low, *high] = number.to_le_bytes();
@@ -216,10 +219,10 @@ impl Settings {
     }
 }
 
-/// The number under which a gait is saved. It is made from the gait's name, so that the gait
-/// is found again when robot.toml has other gaits. Never 0. The host that makes a robot has
+/// The number under which a gait is saved, never 0. It is a hash of the gait's name, so that the gait
+/// is found again when robot.toml has other gaits. The host that makes a robot has
 /// checked that no two of its gaits have the same number.
-pub fn key(name: impl Iterator<Item = u8>) -> u16 {
+pub fn gait_key(name: impl Iterator<Item = u8>) -> u16 {
     let mut hash = 0u16;
     for byte in name {
         hash = (hash << 5).wrapping_sub(hash).wrapping_add(byte.into());

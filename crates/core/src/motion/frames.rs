@@ -1,36 +1,34 @@
 //! The robot's motion: one pose every 20 ms, whatever the commands are.
 //!
-//! A servo that gets a distant angle turns as fast as it can. If all four do, the supply
-//! sags. So no pose here ever jumps. A change from any motion to any other has three
-//! parts, each continuous in speed:
+//! A servo that is sent to a distant angle turns as fast as it can. If all four do so, the supply sags. So the pose
+//! never jumps. A change from one motion to another has three parts, each with a continuous speed:
 //!
-//! 1. the old motion brakes along its own path (a gait within its cycle, a move within
-//!    its line), so that it passes only poses that have been checked;
-//! 2. one point-to-point move, at most at the slew limit, leads to where the new
-//!    motion begins, all servos arriving together;
+//! 1. the old motion brakes along its own path (a gait along its cycle, a move along its line), so that it passes only
+//!    poses that have been checked;
+//! 2. a point-to-point move within the slew limit leads to the pose in which the new motion begins; all servos arrive
+//!    together;
 //! 3. the new gait reaches its pace gradually.
 //!
 //! `stop` skips the braking and freezes the pose in the next frame; `rest` ends the pulses.
 //!
 //! # States
-//! The effect of each command and of each frame, by state. "That next" makes the commanded
-//! gait or pose the target that follows the present motion; "-" changes nothing. "Standing
-//! still" is a pace of 0.
+//! The effect of each command and of each frame, by state. A command *queues* its gait or pose: this becomes the next
+//! target, which follows the present motion. At a pace of 0 a motion stands still. "-" means no change.
 //!
 //! | state | command | frame |
 //! |---|---|---|
-//! | `Resting`: no pulses | a gait or a pose: `Holding`, that next, and servos wake; `rest`, `stop`: - | stays |
-//! | `Holding` a pose | a gait or a pose: that next | with a next: `Moving` towards it |
-//! | `Moving` to a pose | a gait or a pose: that next; the gait it leads to: - | brakes if there is a next, and once it stands still is `Moving` towards that; arrived, it is `Holding`, or `Cycling` from phase 0 |
-//! | `Cycling` through a gait | another gait or a pose: that next; the same gait: - | brakes if there is a next, and once it stands still is `Moving` towards that |
-//! | any but `Resting` | `stop`: `Holding`; `rest`: `Resting`; nothing next | an unsafe pose: `Holding` the last one, nothing next, with the reason |
+//! | `Resting`: no pulses | a gait or a pose: queued, `Holding`, and the servos wake; `rest`, `stop`: - | - |
+//! | `Holding` a pose | a gait or a pose: queued | with a next target: `Moving` towards it |
+//! | `Moving` to a pose | a gait or a pose: queued; the gait to which the move leads: - | with a next target: brakes, then is `Moving` towards that target; without: on arrival `Holding`, or `Cycling` from phase 0 |
+//! | `Cycling` through a gait | another gait or a pose: queued; the same gait: - | with a next target: brakes, then is `Moving` towards that target |
+//! | any but `Resting` | `stop`: `Holding`, no next target; `rest`: `Resting`, no next target | if its pose is unsafe: `Holding` the last pose, no next target, and the hazard is kept |
 //!
-//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every state, while the pulses
-//! move to their new widths at the slew limit. After that the motion speeds up again from a pace of 0.
+//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every state, while the pulses move
+//! to their new widths at the slew limit. After that the motion speeds up again from a pace of 0.
 //!
-//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that has not passed is
-//! never sent; the last safe pose is held instead, and the reason is kept for the console. The 50 Hz call of
-//! [`Motion::tick`] is the only clock, so the pace cannot depend on how busy the processor is.
+//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that has not passed is never sent;
+//! the last safe pose is held instead, and the hazard is kept for the console. The 50 Hz call of [`Motion::tick`] is
+//! the only clock, so the pace cannot depend on the load of the processor.
 
 use lizard_avr::Region;
 
@@ -38,59 +36,61 @@ use crate::guard::clearance;
 use crate::guard::hazard::Hazard;
 use crate::memory::restart::Stance;
 use crate::motion::pace;
-use crate::motion::point_to_point::PointToPoint;
+use crate::motion::point_to_point::PointToPointMove;
 use crate::motion::state::{Activity, State, Target};
 use crate::numbers::calibration::Calibration;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::robot::Robot;
-use crate::numbers::section::Damage;
+use crate::numbers::section::SectionError;
 
-use count::Count;
+use count::CycleCount;
 
 mod count;
 mod report;
 mod resume;
 
-/// Frames from the wake-up of one servo to that of the next, 0.1 s, to spare the supply.
+/// Frames from the wake-up of one servo to that of the next: 0.1 s, so that the supply does not sag.
 const WAKE_INTERVAL_FRAMES: u8 = 5;
 
-/// The speed setting at which a gait has its own pace, percent.
-const FULL_PERCENT: u8 = 100;
+/// The speed setting at which a gait runs at its own pace, percent.
+const FULL_SPEED_PERCENT: u8 = 100;
 
 /// Frames from the command that wakes the servos until all four are awake and motion may begin.
 pub const AWAKE_FRAMES: u8 = 4 * WAKE_INTERVAL_FRAMES;
 
-/// The motion of a robot: its state, its target and the pulses of the last frame.
+/// The motion of a robot: its state, its next target and the pulses of the last frame.
 #[derive(Clone, Debug)]
 pub struct Motion {
     robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
-    /// The target after the present motion has stopped; always `None` while the robot rests.
-    next: Option<Target>,
-    /// The cycles left of the gait that is under way or comes next.
-    count: Count,
-    /// True in the frame in which a gait has ended.
-    has_ended: bool,
-    /// Percent of the gaits' own pace.
-    speed: u8,
+    /// The target that follows once the present motion stands still; always `None` while the robot rests.
+    next_target: Option<Target>,
+    /// The count of the cycles of the gait that is under way or comes next.
+    cycle_count: CycleCount,
+    /// True in the frame in which the robot has come to a standstill, see [`Target::Standstill`].
+    has_come_to_standstill: bool,
+    /// The pace of gaits, in percent of their own.
+    speed_percent: u8,
     /// True while the supply limits the pace to [`Robot::slow_pace`].
     is_slow: bool,
     /// True while the pulses move to a new calibration's widths.
     is_settling: bool,
     /// The servos' state; `is_resting` is true in [`State::Resting`] only.
     stance: Stance,
+    /// The hazard for which the guard stopped the robot; `None` once another motion has begun.
     hazard: Option<Hazard>,
-    frames: u32,
+    /// Frames since power-on.
+    frame_count: u32,
 }
 
 impl Motion {
-    /// The robot at power-on: waking, then standing.
+    /// The motion of a robot at power-on: its servos wake, then it stands.
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unstarted(robot);
-        motion.speed = FULL_PERCENT;
+        motion.speed_percent = FULL_SPEED_PERCENT;
         motion.begin();
         for servo in Servo::all() {
             motion.calibrate(servo, motion.robot.calibration_of(servo));
@@ -98,17 +98,17 @@ impl Motion {
         motion
     }
 
-    /// A motion that has not begun. With [`Robot::NONE`] every bit is zero, so that it needs no copy in flash.
-    /// [`Motion::take_robot`] or [`Motion::begin`] has to follow, and the calibration of every servo.
+    /// A motion that has not begun. With [`Robot::NONE`] all its bits are zero, so it needs no initial value in flash.
+    /// [`Motion::load_robot`] or [`Motion::begin`] has to follow, then [`Motion::calibrate`] for every servo.
     pub const fn unstarted(robot: Robot<'static>) -> Self {
         Self {
             calibration: [Calibration::NONE; 4],
             state: State::Resting,
             robot,
-            next: None,
-            count: Count::NONE,
-            has_ended: false,
-            speed: 0,
+            next_target: None,
+            cycle_count: CycleCount::NONE,
+            has_come_to_standstill: false,
+            speed_percent: 0,
             is_slow: false,
             is_settling: false,
             stance: Stance {
@@ -116,17 +116,16 @@ impl Motion {
                 ..Stance::RESTING
             },
             hazard: None,
-            frames: 0,
+            frame_count: 0,
         }
     }
 
-    /// Loads the robot at the beginning of `flash`; the calibration of every servo has to
-    /// follow.
+    /// Loads the robot at the beginning of `flash`; [`Motion::calibrate`] has to follow for every servo.
     ///
     /// # Errors
     /// Returns the reason why the flash holds no usable robot.
-    pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
-        self.speed = FULL_PERCENT;
+    pub fn load_robot(&mut self, flash: Region<'static>) -> Result<(), SectionError> {
+        self.speed_percent = FULL_SPEED_PERCENT;
         self.stance.is_resting = true;
         self.robot = Robot::open(flash)?;
         Ok(())
@@ -143,7 +142,7 @@ impl Motion {
         &self.robot
     }
 
-    /// The servos' pulses and travel.
+    /// The calibration of the servos.
     pub const fn calibration(&self) -> &[Calibration; 4] {
         &self.calibration
     }
@@ -158,8 +157,7 @@ impl Motion {
         self.calibration = *calibration;
     }
 
-    /// Moves the pulses to the new calibration, at the slew limit. Nothing else moves
-    /// meanwhile.
+    /// Moves the pulses to the widths of a new calibration, at the slew limit; the pose stays as it is meanwhile.
     pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
@@ -167,15 +165,15 @@ impl Motion {
         self.is_settling = true;
     }
 
-    /// True if the present pose or a target would be beyond the travel of `servo` with
-    /// `calibration`.
-    pub fn goes_beyond(&self, servo: Servo, calibration: &Calibration) -> bool {
+    /// True if the present pose, the end of the present move or the next target is beyond the travel that `servo` has
+    /// with `calibration`.
+    pub fn exceeds_travel(&self, servo: Servo, calibration: &Calibration) -> bool {
         let is_beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
         let is_target_beyond = match &self.state {
             State::Moving { path, .. } => is_beyond(path.target()),
             _ => false,
         };
-        let is_next_beyond = match &self.next {
+        let is_next_beyond = match &self.next_target {
             Some(Target::Pose(pose)) => is_beyond(pose),
             _ => false,
         };
@@ -187,46 +185,46 @@ impl Motion {
         &self.stance
     }
 
-    /// Starts a gait with a move to its first pose, or continues it if it is already under way.
-    /// After `cycles` more cycles the gait brakes, and the robot holds the pose in which it
-    /// stops; with 0 the gait goes on without end.
+    /// Starts a gait with a move to its first pose, or continues it if it is already under way. After `cycles` more
+    /// cycles the gait brakes, and the robot holds the pose in which it stops; with 0 the gait does not end.
     #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId, cycles: u16) {
         if self.activity() != Activity::Gait(id) {
-            self.set_target(Target::Gait(id));
-        } else if let Some(Target::End) = self.next {
-            self.next = None;
+            self.queue_target(Target::Gait(id));
+        } else if let Some(Target::Standstill) = self.next_target {
+            self.next_target = None;
         }
-        self.count.cycles_left = cycles;
-        self.count.phase_covered = 0;
+        self.cycle_count.cycles_left = cycles;
+        self.cycle_count.phase_covered = 0;
     }
 
-    /// Brakes the gait or move under way, cancels the next target, and holds the pose in which the robot
-    /// stops. Returns false if nothing is under way or comes next.
+    /// Brakes the gait or move that is under way, cancels the next target, and holds the pose in which the robot stops.
+    /// Returns false if no motion is under way or comes next.
     #[inline(never)]
-    pub fn end_gait(&mut self) -> bool {
-        let is_moving = self.next.is_some()
+    pub fn brake_to_standstill(&mut self) -> bool {
+        let is_moving = self.next_target.is_some()
             || matches!(self.state, State::Moving { .. } | State::Cycling { .. });
         if is_moving {
-            self.next = Some(Target::End);
+            self.next_target = Some(Target::Standstill);
         }
         is_moving
     }
 
-    /// True if a gait ended in the last frame and the robot stands still.
-    pub const fn has_ended(&self) -> bool {
-        self.has_ended
+    /// True if in the last frame the robot came to a standstill: its gait had run for its count of cycles, or
+    /// [`Motion::brake_to_standstill`] was called.
+    pub const fn has_come_to_standstill(&self) -> bool {
+        self.has_come_to_standstill
     }
 
-    /// Goes to a pose within the servos' travel.
+    /// Queues a move to a pose.
     ///
     /// # Errors
-    /// Returns the limit that the pose breaks; nothing has changed.
+    /// Returns the limit that the pose breaks; then nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
         match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
             None => {
-                self.set_target(Target::Pose(*pose));
+                self.queue_target(Target::Pose(*pose));
                 Ok(())
             }
         }
@@ -246,67 +244,67 @@ impl Motion {
 
     /// Sets the pace of gaits, in percent of their own, 10..=100.
     pub fn set_speed(&mut self, percent: u8) {
-        self.speed = percent;
+        self.speed_percent = percent;
     }
 
-    /// Limits gaits to the pace of a low supply, or ends the limit.
+    /// Limits gaits to [`Robot::slow_pace`] because of a low supply, or removes this limit.
     pub fn set_slow(&mut self, is_slow: bool) {
         self.is_slow = is_slow;
     }
 
     /// Computes the pulses of the next frame.
     pub fn tick(&mut self) -> Pulses {
-        self.frames = self.frames.wrapping_add(1);
-        self.has_ended = false;
+        self.frame_count = self.frame_count.wrapping_add(1);
+        self.has_come_to_standstill = false;
         let mut pulses = Pulses::default();
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        let awake_before = self.stance.frames_awake;
-        if awake_before < AWAKE_FRAMES {
-            self.stance.frames_awake = awake_before + 1;
+        let frames_awake_before = self.stance.frames_awake;
+        if frames_awake_before < AWAKE_FRAMES {
+            self.stance.frames_awake = frames_awake_before + 1;
         } else if !self.is_settling {
             self.advance_motion();
         }
-        // While the pulses settle, they change by at most the slew limit per frame.
+        // While the pulses settle, the slew limit bounds their change per frame.
         let per_frame = self.robot.slew().per_frame;
-        let is_first = self.frames == 1;
-        let mut is_settling = false;
-        let mut wakes_at = WAKE_INTERVAL_FRAMES;
+        let is_first_frame = self.frame_count == 1;
+        let mut is_still_settling = false;
+        let mut wake_frame = WAKE_INTERVAL_FRAMES;
         for (index, pulse) in pulses.0.iter_mut().enumerate() {
-            let servo = &self.calibration[index];
-            let sent = &mut self.stance.sent.0[index];
-            let is_asleep = self.stance.frames_awake < wakes_at;
-            let mut width = servo.width(self.stance.pose.0[index]);
-            if self.is_settling && sent.0 != 0 {
+            let calibration = &self.calibration[index];
+            let sent_width = &mut self.stance.sent_pulses.0[index];
+            let is_asleep = self.stance.frames_awake < wake_frame;
+            let mut width = calibration.width(self.stance.pose.0[index]);
+            if self.is_settling && sent_width.0 != 0 {
                 // A servo's first pulse repeats the last stored width, even one from before a
                 // reset: the reset may have come while the pulses were settling, or before a
                 // stored width was sent.
-                let is_repeated = is_first || awake_before < wakes_at;
+                let is_repeated = is_first_frame || frames_awake_before < wake_frame;
                 let max_change = if is_repeated {
                     0
                 } else {
-                    servo.slew(per_frame)
+                    calibration.max_width_change(per_frame)
                 };
                 let target_width = width.0;
                 width.0 = target_width
-                    .max(sent.0.saturating_sub(max_change))
-                    .min(sent.0.saturating_add(max_change));
-                is_settling |= width.0 != target_width;
+                    .max(sent_width.0.saturating_sub(max_change))
+                    .min(sent_width.0.saturating_add(max_change));
+                is_still_settling |= width.0 != target_width;
             }
-            *sent = width;
+            *sent_width = width;
             if !is_asleep {
                 *pulse = width;
             }
-            wakes_at += WAKE_INTERVAL_FRAMES;
+            wake_frame += WAKE_INTERVAL_FRAMES;
         }
-        self.is_settling = is_settling;
+        self.is_settling = is_still_settling;
         pulses
     }
 
     /// The present activity, or the one that the robot is moving to.
     pub const fn activity(&self) -> Activity {
-        match (self.next, self.state) {
+        match (self.next_target, self.state) {
             (Some(Target::Gait(id)), _) => Activity::Gait(id),
             (Some(Target::Pose(_)), _) => Activity::Pose,
             (None, State::Resting) => Activity::Rest,
@@ -314,44 +312,46 @@ impl Motion {
             (None, State::Holding { is_ordered: false }) => Activity::Stop,
             (None, State::Moving { gait: None, .. }) => Activity::Pose,
             (None, State::Moving { gait: Some(id), .. })
-            | (None | Some(Target::End), State::Cycling { id, .. }) => Activity::Gait(id),
-            // A move that ends before its gait has begun.
-            (Some(Target::End), _) => Activity::Stop,
+            | (None | Some(Target::Standstill), State::Cycling { id, .. }) => Activity::Gait(id),
+            // A move that is braking to a standstill.
+            (Some(Target::Standstill), _) => Activity::Stop,
         }
     }
 
-    /// The first limit that a pose breaks.
+    /// The first limit that a pose breaks: a servo's travel, or a limit of the guard.
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
-        match pose.first_beyond_travel(&self.calibration) {
+        match pose.first_servo_beyond_travel(&self.calibration) {
             Some(servo) => Some(Hazard::Travel(servo)),
             None => clearance::find_hazard(&self.robot, pose),
         }
     }
 
-    fn set_target(&mut self, target: Target) {
+    /// Makes `target` the next target, and wakes the servos if the robot rests.
+    fn queue_target(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
             self.state = State::Holding { is_ordered: false };
             self.stance.is_resting = false;
             self.stance.frames_awake = 0;
-            // The servos are still where their last pulses turned them, if they had any; settings that have
+            // The servos are still where their last pulses turned them, if they had any. Settings that have
             // changed since must not make them jump.
             self.is_settling = true;
         }
-        self.next = Some(target);
+        self.next_target = Some(target);
     }
 
+    /// Ends all motion in the present pose; the robot then holds it or rests, as `state` says.
     fn freeze(&mut self, state: State) {
         self.stance.is_resting = matches!(state, State::Resting);
         self.state = state;
-        self.next = None;
+        self.next_target = None;
     }
 
     // Not inlined: in `tick` its registers would cost more than the call.
     #[inline(never)]
     fn advance_motion(&mut self) {
-        self.count();
+        self.count_cycles();
         self.start_next_target();
-        let is_braking = self.next.is_some();
+        let is_braking = self.next_target.is_some();
         let pose = match &mut self.state {
             State::Resting | State::Holding { .. } => return,
             State::Moving { path, pace, .. } => {
@@ -363,9 +363,9 @@ impl Motion {
                 gait, phase, pace, ..
             } => {
                 let percent = if self.is_slow {
-                    self.speed.min(self.robot.slow_pace())
+                    self.speed_percent.min(self.robot.slow_pace())
                 } else {
-                    self.speed
+                    self.speed_percent
                 };
                 *pace = pace::step_toward(
                     *pace,
@@ -392,7 +392,7 @@ impl Motion {
             self.state = match gait {
                 None => State::Holding { is_ordered: true },
                 Some(id) => {
-                    self.count.phase = 0;
+                    self.cycle_count.last_phase = 0;
                     State::cycling(&self.robot, *id)
                 }
             };
@@ -402,13 +402,13 @@ impl Motion {
     /// Begins the move to the next target once the pace of the old motion is 0.
     #[inline(always)]
     fn start_next_target(&mut self) {
-        if let Some(target) = self.next
+        if let Some(target) = self.next_target
             && !matches!(
                 self.state,
                 State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. }
             )
         {
-            self.next = None;
+            self.next_target = None;
             self.move_to(target);
         }
     }
@@ -419,13 +419,13 @@ impl Motion {
         let (target_pose, gait) = match target {
             Target::Pose(pose) => (pose, None),
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
-            Target::End => {
-                self.has_ended = true;
+            Target::Standstill => {
+                self.has_come_to_standstill = true;
                 return self.freeze(State::Holding { is_ordered: false });
             }
         };
         self.state = State::Moving {
-            path: PointToPoint::new(&self.stance.pose, &target_pose, self.robot.slew()),
+            path: PointToPointMove::new(&self.stance.pose, &target_pose, self.robot.slew()),
             pace: pace::FULL_PACE,
             gait,
         };

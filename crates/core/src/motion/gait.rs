@@ -1,9 +1,9 @@
 //! A gait: four sweeps as a function of one phase.
 //!
-//! Feet are never lifted; each leg swings and drags its pad. The robot advances because of the swing's shape and the
-//! order of the legs, so a gait gives each servo a waveform with a phase offset and a gain. A waveform is a table of
-//! 64 samples in flash. Linear interpolation between the samples is within half a degree of the real curve, less than
-//! a hobby servo resolves. The host that makes the tables checks that.
+//! Feet are never lifted; each leg swings and drags its pad on the floor. The robot advances because of the shape of
+//! the swings and the order of the legs. So a gait gives each servo a waveform, a phase offset and a gain. A waveform
+//! is a table of 64 samples in flash. Linear interpolation between the samples is within half a degree of the true
+//! curve, less than a hobby servo resolves; the host that makes the tables checks this.
 
 use lizard_avr::{Flash, mul};
 
@@ -12,7 +12,7 @@ use crate::numbers::pose::Pose;
 use crate::numbers::units::{CYCLE, Sweep, phase16};
 
 impl Gait {
-    /// The pose at `phase` (1/2^24 cycle), read from a robot's waveforms.
+    /// The pose at `phase` (1/2^24 cycle), computed from the waveforms of a robot.
     pub fn pose(&self, waves: Flash<[Wave]>, phase: u32) -> Pose {
         let mut pose = Pose::NEUTRAL;
         for (sweep, channel) in pose.0.iter_mut().zip(&self.channels) {
@@ -36,8 +36,8 @@ impl Channel {
         if self.gain == 0 {
             return Sweep(0);
         }
-        let point = phase.wrapping_add(self.offset);
-        let (index, fraction) = ((point >> 10) as u8, (point >> 2) as u8);
+        let shifted_phase = phase.wrapping_add(self.offset);
+        let (index, fraction) = ((shifted_phase >> 10) as u8, (shifted_phase >> 2) as u8);
         let sample = wave.at(usize::from(index)).load();
         let next_sample = wave.at(usize::from((index + 1) & 0x3f)).load();
         let rise = (mul(next_sample.wrapping_sub(sample), i16::from(fraction)) + 128) >> 8;
@@ -53,7 +53,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::numbers::gaits::SAMPLES;
+    use crate::numbers::gaits::SAMPLES_PER_WAVE;
     use crate::sample::Sample;
 
     const FULL_PACE: u16 = 1024;
@@ -71,8 +71,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn between_two_samples_a_sweep_is_on_the_straight_line(
-            samples in prop::collection::vec(-16_000i16..16_000, SAMPLES),
+        fn a_sweep_between_two_samples_is_on_the_straight_line(
+            samples in prop::collection::vec(-16_000i16..16_000, SAMPLES_PER_WAVE),
             channel in (any::<u16>(), any::<i16>()),
             phase: u16,
         ) {
@@ -81,18 +81,19 @@ mod tests {
             let table = make_wave(|n| samples[n]);
             let actual = f64::from(channel.sweep(Flash::from(&table), phase).0);
             let position = f64::from(phase.wrapping_add(offset)) / 1024.0;
-            let (sample, next_sample) = (samples[position as usize], samples[(position as usize + 1) % SAMPLES]);
+            let (sample, next_sample) = (samples[position as usize], samples[(position as usize + 1) % SAMPLES_PER_WAVE]);
             let rise = f64::from(next_sample) - f64::from(sample);
             let factor = f64::from(gain) / 16384.0;
             let exact = factor * (f64::from(sample) + rise * position.fract());
-            // Half a step before the gain, half a step after it, and the phase's lowest two bits.
+            // Half a step of rounding before the gain, half a step after it, and the two lowest bits of the phase,
+            // which are dropped.
             let max_error = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
             prop_assume!(exact.abs() < 32_000.0);
             prop_assert!((actual - exact).abs() <= max_error, "{actual} for {exact}");
         }
 
         #[test]
-        fn a_cycle_at_any_pace_is_one_way_and_within_the_cycle(
+        fn the_phase_advances_by_the_increment_times_the_pace_and_stays_within_the_cycle(
             increment in -400_000i32..400_000,
             pace in 0..=FULL_PACE,
             phase in 0..CYCLE,
@@ -108,9 +109,9 @@ mod tests {
     }
 
     #[test]
-    fn every_sample_is_met_in_its_turn_and_the_first_follows_the_last() {
+    fn every_sample_is_met_at_its_phase_and_the_first_follows_the_last() {
         let table = make_wave(|n| 100 * n as i16 - 3000);
-        for n in 0..SAMPLES {
+        for n in 0..SAMPLES_PER_WAVE {
             let sweep = PLAIN_CHANNEL.sweep(Flash::from(&table), (n << 10) as u16);
             assert_eq!(sweep, Sweep(table[n]));
         }
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_round_up_between_samples_and_in_the_gain() {
+    fn halves_round_up_after_interpolation_and_after_the_gain() {
         let table = make_wave(|n| [0, 1, 0, -1][n % 4]);
         let sweep_at = |phase, gain| {
             Channel {
@@ -142,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn an_offset_reads_ahead_and_a_negative_gain_turns_the_sense() {
+    fn an_offset_reads_ahead_a_negative_gain_reverses_and_a_zero_gain_holds_still() {
         let robot = Sample::odd();
         let table = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_reads_every_servos_own_channel_of_its_own_waveform() {
+    fn a_pose_reads_each_servos_own_channel_and_waveform() {
         let robot = Sample::odd();
         for gait in &robot.content.gaits {
             for phase in (0..CYCLE).step_by(99_991) {
@@ -182,7 +183,8 @@ mod tests {
     #[test]
     fn a_gait_with_a_negative_increment_is_read_backwards() {
         let robot = Sample::odd();
-        let [forward_gait, backward_gait] = ["sway", "back"].map(|name| robot.gait(robot.id(name)));
+        let [forward_gait, backward_gait] =
+            ["sway", "back"].map(|name| robot.gait(robot.gait_id(name)));
         let mut phases = Vec::from([0]);
         for frame in 0..50 {
             phases.push(forward_gait.advance(phases[frame], FULL_PACE));

@@ -1,6 +1,6 @@
-//! Motion: turns a gait or a target into the pose of each frame.
+//! Motion: turns a gait or a target pose into the pose of each frame.
 //!
-//! [`Motion`] joins gaits and moves so that no servo jumps. Every pose passes the [guard](crate::guard) before it is
+//! [`Motion`] connects gaits and moves so that no servo jumps. Every pose passes the [guard](crate::guard) before it is
 //! sent.
 
 mod frames;

@@ -1,17 +1,17 @@
-//! The pace of a motion, as a share of its full pace.
+//! The pace of a motion: its speed as a share of its full speed.
 //!
-//! A servo with a load cannot change its speed at once, so a motion speeds up when it begins and slows down before it
-//! ends. The pace also sets a gait's speed in percent.
+//! A servo with a load cannot change its speed at once. So a motion gains pace when it begins and loses it before it
+//! ends. The user sets the speed of gaits as a pace in percent.
 
 use lizard_avr::mul_unsigned;
 
-/// Full pace, the largest value of a pace.
+/// The full pace, the largest value of a pace.
 pub const FULL_PACE: u16 = 1024;
 
-/// The change of the pace per frame. A motion gains or loses its full pace in seven frames, 0.14 s. With an odd
-/// number of steps, a gait meanwhile covers the distance of a whole number of frames at full pace. Frames at full
-/// pace then fall exactly on the corners between the gait's moves. If they were half a frame off, two legs would move
-/// at once at each corner, and `crawl` would lose 1.2 % of its distance.
+/// The change of the pace per frame. A motion gains or loses its full pace in seven frames, 0.14 s. Because this number
+/// is odd, a gait meanwhile covers the phase of a whole number of frames at full pace. So later frames fall exactly on
+/// the corners of the waveforms, between the moves of two legs. If they were half a frame off, both legs would move at
+/// once at each corner, and `crawl` would lose 1.2 % of its distance.
 const PACE_STEP: u16 = FULL_PACE.div_ceil(7);
 
 /// The pace one frame later, as it approaches `target`.
@@ -21,8 +21,8 @@ pub fn step_toward(pace: u16, target: u16) -> u16 {
         .min(pace + PACE_STEP)
 }
 
-/// Converts percent to a pace: 2622/256 is 1024/100 to four digits. The error is below one step,
-/// so the slowest pace is right within one percent.
+/// Converts percent to a pace. The factor 2622/256 is 0.02 % more than 1024/100, so the error is below one step of the
+/// pace and, at the lowest pace of 10 %, below one percent of it.
 pub fn of_percent(percent: u8) -> u16 {
     ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
 }
@@ -32,15 +32,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gathering_and_losing_pace_take_whole_frames_of_a_gait() {
+    fn speeding_up_or_braking_covers_a_whole_number_of_frames_at_full_pace() {
         for (from, to) in [(0, FULL_PACE), (FULL_PACE, 0)] {
-            let (mut pace, mut sum) = (from, 0);
+            let (mut pace, mut pace_sum) = (from, 0);
             while pace != to {
                 pace = step_toward(pace, to);
-                sum += pace;
+                pace_sum += pace;
             }
-            let frames = f64::from(sum) / f64::from(FULL_PACE);
-            assert!((frames - frames.round()).abs() < 0.02, "{frames}");
+            let full_pace_frames = f64::from(pace_sum) / f64::from(FULL_PACE);
+            assert!(
+                (full_pace_frames - full_pace_frames.round()).abs() < 0.02,
+                "{full_pace_frames}"
+            );
         }
     }
 

@@ -1,8 +1,8 @@
 //! A point-to-point move: straight from one pose to another.
 //!
-//! All four servos start together, follow one smoothstep and arrive together. The largest turn of a servo sets the
-//! time, so that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half times that of a
-//! steady move.
+//! All four servos start together, follow one smoothstep and arrive together. The largest turn of a servo determines
+//! the duration, so that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half times its
+//! mean speed.
 
 use lizard_avr::{mul, mul_unsigned};
 
@@ -18,16 +18,16 @@ const FULL_DURATION: u16 = 1 << 15;
 
 /// A move in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointToPoint {
+pub struct PointToPointMove {
     from: Pose,
     to: Pose,
-    /// Share of the move's time for each frame at full pace, Q15.
-    step: u16,
-    /// Share of the move's time that has elapsed, Q15.
-    elapsed: u16,
+    /// The share of the move's duration that a frame at full pace covers, Q15.
+    share_per_frame: u16,
+    /// The share of the move's duration that has elapsed, Q15.
+    elapsed_share: u16,
 }
 
-impl PointToPoint {
+impl PointToPointMove {
     /// A move between two poses.
     pub fn new(from: &Pose, to: &Pose, slew: Slew) -> Self {
         let distance = from.largest_turn_to(to);
@@ -35,8 +35,8 @@ impl PointToPoint {
         Self {
             from: *from,
             to: *to,
-            step: FULL_DURATION / frames.max(MIN_FRAMES),
-            elapsed: 0,
+            share_per_frame: FULL_DURATION / frames.max(MIN_FRAMES),
+            elapsed_share: 0,
         }
     }
 
@@ -45,15 +45,15 @@ impl PointToPoint {
         &self.to
     }
 
-    /// Advances the move by a frame, at `pace` (1024 is full).
+    /// Advances the move by a frame, at `pace` (1024 is full pace).
     pub fn advance(&mut self, pace: u16) {
-        let step = (mul_unsigned(self.step, pace) >> 10) as u16;
-        self.elapsed = (self.elapsed + step).min(FULL_DURATION);
+        let step = (mul_unsigned(self.share_per_frame, pace) >> 10) as u16;
+        self.elapsed_share = (self.elapsed_share + step).min(FULL_DURATION);
     }
 
     /// True once the move has arrived.
     pub const fn has_arrived(&self) -> bool {
-        self.elapsed == FULL_DURATION
+        self.elapsed_share == FULL_DURATION
     }
 
     /// The pose at the present time of the move.
@@ -61,19 +61,20 @@ impl PointToPoint {
         if self.has_arrived() {
             return self.to;
         }
-        let share = smoothstep(self.elapsed) as i16;
+        let share = smoothstep(self.elapsed_share) as i16;
         let mut pose = self.from;
         for (sweep, target) in pose.0.iter_mut().zip(&self.to.0) {
-            // Half the turn is multiplied, then doubled, because a turn of more than half a turn would overflow.
-            let half_turn = (target.0 >> 1) - (sweep.0 >> 1);
-            let distance = (mul(half_turn, share) + (1 << 13)) >> 14;
+            // Half the distance is multiplied and the product doubled, because a distance of more than half a turn
+            // would overflow.
+            let half_distance = (target.0 >> 1) - (sweep.0 >> 1);
+            let distance = (mul(half_distance, share) + (1 << 13)) >> 14;
             sweep.0 = sweep.0.wrapping_add(distance as i16);
         }
         pose
     }
 }
 
-/// `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
+/// The smoothstep `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
 fn smoothstep(u: u16) -> u16 {
     let squared = (mul_unsigned(u, u) >> 15) as u16;
     (mul_unsigned(squared, 3 * (FULL_DURATION / 2) - u) >> 14) as u16
@@ -94,9 +95,9 @@ mod tests {
         Pose(sweeps.map(Sweep))
     }
 
-    /// The poses of a move at full pace, its start first.
+    /// The poses of a move at full pace, from its start on.
     fn poses_of_move(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
-        let mut path = PointToPoint::new(from, to, slew);
+        let mut path = PointToPointMove::new(from, to, slew);
         let mut poses = Vec::from([*from]);
         while !path.has_arrived() {
             path.advance(FULL_PACE);
@@ -113,9 +114,9 @@ mod tests {
         poses.iter().map(|pose| pose.0[2].0).collect()
     }
 
-    /// Any limit between 10 and 1000 deg/s.
+    /// Random slew limits from 10 to 1000 deg/s.
     fn any_slew() -> impl Strategy<Value = Slew> {
-        (Slew::SLOWEST..=3640).prop_map(Slew::new)
+        (Slew::MIN_PER_FRAME..=3640).prop_map(Slew::new)
     }
 
     proptest! {
@@ -131,28 +132,28 @@ mod tests {
             prop_assert_eq!(sweeps.last(), Some(&to));
             let max_change = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
             prop_assert!(max_change <= Some(slew.per_frame), "{max_change:?} of {slew:?}");
-            // A smoothstep needs one and a half times the time of a steady move, and each frame is a whole number of
-            // 1/32768 of that time.
+            // A smoothstep takes one and a half times as long as a move at constant speed, and each frame covers a
+            // whole number of 1/32768 of that time.
             let frames = 1.5 * f64::from(from.abs_diff(to)) / f64::from(slew.per_frame - 6);
             let min_frames = frames.ceil().max(8.0) + 1.0;
             let max_frames = 32_768.0 / (32_768.0 / min_frames).floor() + 1.0;
             prop_assert!((sweeps.len() - 1) as f64 <= max_frames, "{} of {max_frames}", sweeps.len() - 1);
-            prop_assert!(sweeps.len() > 8, "a jerk");
+            prop_assert!(sweeps.len() > 8, "the move is too short");
         }
 
         #[test]
-        fn a_move_goes_straight_there_along_a_smoothstep(from: i16, to: i16, slew in any_slew()) {
-            let mut path = PointToPoint::new(&pose_of([from; 4]), &pose_of([to; 4]), slew);
-            let mut frame = 0.0;
+        fn a_move_follows_a_smoothstep_straight_to_its_target(from: i16, to: i16, slew in any_slew()) {
+            let mut path = PointToPointMove::new(&pose_of([from; 4]), &pose_of([to; 4]), slew);
+            let mut elapsed_share = 0.0;
             let distance = f64::from(to) - f64::from(from);
             let mut previous_sweep = f64::from(from);
             while !path.has_arrived() {
                 path.advance(FULL_PACE);
-                frame += f64::from(path.step) / 32_768.0;
-                let u = f64::min(frame, 1.0);
+                elapsed_share += f64::from(path.share_per_frame) / 32_768.0;
+                let u = f64::min(elapsed_share, 1.0);
                 let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
                 let sweep = f64::from(path.pose().0[0].0);
-                // Q15 rounding of the distance, twice, and the halving of odd sweeps.
+                // Two roundings of the distance in Q15, and the halving of odd sweeps.
                 let rounding = 2.0 + distance.abs() / 8000.0;
                 prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, {exact}");
                 prop_assert!((sweep - previous_sweep) * distance.signum() >= -rounding, "{sweep} after {previous_sweep}");
@@ -161,22 +162,22 @@ mod tests {
         }
 
         #[test]
-        fn all_servos_have_covered_the_same_share_of_their_way(
+        fn all_servos_cover_the_same_share_of_their_turns(
             from: [i16; 4],
             to: [i16; 4],
             slew in any_slew(),
         ) {
             let distances: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
             let [from, to] = [from, to].map(pose_of);
-            let mut path = PointToPoint::new(&from, &to, slew);
+            let mut path = PointToPointMove::new(&from, &to, slew);
             while !path.has_arrived() {
                 path.advance(FULL_PACE);
                 let current_pose = path.pose();
-                let share = f64::from(path.elapsed) / 32_768.0;
-                let share = share * share * (3.0 - 2.0 * share);
+                let share = f64::from(path.elapsed_share) / 32_768.0;
+                let smooth_share = share * share * (3.0 - 2.0 * share);
                 for (n, distance) in distances.iter().enumerate() {
                     let turn = f64::from(current_pose.0[n].0) - f64::from(from.0[n].0);
-                    let error = turn - share * distance;
+                    let error = turn - smooth_share * distance;
                     prop_assert!(error.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {error}", n + 1);
                 }
             }
@@ -191,7 +192,7 @@ mod tests {
             paces in prop::collection::vec(0..=FULL_PACE, 1..60),
         ) {
             let (start, end) = (pose_of(from), pose_of(to));
-            let mut path = PointToPoint::new(&start, &end, slew);
+            let mut path = PointToPointMove::new(&start, &end, slew);
             let mut last_pose = start;
             for pace in paces {
                 path.advance(pace);
@@ -208,18 +209,18 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_way_of_all_is_kept_within_the_slowest_and_the_fastest_limit() {
-        for slew in [Slew::SLOWEST, 100, 1092, 3640].map(Slew::new) {
+    fn a_move_of_any_length_keeps_the_slowest_and_the_fastest_slew_limit() {
+        for slew in [Slew::MIN_PER_FRAME, 100, 1092, 3640].map(Slew::new) {
             for length in (0..=u16::MAX).step_by(251).chain([u16::MAX]) {
                 let to = i16::MIN.wrapping_add(length as i16);
                 let sweeps = sweeps_of_move(i16::MIN, to, slew);
-                let max_step = sweeps
+                let max_change = sweeps
                     .windows(2)
                     .map(|pair| pair[1].abs_diff(pair[0]))
                     .max();
                 assert!(
-                    max_step <= Some(slew.per_frame),
-                    "{length}: {max_step:?} of {slew:?}"
+                    max_change <= Some(slew.per_frame),
+                    "{length}: {max_change:?} of {slew:?}"
                 );
             }
         }
@@ -229,13 +230,17 @@ mod tests {
     fn a_move_to_where_the_robot_is_stays_there_for_eight_frames() {
         let sweeps = sweeps_of_move(77, 77, Slew::new(1000));
         assert_eq!(sweeps, [77; 9]);
-        let path = PointToPoint::new(&pose_of([0; 4]), &pose_of([9; 4]), Slew::new(1000));
-        assert_eq!(path.step, 32_768 / 8, "an equal share in each");
+        let path = PointToPointMove::new(&pose_of([0; 4]), &pose_of([9; 4]), Slew::new(1000));
+        assert_eq!(
+            path.share_per_frame,
+            32_768 / 8,
+            "each frame covers an equal share"
+        );
     }
 
     #[test]
-    fn a_standing_pace_holds_a_move() {
-        let mut path = PointToPoint::new(&pose_of([0; 4]), &pose_of([900; 4]), Slew::new(1000));
+    fn a_pace_of_zero_holds_a_move() {
+        let mut path = PointToPointMove::new(&pose_of([0; 4]), &pose_of([900; 4]), Slew::new(1000));
         path.advance(FULL_PACE);
         let held_pose = path.pose();
         path.advance(0);

@@ -1,20 +1,21 @@
 //! The state of the motion, and the target that comes next.
 
-use crate::motion::point_to_point::PointToPoint;
+use crate::motion::point_to_point::PointToPointMove;
 use crate::numbers::gaits::{Gait, GaitId};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
-/// The robot's activity. During the move that leads to an activity, it already has that activity's value.
+/// The robot's activity. The move that leads to an activity counts as that activity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// A gait (`stand` is one).
     Gait(GaitId),
-    /// Going to a pose and staying there.
+    /// Going to a commanded pose and staying there.
     Pose,
-    /// Staying where it was stopped, by `stop` or by the guard.
+    /// Staying in a pose that was not commanded: after `stop`, after a stop by the guard, or after the last cycle of a
+    /// counted gait.
     Stop,
-    /// No pulses: the servos are limp.
+    /// Resting without pulses: the servos are limp.
     Rest,
 }
 
@@ -27,12 +28,12 @@ pub enum Target {
     Pose(Pose) = 1,
     /// A gait, reached by a move to its first pose.
     Gait(GaitId),
-    /// The stop of a gait or a move, in whatever pose the robot has after braking; also the end of a gait that has
-    /// run for the requested number of cycles.
-    End,
+    /// A standstill in whatever pose the robot has once the gait or move under way has braked; also the end of a gait
+    /// that has run for its count of cycles.
+    Standstill,
 }
 
-/// The path that the servos follow in this frame.
+/// The state of the motion; a table in `frames.rs` describes its changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // `Resting` is zero, whatever the other variants hold: see `Main::new`.
 #[repr(u8)]
@@ -41,12 +42,14 @@ pub enum State {
     Resting,
     /// Holding the last pose.
     Holding {
-        /// True if a command ordered the pose, false if the robot was stopped in it.
+        /// True if the pose was commanded, false if the robot was stopped in it.
         is_ordered: bool,
     },
     /// Following a point-to-point move.
     Moving {
-        path: PointToPoint,
+        /// The move that is under way.
+        path: PointToPointMove,
+        /// The present pace of the move; 1024 is full pace.
         pace: u16,
         /// The gait that begins at the end of the move; if `None`, the pose is held.
         gait: Option<GaitId>,
@@ -57,12 +60,13 @@ pub enum State {
         gait: Gait,
         /// The phase, 1/2^24 cycle.
         phase: u32,
+        /// The present pace of the gait; 1024 is full pace.
         pace: u16,
     },
 }
 
 impl State {
-    /// A gait at phase 0 and pace 0.
+    /// The state at the beginning of a gait: phase 0, pace 0.
     pub fn cycling(robot: &Robot, id: GaitId) -> Self {
         Self::Cycling {
             id,

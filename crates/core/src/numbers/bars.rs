@@ -1,34 +1,35 @@
-//! The bars of a five-bar linkage, and the factors that the guard derives from them.
+//! The bars of a five-bar linkage, and the factors by which the guard computes with them.
 //!
-//! A host computes the factors in advance, so that the device needs no division.
+//! A host derives the factors from the bars, so that the device needs no division.
 
-use crate::numbers::couplers::Coupling;
+use crate::numbers::couplers::CouplerLengths;
 use crate::numbers::units::Scale;
 
-/// The largest length of l0 + l1 + l4, and of each coupler, in steps.
-pub const MAX_STEPS: f64 = 127.0 * 256.0;
+/// The limit of the sum of base and cranks, l0 + l1 + l4 in the paper, and of each coupler, in steps.
+pub const MAX_LENGTH_STEPS: f64 = 127.0 * 256.0;
 
-/// The shortest coupler, in steps.
-pub const MIN_COUPLER: i16 = 4097;
+/// The length of the shortest coupler, in steps.
+pub const MIN_COUPLER_STEPS: i16 = 4097;
 
 lizard_avr::plain! {
-    /// The bars of one loop, and factors that follow from them. Lengths are in steps of `scale`;
-    /// margins do not depend on it.
+    /// The bars of one five-bar, and factors that follow from them. Lengths are in steps of `scale`; the margins do not
+    /// depend on it.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Bars {
-        pub(crate) couplers: Coupling,
+        pub(crate) couplers: CouplerLengths,
+        /// The distance between the shafts.
         pub(crate) base: i16,
-        pub(crate) left: i16,
-        pub(crate) right: i16,
-        /// `1 / (4 a b)`, in the scale that results from the two shifts.
-        pub(crate) per_area: u16,
-        /// `2^27` divided by the left coupler.
-        pub(crate) per_left: i16,
-        /// `2^27` divided by the right coupler.
-        pub(crate) per_right: i16,
+        pub(crate) left_crank: i16,
+        pub(crate) right_crank: i16,
+        /// `1 / (4 a b)` for the couplers `a` and `b`, in the scale that results from the two shifts.
+        pub(crate) area_reciprocal: u16,
+        /// 2^27 divided by the left coupler.
+        pub(crate) left_reciprocal: i16,
+        /// 2^27 divided by the right coupler.
+        pub(crate) right_reciprocal: i16,
         /// The shift that reduces a squared distance of the crank tips to fifteen bits.
         pub(crate) square_shift: u16,
-        /// The shift that reduces the rise times that squared distance to sixteen bits.
+        /// The shift that reduces the product of the rise and that reduced distance to sixteen bits.
         pub(crate) area_shift: u16,
         pub(crate) scale: Scale,
         /// Unused: it pads the fields above to a multiple of four bytes.
@@ -40,25 +41,25 @@ impl Bars {
     /// A linkage without bars, which never closes.
     pub const NONE: Self = Self {
         base: 0,
-        left: 0,
-        right: 0,
-        couplers: Coupling::NONE,
+        left_crank: 0,
+        right_crank: 0,
+        couplers: CouplerLengths::NONE,
         square_shift: 1,
         area_shift: 0,
-        per_area: 0,
-        per_left: 0,
-        per_right: 0,
+        area_reciprocal: 0,
+        left_reciprocal: 0,
+        right_reciprocal: 0,
         scale: Scale { bits: 0 },
         padding: 0,
     };
 
-    /// A loop with these bars, in steps: the distance between the shafts, the left and the right crank, whose sum is
-    /// at most [`MAX_STEPS`]; and the two couplers.
+    /// The bars with these lengths in steps: the distance between the shafts, the left and the right crank, whose sum
+    /// is at most [`MAX_LENGTH_STEPS`]; and the left and the right coupler.
     ///
     /// # Panics
-    /// If a coupler is shorter than [`MIN_COUPLER`].
+    /// If a coupler is shorter than [`MIN_COUPLER_STEPS`].
     pub const fn new([base, left, right]: [i16; 3], [a, b]: [i16; 2], scale: Scale) -> Self {
-        assert!(a >= MIN_COUPLER && b >= MIN_COUPLER);
+        assert!(a >= MIN_COUPLER_STEPS && b >= MIN_COUPLER_STEPS);
         let half_sum = (a as u32 + b as u32) / 2;
         let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u16;
         let mut area = (a as u64 * b as u64) >> square_shift;
@@ -69,30 +70,30 @@ impl Bars {
         }
         Self {
             base,
-            left,
-            right,
-            couplers: Coupling::new(a, b),
+            left_crank: left,
+            right_crank: right,
+            couplers: CouplerLengths::new(a, b),
             square_shift,
             area_shift,
-            per_area: if area > 1 << 14 {
+            area_reciprocal: if area > 1 << 14 {
                 ((1u64 << 30) / area) as u16
             } else {
                 u16::MAX
             },
-            per_left: ((1 << 27) / a as i32) as i16,
-            per_right: ((1 << 27) / b as i32) as i16,
+            left_reciprocal: ((1 << 27) / a as i32) as i16,
+            right_reciprocal: ((1 << 27) / b as i32) as i16,
             scale,
             padding: 0,
         }
     }
 
-    /// The length of one step.
+    /// The scale, which gives the length of a step.
     pub const fn scale(&self) -> Scale {
         self.scale
     }
 
-    /// The couplers of the loop.
-    pub const fn couplers(&self) -> Coupling {
+    /// The couplers of the five-bar.
+    pub const fn couplers(&self) -> CouplerLengths {
         self.couplers
     }
 }

@@ -1,5 +1,5 @@
-//! Certified cells: ranges of two servos' sweeps in which the guard is known to accept every
-//! pose, so that it need not be measured.
+//! Certified cells: ranges of the sweeps of two servos in which the guard is known to accept every pose, so that a pose
+//! in them need not be measured.
 //!
 //! Measuring all margins of a pose takes most of a frame's time, and far from all limits the result is always "safe".
 //! Every condition of the guard depends on one or two servos, so four small maps over pairs of servos can mark these
@@ -28,12 +28,12 @@ flash! {
 /// the guard that depends on these two servos holds.
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
-    /// The number of the map's first row.
-    first: i8,
+    /// The row number of the map's first row, see [`Cells::from_rows`].
+    first_row: i8,
     /// The index of the map's first row in `rows`.
-    begin: u16,
+    start: u16,
     /// The number of rows in the map.
-    count: u8,
+    row_count: u8,
     /// The rows of all maps.
     rows: Flash<'a, [[i8; 2]]>,
 }
@@ -44,39 +44,44 @@ impl Cells<'static> {
 }
 
 impl<'a> Cells<'a> {
-    /// The map whose `count` rows begin at index `start` of `rows`. The rows are consecutive, beginning with row
-    /// number `first`; row numbers wrap around after a turn. Each row holds its first and its last column, both
-    /// inclusive; if the first is greater than the last, the row is empty. The number of a row or column is a sweep
-    /// divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded down.
+    /// The map whose `row_count` rows begin at index `start` of `rows`. The rows have consecutive row numbers from
+    /// `first_row` on, which wrap around after a turn. Each row is stored as its first and its last column number, both
+    /// inclusive; if the first is greater than the last, the row is empty. A row number is a sweep divided by
+    /// 2^[`ROW_BITS`], a column number a sweep divided by 2^[`COLUMN_BITS`], both rounded down.
     #[inline(always)]
-    pub const fn from_rows(first: i8, start: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+    pub const fn from_rows(
+        first_row: i8,
+        start: u16,
+        row_count: u8,
+        rows: Flash<'a, [[i8; 2]]>,
+    ) -> Self {
         Self {
-            first,
-            begin: start,
-            count,
+            first_row,
+            start,
+            row_count,
             rows,
         }
     }
 
-    /// A map of all of `rows`, at most 255.
-    pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
-        Self::from_rows(first, 0, rows.len() as u8, rows)
+    /// The map that consists of all `rows`, of which there are at most 255.
+    pub const fn new(first_row: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+        Self::from_rows(first_row, 0, rows.len() as u8, rows)
     }
 
-    /// True if a cell contains this pair of sweeps. A column that does not fit an `i8`, a quarter of a turn or more
-    /// from neutral, is in no cell.
+    /// True if a cell contains this pair of sweeps: the first selects the row, the second the column. A column number
+    /// that does not fit an `i8`, a quarter of a turn or more from neutral, is in no cell.
     #[inline(always)]
     pub fn contains(&self, row: Sweep, column: Sweep) -> bool {
-        let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first) as u8;
-        if row >= self.count {
+        let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first_row) as u8;
+        if row >= self.row_count {
             return false;
         }
-        let Some(columns) = self.rows.get(usize::from(self.begin) + usize::from(row)) else {
+        let Some(columns) = self.rows.get(usize::from(self.start) + usize::from(row)) else {
             return false;
         };
-        let [first, last] = columns.load();
+        let [first_column, last_column] = columns.load();
         let column = column.0 >> COLUMN_BITS;
-        column >= i16::from(first) && column <= i16::from(last)
+        column >= i16::from(first_column) && column <= i16::from(last_column)
     }
 }
 
@@ -88,24 +93,26 @@ mod tests {
 
     use super::*;
 
-    /// Reference for [`Cells::contains`], by division and without a shortcut.
-    fn contains_by_division(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
+    /// The reference for [`Cells::contains`], by division and without a shortcut.
+    fn contains_by_division(first_row: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows; the first row follows the last.
-        let row = if row < i32::from(first) {
+        let row = if row < i32::from(first_row) {
             row + 256
         } else {
             row
         };
         let column = f64::from(column).div_euclid(128.0) as i32;
-        rows.iter().enumerate().any(|(index, [low, high])| {
-            i32::from(first) + index as i32 == row
-                && (i32::from(*low)..=i32::from(*high)).contains(&column)
-        })
+        rows.iter()
+            .enumerate()
+            .any(|(index, [first_column, last_column])| {
+                i32::from(first_row) + index as i32 == row
+                    && (i32::from(*first_column)..=i32::from(*last_column)).contains(&column)
+            })
     }
 
-    /// Columns at and beside every border of the rows in these tests, and a quarter of a turn from neutral, where
-    /// columns end.
+    /// Sweeps at and beside every border of the columns in these tests, and a quarter of a turn from neutral, where the
+    /// column numbers end.
     const COLUMNS: [i16; 17] = [
         i16::MIN,
         -16_385,
@@ -126,22 +133,23 @@ mod tests {
         i16::MAX,
     ];
 
-    /// Checks that [`Cells::contains`] agrees with its reference at every row and at all [`COLUMNS`].
-    fn assert_agrees(first: i8, rows: &[[i8; 2]]) {
-        let cells = Cells::new(first, Flash::from(rows));
+    /// Checks that [`Cells::contains`] agrees with its reference at every sweep of the row's servo and at all
+    /// [`COLUMNS`].
+    fn assert_agrees_with_reference(first_row: i8, rows: &[[i8; 2]]) {
+        let cells = Cells::new(first_row, Flash::from(rows));
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
                 assert_eq!(
                     cells.contains(Sweep(row), Sweep(column)),
-                    contains_by_division(first, rows, row, column),
-                    "{row} {column} in {rows:?} from {first}"
+                    contains_by_division(first_row, rows, row, column),
+                    "{row} {column} in {rows:?} from {first_row}"
                 );
             }
         }
     }
 
     #[test]
-    fn a_pair_is_held_by_the_row_and_the_columns_that_it_is_in_at_every_sweep() {
+    fn a_map_contains_exactly_the_pairs_within_the_columns_of_their_row() {
         let rows = [
             [-10, 10],
             [1, 0],
@@ -150,27 +158,27 @@ mod tests {
             [-127, -2],
             [127, -128],
         ];
-        // Maps about neutral, at either end of the turn, and with rows that wrap around its end.
-        for first in [-3, 0, -128, 122, 125] {
-            assert_agrees(first, &rows);
+        // The maps are around neutral, at either end of the turn, and across its end.
+        for first_row in [-3, 0, -128, 122, 125] {
+            assert_agrees_with_reference(first_row, &rows);
         }
         let max_rows: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
-        assert_agrees(-32, &max_rows);
+        assert_agrees_with_reference(-32, &max_rows);
     }
 
     #[test]
-    fn a_map_without_rows_holds_nothing() {
+    fn a_map_without_rows_contains_nothing() {
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
                 assert!(!Cells::NONE.contains(Sweep(row), Sweep(column)));
             }
         }
-        assert_agrees(-5, &[]);
+        assert_agrees_with_reference(-5, &[]);
     }
 
     proptest! {
         #[test]
-        fn maps_whose_rows_are_together_have_their_own_each(
+        fn maps_that_share_a_table_read_only_their_own_rows(
             first_rows: [i8; 2],
             maps in prop::array::uniform2(prop::collection::vec(any::<[i8; 2]>(), 0..100)),
             pairs in prop::collection::vec(any::<[i16; 2]>(), 300),
@@ -190,16 +198,16 @@ mod tests {
         }
 
         #[test]
-        fn any_map_holds_what_its_rows_say(
-            first: i8,
+        fn any_map_contains_exactly_the_pairs_that_its_rows_list(
+            first_row: i8,
             rows in prop::collection::vec(any::<[i8; 2]>(), 0..256),
             pairs in prop::collection::vec(any::<[i16; 2]>(), 1000),
         ) {
-            let cells = Cells::new(first, Flash::from(rows.as_slice()));
+            let cells = Cells::new(first_row, Flash::from(rows.as_slice()));
             for [row, column] in pairs {
                 prop_assert_eq!(
                     cells.contains(Sweep(row), Sweep(column)),
-                    contains_by_division(first, &rows, row, column)
+                    contains_by_division(first_row, &rows, row, column)
                 );
             }
         }

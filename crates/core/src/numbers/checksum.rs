@@ -5,7 +5,7 @@
 //! within sixteen neighbouring bits; of all other changes it misses one in 65 536. The `crc` crate would take six
 //! times the flash; the tests compare with it.
 
-/// The checksum of the bytes added so far.
+/// The checksum of the bytes that have been added so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum(pub u16);
 
@@ -13,11 +13,11 @@ impl Checksum {
     /// The checksum of no bytes.
     pub const EMPTY: Self = Self(u16::MAX);
 
-    /// The checksum with one more byte.
-    #[cfg_attr(target_arch = "avr", inline(never))] // one copy in flash
+    /// The checksum after one more byte.
+    #[cfg_attr(target_arch = "avr", inline(never))] // so that flash holds it once
     pub const fn with_byte(self, byte: u8) -> Self {
-        // All eight bits in one step: the byte is XORed with the high half of the sum, and the bits shifted out are
-        // fed back at the powers of the polynomial.
+        // Processes all eight bits at once: the byte is XORed with the high half of the sum, and the bits shifted out
+        // are fed back at the powers of the polynomial.
         let feedback = (self.0 >> 8) as u8 ^ byte;
         let feedback = (feedback ^ (feedback >> 4)) as u16;
         Self((self.0 << 8) ^ (feedback << 12) ^ (feedback << 5) ^ feedback)
@@ -43,7 +43,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_checksum_is_that_of_the_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        fn the_checksum_is_that_of_the_crc_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
             let catalogue = Crc::<u16>::new(&CRC_16_IBM_3740);
             prop_assert_eq!(Checksum::of(&bytes).0, catalogue.checksum(&bytes));
         }

@@ -1,75 +1,77 @@
-//! A smooth function of a squared length, from a table in flash.
+//! A smooth function of a squared length, read from a table in flash.
 //!
-//! A root and a quotient would cost 2 800 cycles in every frame. The functions that the five-bar needs depend on a
-//! single squared length, so a table is enough: sixteen steps to an octave of the argument, with straight lines in
-//! between. The square root is then accurate to about one part in ten thousand and a reciprocal to about one in a
-//! thousand, near zero as well as far from it.
+//! To compute a root and a quotient would take 2 800 cycles in every frame. The functions that the five-bar needs
+//! depend on a single squared length, so a table is enough. It has sixteen steps per octave of the argument (a range
+//! from a number to its double), and the function is interpolated linearly within a step. A square root is then
+//! accurate to about one part in ten thousand and a reciprocal to about one in a thousand, near zero as well as far
+//! from it.
 
 use lizard_avr::{Flash, mul_unsigned};
 
-/// Steps in an octave of the argument.
-const STEPS: usize = 16;
+/// The number of steps in an octave of the argument.
+const STEPS_PER_OCTAVE: usize = 16;
 
-/// Number of octaves in a table below the octave of the largest argument.
-pub const OCTAVES: u32 = 10;
+/// The number of octaves in a table below the octave of the largest argument.
+pub const OCTAVE_COUNT: u32 = 10;
 
-/// Number of entries: the steps of all octaves, and the end of the last octave.
-pub const ENTRIES: usize = STEPS * (OCTAVES as usize + 1) + 1;
+/// The number of entries of a table: one for the start of each step, and one for the end of the last octave.
+pub const ENTRY_COUNT: usize = STEPS_PER_OCTAVE * (OCTAVE_COUNT as usize + 1) + 1;
 
 /// The table of a function.
-pub type Table = [i16; ENTRIES];
+pub type Table = [i16; ENTRY_COUNT];
 
-/// A function whose table is in flash.
+/// A function that is read from a table in flash.
 #[derive(Clone, Copy)]
 pub struct Curve<'a> {
     table: Flash<'a, Table>,
-    /// Leading zeros of an argument in the first octave.
-    lowest: u8,
+    /// The number of leading zeros of an argument in the first, lowest octave.
+    lowest_octave_zeros: u8,
 }
 
 impl<'a> Curve<'a> {
     /// The function in `table`, whose arguments go up to `max_argument`.
     pub const fn new(table: Flash<'a, Table>, max_argument: u32) -> Self {
-        Self::of_octave(table, max_argument.leading_zeros() as u16)
+        Self::with_leading_zeros(table, max_argument.leading_zeros() as u16)
     }
 
     /// The function in `table`, whose largest argument has this many leading zeros.
-    pub const fn of_octave(table: Flash<'a, Table>, zeros: u16) -> Self {
+    pub const fn with_leading_zeros(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
             table,
-            lowest: (zeros + OCTAVES as u16) as u8,
+            lowest_octave_zeros: (zeros + OCTAVE_COUNT as u16) as u8,
         }
     }
 
-    /// The value of a function that never rises, rounded up; `None` below the table's first octave, which begins at
-    /// 1/1024 of the start of the largest argument's octave.
+    /// The value of a function that never rises, rounded up; `None` below the table's first octave. The first octave
+    /// begins at 1/1024 of the start of the largest argument's octave.
     pub fn at_rounded_up(&self, argument: u32) -> Option<i16> {
-        self.read(argument, 0)
+        self.interpolate(argument, 0)
     }
 
     /// The value of any function, rounded to nearest; `None` below the table's first octave, as for
     /// [`Curve::at_rounded_up`].
     pub fn at(&self, argument: u32) -> Option<i16> {
-        self.read(argument, 0x8000)
+        self.interpolate(argument, 0x8000)
     }
 
-    /// Interpolates the value; `round` is added to the difference from the nearest lower entry, of which the lower
-    /// 16 bits are then dropped.
+    /// Interpolates the value. The magnitude of its difference from the entry below the argument is computed with 16
+    /// more bits, which are dropped after `rounding` is added.
     #[inline(never)]
-    fn read(&self, argument: u32, round: u16) -> Option<i16> {
+    fn interpolate(&self, argument: u32, rounding: u16) -> Option<i16> {
         let mut mantissa = argument;
-        let mut octave = self.lowest;
+        let mut octave = self.lowest_octave_zeros;
         while mantissa < 1 << 31 {
             mantissa <<= 1;
             octave = octave.checked_sub(1)?;
         }
         // Bits below the leading one: four for the step, then sixteen for the position within it.
-        let step = (mantissa >> 24) as u8 >> 3 & (STEPS as u8 - 1);
+        let step = (mantissa >> 24) as u8 >> 3 & (STEPS_PER_OCTAVE as u8 - 1);
         let fraction = ((mantissa << 5) >> 16) as u16;
-        let index = usize::from(octave) * STEPS + usize::from(step);
+        let index = usize::from(octave) * STEPS_PER_OCTAVE + usize::from(step);
         let entry = self.table.at(index).load();
         let next_entry = self.table.at(index + 1).load();
-        let change = (mul_unsigned(next_entry.abs_diff(entry), fraction) + u32::from(round)) >> 16;
+        let change =
+            (mul_unsigned(next_entry.abs_diff(entry), fraction) + u32::from(rounding)) >> 16;
         Some(if next_entry < entry {
             entry.wrapping_sub(change as i16)
         } else {
@@ -78,22 +80,22 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The argument of a table's entry if the largest argument is `max_argument`, rounded down; only a `max_argument`
-/// below 16384 needs the rounding.
-pub const fn argument(max_argument: u32, index: usize) -> u64 {
+/// The argument of the table's entry at `index` if the largest argument is `max_argument`. It is rounded down; only a
+/// `max_argument` below 16384 needs the rounding.
+pub const fn argument_at(max_argument: u32, index: usize) -> u64 {
     let (first_zeros, position_zeros) = (
         first_octave_zeros(max_argument) as usize,
-        31 + index / STEPS,
+        31 + index / STEPS_PER_OCTAVE,
     );
     if position_zeros < first_zeros {
         return 0;
     }
-    ((STEPS + index % STEPS) as u64) << (position_zeros - first_zeros) >> 4
+    ((STEPS_PER_OCTAVE + index % STEPS_PER_OCTAVE) as u64) << (position_zeros - first_zeros) >> 4
 }
 
 /// The number of leading zeros of an argument in the first octave.
 const fn first_octave_zeros(max_argument: u32) -> u8 {
-    (max_argument.leading_zeros() + OCTAVES) as u8
+    (max_argument.leading_zeros() + OCTAVE_COUNT) as u8
 }
 
 #[cfg(test)]
@@ -105,7 +107,7 @@ mod tests {
     /// Makes the table of `function`, whose argument is a share of the largest one.
     fn make_table(max_argument: u32, function: impl Fn(f64) -> f64) -> Table {
         core::array::from_fn(|index| {
-            let share = argument(max_argument, index) as f64 / f64::from(max_argument);
+            let share = argument_at(max_argument, index) as f64 / f64::from(max_argument);
             function(share).round().clamp(-32767.0, 32767.0) as i16
         })
     }
@@ -125,7 +127,7 @@ mod tests {
         fn a_curve_follows_its_function_in_every_octave(
             max_argument in (10u32..32, any::<u32>())
                 .prop_map(|(bits, low)| (1 << bits) | (low & ((1 << bits) - 1))),
-            octave in 0u32..=OCTAVES,
+            octave in 0u32..=OCTAVE_COUNT,
             octave_share in 0.5..=1.0f64,
             function_index in 0usize..3,
         ) {
@@ -133,13 +135,13 @@ mod tests {
             let table = make_table(max_argument, function);
             let curve = Curve::new(Flash::from(&table), max_argument);
             let argument = (f64::from(max_argument >> octave) * octave_share) as u32;
-            if argument < (max_argument >> OCTAVES).max(1) {
+            if argument < (max_argument >> OCTAVE_COUNT).max(1) {
                 return Ok(());
             }
             let exact = function(f64::from(argument) / f64::from(max_argument));
-            let actual = f64::from(curve.at(argument).expect("within its octaves"));
+            let actual = f64::from(curve.at(argument).expect("the argument is within the octaves"));
             // Within a step of 1/16 octave, the logarithm and the root deviate from a straight line by up to 1.9 and
-            // 2.3; two roundings come on top.
+            // 2.3. Two roundings add to that.
             prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {max_argument}: {actual}, {exact}");
         }
 
@@ -147,12 +149,12 @@ mod tests {
         fn an_entry_is_met_exactly_at_its_argument(
             // For a smaller `max_argument`, the sixteen steps of the first octaves are not all whole numbers.
             max_argument in 1u32 << 14..,
-            index in 0..ENTRIES,
+            index in 0..ENTRY_COUNT,
         ) {
             let table: Table = core::array::from_fn(|index| 5000 - 50 * index as i16);
             let curve = Curve::new(Flash::from(&table), max_argument);
-            let entry_argument = argument(max_argument, index);
-            if (u64::from(max_argument >> OCTAVES)..=max_argument.into()).contains(&entry_argument) {
+            let entry_argument = argument_at(max_argument, index);
+            if (u64::from(max_argument >> OCTAVE_COUNT)..=max_argument.into()).contains(&entry_argument) {
                 prop_assert_eq!(curve.at(entry_argument as u32), Some(table[index]));
             }
         }
@@ -166,8 +168,12 @@ mod tests {
             // The last octave: entries are 1/16 of it apart.
             for argument in (1 << 20..1 << 21).step_by(997) {
                 let octaves = f64::from(argument) / f64::from(1 << 20) - 1.0;
-                let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVES) + octaves);
-                let actual = f64::from(curve.at(argument).expect("in its octaves"));
+                let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVE_COUNT) + octaves);
+                let actual = f64::from(
+                    curve
+                        .at(argument)
+                        .expect("the argument is within the octaves"),
+                );
                 assert!(
                     (actual - exact).abs() <= 0.501,
                     "{argument}: {actual}, {exact}"
@@ -177,29 +183,32 @@ mod tests {
     }
 
     #[test]
-    fn below_its_first_octave_and_at_nothing_a_curve_has_no_value() {
-        let table = [7; ENTRIES];
+    fn a_curve_has_no_value_at_0_and_below_its_first_octave() {
+        let table = [7; ENTRY_COUNT];
         for max_argument in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
             let curve = Curve::new(Flash::from(&table), max_argument);
-            // The table covers the entire octave of its smallest argument.
-            let min: u32 = (max_argument >> OCTAVES)
+            // The table covers the entire octave that contains 1/1024 of the largest argument.
+            let min_argument: u32 = (max_argument >> OCTAVE_COUNT)
                 .checked_ilog2()
                 .map_or(0, |octave| 1 << octave);
             assert_eq!(curve.at(0), None);
-            assert_eq!(curve.at(min.saturating_sub(1)), None);
-            assert_eq!(curve.at(min.max(1)), Some(7));
+            assert_eq!(curve.at(min_argument.saturating_sub(1)), None);
+            assert_eq!(curve.at(min_argument.max(1)), Some(7));
         }
     }
 
     #[test]
-    fn a_table_of_the_smallest_functions_can_be_made() {
+    fn arguments_never_fall_from_entry_to_entry_even_for_a_small_largest_argument() {
         for max_argument in [0, 1, 100, 1023, 1024] {
-            for index in 1..ENTRIES {
-                let (previous, current) = (
-                    argument(max_argument, index - 1),
-                    argument(max_argument, index),
+            for index in 1..ENTRY_COUNT {
+                let (previous_argument, current_argument) = (
+                    argument_at(max_argument, index - 1),
+                    argument_at(max_argument, index),
                 );
-                assert!(previous <= current && previous <= 2 * u64::from(max_argument));
+                assert!(
+                    previous_argument <= current_argument
+                        && previous_argument <= 2 * u64::from(max_argument)
+                );
             }
         }
     }

@@ -2,10 +2,11 @@
 
 use lizard_avr::Flash;
 
-/// Samples of a waveform.
-pub const SAMPLES: usize = 64;
+/// The number of samples of a waveform.
+pub const SAMPLES_PER_WAVE: usize = 64;
 
-/// The largest length of a gait's name; `status` with such a name still fits a line of the console.
+/// The largest length of a gait's name, bytes; the answer to `status` with such a name still fits a line of the
+/// console.
 pub const MAX_NAME_BYTES: usize = 48;
 
 /// The largest number of gaits of a robot, since an index is a byte.
@@ -15,30 +16,32 @@ pub const MAX_GAITS: usize = 255;
 pub const MAX_WAVES: usize = 255;
 
 /// The samples of a waveform over one cycle, in 1/65536 turn at a gain of 1.
-pub type Wave = [i16; SAMPLES];
+pub type Wave = [i16; SAMPLES_PER_WAVE];
 
 /// A gait's name, read byte by byte from flash: one or more words with a blank in between. It is also the gait's
 /// console command.
 #[derive(Clone, Copy)]
 pub struct Name<'a> {
     names: Flash<'a, [u8]>,
-    at: u16,
-    left: u8,
+    /// The index of the next byte in `names`.
+    position: u16,
+    /// The number of bytes that are still to be read.
+    remaining: u8,
 }
 
 impl<'a> Name<'a> {
-    /// The name that begins at `start` among the names of a robot's gaits.
+    /// The name of `length` bytes that begins at index `start` of the names of a robot's gaits.
     pub fn of(start: u16, length: u16, names: Flash<'a, [u8]>) -> Self {
         Self {
             names,
-            at: start,
-            left: length.min(MAX_NAME_BYTES as u16) as u8,
+            position: start,
+            remaining: length.min(MAX_NAME_BYTES as u16) as u8,
         }
     }
 
     /// The number of bytes that are still to be read.
     pub const fn remaining(&self) -> u8 {
-        self.left
+        self.remaining
     }
 }
 
@@ -46,9 +49,9 @@ impl Iterator for Name<'_> {
     type Item = u8;
 
     fn next(&mut self) -> Option<u8> {
-        self.left = self.left.checked_sub(1)?;
-        let byte = self.names.get(usize::from(self.at))?.load();
-        self.at += 1;
+        self.remaining = self.remaining.checked_sub(1)?;
+        let byte = self.names.get(usize::from(self.position))?.load();
+        self.position += 1;
         Some(byte)
     }
 }
@@ -59,15 +62,16 @@ lizard_avr::plain! {
     pub struct Channel {
         /// The index of the waveform.
         pub wave: u16,
-        /// The lead of the servo's phase over that of the gait, 1/65536 cycle.
+        /// The phase of the servo minus that of the gait, 1/65536 cycle.
         pub offset: u16,
-        /// The factor of the waveform, Q14, counter-clockwise positive.
+        /// The factor by which the waveform is multiplied, Q14; a positive sweep is counter-clockwise.
         pub gain: i16,
     }
 }
 
 lizard_avr::plain! {
-    /// A gait, or a routine, whose record has the same fields; a routine has no gain.
+    /// A gait or a routine, a sequence of gaits and rests. The record of a routine has the same fields; its gains are
+    /// 0.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Gait {
         /// The change of the phase in each frame at full pace, in 1/2^24 cycle; negative if the waveform is read
@@ -90,9 +94,9 @@ lizard_avr::plain! {
     pub struct Step {
         /// The kind of step, one of the constants of [`Step`].
         pub kind: u8,
-        /// The index of the gait; for [`Step::UNTIL`], the [`Input`].
+        /// The index of the gait; for [`Step::UNTIL`], the byte of the [`Input`].
         pub gait: u8,
-        /// The duration, in cycles of the gait or in frames; [`Step::ENDLESS`] frames do not end.
+        /// The duration, in cycles of the gait or in frames; [`Step::ENDLESS`] if only a contact ends the step.
         pub count: u16,
     }
 }
@@ -107,10 +111,10 @@ impl Step {
     /// Stops the pulses for `count` frames, at least one.
     pub const REST: u8 = 2;
 
-    /// Waits without motion until a contact closes; the previous record names that contact.
+    /// Waits without motion until a contact closes; the preceding record of the kind [`Step::UNTIL`] gives the contact.
     pub const WAIT: u8 = 3;
 
-    /// A record before a step. It names a contact that ends the step before its count or time is over.
+    /// A record in front of a step. It gives a contact that ends the step before its count is over.
     pub const UNTIL: u8 = 4;
 
     /// The `count` of a step that only its contact ends.
@@ -125,7 +129,7 @@ impl Input {
     /// No input.
     pub const NONE: Self = Self(0);
 
-    /// The bit that is set for the nose and clear for a button.
+    /// The bit that is set for the obstacle switch on the robot's nose and clear for a button.
     const NOSE: u8 = 0x80;
 
     /// The button at the pin with this Arduino number; 14 to 19 are A0 to A5.
@@ -133,7 +137,7 @@ impl Input {
         Self(pin)
     }
 
-    /// The obstacle switch at the pin with this Arduino number.
+    /// The obstacle switch on the robot's nose, at the pin with this Arduino number.
     pub const fn nose(pin: u8) -> Self {
         Self(pin | Self::NOSE)
     }
@@ -143,12 +147,12 @@ impl Input {
         Self(step.gait)
     }
 
-    /// The byte of a record.
+    /// The byte that stores this input in a record.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// True for the obstacle switch.
+    /// True for the obstacle switch on the robot's nose.
     pub const fn is_nose(self) -> bool {
         self.0 & Self::NOSE != 0
     }
@@ -168,7 +172,7 @@ impl GaitId {
     /// The gait that holds the neutral pose.
     pub const STAND: Self = Self(0);
 
-    /// Iterates over the ids of all `count` gaits of a robot, in their order.
+    /// Iterates over the ids of all `count` gaits and routines of a robot, in their order.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (0..count as u8).map(Self)
     }
@@ -190,11 +194,12 @@ impl GaitId {
 }
 
 impl Gait {
-    /// A routine without a name.
+    /// A routine without a name. `first_step` is the index of its first step among those of all routines; the address
+    /// of the step replaces it in a section.
     #[cfg(any(test, feature = "host"))]
-    pub const fn routine(first_address: u16, steps: u16, rounds: u16) -> Self {
+    pub const fn routine(first_step: u16, steps: u16, rounds: u16) -> Self {
         let mut routine = Self::STILL;
-        routine.channels[0].offset = first_address;
+        routine.channels[0].offset = first_step;
         routine.channels[1].offset = steps;
         routine.channels[2].offset = rounds;
         routine
@@ -223,20 +228,20 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
-    use crate::sample::{GAITS, Sample};
+    use crate::sample::{GAIT_NAMES, Sample};
 
     #[test]
-    fn names_and_numbers_of_gaits_go_together() {
+    fn names_and_ids_of_gaits_have_the_same_order() {
         let robot = Sample::odd();
         let ids: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
-        assert_eq!(ids.len(), GAITS.len());
+        assert_eq!(ids.len(), GAIT_NAMES.len());
         assert_eq!(ids[0], GaitId::STAND);
         for (index, id) in ids.iter().enumerate() {
             assert_eq!(id.index(), index);
             assert_eq!(id.next(robot.gait_count()), ids.get(index + 1).copied());
-            let name = robot.name(*id);
-            assert_eq!(usize::from(name.remaining()), GAITS[index].len());
-            assert!(name.eq(GAITS[index].bytes()));
+            let name = robot.gait_name(*id);
+            assert_eq!(usize::from(name.remaining()), GAIT_NAMES[index].len());
+            assert!(name.eq(GAIT_NAMES[index].bytes()));
         }
     }
 }

@@ -1,16 +1,16 @@
-//! The limits of a pose's margins.
+//! The limits of a pose's margins to its singularities.
 
 use crate::numbers::units::Sine;
 
 lizard_avr::plain! {
-    /// The smallest margins allowed; a margin at its limit is safe.
+    /// The smallest safe margins of each kind.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Limits {
-        /// The limit of the margin between the couplers of head and tail, at least a tenth.
+        /// The limit of the type-2 margins, each between the two couplers of head or tail; at least a tenth.
         pub type2: Sine,
-        /// The limit of the margin between each crank and its coupler, not negative.
+        /// The limit of the type-1 margins, each between a crank and its coupler; not negative.
         pub type1: Sine,
-        /// The limit of the margin of each parallelogram leg, not negative.
+        /// The limit of the margins of the parallelogram legs; not negative.
         pub leg: Sine,
     }
 }

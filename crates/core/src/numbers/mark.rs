@@ -1,17 +1,17 @@
-//! The mark of the firmware in flash, by which other programs see which section format it reads.
+//! The mark of the firmware in flash: it tells other programs the section format that the firmware reads.
 //!
-//! A program that writes only a robot talks to the boot loader; the firmware does not run then and cannot be asked.
-//! The robot is useful only to firmware that reads its format. So the firmware has a mark at a fixed address: after
-//! the interrupt vectors, in the first page of flash. Any other program written to the board overwrites that page, so
-//! it cannot be mistaken for the firmware because of an old mark.
+//! A program that writes only a robot's section communicates with the boot loader; the firmware does not run then and
+//! cannot be asked. The section is useful only to firmware that reads its format. So the firmware has a mark at a fixed
+//! address: after the interrupt vectors, in the first page of flash. Any other program that is written to the board
+//! overwrites that page, so no old mark remains.
 //!
 //! ```
 //! use lizard_core::numbers::mark::{ADDRESS, Mark};
 //!
 //! let mut flash = vec![0xff; 128];
 //! assert_eq!(Mark::find(&flash), None);
-//! flash[ADDRESS..ADDRESS + 10].copy_from_slice(&Mark::OWN.bytes());
-//! assert_eq!(Mark::find(&flash), Some(Mark::OWN));
+//! flash[ADDRESS..ADDRESS + 10].copy_from_slice(&Mark::THIS_FIRMWARE.bytes());
+//! assert_eq!(Mark::find(&flash), Some(Mark::THIS_FIRMWARE));
 //! ```
 
 use crate::numbers::section::{FORMAT, MAGIC};
@@ -23,18 +23,18 @@ pub const ADDRESS: usize = 26 * 4;
 /// The length of the mark, bytes.
 pub const LENGTH: usize = 10;
 
-/// The mark: section format and version of the firmware.
+/// The mark of a firmware: its section format and its version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// The [`FORMAT`] of the sections that the code reads.
+    /// The [`FORMAT`] of the sections that the firmware reads.
     pub format: u16,
-    /// The firmware's version, such as 0, 2 and 0.
+    /// The firmware's version: major, minor, patch.
     pub version: [u8; 3],
 }
 
 impl Mark {
     /// The mark of this firmware.
-    pub const OWN: Self = Self {
+    pub const THIS_FIRMWARE: Self = Self {
         format: FORMAT,
         version: [
             parse_number(env!("CARGO_PKG_VERSION_MAJOR")),
@@ -43,7 +43,7 @@ impl Mark {
         ],
     };
 
-    /// The bytes in flash: magic, format, version, and a zero, since code begins at even addresses.
+    /// The bytes in flash: magic, format, version, and a zero, since code has to begin at an even address.
     pub const fn bytes(self) -> [u8; LENGTH] {
         let [a, b, c, d] = MAGIC.to_le_bytes();
         let [low, high] = self.format.to_le_bytes();
@@ -51,7 +51,7 @@ impl Mark {
         [a, b, c, d, low, high, major, minor, patch, 0]
     }
 
-    /// Reads the mark of a flash that begins with this project's firmware; `None` for any other.
+    /// Finds the mark in the bytes of flash from address 0 on; `None` if there is none.
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(ADDRESS..ADDRESS + LENGTH)?;
         let (magic, fields) = bytes.split_first_chunk()?;
@@ -65,7 +65,7 @@ impl Mark {
     }
 }
 
-/// Parses a part of the version.
+/// Parses one of the three numbers of the version.
 const fn parse_number(text: &str) -> u8 {
     match u8::from_str_radix(text, 10) {
         Ok(number) => number,
@@ -81,20 +81,24 @@ mod tests {
 
     #[test]
     fn the_version_is_the_packages() {
-        let [major, minor, patch] = Mark::OWN.version;
+        let [major, minor, patch] = Mark::THIS_FIRMWARE.version;
         let version = format!("{major}.{minor}.{patch}");
         assert_eq!(version, env!("CARGO_PKG_VERSION"));
     }
 
     #[test]
-    fn any_byte_of_another_value_is_another_mark_or_none() {
+    fn a_flipped_bit_gives_another_mark_or_none() {
         let mut flash = [0xff; 128];
-        flash[ADDRESS..ADDRESS + LENGTH].copy_from_slice(&Mark::OWN.bytes());
+        flash[ADDRESS..ADDRESS + LENGTH].copy_from_slice(&Mark::THIS_FIRMWARE.bytes());
         for offset in ADDRESS..ADDRESS + LENGTH {
             for bit in 0..8 {
                 let mut flash = flash;
                 flash[offset] ^= 1 << bit;
-                assert_ne!(Mark::find(&flash), Some(Mark::OWN), "bit {bit} of {offset}");
+                assert_ne!(
+                    Mark::find(&flash),
+                    Some(Mark::THIS_FIRMWARE),
+                    "bit {bit} of {offset}"
+                );
             }
         }
         assert_eq!(Mark::find(&flash[..ADDRESS + LENGTH - 1]), None);

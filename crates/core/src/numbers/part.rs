@@ -4,31 +4,31 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Servo {
-    /// Front left, theta1; its leg is LF.
+    /// Front left, theta1; its leg is LF (left fore).
     A1,
-    /// Front right, theta4; its leg is RF.
+    /// Front right, theta4; its leg is RF (right fore).
     A2,
-    /// Back right, theta8; its leg is RH.
+    /// Rear right, theta8; its leg is RH (right hind).
     A3,
-    /// Back left, theta5; its leg is LH.
+    /// Rear left, theta5; its leg is LH (left hind).
     A4,
 }
 
 /// An end of the body: a five-bar whose end point is the head or the tail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The five-bar in front, between A1 and A2.
+    /// The five-bar at the front, between A1 and A2.
     Head,
-    /// The five-bar at the back, between A4 and A3.
+    /// The five-bar at the rear, between A4 and A3.
     Tail,
 }
 
 /// A side of the body: a five-bar with a slider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Between A1 and A4.
+    /// The side between A1 and A4.
     Left,
-    /// Between A2 and A3.
+    /// The side between A2 and A3.
     Right,
 }
 
@@ -36,12 +36,12 @@ impl Servo {
     /// All four servos, in their order.
     pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
 
-    /// Iterates over all four servos, without a table in RAM.
+    /// Iterates over all four servos; unlike [`Servo::ALL`], it needs no table in RAM.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..4).map(Self::at)
     }
 
-    /// The servo at an index of an array of four; past the end, the last one.
+    /// The servo at an index of an array of four; A4 for an index past the end.
     pub const fn at(index: usize) -> Self {
         match index {
             0 => Self::A1,
@@ -61,12 +61,12 @@ impl Servo {
         self as usize
     }
 
-    /// The element that belongs to this servo in an array in servo order.
+    /// The element of this servo in an array in servo order.
     pub const fn of<T>(self, items: &[T; 4]) -> &T {
         &items[self as usize]
     }
 
-    /// The element that belongs to this servo in an array in servo order, mutable.
+    /// The element of this servo in an array in servo order, as a mutable reference.
     pub const fn of_mut<T>(self, items: &mut [T; 4]) -> &mut T {
         &mut items[self as usize]
     }

@@ -1,13 +1,11 @@
 //! A pose of the robot: the sweeps of the four servos from their neutral angles.
 //!
-//! The horns are fitted while the servos hold their neutral pulse width. So a sweep is the angle that the servo
-//! really turns, and a chassis angle can be measured on the robot.
-//! Order everywhere: A1 = theta1 front left, A2 = theta4 front right, A3 = theta8 back
-//! right, A4 = theta5 back left.
+//! The horns are fitted while the servos hold their neutral pulse width. So a sweep is the angle by which a servo
+//! really turns, and a chassis angle can be measured on the robot. All arrays have the order of [`Servo`].
 
 use crate::numbers::calibration::Calibration;
 use crate::numbers::part::Servo;
-use crate::numbers::units::{Angle, Sweep, Width};
+use crate::numbers::units::{Angle, PulseWidth, Sweep};
 
 /// Four sweeps, in servo order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -15,24 +13,24 @@ pub struct Pose(pub [Sweep; 4]);
 
 /// Four pulse widths, in servo order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Pulses(pub [Width; 4]);
+pub struct Pulses(pub [PulseWidth; 4]);
 
 impl Pose {
     /// All servos at their neutral angle: the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// The pose for four chassis angles, with the servos' neutral angles; it may be beyond the travel.
-    pub fn at(angles: &[Angle; 4], neutral: &[Angle; 4]) -> Self {
+    /// The pose with these chassis angles, given the servos' neutral angles; it may be beyond the travel.
+    pub fn from_angles(angles: &[Angle; 4], neutral_angles: &[Angle; 4]) -> Self {
         let mut pose = Self::NEUTRAL;
-        for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral)) {
+        for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral_angles)) {
             *sweep = neutral.sweep_to(*angle);
         }
         pose
     }
 
-    /// The chassis angles of the servos.
-    pub fn angles(&self, neutral: &[Angle; 4]) -> [Angle; 4] {
-        let mut angles = *neutral;
+    /// The chassis angles of the servos, given their neutral angles.
+    pub fn angles(&self, neutral_angles: &[Angle; 4]) -> [Angle; 4] {
+        let mut angles = *neutral_angles;
         for (angle, sweep) in angles.iter_mut().zip(&self.0) {
             *angle = angle.swept(*sweep);
         }
@@ -40,7 +38,7 @@ impl Pose {
     }
 
     /// The first servo whose travel does not include its sweep; `None` if every travel does.
-    pub fn first_beyond_travel(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
+    pub fn first_servo_beyond_travel(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
         for (index, servo) in calibration.iter().enumerate() {
             if !servo.reaches(self.0[index]) {
                 return Some(Servo::at(index));
@@ -77,7 +75,7 @@ mod tests {
 
     fn any_robot_and_pose() -> impl Strategy<Value = (Sample, Pose)> {
         Sample::random().prop_flat_map(|robot| {
-            let pose = robot.pose();
+            let pose = robot.any_pose();
             (Just(robot), pose)
         })
     }
@@ -85,9 +83,9 @@ mod tests {
     proptest! {
         #[test]
         fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in any_robot_and_pose()) {
-            let angles = pose.angles(&robot.neutral());
-            prop_assert_eq!(Pose::at(&angles, &robot.neutral()), pose);
-            prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), None);
+            let angles = pose.angles(&robot.neutral_angles());
+            prop_assert_eq!(Pose::from_angles(&angles, &robot.neutral_angles()), pose);
+            prop_assert_eq!(pose.first_servo_beyond_travel(&robot.calibration()), None);
         }
 
         #[test]
@@ -97,11 +95,11 @@ mod tests {
         ) {
             for (index, is_beyond) in are_beyond.into_iter().enumerate() {
                 if is_beyond {
-                    pose.0[index] = Sweep(robot.calibration()[index].max.0 + 1);
+                    pose.0[index] = Sweep(robot.calibration()[index].travel_max.0 + 1);
                 }
             }
             let first_servo = are_beyond.iter().position(|is_beyond| *is_beyond).map(Servo::at);
-            prop_assert_eq!(pose.first_beyond_travel(&robot.calibration()), first_servo);
+            prop_assert_eq!(pose.first_servo_beyond_travel(&robot.calibration()), first_servo);
         }
 
         #[test]
@@ -114,7 +112,7 @@ mod tests {
         }
 
         #[test]
-        fn the_farthest_way_is_that_of_any_servo_either_way(
+        fn the_largest_turn_is_that_of_any_servo_and_the_same_in_either_direction(
             from: [i16; 4],
             to: [i16; 4],
         ) {

@@ -1,22 +1,23 @@
 //! The baud rates of the serial line.
 
-/// A baud rate of the serial line, from the fastest to the slowest. Its number survives a reset.
+/// A baud rate of the serial line. The variants are numbered from the fastest to the slowest; the number is kept in
+/// memory that survives a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
-pub enum Rate {
-    /// 115 200 baud, the rate of USB.
+pub enum BaudRate {
+    /// 115 200 baud, the rate on the USB port.
     #[default]
     Fastest,
-    /// 57 600 baud.
+    /// 57 600 baud, half of the fastest rate.
     Half,
-    /// 38 400 baud.
+    /// 38 400 baud, a third of the fastest rate.
     Third,
     /// 9600 baud, the factory setting of most radio modules.
     Slowest,
 }
 
-impl Rate {
-    /// All rates, in the order in which they are tried.
+impl BaudRate {
+    /// All rates, in the order in which autobaud tries them.
     pub const ALL: [Self; 4] = [Self::Fastest, Self::Half, Self::Third, Self::Slowest];
 
     /// The rate in baud.

@@ -11,14 +11,16 @@ use lizard_avr::{Flash, Plain, Region};
 
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::Reach;
+use crate::numbers::calibration::NeededTravel;
 use crate::numbers::cells::Cells;
 use crate::numbers::couplers::Tables;
 use crate::numbers::gaits::{Gait, GaitId, Name, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
-use crate::numbers::section::{self, CURVES, Header, MapHeader, NUMBERS, Numbers, Part, PartRange};
+use crate::numbers::section::{
+    self, CURVE_COUNT, Header, MapHeader, NUMBERS_OFFSET, Numbers, Part, PartRange,
+};
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
@@ -31,7 +33,7 @@ pub struct Robot<'a> {
     is_present: bool,
 }
 
-// The numbers are omitted: they are the same in every state of a program.
+// The numbers are omitted, because they never change while a program runs.
 impl fmt::Debug for Robot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.is_present { "Robot" } else { "no robot" })
@@ -39,13 +41,13 @@ impl fmt::Debug for Robot<'_> {
 }
 
 impl<'a> Robot<'a> {
-    /// No robot: it has no gait and may not be moved.
+    /// No robot: it has no gaits and must not be moved.
     pub const NONE: Self = Self {
         section: Region::INITIAL,
         is_present: false,
     };
 
-    /// The robot in `flash`, which must be exactly a valid section: [`Robot::open`] checks it.
+    /// The robot in `flash`, which has to be exactly a valid section; [`Robot::open`] checks that.
     #[inline(always)]
     pub(crate) const fn at(flash: Region<'a>) -> Self {
         Self {
@@ -59,7 +61,7 @@ impl<'a> Robot<'a> {
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
         let length = section::check(flash).ok()?;
-        Some(Self::at(flash.first(length)))
+        Some(Self::at(flash.prefix(length)))
     }
 
     /// True for [`Robot::NONE`].
@@ -74,8 +76,8 @@ impl<'a> Robot<'a> {
 
     /// Reads the number at `offset` bytes from the beginning of [`Numbers`].
     #[inline(always)]
-    fn number<T: Plain>(&self, offset: usize) -> T {
-        self.section.read(NUMBERS + offset as u16)
+    fn read_number<T: Plain>(&self, offset: usize) -> T {
+        self.section.read(NUMBERS_OFFSET + offset as u16)
     }
 
     /// The robot's name, byte by byte.
@@ -87,7 +89,7 @@ impl<'a> Robot<'a> {
             .take_while(|byte| *byte != 0)
     }
 
-    /// The hash of the robot's numbers, which identifies the robot.
+    /// The hash of the robot's numbers; it identifies the robot.
     pub fn hash(&self) -> u32 {
         self.section.read(offset_of!(Header, hash) as u16)
     }
@@ -99,12 +101,12 @@ impl<'a> Robot<'a> {
 
     /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub fn pins(&self) -> [u8; 4] {
-        self.number(offset_of!(Numbers, pins))
+        self.read_number(offset_of!(Numbers, pins))
     }
 
     /// The Arduino number of the pin where the servos' rail is measured, 14 to 19; `None` if it is not measured.
     pub fn rail_pin(&self) -> Option<u8> {
-        match self.number(offset_of!(Numbers, rail)) {
+        match self.read_number(offset_of!(Numbers, rail_pin)) {
             0 => None,
             pin => Some(pin),
         }
@@ -112,78 +114,84 @@ impl<'a> Robot<'a> {
 
     /// The percentage of their own pace to which a low supply limits gaits.
     pub fn slow_pace(&self) -> u8 {
-        self.number(offset_of!(Numbers, slow_pace))
+        self.read_number(offset_of!(Numbers, slow_pace))
     }
 
     /// The bars of head or tail, in the frame of that five-bar.
     pub fn bars(&self, end: End) -> Bars {
-        self.number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
+        self.read_number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
     }
 
     /// The tables of the couplers of head or tail.
     pub(crate) fn tables(&self, end: End) -> Tables<'a> {
-        let curves_offset = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
-        let table_of = |curve: usize| match self.number(curves_offset + curve * size_of::<u16>()) {
-            0 => None,
-            address => self.section.values(address, 1).get(0),
-        };
+        let curves_offset =
+            offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVE_COUNT]>();
+        let table_of =
+            |curve: usize| match self.read_number(curves_offset + curve * size_of::<u16>()) {
+                0 => None,
+                address => self.section.values(address, 1).get(0),
+            };
         Tables {
             rise: table_of(0),
-            stretched: table_of(1),
-            folded: table_of(2),
+            stretched_rise: table_of(1),
+            folded_rise: table_of(2),
             skew: table_of(3),
         }
     }
 
     /// The five-bar with a slider on one side, in the chassis frame.
-    pub fn side(&self, side: Side) -> Slider {
-        self.number(offset_of!(Numbers, sides) + side as usize * size_of::<Slider>())
+    pub fn slider(&self, side: Side) -> Slider {
+        self.read_number(offset_of!(Numbers, sliders) + side as usize * size_of::<Slider>())
     }
 
     /// The smallest margins allowed.
     pub fn limits(&self) -> Limits {
-        self.number(offset_of!(Numbers, limits))
+        self.read_number(offset_of!(Numbers, limits))
     }
 
     /// The slew limit of point-to-point moves.
     pub fn slew(&self) -> Slew {
-        self.number(offset_of!(Numbers, slew))
+        self.read_number(offset_of!(Numbers, slew))
     }
 
     /// The servos' angles in the neutral pose.
-    pub fn neutral(&self) -> [Angle; 4] {
-        self.number(offset_of!(Numbers, neutral))
+    pub fn neutral_angles(&self) -> [Angle; 4] {
+        self.read_number(offset_of!(Numbers, neutral_angles))
     }
 
     /// The neutral angle of one servo.
     #[inline(never)]
-    pub fn neutral_of(&self, servo: Servo) -> Angle {
-        self.number(offset_of!(Numbers, neutral) + servo.index() * size_of::<Angle>())
+    pub fn neutral_angle_of(&self, servo: Servo) -> Angle {
+        self.read_number(offset_of!(Numbers, neutral_angles) + servo.index() * size_of::<Angle>())
     }
 
     /// The pulse widths and the travel of the servos, as robot.toml defines them.
     pub fn calibration(&self) -> [Calibration; 4] {
-        self.number(offset_of!(Numbers, calibration))
+        self.read_number(offset_of!(Numbers, calibration))
     }
 
     /// The pulse widths and the travel of one servo.
     #[inline(never)]
     pub fn calibration_of(&self, servo: Servo) -> Calibration {
-        self.number(offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>())
+        self.read_number(
+            offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>(),
+        )
     }
 
-    /// The range of sweeps that the gaits and the neutral pose need of a servo.
+    /// The range of sweeps that the gaits need of a servo; it includes the neutral angle.
     #[inline(never)]
-    pub fn reach(&self, servo: Servo) -> Reach {
-        self.number(offset_of!(Numbers, reach) + servo.index() * size_of::<Reach>())
+    pub fn needed_travel(&self, servo: Servo) -> NeededTravel {
+        self.read_number(
+            offset_of!(Numbers, needed_travel) + servo.index() * size_of::<NeededTravel>(),
+        )
     }
 
-    /// The measured supplies and their thresholds.
+    /// The supplies and their thresholds.
     pub fn supplies(&self) -> Supplies {
-        self.number(offset_of!(Numbers, supplies))
+        self.read_number(offset_of!(Numbers, supplies))
     }
 
-    /// The number of gaits; the first is `stand`, which holds the neutral pose.
+    /// The number of gaits and routines; the first gait is `stand`, which holds the neutral pose.
     pub fn gait_count(&self) -> usize {
         match self.is_present {
             true => usize::from(self.part_range(Part::Gaits).count),
@@ -193,64 +201,66 @@ impl<'a> Robot<'a> {
 
     /// The address of a part and the number of its elements.
     pub(crate) fn part_range(&self, part: Part) -> PartRange {
-        self.number(offset_of!(Numbers, parts) + part as usize * size_of::<PartRange>())
+        self.read_number(offset_of!(Numbers, parts) + part as usize * size_of::<PartRange>())
     }
 
     /// All elements of a part.
     #[inline(always)]
-    fn part<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
-        let PartRange { at: address, count } = self.part_range(part);
+    fn part_elements<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
+        let PartRange { address, count } = self.part_range(part);
         self.section.values(address, count)
     }
 
     /// The waveforms that gaits share.
     pub fn waves(&self) -> Flash<'a, [Wave]> {
-        self.part(Part::Waves)
+        self.part_elements(Part::Waves)
     }
 
-    /// Reads a gait.
+    /// Reads the record of a gait or a routine.
     #[inline(never)]
     pub fn gait(&self, id: GaitId) -> Gait {
-        self.part(Part::Gaits)
+        self.part_elements(Part::Gaits)
             .get(id.index())
             .map_or(Gait::STILL, Flash::load)
     }
 
-    /// Reads a step of a routine.
-    pub fn step(&self, routine: &Gait, number: u16) -> Step {
+    /// Reads the record of a routine's step.
+    pub fn step(&self, routine: &Gait, step_index: u16) -> Step {
         let first_offset = routine.channels[0].offset;
         self.section
-            .read(first_offset.wrapping_add(number * size_of::<Step>() as u16))
+            .read(first_offset.wrapping_add(step_index * size_of::<Step>() as u16))
     }
 
     /// The name of a gait or a routine.
     #[inline(never)]
-    pub fn name(&self, id: GaitId) -> Name<'a> {
-        // Reads only these fields, not the entire gait: a line may be compared with every name.
+    pub fn gait_name(&self, id: GaitId) -> Name<'a> {
+        // Reads only these fields, not the entire record, because a line may be compared with every name.
         let gait_address =
-            self.part_range(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
+            self.part_range(Part::Gaits).address + id.index() as u16 * size_of::<Gait>() as u16;
         let read_field = |field: usize| self.section.read(gait_address + field as u16);
         let start = read_field(offset_of!(Gait, name_start));
         let length = read_field(offset_of!(Gait, name_length));
-        Name::of(start, length, self.part(Part::Names))
+        Name::of(start, length, self.part_elements(Part::Names))
     }
 
-    /// True if a pose is in certified cells, in which the guard accepts every pose. Head, tail, left and right have a
-    /// map each, and the pose must be in a cell of all four. A pose outside of them may be safe, too.
+    /// True if a pose is in certified cells, in which the guard accepts every pose. Head, tail, left and right side
+    /// have a map each, and the pose has to be in a cell of all four. A pose outside the cells may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
-        let maps = self.part::<[i8; 2]>(Part::Rows);
-        let mut first_row = 0;
+        let rows = self.part_elements::<[i8; 2]>(Part::Rows);
+        let mut start = 0;
         let mut pair_index = 0;
         while pair_index < 4 {
-            let MapHeader { first, rows } =
-                self.number(offset_of!(Numbers, maps) + pair_index * size_of::<MapHeader>());
-            let [row, column] = PAIRS.at(pair_index).load();
+            let MapHeader {
+                first_row,
+                row_count,
+            } = self.read_number(offset_of!(Numbers, maps) + pair_index * size_of::<MapHeader>());
+            let [row, column] = SERVO_PAIRS.at(pair_index).load();
             let row = pose.0[usize::from(row & 3)];
             let column = pose.0[usize::from(column & 3)];
-            if !Cells::from_rows(first, first_row, rows, maps).contains(row, column) {
+            if !Cells::from_rows(first_row, start, row_count, rows).contains(row, column) {
                 return false;
             }
-            first_row += u16::from(rows);
+            start += u16::from(row_count);
             pair_index += 1;
         }
         true
@@ -258,6 +268,6 @@ impl<'a> Robot<'a> {
 }
 
 lizard_avr::flash! {
-    /// The servos of each map: first the one of the rows, then the one of the columns.
-    const PAIRS: [[u8; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
+    /// The indices of the two servos of each map: the first selects the row, the second the column.
+    const SERVO_PAIRS: [[u8; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 }

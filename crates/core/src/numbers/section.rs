@@ -1,23 +1,24 @@
-//! The robot's section of flash: everything that the firmware needs of robot.toml, as data.
+//! The robot's section of flash: all data of robot.toml that the firmware needs.
 //!
 //! The firmware is one image for any robot. The numbers that differ from robot to robot are at a fixed address after
-//! it, and can be written without a compiler. That flash may hold anything: erased bytes, half an upload, a section
-//! of another version, a byte that has changed over the years. So nothing in it is used before
-//! [`crate::numbers::robot::Robot::open`] has checked header, length and CRC, and every index and count.
+//! it, and can be written without a compiler. That part of flash may hold anything: erased bytes, half an upload, a
+//! section of another version, a byte that has changed over the years. So nothing in it is used before
+//! [`crate::numbers::robot::Robot::open`] has checked its header, length and CRC, and every index and count is checked
+//! where it is used.
 //!
-//! | part | bytes | what |
+//! | part | bytes | contents |
 //! |---|---|---|
 //! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of the rest, name, hash of the numbers, hash of the servos |
 //! | [`Numbers`] | 232 | bars, servos, limits, supplies, pins, and the addresses of the parts below |
-//! | curves | 354 each | of the couplers of the head and, where they differ, of the tail: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
-//! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; routines are the last |
-//! | steps | 4 each | steps of the routines, [`crate::numbers::gaits::Step`] |
-//! | waveforms | 128 each | 64 samples |
-//! | names | | names of the gaits, one after the other |
-//! | maps | 2 a row | certified cells of head, tail, left and right: first and last column |
+//! | curves | 354 each | tables of the couplers of head and tail, equal ones only once: the rise, and where [`Numbers::curves`] has an address, the stretched rise, the folded rise and the skew |
+//! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; the routines follow the gaits |
+//! | steps | 4 each | the steps of the routines, [`crate::numbers::gaits::Step`] |
+//! | waveforms | 128 each | 64 samples, [`crate::numbers::gaits::Wave`] |
+//! | names | | the names of gaits and routines, one after the other |
+//! | maps | 2 a row | the certified cells of head, tail, left and right: first and last column of each row |
 //!
-//! Each part is stored as the type named in the table, field by field, low bytes first. The device computes nothing
-//! from it in advance: the factors that follow from the bars are stored, too.
+//! Each part is stored as the type in the table, field by field, low bytes first. The factors that follow from the bars
+//! are stored, too, so the device computes nothing in advance.
 
 use core::mem::offset_of;
 
@@ -25,7 +26,7 @@ pub use lizard_avr::Region;
 
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::Reach;
+use crate::numbers::calibration::NeededTravel;
 use crate::numbers::checksum::Checksum;
 use crate::numbers::limits::Limits;
 use crate::numbers::slew::Slew;
@@ -34,9 +35,9 @@ use crate::numbers::supplies::Supplies;
 use crate::numbers::units::Angle;
 
 #[cfg(any(test, feature = "host"))]
-pub use content::{Content, Loop, Map};
+pub use content::{Content, FiveBarLengths, Map};
 #[cfg(any(test, feature = "host"))]
-pub use seal::seal;
+pub use seal::write_checksum;
 
 #[cfg(any(test, feature = "host"))]
 mod content;
@@ -49,29 +50,29 @@ pub const FORMAT: u16 = 3;
 /// The first four bytes of a section.
 pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
 
-/// The section's address in flash, and its largest size in bytes.
-pub use lizard_avr::{SPACE, START};
+/// `START_ADDRESS`, the address of the section in flash, and `SPACE_BYTES`, its largest size.
+pub use lizard_avr::{SPACE_BYTES, START_ADDRESS};
 
 /// The longest name of a robot, bytes.
 pub const MAX_NAME_BYTES: usize = 18;
 
 lizard_avr::plain! {
-    /// The first part of a section.
+    /// The header of a section, its first part.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Header {
         /// Always [`MAGIC`].
         pub magic: u32,
         /// The section's format, [`FORMAT`].
         pub format: u16,
-        /// Bytes of the section, including this header.
+        /// The length of the section, including this header, bytes.
         pub length: u16,
         /// The [`Checksum`] of all bytes of the section after this field.
         pub crc: u16,
         /// The robot's name, filled up with zeros.
         pub name: [u8; MAX_NAME_BYTES],
-        /// The hash that identifies the robot: CRC-32 of everything except header and maps.
+        /// The hash that identifies the robot: the CRC-32 of everything except header and maps.
         pub hash: u32,
-        /// The hash that tells if saved settings belong to these servos.
+        /// The hash of the servos' pins, pulses and neutral angles; saved settings belong to it.
         pub servo_hash: u32,
     }
 }
@@ -83,26 +84,26 @@ lizard_avr::plain! {
         /// The bars of head and tail, each in its own frame.
         pub ends: [Bars; 2],
         /// The sliders left and right.
-        pub sides: [Slider; 2],
+        pub sliders: [Slider; 2],
         /// The servos' angles in the neutral pose.
-        pub neutral: [Angle; 4],
+        pub neutral_angles: [Angle; 4],
         /// The pulse widths and the travel of the servos.
         pub calibration: [Calibration; 4],
         /// The range of sweeps that the gaits need of each servo.
-        pub reach: [Reach; 4],
+        pub needed_travel: [NeededTravel; 4],
         /// The smallest margins that are allowed.
         pub limits: Limits,
         /// The slew limit of a move.
         pub slew: Slew,
         /// The supplies and their thresholds.
         pub supplies: Supplies,
-        /// The addresses of the couplers' tables for head and tail: rise, stretched, folded, skew; 0 for one that is
-        /// not needed.
-        pub curves: [[u16; CURVES]; 2],
+        /// The addresses of the couplers' tables for head and tail: rise, stretched rise, folded rise, skew; 0 for a
+        /// table that is not needed.
+        pub curves: [[u16; CURVE_COUNT]; 2],
         /// The parts, in the order of [`Part`].
-        pub parts: [PartRange; PARTS],
+        pub parts: [PartRange; PART_COUNT],
         /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not measured.
-        pub rail: u8,
+        pub rail_pin: u8,
         /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
         pub slow_pace: u8,
         /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
@@ -113,13 +114,13 @@ lizard_avr::plain! {
     }
 }
 
-/// The offset of the numbers.
-pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
-/// The offset of the first byte after the numbers.
-pub(crate) const AFTER_NUMBERS: u16 = NUMBERS + size_of::<Numbers>() as u16;
+/// The offset of the numbers, bytes from the section's beginning.
+pub(crate) const NUMBERS_OFFSET: u16 = size_of::<Header>() as u16;
+/// The offset of the first byte after the numbers, bytes from the section's beginning.
+pub(crate) const AFTER_NUMBERS_OFFSET: u16 = NUMBERS_OFFSET + size_of::<Numbers>() as u16;
 
 /// The number of curves of each pair of couplers.
-pub const CURVES: usize = 4;
+pub const CURVE_COUNT: usize = 4;
 
 /// A part of the section that is an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,14 +136,14 @@ pub enum Part {
 }
 
 /// The number of parts in [`Part`].
-pub const PARTS: usize = 4;
+pub const PART_COUNT: usize = 4;
 
 lizard_avr::plain! {
-/// The address and size of a part of the section.
+    /// The address and the number of elements of a part of the section.
     #[derive(Debug, PartialEq, Eq)]
     pub struct PartRange {
-        /// Bytes from the section's beginning.
-        pub at: u16,
+        /// The address of the part, bytes from the section's beginning.
+        pub address: u16,
         /// The number of elements.
         pub count: u16,
     }
@@ -152,10 +153,10 @@ lizard_avr::plain! {
     /// The header of a map of certified cells.
     #[derive(Debug, PartialEq, Eq)]
     pub struct MapHeader {
-        /// The number of the first row.
-        pub first: i8,
+        /// The row number of the first row, see [`crate::numbers::cells::Cells::from_rows`].
+        pub first_row: i8,
         /// The number of rows.
-        pub rows: u8,
+        pub row_count: u8,
     }
 }
 
@@ -163,47 +164,47 @@ lizard_avr::plain! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
-pub enum Damage {
-    /// There is no section: the magic is missing.
+pub enum SectionError {
+    /// There is no section: its magic bytes are missing.
     Missing = 1,
-    /// The section is for another version of the firmware.
-    Format,
-    /// The section was not written to its end, or has changed since.
+    /// The section has the format of another version of the firmware.
+    OtherFormat,
+    /// The section was not written completely, or has changed since.
     Damaged,
-    /// The section is intact, but its numbers are impossible.
+    /// The section is intact, but one of its numbers could damage hardware.
     Impossible,
 }
 
-/// The first byte that the CRC covers.
-const CRC_COVERS_FROM: usize = offset_of!(Header, name);
+/// The offset of the first byte that the CRC covers.
+const CRC_RANGE_START: usize = offset_of!(Header, name);
 
 /// Checks the section at the beginning of a region and returns its length.
 ///
 /// # Errors
-/// Returns [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
+/// Returns [`SectionError::Missing`], [`SectionError::OtherFormat`] or [`SectionError::Damaged`].
 #[inline(never)]
-pub fn check(flash: Region) -> Result<u16, Damage> {
-    if flash.size() < NUMBERS {
-        return Err(Damage::Missing);
+pub fn check(flash: Region) -> Result<u16, SectionError> {
+    if flash.size() < NUMBERS_OFFSET {
+        return Err(SectionError::Missing);
     }
     if flash.read::<u32>(offset_of!(Header, magic) as u16) != MAGIC {
-        return Err(Damage::Missing);
+        return Err(SectionError::Missing);
     }
     if flash.read::<u16>(offset_of!(Header, format) as u16) != FORMAT {
-        return Err(Damage::Format);
+        return Err(SectionError::OtherFormat);
     }
     let length = flash.read(offset_of!(Header, length) as u16);
-    if length < AFTER_NUMBERS || length > flash.size() {
-        return Err(Damage::Damaged);
+    if length < AFTER_NUMBERS_OFFSET || length > flash.size() {
+        return Err(SectionError::Damaged);
     }
     let mut checksum = Checksum::EMPTY;
-    let mut offset = CRC_COVERS_FROM as u16;
+    let mut offset = CRC_RANGE_START as u16;
     while offset < length {
         checksum = checksum.with_byte(flash.read(offset));
         offset += 1;
     }
     if checksum.0 != flash.read(offset_of!(Header, crc) as u16) {
-        return Err(Damage::Damaged);
+        return Err(SectionError::Damaged);
     }
     Ok(length)
 }

@@ -1,12 +1,12 @@
-//! The slew limit: the largest speed of the servos when the robot moves from one pose to another.
+//! The slew limit: the largest speed of the servos in a point-to-point move.
 
 lizard_avr::plain! {
-    /// The slew limit of a move.
+    /// The slew limit of point-to-point moves.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Slew {
         /// The largest turn in a frame, 1/65536 turn.
         pub per_frame: u16,
-        /// Frames for each 1/65536 turn of the longest distance, Q16, rounded up.
+        /// The duration of a move in frames for each 1/65536 turn of its largest turn, Q16, rounded up.
         pub(crate) frames_per_distance: u16,
     }
 }
@@ -14,18 +14,18 @@ lizard_avr::plain! {
 impl Slew {
     /// The lowest limit, in 1/65536 turn per frame: below it, a move would take more frames than a 16-bit number can
     /// count.
-    pub const SLOWEST: u16 = 36;
+    pub const MIN_PER_FRAME: u16 = 36;
 
-    /// A limit in 1/65536 turn per frame.
+    /// The slew limit of `per_frame`, in 1/65536 turn per frame.
     ///
     /// # Panics
-    /// If the limit is below [`Slew::SLOWEST`].
+    /// If the limit is below [`Slew::MIN_PER_FRAME`].
     pub const fn new(per_frame: u16) -> Self {
-        assert!(per_frame >= Self::SLOWEST);
+        assert!(per_frame >= Self::MIN_PER_FRAME);
         Self {
             per_frame,
-            // The peak of the speed is 3/2 of its mean, and the rounding of a smoothstep adds up to three steps per
-            // frame for each half turn of the distance.
+            // The top speed of a smoothstep is 3/2 of its mean speed, and its rounding adds up to three steps per frame
+            // for each half turn of the distance.
             frames_per_distance: (3u32 << 16).div_ceil(2 * (per_frame as u32 - 6)) as u16,
         }
     }

@@ -1,36 +1,36 @@
 //! The units of the core, and every conversion between them.
 //!
-//! Floating point is slow on an 8-bit processor, so each quantity is an integer whose step is finer than the robot
-//! can resolve. A value that one module passes to another has its own type; inside a formula it is a plain integer.
+//! Floating point is slow on an 8-bit processor, so each quantity is an integer whose step is finer than the robot can
+//! resolve. A value that one module passes to another has a type of its own; inside a formula it is a plain integer.
 //!
 //! | quantity | type | step |
 //! |---|---|---|
-//! | angle, chassis frame | [`Angle`], wraps with the turn | 1/65536 turn = 0.0055 deg |
-//! | sweep, an angle from a servo's neutral | [`Sweep`] | 1/65536 turn |
+//! | angle, chassis frame | [`Angle`], wraps after a turn | 1/65536 turn = 0.0055 deg |
+//! | sweep, an angle from a servo's neutral angle | [`Sweep`] | 1/65536 turn |
 //! | angle at the console | `i32`, `u16` | 0.01 deg |
 //! | length | `i16`, `u16` | [`Scale`]: 1/256 mm for a robot of the paper's size |
 //! | margin, a sine | [`Sine`], Q15 | 1/32768 |
-//! | pulse width | [`Width`] | one CPU cycle, 62.5 ns |
+//! | pulse width | [`PulseWidth`] | one CPU cycle, 62.5 ns |
 //! | phase of a gait | `u32` | 1/2^24 cycle |
-//! | share of a move's time | `u16`, Q15 | 1/32768 |
+//! | share of a move's duration | `u16`, Q15 | 1/32768 |
 //! | pace | `u16`, Q10 | 1/1024 |
 
 use lizard_avr::{mul, mul_unsigned};
 
-/// Hundredths of a degree in a turn.
-pub const TURN_CENTIDEG: i32 = 36_000;
+/// The number of hundredths of a degree in a turn.
+pub const CENTIDEG_PER_TURN: i32 = 36_000;
 
-/// Frames a second; every servo gets one pulse in each.
+/// The number of frames in a second; every servo gets one pulse in each frame.
 pub const FRAMES_PER_SECOND: u16 = 50;
 
-/// The time of a frame, ms.
+/// The duration of a frame, ms.
 pub const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
 
-/// CPU cycles in a microsecond: the UNO runs at 16 MHz.
+/// The number of CPU cycles in a microsecond; the UNO runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 
-/// Steps of an [`Angle`] in a turn.
-pub const TURN: i32 = 1 << 16;
+/// The number of steps of an [`Angle`] in a turn.
+pub const STEPS_PER_TURN: i32 = 1 << 16;
 
 /// 1.0 in Q15, one past the largest sine.
 pub const ONE_Q15: i32 = 1 << 15;
@@ -41,7 +41,7 @@ pub const ONE_Q14: i32 = 1 << 14;
 /// One gait cycle, as a phase.
 pub const CYCLE: u32 = 1 << 24;
 
-/// One gait cycle, in the steps of a table's argument.
+/// One gait cycle, as the argument of a waveform, see [`phase16`].
 pub const CYCLE16: u32 = 1 << 16;
 
 /// An angle in the chassis frame, 1/65536 turn.
@@ -68,39 +68,41 @@ lizard_avr::plain!(Sine: i16);
 /// The width of a pulse in CPU cycles of 62.5 ns; 0 means no pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
-pub struct Width(pub u16);
+pub struct PulseWidth(pub u16);
 
-impl From<Width> for u16 {
-    fn from(width: Width) -> Self {
+impl From<PulseWidth> for u16 {
+    fn from(width: PulseWidth) -> Self {
         width.0
     }
 }
 
-lizard_avr::plain!(Width: u16);
+lizard_avr::plain!(PulseWidth: u16);
 
 lizard_avr::plain! {
-    /// The step of a mechanism's lengths: a millimetre has `2^bits` of them.
+    /// The scale of a mechanism's lengths: a millimetre has 2^`bits` steps.
     ///
-    /// Sixteen bits hold the bars of any robot if the step follows its size.
+    /// It depends on the robot's size, so that sixteen bits hold the bars of any robot.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Scale {
-        /// Binary logarithm of the steps in a millimetre, at most 14.
+        /// The binary logarithm of the number of steps in a millimetre, at most 14.
         pub bits: u16,
     }
 }
 
 impl Angle {
-    /// The angle for `centideg`, at most one turn in either direction, within 0.004 deg.
+    /// The angle of `centideg` hundredths of a degree, at most one turn in either direction; exact within 0.004 deg.
     #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
-        let size = centideg.unsigned_abs() as u16;
-        // A full turn counts as 0. 65536/36000 is 1 + 53769/65536 to within a fifth of a step over the turn.
-        let size = if size == TURN_CENTIDEG as u16 {
+        let magnitude = centideg.unsigned_abs() as u16;
+        // A full turn counts as 0. 65536/36000 is nearly 1 + 53769/65536: the error is below a fifth of a step per
+        // turn.
+        let magnitude = if magnitude == CENTIDEG_PER_TURN as u16 {
             0
         } else {
-            size
+            magnitude
         };
-        let angle = size.wrapping_add(((mul_unsigned(size, 53_769) + 0x8000) >> 16) as u16);
+        let angle =
+            magnitude.wrapping_add(((mul_unsigned(magnitude, 53_769) + 0x8000) >> 16) as u16);
         Self(if centideg < 0 {
             angle.wrapping_neg()
         } else {
@@ -108,11 +110,11 @@ impl Angle {
         })
     }
 
-    /// The angle in hundredths of a degree, 0..36000: the exact inverse of
-    /// [`Angle::from_centideg`], since the step of an angle is finer.
+    /// The angle in hundredths of a degree, 0..36000. It returns the exact argument of [`Angle::from_centideg`],
+    /// because the step of an angle is finer than a hundredth of a degree.
     pub fn centideg(self) -> u16 {
-        // The last step of a turn is 359.9945 deg, which does not round to 360.
-        ((mul_unsigned(self.0, TURN_CENTIDEG as u16) + 0x8000) >> 16) as u16
+        // The last step of a turn, 359.9945 deg, does not round to 360.
+        ((mul_unsigned(self.0, CENTIDEG_PER_TURN as u16) + 0x8000) >> 16) as u16
     }
 
     /// The angle after a sweep from this one.
@@ -120,7 +122,7 @@ impl Angle {
         Self(self.0.wrapping_add(sweep.0 as u16))
     }
 
-    /// The sweep from this angle to another one, in the direction of the smaller turn.
+    /// The sweep from this angle to another one, in the direction of the shorter turn.
     pub const fn sweep_to(self, other: Self) -> Sweep {
         Sweep(other.0.wrapping_sub(self.0) as i16)
     }
@@ -134,26 +136,26 @@ impl Sine {
 }
 
 impl Scale {
-    /// The finest step, 1/16384 mm.
+    /// The finest scale, with steps of 1/16384 mm.
     pub const FINEST: Self = Self { bits: 14 };
 
-    /// Converts a length in this step to hundredths of a millimetre, rounded to nearest. The magnitude of `length`
-    /// must fit 16 bits.
+    /// Converts a length in steps to hundredths of a millimetre, rounded to nearest. The magnitude of `length` must fit
+    /// 16 bits.
     #[inline(always)]
     pub fn hundredths(self, length: i32) -> i32 {
-        let size = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
-        let signed = if length < 0 { -size } else { size };
+        let magnitude = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
+        let signed_product = if length < 0 { -magnitude } else { magnitude };
         let bits = self.bits.into();
-        (signed + (1i32.wrapping_shl(bits) >> 1)).wrapping_shr(bits)
+        (signed_product + (1i32.wrapping_shl(bits) >> 1)).wrapping_shr(bits)
     }
 }
 
-/// The highest sixteen bits of the phase, the argument of the tables.
+/// The highest sixteen bits of a phase: the argument of the waveforms, in 1/65536 cycle.
 pub const fn phase16(phase: u32) -> u16 {
     (phase >> 8) as u16
 }
 
-/// The phase in thousandths of a cycle, 0..=999.
+/// A phase in thousandths of a cycle, 0..=999.
 pub fn thousandths_from_phase(phase: u32) -> u16 {
     (mul_unsigned(phase16(phase), 1000) >> 16) as u16
 }
@@ -173,17 +175,17 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_of_the_console_is_within_seven_tenths_of_a_step() {
+    fn an_angle_from_hundredths_of_a_degree_is_within_0_004_degrees() {
         for centideg in -36_000..=36_000 {
             let angle = Angle::from_centideg(centideg);
             let error = angle_between(degrees_of(angle), f64::from(centideg) / 100.0);
-            // Half a step is 0.0027 deg.
+            // Half a step is 0.0027 deg; the rest is the error of the factor.
             assert!(error <= 0.004, "{centideg}: {error} deg");
         }
     }
 
     #[test]
-    fn every_hundredth_of_a_degree_comes_back_as_it_went() {
+    fn every_hundredth_of_a_degree_is_unchanged_after_conversion_to_an_angle_and_back() {
         for centideg in 0..36_000u16 {
             let angle = Angle::from_centideg(centideg.into());
             assert_eq!(angle.centideg(), centideg);
@@ -191,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn every_angle_is_printed_to_the_nearest_hundredth_of_a_degree() {
+    fn every_angle_converts_to_the_nearest_hundredth_of_a_degree() {
         for angle in (0..=u16::MAX).map(Angle) {
             let centideg = angle.centideg();
             assert!(centideg < 36_000);
@@ -212,16 +214,16 @@ mod tests {
     }
 
     #[test]
-    fn every_margin_is_printed_to_the_nearest_thousandth() {
+    fn every_margin_converts_to_the_nearest_thousandth() {
         for raw in i16::MIN..=i16::MAX {
             let exact = f64::from(raw) * 1000.0 / 32768.0;
-            let printed = f64::from(Sine(raw).thousandths());
-            assert!((printed - exact).abs() <= 0.5, "{raw}: {printed}");
+            let thousandths = f64::from(Sine(raw).thousandths());
+            assert!((thousandths - exact).abs() <= 0.5, "{raw}: {thousandths}");
         }
     }
 
     #[test]
-    fn every_length_is_printed_to_the_nearest_hundredth_of_a_millimetre() {
+    fn every_length_converts_to_the_nearest_hundredth_of_a_millimetre() {
         for bits in 0..=14 {
             let scale = Scale { bits };
             for length in (-65_535..=65_535)
@@ -229,27 +231,27 @@ mod tests {
                 .chain([-65_535, -1, 0, 1, 65_535])
             {
                 let exact = f64::from(length) * 100.0 / f64::from(1 << bits);
-                let printed = f64::from(scale.hundredths(length));
+                let hundredths = f64::from(scale.hundredths(length));
                 assert!(
-                    (printed - exact).abs() <= 0.5,
-                    "{length} at {bits}: {printed}"
+                    (hundredths - exact).abs() <= 0.5,
+                    "{length} at {bits}: {hundredths}"
                 );
             }
         }
     }
 
     #[test]
-    fn a_phase_is_printed_rounded_down_and_never_as_a_whole_cycle() {
+    fn a_phase_converts_to_thousandths_rounded_down_and_never_to_a_whole_cycle() {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
-            let printed = thousandths_from_phase(phase);
-            // Tables and the console use only the highest sixteen bits.
-            let rounded_off = exact - f64::from(printed);
+            let thousandths = thousandths_from_phase(phase);
+            // Waveforms and the console use only the highest sixteen bits.
+            let rounding_loss = exact - f64::from(thousandths);
             assert!(
-                (0.0..1.0 + 1000.0 / 65536.0).contains(&rounded_off),
+                (0.0..1.0 + 1000.0 / 65536.0).contains(&rounding_loss),
                 "{phase}"
             );
-            assert!(printed < 1000);
+            assert!(thousandths < 1000);
             assert_eq!(u32::from(phase16(phase)), phase / 256);
         }
     }

@@ -3,64 +3,66 @@
 use crate::control::supply::Reading;
 use crate::numbers::supplies::Supplies;
 
-/// The analogue-to-digital converter; it measures one voltage in every second frame.
+/// The analogue-to-digital converter. It measures one voltage in every second frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Converter {
-    /// The actual supplies.
-    actual: Reading,
+    /// The reading of the actual supplies.
+    true_reading: Reading,
     /// True if the servos' rail is measured too.
     has_rail: bool,
+    /// The latest measured values.
     last_reading: Reading,
     /// The number of the frame within a round of measurements.
-    frames: u8,
+    frame_in_round: u8,
+    /// True once every voltage has been measured.
     is_complete: bool,
 }
 
 impl Converter {
-    /// A converter with these actual supplies, with or without the servos' rail.
-    pub fn new(truth: Reading, has_rail: bool) -> Self {
+    /// A converter whose supplies have this reading; `has_rail` is true if the servos' rail is measured too.
+    pub fn new(true_reading: Reading, has_rail: bool) -> Self {
         Self {
-            actual: truth,
+            true_reading,
             has_rail,
             ..Self::default()
         }
     }
 
-    /// Changes the actual supplies.
-    pub const fn set(&mut self, truth: Reading) {
-        self.actual = truth;
+    /// Changes the reading of the actual supplies.
+    pub const fn set_true_reading(&mut self, true_reading: Reading) {
+        self.true_reading = true_reading;
     }
 
-    /// The actual supplies.
-    pub const fn actual(&self) -> Reading {
-        self.actual
+    /// The reading of the actual supplies.
+    pub const fn true_reading(&self) -> Reading {
+        self.true_reading
     }
 
-    /// True once every voltage has been measured since the program began.
+    /// True once every voltage has been measured since the program started.
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
 
     pub(super) fn reset(self) -> Self {
-        Self::new(self.actual, self.has_rail)
+        Self::new(self.true_reading, self.has_rail)
     }
 
     /// Advances by a frame. Returns the latest value of each voltage, or the default until every voltage has been
     /// measured once.
-    pub(super) fn next(&mut self) -> Reading {
-        match self.frames {
+    pub(super) fn advance_frame(&mut self) -> Reading {
+        match self.frame_in_round {
             1 => {
-                self.last_reading.reference = self.actual.reference;
+                self.last_reading.reference = self.true_reading.reference;
                 self.is_complete |= !self.has_rail;
             }
             3 => {
-                self.last_reading.rail = self.actual.rail;
+                self.last_reading.rail = self.true_reading.rail;
                 self.is_complete = true;
             }
             _ => {}
         }
-        let period = if self.has_rail { 4 } else { 2 };
-        self.frames = (self.frames + 1) % period;
+        let round_frames = if self.has_rail { 4 } else { 2 };
+        self.frame_in_round = (self.frame_in_round + 1) % round_frames;
         if self.is_complete {
             self.last_reading
         } else {
@@ -69,17 +71,19 @@ impl Converter {
     }
 }
 
-/// Returns the converter's reading if the supplies have the voltages `board` and `rail`, in mV. The rail is measured
-/// through its divider.
-pub fn compute_reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
-    let board = u64::from(board);
+/// Returns the converter's reading if the chip has the voltage `board_mv` and the servos' rail has the voltage
+/// `rail_mv`. The rail is measured through its voltage divider.
+pub fn compute_reading(supplies: &Supplies, board_mv: u32, rail_mv: u32) -> Reading {
+    let board = u64::from(board_mv);
     let reading_of = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
-    let reference = u64::from(supplies.reference);
+    let reference = u64::from(supplies.reference_mv);
     Reading {
         reference: reading_of(reference),
-        rail: match supplies.rail_reference {
+        rail: match supplies.rail_reference_mv {
             0 => 0,
-            rail_reference => reading_of(u64::from(rail) * reference / u64::from(rail_reference)),
+            rail_reference => {
+                reading_of(u64::from(rail_mv) * reference / u64::from(rail_reference))
+            }
         },
     }
 }

@@ -5,24 +5,26 @@ use core::hash::{Hash, Hasher};
 use std::sync::Arc;
 use std::vec::Vec;
 
-use crate::memory::record::{ERASED, Memory, SIZE};
+use crate::memory::record::{ERASED, MEMORY_BYTES, Memory};
 
 /// An EEPROM. Clones share their bytes until one of them is written to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Eeprom {
-    bytes: Arc<[u8; SIZE]>,
-    /// The time until the EEPROM is ready again after a write: in milliseconds if `is_timed`, else in polls.
-    pub slowness: u16,
-    /// True if the passing of time makes the EEPROM ready, as on the chip; false if polls do.
+    bytes: Arc<[u8; MEMORY_BYTES]>,
+    /// The time until the EEPROM is ready again after a write: in milliseconds if `is_timed`, otherwise in polls.
+    pub write_delay: u16,
+    /// True if the EEPROM becomes ready by the passing of time, as on the chip; false if it becomes ready by being
+    /// polled.
     pub is_timed: bool,
     /// True if the EEPROM is worn out, so that writes change nothing.
     pub is_worn: bool,
     /// Every write of a byte: address, old value, new value.
     pub log: Vec<(u16, u8, u8)>,
+    /// The part of `write_delay` that has not passed yet.
     remaining_delay: Cell<u16>,
     /// True if the last poll found the EEPROM busy; only set if `is_timed`.
     was_polled_busy: Cell<bool>,
-    /// Address of the byte that is being written.
+    /// The address of the byte that is being written.
     address_in_write: Cell<Option<u16>>,
 }
 
@@ -45,14 +47,14 @@ impl Hash for Eeprom {
 impl Eeprom {
     /// An erased EEPROM, as it comes from the factory.
     pub fn blank() -> Self {
-        Self::with([ERASED; SIZE])
+        Self::with_bytes([ERASED; MEMORY_BYTES])
     }
 
     /// An EEPROM with these bytes.
-    pub fn with(bytes: [u8; SIZE]) -> Self {
+    pub fn with_bytes(bytes: [u8; MEMORY_BYTES]) -> Self {
         Self {
             bytes: Arc::new(bytes),
-            slowness: 0,
+            write_delay: 0,
             is_timed: false,
             is_worn: false,
             log: Vec::new(),
@@ -63,12 +65,12 @@ impl Eeprom {
     }
 
     /// All bytes of the EEPROM.
-    pub fn bytes(&self) -> &[u8; SIZE] {
+    pub fn bytes(&self) -> &[u8; MEMORY_BYTES] {
         &self.bytes
     }
 
     /// All bytes of the EEPROM, mutable for tests.
-    pub fn bytes_mut(&mut self) -> &mut [u8; SIZE] {
+    pub fn bytes_mut(&mut self) -> &mut [u8; MEMORY_BYTES] {
         Arc::make_mut(&mut self.bytes)
     }
 
@@ -77,25 +79,25 @@ impl Eeprom {
         self.address_in_write.get()
     }
 
-    /// True if the last poll found the EEPROM busy and only the passing of time makes it ready. Clears the flag.
+    /// True if the last poll found the EEPROM busy and only the passing of time can make it ready. Clears the flag.
     pub fn was_polled_busy(&self) -> bool {
         self.was_polled_busy.take()
     }
 
     /// Lets a millisecond pass.
     pub(super) fn pass_time(&mut self) {
-        let remaining = self
+        let new_delay = self
             .remaining_delay
             .get()
             .saturating_sub(u16::from(self.is_timed));
-        self.remaining_delay.set(remaining);
-        if remaining == 0 {
+        self.remaining_delay.set(new_delay);
+        if new_delay == 0 {
             self.address_in_write.set(None);
         }
     }
 
     /// Completes the write of a byte at once.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn complete_write(&mut self) {
         self.remaining_delay.set(0);
         self.address_in_write.set(None);
     }
@@ -111,23 +113,23 @@ impl Eeprom {
 
 impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
-        let remaining = self.remaining_delay.get();
+        let delay = self.remaining_delay.get();
         if self.is_timed {
-            self.was_polled_busy.set(remaining > 0);
+            self.was_polled_busy.set(delay > 0);
         } else {
-            self.remaining_delay.set(remaining.saturating_sub(1));
+            self.remaining_delay.set(delay.saturating_sub(1));
         }
-        if remaining == 0 {
+        if delay == 0 {
             self.address_in_write.set(None);
         }
-        remaining == 0
+        delay == 0
     }
 
     fn read(&self, address: u16) -> u8 {
         assert_eq!(
             self.remaining_delay.get(),
             0,
-            "read while it is being written"
+            "no byte is read during a write"
         );
         self.bytes[usize::from(address)]
     }
@@ -136,15 +138,15 @@ impl Memory for Eeprom {
         assert_eq!(
             self.remaining_delay.get(),
             0,
-            "written while it is being written"
+            "no byte is written during another write"
         );
         let old_byte = self.bytes[usize::from(address)];
-        assert_ne!(old_byte, byte, "written for nothing");
+        assert_ne!(old_byte, byte, "every write changes its byte");
         self.log.push((address, old_byte, byte));
         if !self.is_worn {
             self.bytes_mut()[usize::from(address)] = byte;
         }
-        self.remaining_delay.set(self.slowness);
+        self.remaining_delay.set(self.write_delay);
         self.address_in_write.set(Some(address));
     }
 }

@@ -3,18 +3,18 @@
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
 
-use crate::memory::kept::{self, CELLS, Cells};
 use crate::memory::restart::{Cause, Restart, Stance};
-use crate::numbers::rate::Rate;
+use crate::memory::retained_ram::{self, CELL_COUNT, Cells};
+use crate::numbers::rate::BaudRate;
 
-/// The cells of [`crate::memory::kept`], in the host's memory.
+/// The cells of [`crate::memory::retained_ram`], in the host's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Ram(Cell<[u8; CELLS]>);
+pub struct Ram(Cell<[u8; CELL_COUNT]>);
 
 impl Default for Ram {
     /// The cells just after power-on.
     fn default() -> Self {
-        let ram = Self(Cell::new([0; CELLS]));
+        let ram = Self(Cell::new([0; CELL_COUNT]));
         ram.begin(Some(Cause::Power));
         ram
     }
@@ -39,31 +39,31 @@ impl Cells for Ram {
 }
 
 impl Ram {
-    /// The state that the program would find if it started now; changes nothing. `reported` is the cause that the
+    /// The state that the program would find if it started now; changes nothing. `reported_cause` is the cause that the
     /// chip reports, or `None` if a boot loader hides it.
-    pub fn peek_restart(&self, reported: Option<Cause>) -> Restart {
-        kept::begin(&self.clone(), reported)
+    pub fn peek_restart(&self, reported_cause: Option<Cause>) -> Restart {
+        retained_ram::begin(&self.clone(), reported_cause)
     }
 
     /// Returns the cause of the reset and the state from before it, and marks the program as running, as the
-    /// firmware does at its start. `reported` is the cause that the chip reports, or `None` if a boot loader hides
+    /// firmware does at its start. `reported_cause` is the cause that the chip reports, or `None` if a boot loader hides
     /// it.
-    pub fn begin(&self, reported: Option<Cause>) -> Restart {
-        kept::begin(self, reported)
+    pub fn begin(&self, reported_cause: Option<Cause>) -> Restart {
+        retained_ram::begin(self, reported_cause)
     }
 
-    /// Stores the servos' state.
+    /// Stores the servos' state, and the number of consecutive resets that a weak supply may have caused.
     pub fn store_stance(&self, stance: &Stance, brown_outs: u8) {
-        kept::store_stance(self, stance, brown_outs);
+        retained_ram::store_stance(self, stance, brown_outs);
     }
 
     /// Stores the rate of the serial line.
-    pub fn store_rate(&self, rate: Rate) {
-        kept::store_rate(self, rate);
+    pub fn store_rate(&self, rate: BaudRate) {
+        retained_ram::store_rate(self, rate);
     }
 
     /// Marks the program as hung.
     pub fn mark_hung(&self) {
-        kept::mark_hung(self);
+        retained_ram::mark_hung(self);
     }
 }

@@ -9,25 +9,25 @@ use crate::step::{Main, Step};
 
 /// A robot that stands.
 fn standing_robot() -> RunningRobot {
-    let mut running = RunningRobot::power_on(*Sample::odd());
-    running.run_frames(30);
-    running
+    let mut robot = RunningRobot::power_on(*Sample::odd());
+    robot.run_frames(30);
+    robot
 }
 
-const NO_PULSES: Pulses = Pulses([Width(0); 4]);
+const NO_PULSES: Pulses = Pulses([PulseWidth(0); 4]);
 
 #[test]
 fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
     let mut board = VirtualBoard::default();
     board.connect([9, 10, 5, 6], None);
-    let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(Width));
+    let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(PulseWidth));
     board.submit(pulses);
     assert_eq!(board.started_pulses(), NO_PULSES);
     board.pass_time(1 + 3);
     assert_eq!(
         board.started_pulses(),
         NO_PULSES,
-        "the tick, and not yet the hand-over"
+        "the frame has not been taken over yet"
     );
     board.pass_time(1);
     assert_eq!(
@@ -39,7 +39,7 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
         assert_eq!(board.started_pulses(), pulses);
         board.pass_time(1);
     }
-    board.submit(Pulses([0, 999, 63_001, 1_000].map(Width)));
+    board.submit(Pulses([0, 999, 63_001, 1_000].map(PulseWidth)));
     board.pass_time(20 + 19);
     assert_eq!(
         board.started_pulses().0.map(|width| width.0),
@@ -49,54 +49,69 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
 
 #[test]
 fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() {
-    let mut running = standing_robot();
-    assert!(!running.stall(WATCHDOG_MS - 20));
-    assert!(!running.board.are_pulses_ended());
-    assert_ne!(running.frame(), NO_PULSES);
-    let mut hung = standing_robot();
-    assert!(!hung.board.pass_time(WATCHDOG_MS + 20));
-    assert!(hung.board.are_pulses_ended());
+    let mut robot = standing_robot();
+    assert!(!robot.stall(WATCHDOG_MS - 20));
+    assert!(!robot.board.are_pulses_ended());
+    assert_ne!(robot.run_frame(), NO_PULSES);
+    let mut hung_robot = standing_robot();
+    assert!(!hung_robot.board.pass_time(WATCHDOG_MS + 20));
+    assert!(hung_robot.board.are_pulses_ended());
     assert_eq!(
-        hung.board.started_pulses(),
+        hung_robot.board.started_pulses(),
         NO_PULSES,
         "no pulse begins any more"
     );
-    let (pose, frames) = (*hung.motion().pose(), hung.motion().frames());
-    hung.settle();
-    assert_eq!(hung.motion().frames(), frames, "main does not go on");
-    assert!(hung.stall(1), "and the reset comes");
-    assert!(!hung.board.are_pulses_ended());
-    assert_eq!(hung.board.restart().cause, Cause::Watchdog);
-    assert_eq!(hung.board.restart().count, 1);
-    assert_eq!(
-        hung.board.restart().stance_before.map(|stance| stance.pose),
-        Some(pose)
+    let (pose, frames) = (
+        *hung_robot.motion().pose(),
+        hung_robot.motion().frame_count(),
     );
-}
-
-#[test]
-fn a_reset_leaves_the_pose_and_power_takes_it() {
-    let mut running = standing_robot();
-    running.send_line("sway");
-    running.run_frames(60);
-    let pose = *running.motion().pose();
-    running.board.send(b"stand\r");
-    running.reset(Cause::External);
+    hung_robot.settle();
     assert_eq!(
-        running
+        hung_robot.motion().frame_count(),
+        frames,
+        "the main loop does not continue"
+    );
+    assert!(hung_robot.stall(1), "the reset comes");
+    assert!(!hung_robot.board.are_pulses_ended());
+    assert_eq!(hung_robot.board.last_restart().cause, Cause::Watchdog);
+    assert_eq!(hung_robot.board.last_restart().reset_count, 1);
+    assert_eq!(
+        hung_robot
             .board
-            .restart()
+            .last_restart()
             .stance_before
             .map(|stance| stance.pose),
         Some(pose)
     );
-    assert_eq!(running.board.unread(), 0, "what main had not read is lost");
-    running.lose_power(None);
-    assert_eq!(running.board.restart(), &Restart::NONE);
 }
 
 #[test]
-fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
+fn a_reset_keeps_the_pose_and_a_loss_of_power_does_not() {
+    let mut robot = standing_robot();
+    robot.send_line("sway");
+    robot.run_frames(60);
+    let pose = *robot.motion().pose();
+    robot.board.send(b"stand\r");
+    robot.reset(Cause::External);
+    assert_eq!(
+        robot
+            .board
+            .last_restart()
+            .stance_before
+            .map(|stance| stance.pose),
+        Some(pose)
+    );
+    assert_eq!(
+        robot.board.unread_count(),
+        0,
+        "bytes that the main loop had not read are lost"
+    );
+    robot.lose_power(None);
+    assert_eq!(robot.board.last_restart(), &Restart::NONE);
+}
+
+#[test]
+fn power_lost_during_a_write_changes_only_the_byte_that_is_being_written() {
     let mut board = VirtualBoard::default();
     board.memory.write(17, 0x35);
     assert_eq!(board.memory.address_in_write(), Some(17));
@@ -108,7 +123,7 @@ fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
     assert_eq!(
         board_after_write.memory.bytes()[17],
         0x35,
-        "it had time to end"
+        "the write had time to end"
     );
     let is_other = |address: &usize| *address != 17;
     let is_erased = |address: usize| board.memory.bytes()[address] == ERASED;
@@ -116,9 +131,9 @@ fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
 }
 
 #[test]
-fn a_slow_listener_leaves_less_room_until_time_passes() {
+fn a_slow_line_leaves_less_room_until_time_passes() {
     let mut transmitter = Transmitter::new(16_000, 255);
-    transmitter.fill(200);
+    transmitter.queue_bytes(200);
     assert_eq!(transmitter.room(), 55);
     transmitter.pass_time(10);
     assert_eq!(transmitter.room(), 65);
@@ -128,15 +143,15 @@ fn a_slow_listener_leaves_less_room_until_time_passes() {
 }
 
 #[test]
-fn nothing_is_measured_before_a_whole_measurement_and_each_part_in_its_turn() {
-    let truth = Reading {
+fn no_reading_is_given_before_every_voltage_has_been_measured() {
+    let true_reading = Reading {
         reference: 221,
         rail: 393,
     };
     for (has_rail, first_frame) in [(false, 2), (true, 4)] {
-        let mut converter = Converter::new(truth, has_rail);
+        let mut converter = Converter::new(true_reading, has_rail);
         for frame in 1..40 {
-            let reading = converter.next();
+            let reading = converter.advance_frame();
             assert_eq!(
                 reading.reference == 221,
                 frame >= first_frame,
@@ -156,89 +171,97 @@ fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
     board.send(&[b'x'; RECEIVE_CAPACITY + 5]);
     assert_eq!(
-        (board.unread(), board.counters().rx_lost),
+        (board.unread_count(), board.counters().rx_lost),
         (RECEIVE_CAPACITY, 5)
     );
     let mut main = Main::new();
     main.begin(Sample::odd().section(), &mut board);
     while main.step(&mut board) == Step::Worked {}
-    assert_eq!(board.unread(), 0);
+    assert_eq!(board.unread_count(), 0);
 }
 
 #[test]
-fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
+fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
     // Settings that change before the servos wake must not move them beyond the last submitted frame: the first
     // pulses repeat it, and the slew limit counts from there.
-    let mut running = RunningRobot::power_on(*Sample::odd());
-    running.run_frames(200);
-    running.send_line("sway");
-    running.run_frames(60);
-    let started = running.board.started_pulses();
-    running.board.pass_time(running.board.ms_until_tick());
-    running.settle();
-    running.reset(Cause::External);
-    let submitted = *running.motion().sent();
-    assert_ne!(started, submitted, "a frame was on its way");
+    let mut robot = RunningRobot::power_on(*Sample::odd());
+    robot.run_frames(200);
+    robot.send_line("sway");
+    robot.run_frames(60);
+    let started_pulses = robot.board.started_pulses();
+    robot.board.pass_time(robot.board.ms_until_tick());
+    robot.settle();
+    robot.reset(Cause::External);
+    let submitted_pulses = *robot.motion().sent_pulses();
+    assert_ne!(started_pulses, submitted_pulses, "a frame was on its way");
     for servo in 1..=4 {
-        running.send_line(&format!("scale {servo} 9.3"));
+        robot.send_line(&format!("scale {servo} 9.3"));
     }
     let mut first_widths = [None; 4];
     while first_widths.contains(&None) {
-        let pulses = running.frame();
-        for (first, width) in first_widths.iter_mut().zip(pulses.0) {
+        let pulses = robot.run_frame();
+        for (first_width, width) in first_widths.iter_mut().zip(pulses.0) {
             if width.0 > 0 {
-                first.get_or_insert(width);
+                first_width.get_or_insert(width);
             }
         }
     }
-    assert_eq!(first_widths, submitted.0.map(Some));
+    assert_eq!(first_widths, submitted_pulses.0.map(Some));
 }
 
-/// The largest change of each servo's pulse width from one frame to the next, cycles.
-fn largest_leaps(running: &mut RunningRobot, frames: usize) -> [u16; 4] {
-    let mut last_widths = *running.motion().sent();
-    let mut leaps = [0; 4];
+/// Runs frames and returns the largest change of each servo's pulse width from one frame to the next, cycles.
+fn largest_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
+    let mut last_widths = *robot.motion().sent_pulses();
+    let mut changes = [0; 4];
     for _ in 0..frames {
-        let pulses = running.frame();
+        let pulses = robot.run_frame();
         for (servo, width) in pulses.0.iter().enumerate() {
             if width.0 > 0 {
-                leaps[servo] = leaps[servo].max(width.0.abs_diff(last_widths.0[servo].0));
+                changes[servo] = changes[servo].max(width.0.abs_diff(last_widths.0[servo].0));
                 last_widths.0[servo] = *width;
             }
         }
     }
-    leaps
+    changes
 }
 
 #[test]
 fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
     let robot = Sample::odd();
-    let per_frame = robot.slew().per_frame;
-    let max_leaps = robot.calibration().map(|servo| servo.slew(per_frame));
+    let sweep_per_frame = robot.slew().per_frame;
+    let max_changes = robot
+        .calibration()
+        .map(|servo| servo.max_width_change(sweep_per_frame));
     for reset_cause in [None, Some(Cause::External), Some(Cause::Watchdog)] {
-        let mut running = standing_robot();
-        running.send_line("sway");
-        running.run_frames(60);
-        running.send_line("rest");
-        running.run_frames(60);
-        let sent_at_rest = *running.motion().sent();
+        let mut running_robot = standing_robot();
+        running_robot.send_line("sway");
+        running_robot.run_frames(60);
+        running_robot.send_line("rest");
+        running_robot.run_frames(60);
+        let pulses_before_rest = *running_robot.motion().sent_pulses();
         for servo in 1..=4 {
             assert!(
-                running
+                running_robot
                     .send_line(&format!("trim {servo} 6"))
                     .starts_with("ok")
             );
         }
         if let Some(cause) = reset_cause {
-            running.reset(cause);
-            running.run_frames(60);
+            running_robot.reset(cause);
+            running_robot.run_frames(60);
         }
-        running.send_line("stand");
-        let leaps = largest_leaps(&mut running, 200);
+        running_robot.send_line("stand");
+        let changes = largest_changes(&mut running_robot, 200);
         for servo in 0..4 {
-            assert!(leaps[servo] <= max_leaps[servo], "{leaps:?}, {max_leaps:?}");
-            assert!(leaps[servo] > 0, "it stands elsewhere than it rested");
+            assert!(
+                changes[servo] <= max_changes[servo],
+                "{changes:?}, {max_changes:?}"
+            );
+            assert!(
+                changes[servo] > 0,
+                "the robot stands in another pose than it rested"
+            );
         }
-        assert_ne!(*running.motion().sent(), sent_at_rest);
+        assert_ne!(*running_robot.motion().sent_pulses(), pulses_before_rest);
     }
 }

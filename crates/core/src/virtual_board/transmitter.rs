@@ -16,18 +16,18 @@ pub struct Transmitter {
     pub text: String,
     /// True while nobody reads the line, so that nothing more is sent.
     pub is_held: bool,
-    /// CPU cycles per byte; 0 for a line without delay.
-    per_byte: u64,
+    /// CPU cycles per byte; 0 for a line that sends at once.
+    cycles_per_byte: u64,
     /// Bytes that the transmitter accepts before a writer has to wait.
     capacity: u64,
-    /// The current cycle.
-    now: u64,
-    /// The cycle at which the last written byte is sent.
-    idle_from: u64,
+    /// The current CPU cycle.
+    current_cycle: u64,
+    /// The CPU cycle at which all written bytes have been sent.
+    idle_from_cycle: u64,
 }
 
 impl Default for Transmitter {
-    /// A line without delay.
+    /// A line that sends at once.
     fn default() -> Self {
         Self::new(0, 255)
     }
@@ -47,31 +47,31 @@ impl Transmitter {
         Self {
             text: String::new(),
             is_held: false,
-            per_byte: cycles_per_byte,
+            cycles_per_byte,
             capacity,
-            now: 0,
-            idle_from: 0,
+            current_cycle: 0,
+            idle_from_cycle: 0,
         }
     }
 
     /// Lets milliseconds pass.
     pub(super) const fn pass_time(&mut self, ms: u64) {
-        self.now += ms * CYCLES_PER_MS;
+        self.current_cycle += ms * CYCLES_PER_MS;
     }
 
-    /// Sets the current cycle.
-    pub const fn at(&mut self, cycle: u64) {
-        self.now = cycle;
+    /// Sets the current CPU cycle.
+    pub const fn set_cycle(&mut self, cycle: u64) {
+        self.current_cycle = cycle;
     }
 
-    /// The cycle at which the last written byte is sent.
-    pub const fn free(&self) -> u64 {
-        self.idle_from
+    /// The CPU cycle at which all written bytes have been sent.
+    pub const fn idle_from_cycle(&self) -> u64 {
+        self.idle_from_cycle
     }
 
-    /// Adds bytes that are still to be sent, as if left from an earlier run.
-    pub const fn fill(&mut self, bytes: u64) {
-        self.idle_from = self.now + bytes * self.per_byte;
+    /// Makes this number of bytes wait to be sent, as if they were left from an earlier run.
+    pub const fn queue_bytes(&mut self, bytes: u64) {
+        self.idle_from_cycle = self.current_cycle + bytes * self.cycles_per_byte;
     }
 
     /// Bytes that the transmitter accepts without waiting, at most 255; none while it is held.
@@ -79,17 +79,17 @@ impl Transmitter {
         if self.is_held {
             return 0;
         }
-        let queued = self.cycles_left().div_ceil(self.per_byte.max(1));
-        self.capacity.saturating_sub(queued).min(255) as u8
+        let queued_bytes = self.cycles_left().div_ceil(self.cycles_per_byte.max(1));
+        self.capacity.saturating_sub(queued_bytes).min(255) as u8
     }
 
     fn cycles_left(&self) -> u64 {
-        self.idle_from.saturating_sub(self.now)
+        self.idle_from_cycle.saturating_sub(self.current_cycle)
     }
 
     pub(super) fn reset(self) -> Self {
         Self {
-            idle_from: self.now,
+            idle_from_cycle: self.current_cycle,
             ..self
         }
     }
@@ -100,7 +100,8 @@ impl uWrite for Transmitter {
 
     fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
         self.text.push_str(text);
-        self.idle_from = self.idle_from.max(self.now) + self.per_byte * text.len() as u64;
+        self.idle_from_cycle =
+            self.idle_from_cycle.max(self.current_cycle) + self.cycles_per_byte * text.len() as u64;
         Ok(())
     }
 }

@@ -5,25 +5,25 @@ use lizard_film::Film;
 use lizard_studio::render::{Studio, normal};
 use lizard_studio::walk::{Variation, Walk, gait, truth};
 
-use crate::accuracy::number;
-use crate::studio::{TRUE_SIZE, film_of};
+use crate::accuracy::number_from_environment;
+use crate::studio::{TRUE_SIZE, film_robot};
 
-/// Cycles in a film.
-const CYCLES: usize = 6;
+/// Number of cycles in a film.
+const CYCLE_COUNT: usize = 6;
 /// Largest error of a mean cycle, and largest spread of single cycles: mm, mm, deg.
-const LARGEST_ERRORS: [f64; 3] = [0.2, 0.2, 0.5];
+const MAX_ERRORS: [f64; 3] = [0.2, 0.2, 0.5];
 
 /// A camera that a user may have.
 struct Camera {
     name: &'static str,
     studio: Studio,
     /// Pictures per second.
-    rate: f64,
-    /// Standard deviation of the hand's position, mm; the standard deviation of its angles is a tenth of it, deg.
+    picture_rate: f64,
+    /// Standard deviation of the camera's position in the hand, mm. That of its angles is a tenth of this number, deg.
     shake: f64,
 }
 
-/// A good camera: 720p, 30 pictures per second, on a tripod.
+/// A studio with a good camera: 720p, on a tripod.
 fn good_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
     (studio.focal, studio.height, studio.tilt) = (0.78, 780.0, 20.0);
@@ -39,7 +39,7 @@ fn cameras() -> Vec<Camera> {
         Camera {
             name,
             studio,
-            rate,
+            picture_rate: rate,
             shake,
         }
     };
@@ -81,28 +81,29 @@ fn cameras() -> Vec<Camera> {
     ]
 }
 
-fn film(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
+fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
     let Camera {
         studio,
-        rate,
+        picture_rate: rate,
         shake,
         ..
     } = camera;
     if *shake == 0.0 {
-        return film_of(studio, walk.seconds(), *rate, |time| walk.at(time), rng);
+        return film_robot(studio, walk.seconds(), *rate, |time| walk.at(time), rng);
     }
     let mut film = Film::default();
     for i in 0..(walk.seconds() * rate) as usize {
-        let mut shaken = studio.clone();
-        shaken.height += shake * normal(rng);
-        shaken.aim = shaken.aim.map(|value| value + shake * normal(rng));
-        shaken.tilt += shake / 10.0 * normal(rng);
-        shaken.roll += shake / 10.0 * normal(rng);
+        let mut shaken_studio = studio.clone();
+        shaken_studio.height += shake * normal(rng);
+        shaken_studio.aim = shaken_studio.aim.map(|value| value + shake * normal(rng));
+        shaken_studio.tilt += shake / 10.0 * normal(rng);
+        shaken_studio.roll += shake / 10.0 * normal(rng);
         let seconds = i as f64 / rate;
-        let picture = shaken
+        let picture = shaken_studio
             .background(rng)
             .picture(seconds, |time| walk.at(time), rng);
-        film.add(seconds, &picture).expect("a picture");
+        film.add(seconds, &picture)
+            .expect("the picture fits the film");
     }
     film
 }
@@ -111,20 +112,20 @@ fn film(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() {
-    let seed = number("SEED", 1) as u64;
+    let seed = number_from_environment("SEED", 1) as u64;
     let gait = gait("walk");
     println!("error of the mean and one cycle's sd: ahead, left, turn (mm, mm, deg)");
     for camera in cameras() {
         let mut rng = Rng::with_seed(seed);
-        let start = -truth(&gait).forward * CYCLES as f64 / 2.0;
+        let start = -truth(&gait).forward * CYCLE_COUNT as f64 / 2.0;
         let walk = Walk::new(
             &gait,
             [start, 0.0, 0.05],
-            CYCLES,
+            CYCLE_COUNT,
             Variation::default(),
             &mut rng,
         );
-        let measured = film(&camera, &walk, &mut rng)
+        let measured = film_walk(&camera, &walk, &mut rng)
             .measure(TRUE_SIZE, &gait)
             .unwrap_or_else(|trouble| panic!("{}: {trouble}", camera.name));
         let truth = truth(&gait);
@@ -133,13 +134,17 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
             (measured.left, truth.left),
             (measured.turn, truth.turn),
         ];
-        let [ahead, left, turn] = parts.map(|(mean, truth)| (mean.mean - truth, mean.spread));
+        let [ahead, left, turn] = parts.map(|(mean, truth)| (mean.value - truth, mean.spread));
         println!(
             "{:<42} {:+.3} {:.3}   {:+.3} {:.3}   {:+.3} {:.3}",
             camera.name, ahead.0, ahead.1, left.0, left.1, turn.0, turn.1
         );
-        for ((error, spread), largest) in [ahead, left, turn].into_iter().zip(LARGEST_ERRORS) {
-            assert!(error.abs() < largest && spread < largest, "{}", camera.name);
+        for ((error, spread), max_error) in [ahead, left, turn].into_iter().zip(MAX_ERRORS) {
+            assert!(
+                error.abs() < max_error && spread < max_error,
+                "{}",
+                camera.name
+            );
         }
     }
 }

@@ -1,15 +1,15 @@
 //! Films of several gaits with rests between them.
 
 use fastrand::Rng;
-use lizard_film::{AnalysedFilm, Gait, Likeness, Measured, Trouble, rest};
+use lizard_film::{AnalysedFilm, Gait, Likeness, MeasuredGait, Trouble, shortest_rest};
 use lizard_studio::render::Studio;
 use lizard_studio::walk::{Show, Variation, gait, truth};
 
-use crate::studio::{TRUE_SIZE, film_of, small};
+use crate::studio::{TRUE_SIZE, film_robot, small_studio};
 
 /// Pictures per second.
-const RATE: f64 = 8.0;
-/// A small variation of the cycles, as real robots have it.
+const PICTURE_RATE: f64 = 8.0;
+/// A small variation of the cycles, as real robots show it.
 const VARIATION: Variation = Variation {
     cycle: [0.2, 0.2, 0.004],
     clock: 0.0,
@@ -17,30 +17,30 @@ const VARIATION: Variation = Variation {
 };
 
 /// Films walks with rests of `rest` seconds between them, and finds the camera and the path.
-fn watch_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, Show) {
+fn film_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, Show) {
     let mut rng = Rng::with_seed(6);
     let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIATION, &mut rng);
     let robot = |time: f64| show.at(time);
-    let film = film_of(&studio(), show.seconds(), RATE, robot, &mut rng);
-    (film.watch(TRUE_SIZE).expect("all tags are seen"), show)
+    let film = film_robot(&studio(), show.seconds(), PICTURE_RATE, robot, &mut rng);
+    (film.analyse(TRUE_SIZE).expect("all tags are visible"), show)
 }
 
 fn studio() -> Studio {
-    small(5, 20.0)
+    small_studio(5, 20.0)
 }
 
 /// Checks that a result agrees with the true movement of a gait.
-fn check_result(measured: &Measured, gait: &Gait) {
+fn check_result(measured: &MeasuredGait, gait: &Gait) {
     let truth = truth(gait);
     let parts = [
         (measured.forward, truth.forward, 0.4),
         (measured.left, truth.left, 0.4),
         (measured.turn, truth.turn, 0.6),
     ];
-    for (mean, truth, largest) in parts {
-        assert!((mean.mean - truth).abs() < largest, "{mean:?} {truth}");
+    for (mean, truth, max_error) in parts {
+        assert!((mean.value - truth).abs() < max_error, "{mean:?} {truth}");
         assert!(
-            (mean.mean - truth).abs() < 4.0 * mean.error,
+            (mean.value - truth).abs() < 4.0 * mean.error,
             "{mean:?} {truth}"
         );
     }
@@ -51,8 +51,8 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let names = ["walk", "left", "back", "trot"];
     let gaits = names.map(gait);
     let order = [0, 1, 2, 0];
-    let (watched, show) = watch_walks(&order.map(|i| (&gaits[i], 4)), 1.6);
-    let walks = watched.walks(rest(&gaits));
+    let (analysed_film, show) = film_walks(&order.map(|i| (&gaits[i], 4)), 1.6);
+    let walks = analysed_film.walks(shortest_rest(&gaits));
     assert_eq!(walks.len(), order.len(), "{walks:?}");
     for (found_span, true_span) in walks.iter().zip(show.spans()) {
         // A found walk includes parts of the rests around it, and misses at most one picture of the movement.
@@ -62,35 +62,38 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
         assert!((-0.2..1.2).contains(&late), "{found_span:?} {true_span:?}");
     }
     for (walk, i) in walks.iter().zip(order) {
-        assert_eq!(watched.likeness(&gaits, *walk), Likeness::One(i));
-        let measured = watched
+        assert_eq!(analysed_film.likeness(&gaits, *walk), Likeness::One(i));
+        let measured = analysed_film
             .measure(&gaits[i], Some(*walk))
-            .expect("it is measured");
+            .expect("the gait can be measured");
         check_result(&measured, &gaits[i]);
     }
     // Both walks together give one result, which is more accurate.
-    let [first, second] =
-        [0, 3].map(|i| watched.measure(&gaits[0], Some(walks[i])).expect("a walk"));
-    let together = Measured::together(&[first.clone(), second.clone()], &gaits[0]);
-    check_result(&together, &gaits[0]);
+    let [first, second] = [0, 3].map(|i| {
+        analysed_film
+            .measure(&gaits[0], Some(walks[i]))
+            .expect("the gait can be measured")
+    });
+    let combined = MeasuredGait::combine(&[first.clone(), second.clone()], &gaits[0]);
+    check_result(&combined, &gaits[0]);
     assert_eq!(
-        together.cycles,
+        combined.cycles,
         [&first.cycles[..], &second.cycles[..]].concat()
     );
     // A gait that is not the one of this walk is refused.
-    let trouble = watched
+    let trouble = analysed_film
         .measure(&gaits[2], Some(walks[1]))
-        .expect_err("it is left");
+        .expect_err("the walk has the gait `left`");
     assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
 }
 
 #[test]
-fn a_gait_that_nobody_tells_from_another_is_named_with_it() {
+fn two_gaits_with_the_same_path_are_both_named() {
     let walk = gait("walk");
     let gaits = [gait("back"), walk.clone(), walk.clone()];
-    let (watched, _) = watch_walks(&[(&walk, 4)], 1.0);
-    let walks = watched.walks(rest(&gaits));
-    let likeness = watched.likeness(&gaits, walks[0]);
+    let (analysed_film, _) = film_walks(&[(&walk, 4)], 1.0);
+    let walks = analysed_film.walks(shortest_rest(&gaits));
+    let likeness = analysed_film.likeness(&gaits, walks[0]);
     assert!(
         matches!(likeness, Likeness::Two(1, 2) | Likeness::Two(2, 1)),
         "{likeness:?}"
@@ -98,22 +101,22 @@ fn a_gait_that_nobody_tells_from_another_is_named_with_it() {
 }
 
 #[test]
-fn a_walk_in_slow_motion_or_of_an_unknown_gait_is_like_none() {
+fn a_walk_in_slow_motion_or_of_an_unknown_gait_resembles_no_gait() {
     let gaits = ["walk", "left", "back", "trot"].map(gait);
     let slow = Gait {
         period: 2.0 * gaits[0].period,
         path: gaits[0].path.clone(),
     };
-    let (half_speed, _) = watch_walks(&[(&slow, 3)], 1.0);
-    let walks = half_speed.walks(2.0 * rest(&gaits));
+    let (half_speed, _) = film_walks(&[(&slow, 3)], 1.0);
+    let walks = half_speed.walks(2.0 * shortest_rest(&gaits));
     assert_eq!(
         half_speed.likeness(&gaits, walks[0]),
-        Likeness::None(Trouble::AnotherPace { times: 2 })
+        Likeness::None(Trouble::AnotherPace { ratio: 2 })
     );
     let unknown = gait("right");
-    let (watched, _) = watch_walks(&[(&unknown, 4)], 1.0);
-    let walks = watched.walks(rest(&gaits));
-    let likeness = watched.likeness(&gaits, walks[0]);
+    let (analysed_film, _) = film_walks(&[(&unknown, 4)], 1.0);
+    let walks = analysed_film.walks(shortest_rest(&gaits));
+    let likeness = analysed_film.likeness(&gaits, walks[0]);
     assert!(matches!(likeness, Likeness::None(_)), "{likeness:?}");
 }
 
@@ -121,20 +124,20 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_is_like_none() {
 fn gaits_without_a_rest_between_them_are_not_mixed() {
     let [walk, arc, left] = ["walk", "arc-left", "left"].map(gait);
     for (first, second) in [(&walk, &arc), (&walk, &left), (&arc, &walk)] {
-        let (watched, _) = watch_walks(&[(first, 4), (second, 4)], 0.0);
+        let (analysed_film, _) = film_walks(&[(first, 4), (second, 4)], 0.0);
         let gaits = [walk.clone(), arc.clone(), left.clone()];
-        let walks = watched.walks(rest(&gaits));
+        let walks = analysed_film.walks(shortest_rest(&gaits));
         assert_eq!(walks.len(), 1);
         for gait in [first, second] {
-            match watched.measure(gait, Some(walks[0])) {
-                // A result must be for this gait alone: the gait that moves farther can be distinguished from the
-                // other.
+            match analysed_film.measure(gait, Some(walks[0])) {
+                // A result must be that of this gait alone, which is possible if this gait moves the robot farther
+                // than the other.
                 Ok(measured) => check_result(&measured, gait),
                 Err(trouble) => assert!(
                     matches!(
                         trouble,
                         Trouble::NotThisGait { .. }
-                            | Trouble::Changes { .. }
+                            | Trouble::MovementChanges { .. }
                             | Trouble::AnotherPace { .. }
                     ),
                     "{trouble}"
@@ -145,9 +148,9 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
 }
 
 #[test]
-fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
+fn a_short_turn_of_one_degree_during_a_rest_is_no_walk() {
     let walk = gait("walk");
-    let nod_at = |time: f64| {
+    let extra_heading_at = |time: f64| {
         if (4.0..4.5).contains(&time) {
             0.02
         } else {
@@ -158,27 +161,26 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
     let show = Show::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
     let robot = |time: f64| {
         let [x, y, heading] = show.at(time);
-        [x, y, heading + nod_at(time - 2.0)]
+        [x, y, heading + extra_heading_at(time - 2.0)]
     };
-    let film = film_of(&studio(), 8.0, RATE, robot, &mut rng);
-    let watched = film.watch(TRUE_SIZE).expect("all tags are seen");
-    assert_eq!(watched.walks(rest(&[walk])).len(), 1);
+    let film = film_robot(&studio(), 8.0, PICTURE_RATE, robot, &mut rng);
+    let analysed_film = film.analyse(TRUE_SIZE).expect("all tags are visible");
+    assert_eq!(analysed_film.walks(shortest_rest(&[walk])).len(), 1);
 }
 
-/// The largest deviation from the predicted path within a cycle: its phase, its axis and its size in standard
-/// errors.
-fn largest_deviation(measured: &Measured) -> (f64, usize, f64) {
-    let deviations = measured.within.iter().flat_map(|point| {
-        let differences = point.standardized_differences().map(f64::abs);
+/// The largest deviation from the predicted path within a cycle: its phase, its axis, and its size in standard errors.
+fn largest_deviation(measured: &MeasuredGait) -> (f64, usize, f64) {
+    let deviations = measured.cycle_path.iter().flat_map(|point| {
+        let differences = point.standardised_differences().map(f64::abs);
         (0..3).map(move |axis| (point.phase, axis, differences[axis]))
     });
     deviations
         .max_by(|a, b| a.2.total_cmp(&b.2))
-        .expect("a point")
+        .expect("the path has a point")
 }
 
 #[test]
-fn a_path_that_leaves_the_predicted_one_within_a_cycle_is_found_at_its_phase() {
+fn a_deviation_from_the_predicted_path_is_found_at_its_phase() {
     let walk = gait("walk");
     let mut swerving = walk.clone();
     let count = walk.path.len() - 1;
@@ -187,8 +189,10 @@ fn a_path_that_leaves_the_predicted_one_within_a_cycle_is_found_at_its_phase() {
         place.left += 1.5 * (-offset.powi(2)).exp();
     }
     let measure = |robot: &Gait| {
-        let (watched, _) = watch_walks(&[(robot, 6)], 1.0);
-        watched.measure(&walk, None).expect("it is measured")
+        let (analysed_film, _) = film_walks(&[(robot, 6)], 1.0);
+        analysed_film
+            .measure(&walk, None)
+            .expect("the gait can be measured")
     };
     let (phase, axis, errors) = largest_deviation(&measure(&swerving));
     assert!((phase - 0.6).abs() < 0.1 && axis == 1, "{phase} {axis}");

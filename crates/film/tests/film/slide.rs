@@ -5,40 +5,42 @@ use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
 use lizard_studio::board::{BOARD, Board, studio};
 use lizard_studio::render::{Studio, normal};
 
+/// The setup of all films.
 const SETUP: Setup = Setup {
-    scale: 1.0,
-    height: 83.0,
+    print_scale: 1.0,
+    deck_height: 83.0,
 };
 
 /// Films a board while it is lifted.
-fn film(board: &Board, studio: &Studio, rate: f64) -> Film {
+fn film_board(board: &Board, studio: &Studio, rate: f64) -> Film {
     let mut film = Film::default();
     board.pictures(studio, rate, |seconds, picture| {
-        film.add(seconds, picture).expect("a picture");
+        film.add(seconds, picture)
+            .expect("the picture fits the film");
     });
     film
 }
 
 fn measure_slide(board: &Board) -> Result<Slide, SlideTrouble> {
-    Slide::of(&watch(&film(board, &studio(), 30.0)))
+    Slide::of(&analyse(&film_board(board, &studio(), 30.0)))
 }
 
-fn watch(film: &Film) -> AnalysedFilm {
-    film.watch(SETUP).expect("it is watched")
+fn analyse(film: &Film) -> AnalysedFilm {
+    film.analyse(SETUP).expect("the film can be analysed")
 }
 
 /// Checks a figure against its true value, and its error against the largest acceptable one.
-fn check(figure: Figure, truth: f64, largest: f64) {
+fn check_figure(figure: Figure, truth: f64, max_error: f64) {
     println!("{figure:?}, truth {truth:.3}");
     assert!(
         (figure.value - truth).abs() < 2.0 * figure.error,
         "{figure:?} {truth}"
     );
-    assert!(figure.error < largest, "{figure:?}");
+    assert!(figure.error < max_error, "{figure:?}");
 }
 
 #[test]
-fn a_slide_shows_resting_and_sliding_friction_with_head_or_tail_first() {
+fn a_slide_shows_static_and_sliding_friction_with_head_or_tail_first() {
     for (head, resting, sliding) in [(8.0, 0.75, 0.68), (-175.0, 0.5, 0.5)] {
         let board = Board {
             resting,
@@ -46,11 +48,11 @@ fn a_slide_shows_resting_and_sliding_friction_with_head_or_tail_first() {
             head,
             ..BOARD
         };
-        let slide = measure_slide(&board).expect("it slides");
+        let slide = measure_slide(&board).expect("the slide can be measured");
         assert_eq!(slide.is_head_first, head == 8.0);
-        check(slide.tilt, resting.atan().to_degrees(), 0.6);
-        check(slide.resting, resting, 0.02);
-        check(slide.sliding, sliding, 0.02);
+        check_figure(slide.tilt, resting.atan().to_degrees(), 0.6);
+        check_figure(slide.static_friction, resting, 0.02);
+        check_figure(slide.sliding_friction, sliding, 0.02);
     }
 }
 
@@ -64,8 +66,9 @@ const SLIPPERY: Board = Board {
 };
 
 #[test]
-fn what_is_no_slide_down_a_board_is_named() {
-    let reason_of = |board: Board| measure_slide(&board).expect_err("it is not measured");
+fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
+    let reason_of =
+        |board: Board| measure_slide(&board).expect_err("the film shows no measurable slide");
     let not_slid = reason_of(Board {
         end: 12.0,
         ..SLIPPERY
@@ -84,7 +87,7 @@ fn what_is_no_slide_down_a_board_is_named() {
         ..SLIPPERY
     });
     assert!(
-        matches!(across_slope, SlideTrouble::Across { aside } if (aside - 36.0).abs() < 3.0),
+        matches!(across_slope, SlideTrouble::AcrossSlope { angle } if (angle - 36.0).abs() < 3.0),
         "{across_slope}"
     );
     let pushed = reason_of(Board {
@@ -92,7 +95,7 @@ fn what_is_no_slide_down_a_board_is_named() {
         ..SLIPPERY
     });
     assert!(
-        matches!(pushed, SlideTrouble::NotDown { aside } if aside > 170.0),
+        matches!(pushed, SlideTrouble::NotDownhill { angle } if angle > 170.0),
         "{pushed}"
     );
     let fast = reason_of(Board {
@@ -100,13 +103,13 @@ fn what_is_no_slide_down_a_board_is_named() {
         ..SLIPPERY
     });
     assert!(
-        matches!(fast, SlideTrouble::Fast { rate } if rate > 20.0),
+        matches!(fast, SlideTrouble::LiftedTooFast { rate } if rate > 20.0),
         "{fast}"
     );
-    let film = film(&SLIPPERY, &studio(), 5.0);
-    let result = Slide::of(&watch(&film));
+    let film = film_board(&SLIPPERY, &studio(), 5.0);
+    let result = Slide::of(&analyse(&film));
     assert!(
-        matches!(result, Err(SlideTrouble::FewPictures { .. })),
+        matches!(result, Err(SlideTrouble::TooFewPictures { .. })),
         "{result:?}"
     );
 }
@@ -114,11 +117,11 @@ fn what_is_no_slide_down_a_board_is_named() {
 /// Run by `make measure-test`. The board's level position is off by 0.3 deg, as with a spirit level.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn slides_of_many_boards_show_the_truth_within_two_errors() {
+fn in_at_least_14_of_16_films_friction_lies_within_two_errors_of_the_truth() {
     let mut rng = Rng::with_seed(12);
-    let films = 16;
-    let (mut resting, mut sliding) = (0, 0);
-    for i in 0..films {
+    let film_count = 16;
+    let (mut static_hits, mut sliding_hits) = (0, 0);
+    for i in 0..film_count {
         let begin = 0.3 * normal(&mut rng);
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         let friction = random_between(0.35, 0.8);
@@ -134,20 +137,24 @@ fn slides_of_many_boards_show_the_truth_within_two_errors() {
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         (studio.tilt, studio.lens) = (random_between(0.0, 18.0), random_between(-0.006, 0.006));
         studio.readout = 0.015;
-        let slide = Slide::of(&watch(&film(&board, &studio, [30.0, 60.0][i / 2 % 2])));
-        let slide = slide.expect("it slides");
+        let slide = Slide::of(&analyse(&film_board(
+            &board,
+            &studio,
+            [30.0, 60.0][i / 2 % 2],
+        )));
+        let slide = slide.expect("the slide can be measured");
         println!(
-            "resting {:?} of {:.3}, sliding {:?} of {:.3}",
-            slide.resting, board.resting, slide.sliding, board.sliding
+            "static {:?} of {:.3}, sliding {:?} of {:.3}",
+            slide.static_friction, board.resting, slide.sliding_friction, board.sliding
         );
-        let is_known =
+        let is_within_two_errors =
             |figure: Figure, truth: f64| (figure.value - truth).abs() < 2.0 * figure.error;
-        resting += usize::from(is_known(slide.resting, board.resting));
-        sliding += usize::from(is_known(slide.sliding, board.sliding));
+        static_hits += usize::from(is_within_two_errors(slide.static_friction, board.resting));
+        sliding_hits += usize::from(is_within_two_errors(slide.sliding_friction, board.sliding));
     }
-    println!("{films} films: within two errors resting {resting}, sliding {sliding}");
+    println!("{film_count} films: within two errors static {static_hits}, sliding {sliding_hits}");
     assert!(
-        resting >= films - 2 && sliding >= films - 2,
-        "{resting} {sliding}"
+        static_hits >= film_count - 2 && sliding_hits >= film_count - 2,
+        "{static_hits} {sliding_hits}"
     );
 }

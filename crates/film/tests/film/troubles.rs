@@ -1,21 +1,21 @@
 //! Films that cannot be measured, each with the reason.
 
 use fastrand::Rng;
-use lizard_film::{Film, Gait, Measured, Picture, Setup, Trouble};
+use lizard_film::{Film, Gait, MeasuredGait, Picture, Setup, Trouble};
 use lizard_studio::render::{Spot, Studio};
 use lizard_studio::walk::{Variation, Walk, gait, truth};
 
-use crate::studio::{TRUE_SIZE, film_of, small};
+use crate::studio::{TRUE_SIZE, film_robot, small_studio};
 
-/// Pictures per second: few suffice, since the tests check only the reason.
-const RATE: f64 = 8.0;
+/// Pictures per second: a low rate suffices, since most tests check only the reason.
+const PICTURE_RATE: f64 = 8.0;
 
 fn studio() -> Studio {
-    small(5, 20.0)
+    small_studio(5, 20.0)
 }
 
 /// A walk that is centred on the origin.
-fn walk(gait: &Gait, cycles: usize) -> Walk {
+fn centred_walk(gait: &Gait, cycles: usize) -> Walk {
     let start = -truth(gait).forward * cycles as f64 / 2.0;
     Walk::new(
         gait,
@@ -27,12 +27,12 @@ fn walk(gait: &Gait, cycles: usize) -> Walk {
 }
 
 /// Films five cycles of `walk`.
-fn film(studio: &Studio) -> Film {
-    let walk = walk(&gait("walk"), 5);
-    film_of(
+fn film_five_cycles(studio: &Studio) -> Film {
+    let walk = centred_walk(&gait("walk"), 5);
+    film_robot(
         studio,
         walk.seconds(),
-        RATE,
+        PICTURE_RATE,
         |time| walk.at(time),
         &mut Rng::with_seed(2),
     )
@@ -40,9 +40,9 @@ fn film(studio: &Studio) -> Film {
 
 /// The reason why five cycles of `walk` cannot be measured in this studio.
 fn trouble_of(studio: &Studio, setup: Setup) -> Trouble {
-    film(studio)
+    film_five_cycles(studio)
         .measure(setup, &gait("walk"))
-        .expect_err("it is no film to be measured")
+        .expect_err("the film cannot be measured")
 }
 
 #[test]
@@ -52,29 +52,38 @@ fn without_a_tag_in_any_picture_there_is_nothing_to_measure() {
         Err(Trouble::NoPictures)
     );
     let mut film = Film::default();
-    let grey = Picture::new(320, 240, vec![128; 320 * 240]).expect("a picture");
-    film.add(0.0, &grey).expect("a picture");
+    let grey = Picture::new(320, 240, vec![128; 320 * 240]).expect("the picture is complete");
+    film.add(0.0, &grey).expect("the picture fits the film");
     assert_eq!(film.measure(TRUE_SIZE, &gait("walk")), Err(Trouble::NoTag));
 }
 
 #[test]
-fn a_covered_tag_is_named() {
+fn a_tag_that_is_always_covered_is_named() {
     let mut studio = studio();
     studio.hidden = vec![2];
-    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::FloorTag { id: 2 });
+    assert_eq!(
+        trouble_of(&studio, TRUE_SIZE),
+        Trouble::NoFloorTag { id: 2 }
+    );
     studio.hidden = vec![4];
     assert!(matches!(
         trouble_of(&studio, TRUE_SIZE),
-        Trouble::DeckTag { seen: 0, .. }
+        Trouble::DeckTagTooRare {
+            visible_count: 0,
+            ..
+        }
     ));
 }
 
 #[test]
-fn a_tag_with_a_cable_over_its_corner_counts_as_hidden() {
+fn a_tag_with_a_cable_over_its_corner_counts_as_missing() {
     let mut studio = studio();
     let [x, y, _] = studio.strips[0];
     studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
-    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::FloorTag { id: 1 });
+    assert_eq!(
+        trouble_of(&studio, TRUE_SIZE),
+        Trouble::NoFloorTag { id: 1 }
+    );
 }
 
 #[test]
@@ -87,57 +96,61 @@ fn in_the_dark_and_in_the_glare_no_tag_is_found() {
 }
 
 #[test]
-fn a_card_whose_arrow_shows_to_the_tail_is_another_gait() {
+fn a_card_whose_arrow_points_to_the_tail_is_reported_as_another_gait() {
     let gait = gait("walk");
-    let walk = walk(&gait, 5);
+    let walk = centred_walk(&gait, 5);
     let turned_robot = |time| {
         let [x, y, heading] = walk.at(time);
         [x, y, heading + std::f64::consts::PI]
     };
-    let film = film_of(
+    let film = film_robot(
         &studio(),
         walk.seconds(),
-        RATE,
+        PICTURE_RATE,
         turned_robot,
         &mut Rng::with_seed(2),
     );
-    let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it goes back");
+    let trouble = film
+        .measure(TRUE_SIZE, &gait)
+        .expect_err("the robot walks backward");
     assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
     assert!(trouble.to_string().contains("arrow"), "{trouble}");
 }
 
 #[test]
-fn pictures_of_another_size_and_times_that_do_not_rise_are_refused() {
-    let picture = |size| Picture::new(size, size, vec![128; size * size]).expect("a picture");
+fn pictures_of_another_size_and_times_that_do_not_increase_are_refused() {
+    let picture =
+        |size| Picture::new(size, size, vec![128; size * size]).expect("the picture is complete");
     let mut film = Film::default();
-    film.add(0.0, &picture(64)).expect("the first");
+    film.add(0.0, &picture(64))
+        .expect("the first picture fits any film");
     assert_eq!(
         film.add(0.1, &picture(65)),
-        Err(Trouble::Size { number: 2 })
+        Err(Trouble::SizeDiffers { number: 2 })
     );
     assert_eq!(
         film.add(0.0, &picture(64)),
-        Err(Trouble::Times { number: 2 })
+        Err(Trouble::TimeNotLater { number: 2 })
     );
 }
 
-/// A film in the middle of which the camera moves to another place. In its second half, the tags `hidden` are
-/// covered.
-fn film_pushed_camera(hidden: Vec<usize>) -> Film {
+/// Films a walk with a camera that is moved once in the middle. In the second half, the tags `hidden` are covered.
+fn film_with_moved_camera(hidden: Vec<usize>) -> Film {
     let gait = gait("walk");
-    let walk = walk(&gait, 5);
+    let walk = centred_walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
     let mut film = Film::default();
     let first = studio();
     let mut second = first.clone();
     (second.tilt, second.aim[0], second.hidden) = (first.tilt + 1.0, first.aim[0] + 12.0, hidden);
     let backgrounds = [first, second].map(|studio| studio.background(&mut rng));
-    let count = (walk.seconds() * RATE) as usize;
+    let count = (walk.seconds() * PICTURE_RATE) as usize;
     for i in 0..count {
-        let seconds = i as f64 / RATE;
+        let seconds = i as f64 / PICTURE_RATE;
         let background = &backgrounds[2 * i / count];
         let picture = background.picture(seconds, |time| walk.at(time), &mut rng);
-        film.add(seconds, &picture).expect("a picture");
+        film.add(seconds, &picture)
+            .expect("the picture fits the film");
     }
     film
 }
@@ -145,16 +158,18 @@ fn film_pushed_camera(hidden: Vec<usize>) -> Film {
 #[test]
 fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let gait = gait("walk");
-    let watched = film_pushed_camera(Vec::new())
-        .watch(TRUE_SIZE)
-        .expect("all tags are seen");
-    assert!(watched.sight.has_camera_moved);
-    let measured = watched.measure(&gait, None).expect("it is measured");
-    let error = measured.forward.mean - truth(&gait).forward;
+    let analysed_film = film_with_moved_camera(Vec::new())
+        .analyse(TRUE_SIZE)
+        .expect("all tags are visible");
+    assert!(analysed_film.camera.has_camera_moved);
+    let measured = analysed_film
+        .measure(&gait, None)
+        .expect("the gait can be measured");
+    let error = measured.forward.value - truth(&gait).forward;
     assert!(error.abs() < 0.3, "{:?}", measured.forward);
-    let trouble = film_pushed_camera(vec![1])
+    let trouble = film_with_moved_camera(vec![1])
         .measure(TRUE_SIZE, &gait)
-        .expect_err("one is hidden");
+        .expect_err("a tag is hidden");
     assert!(
         matches!(trouble, Trouble::CameraMoved { pictures } if pictures > 15),
         "{trouble}"
@@ -162,50 +177,55 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
 }
 
 /// Checks that the measured distance is the true one.
-fn check_distance(measured: &Measured, gait: &Gait) {
-    let error = measured.forward.mean - truth(gait).forward;
+fn check_distance(measured: &MeasuredGait, gait: &Gait) {
+    let error = measured.forward.value - truth(gait).forward;
     assert!(error.abs() < 0.2, "{:?}", measured.forward);
 }
 
 #[test]
-fn a_tag_that_is_covered_for_a_while_does_no_harm_on_a_tripod() {
+fn a_tag_that_is_covered_for_a_while_does_no_harm_if_the_camera_stands_still() {
     let gait = gait("walk");
-    let walk = walk(&gait, 5);
+    let walk = centred_walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
     let mut film = Film::default();
     let uncovered = studio();
     let mut covered = uncovered.clone();
     covered.hidden = vec![0];
     let backgrounds = [uncovered, covered].map(|studio| studio.background(&mut rng));
-    for i in 0..(walk.seconds() * RATE) as usize {
-        let seconds = i as f64 / RATE;
+    for i in 0..(walk.seconds() * PICTURE_RATE) as usize {
+        let seconds = i as f64 / PICTURE_RATE;
         let picture = backgrounds[i / 8 % 2].picture(seconds, |time| walk.at(time), &mut rng);
-        film.add(seconds, &picture).expect("a picture");
+        film.add(seconds, &picture)
+            .expect("the picture fits the film");
     }
-    let measured = film.measure(TRUE_SIZE, &gait).expect("it is measured");
+    let measured = film
+        .measure(TRUE_SIZE, &gait)
+        .expect("the gait can be measured");
     check_distance(&measured, &gait);
 }
 
 #[test]
-fn a_sheet_that_is_printed_too_small_is_right_with_its_ruler() {
+fn a_sheet_printed_too_small_gives_the_true_distance_if_its_ruler_is_measured() {
     let mut studio = studio();
     studio.print = [0.972; 2];
     let setup = Setup {
-        scale: 0.972,
+        print_scale: 0.972,
         ..TRUE_SIZE
     };
     let gait = gait("walk");
-    let measured = film(&studio).measure(setup, &gait).expect("it is measured");
+    let measured = film_five_cycles(&studio)
+        .measure(setup, &gait)
+        .expect("the gait can be measured");
     check_distance(&measured, &gait);
 }
 
 #[test]
-fn tags_that_do_not_have_their_distance_are_refused() {
+fn tags_that_were_cut_apart_and_moved_are_refused() {
     let mut studio = studio();
     studio.cut = 0.95;
     let trouble = trouble_of(&studio, TRUE_SIZE);
     assert!(
-        matches!(trouble, Trouble::TagSize { edge } if edge > 51.5)
+        matches!(trouble, Trouble::WrongTagSize { edge } if edge > 51.5)
             || matches!(trouble, Trouble::NotThisSheet { .. }),
         "{trouble}"
     );
@@ -214,53 +234,60 @@ fn tags_that_do_not_have_their_distance_are_refused() {
 }
 
 #[test]
-fn a_card_at_another_height_is_found_by_its_size() {
+fn a_card_at_another_height_than_given_is_noticed_by_its_size() {
     let mut studio = studio();
     studio.deck = 83.0;
     let wrong_setup = Setup {
-        height: 40.0,
+        deck_height: 40.0,
         ..TRUE_SIZE
     };
     let trouble = trouble_of(&studio, wrong_setup);
     assert!(
-        matches!(trouble, Trouble::Height { found, .. } if found > 52.0),
+        matches!(trouble, Trouble::WrongHeight { height_by_size, .. } if height_by_size > 52.0),
         "{trouble}"
     );
 }
 
 /// The reason why a film of a robot whose place is given by `robot` cannot be measured.
 fn trouble_of_robot(robot: impl Fn(f64) -> Spot) -> Trouble {
-    let film = film_of(&studio(), 4.0, RATE, robot, &mut Rng::with_seed(2));
-    film.measure(TRUE_SIZE, &gait("walk")).expect_err("no walk")
+    let film = film_robot(&studio(), 4.0, PICTURE_RATE, robot, &mut Rng::with_seed(2));
+    film.measure(TRUE_SIZE, &gait("walk"))
+        .expect_err("the film shows no walk")
 }
 
 #[test]
 fn a_robot_that_stands_has_not_moved() {
     let trouble = trouble_of_robot(|_| [0.0; 3]);
     assert!(
-        matches!(trouble, Trouble::NotMoved { way, .. } if way < 1.0),
+        matches!(trouble, Trouble::NotMoved { distance, .. } if distance < 1.0),
         "{trouble}"
     );
 }
 
 #[test]
-fn a_robot_far_from_the_strips_is_out_of_the_sheet() {
+fn a_robot_too_far_from_the_strips_is_refused() {
     let mut studio = studio();
     (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
     studio.height = 1000.0;
     let far_robot = |_: f64| [430.0, 0.0, 0.0];
-    let film = film_of(&studio, 1.0, RATE, far_robot, &mut Rng::with_seed(2));
+    let film = film_robot(
+        &studio,
+        1.0,
+        PICTURE_RATE,
+        far_robot,
+        &mut Rng::with_seed(2),
+    );
     let trouble = film
         .measure(TRUE_SIZE, &gait("walk"))
-        .expect_err("it is too far");
+        .expect_err("the robot is too far away");
     assert!(
-        matches!(trouble, Trouble::OutOfSheet { distance, .. } if distance > 400.0),
+        matches!(trouble, Trouble::TooFarFromStrips { distance, .. } if distance > 400.0),
         "{trouble}"
     );
 }
 
 #[test]
-fn another_gait_is_not_this_gait() {
+fn movements_that_are_not_the_gait_are_refused() {
     let turning = trouble_of_robot(|time| [0.0, 0.0, 0.6 * time]);
     assert!(matches!(turning, Trouble::NotThisGait { .. }), "{turning}");
     let backward = trouble_of_robot(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
@@ -273,45 +300,49 @@ fn another_gait_is_not_this_gait() {
 }
 
 #[test]
-fn half_the_pace_and_slow_motion_are_told_by_their_cycles() {
+fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
     let gait = gait("walk");
     for multiple in [2, 4] {
         let slow = Gait {
             period: gait.period * f64::from(multiple),
             path: gait.path.clone(),
         };
-        let walk = walk(&slow, 3);
+        let walk = centred_walk(&slow, 3);
         let robot = |time: f64| walk.at(time);
-        let film = film_of(
+        let film = film_robot(
             &studio(),
             walk.seconds(),
             5.0,
             robot,
             &mut Rng::with_seed(2),
         );
-        let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it is too slow");
-        assert_eq!(trouble, Trouble::AnotherPace { times: multiple });
+        let trouble = film
+            .measure(TRUE_SIZE, &gait)
+            .expect_err("the cycles are too slow");
+        assert_eq!(trouble, Trouble::AnotherPace { ratio: multiple });
     }
 }
 
 #[test]
-fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_time() {
+fn a_film_whose_rate_is_off_by_some_percent_shows_the_distance_per_cycle_and_its_duration() {
     let gait = gait("walk");
     for rate_error in [0.94, 1.04] {
         let stretched = Gait {
             period: gait.period * rate_error,
             path: gait.path.clone(),
         };
-        let walk = walk(&stretched, 6);
+        let walk = centred_walk(&stretched, 6);
         let robot = |time: f64| walk.at(time);
-        let film = film_of(
+        let film = film_robot(
             &studio(),
             walk.seconds(),
             12.0,
             robot,
             &mut Rng::with_seed(2),
         );
-        let measured = film.measure(TRUE_SIZE, &gait).expect("it is measured");
+        let measured = film
+            .measure(TRUE_SIZE, &gait)
+            .expect("the gait can be measured");
         check_distance(&measured, &gait);
         let period_ratio = measured.period[0] / stretched.period;
         assert!(
@@ -321,8 +352,8 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_tim
     }
 }
 
-/// A picture of the sheet and the card; to its right, a second copy of it if `is_twice`, else an empty area.
-fn picture_with_copy(is_twice: bool) -> Picture {
+/// A picture of the sheet and the card; to its right, a second copy of it if `has_second_copy`, else an empty area.
+fn picture_with_copy(has_second_copy: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()
         .background(&mut rng)
@@ -330,30 +361,31 @@ fn picture_with_copy(is_twice: bool) -> Picture {
     let [width, height] = picture.size();
     let empty_row = vec![200; width];
     let rows = picture.grey().chunks(width);
-    let rows = rows.flat_map(|row| [row, if is_twice { row } else { &empty_row[..] }].concat());
-    Picture::new(2 * width, height, rows.collect()).expect("a picture")
+    let rows =
+        rows.flat_map(|row| [row, if has_second_copy { row } else { &empty_row[..] }].concat());
+    Picture::new(2 * width, height, rows.collect()).expect("the picture is complete")
 }
 
 #[test]
-fn a_tag_that_is_seen_twice_is_not_guessed() {
+fn a_tag_that_appears_twice_in_a_picture_is_refused() {
     let trouble = Film::default()
         .add(0.0, &picture_with_copy(true))
-        .expect_err("two of each");
+        .expect_err("each tag appears twice");
     assert!(
-        matches!(trouble, Trouble::Twice { number: 1, .. }),
+        matches!(trouble, Trouble::DuplicateTag { number: 1, .. }),
         "{trouble}"
     );
 }
 
 #[test]
-fn a_second_copy_of_a_tag_that_comes_later_is_noticed_within_sixteen_pictures() {
+fn a_second_copy_that_appears_later_is_noticed_within_sixteen_pictures() {
     let mut film = Film::default();
     film.add(0.0, &picture_with_copy(false))
-        .expect("one of each");
+        .expect("each tag appears once");
     let doubled_picture = picture_with_copy(true);
     let trouble = (1..=16).find_map(|n| film.add(f64::from(n) / 30.0, &doubled_picture).err());
     assert!(
-        matches!(trouble, Some(Trouble::Twice { .. })),
+        matches!(trouble, Some(Trouble::DuplicateTag { .. })),
         "{trouble:?}"
     );
 }
@@ -361,15 +393,17 @@ fn a_second_copy_of_a_tag_that_comes_later_is_noticed_within_sixteen_pictures() 
 #[test]
 fn two_cycles_are_too_few() {
     let gait = gait("walk");
-    let walk = walk(&gait, 2);
-    let film = film_of(
+    let walk = centred_walk(&gait, 2);
+    let film = film_robot(
         &studio(),
         walk.seconds(),
-        RATE,
+        PICTURE_RATE,
         |time| walk.at(time),
         &mut Rng::with_seed(2),
     );
-    let trouble = film.measure(TRUE_SIZE, &gait).expect_err("too few");
+    let trouble = film
+        .measure(TRUE_SIZE, &gait)
+        .expect_err("the film has too few cycles");
     assert!(
         matches!(trouble, Trouble::TooShort { cycles, .. } if (1.0..2.5).contains(&cycles)),
         "{trouble}"

@@ -2,51 +2,54 @@
 
 use fastrand::Rng;
 use lizard_contact::Place;
-use lizard_film::{Figure, Film, Jig, PathPoint, Setup, Turns, TurnsTrouble};
+use lizard_film::{Figure, Film, Jig, MeasuredServo, PathPoint, ServoTrouble, Setup};
 use lizard_studio::render::{Studio, normal};
 use lizard_studio::servo::{FRICTION, FULL, Servo};
 
 /// The jig for steps in the counter-clockwise direction.
 const JIG: Jig = Jig {
-    way: 1.0,
+    side: 1.0,
     slew: 1000.0,
     spin_up: 0.02,
 };
 /// The load's torque as a share of the stall torque: 19.6 N mm of 176.5.
-const LOAD: f64 = 0.111;
+const LOAD_SHARE: f64 = 0.111;
 
-/// A camera that makes no pictures but adds errors to angles: pictures per second, exposure time in s, and standard
-/// deviation of an angle in deg.
+/// A camera that takes no pictures, but adds errors to angles.
 #[derive(Clone, Copy)]
 struct AngleCamera {
-    rate: f64,
-    shutter: f64,
-    noise: f64,
+    /// Pictures per second.
+    picture_rate: f64,
+    /// Exposure time, s.
+    exposure_seconds: f64,
+    /// Standard deviation of an angle, deg.
+    angle_sigma: f64,
 }
 
 impl AngleCamera {
-    /// A phone in daylight.
-    fn of_rate(rate: f64) -> Self {
+    /// A phone in daylight at a number of pictures per second.
+    fn phone(rate: f64) -> Self {
         Self {
-            rate,
-            shutter: 1.0 / 120.0,
-            noise: 0.15,
+            picture_rate: rate,
+            exposure_seconds: 1.0 / 120.0,
+            angle_sigma: 0.15,
         }
     }
 
     /// The path of a card as its tag would show it: each angle is the mean over the time that the shutter is open.
     fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
         const BEGIN: f64 = 0.3;
-        let turning = servo.turns(1.0);
+        let horn_angles = servo.turns(1.0);
         let picture_at = |i: usize| {
-            let seconds = i as f64 / self.rate + BEGIN;
+            let seconds = i as f64 / self.picture_rate + BEGIN;
             let shares = [-0.4, -0.2, 0.0, 0.2, 0.4];
-            let angles = shares.map(|share| turning.at(seconds + share * self.shutter));
-            let angle = angles.iter().sum::<f64>() / 5.0 + self.noise * normal(rng);
+            let angles =
+                shares.map(|share| horn_angles.at(seconds + share * self.exposure_seconds));
+            let angle = angles.iter().sum::<f64>() / 5.0 + self.angle_sigma * normal(rng);
             point_at(seconds, angle)
         };
-        let pictures = (servo.end() - BEGIN) * self.rate;
-        (0..pictures as usize).map(picture_at).collect()
+        let picture_count = (servo.end() - BEGIN) * self.picture_rate;
+        (0..picture_count as usize).map(picture_at).collect()
     }
 }
 
@@ -75,9 +78,8 @@ fn random_servo(rng: &mut Rng) -> Servo {
     }
 }
 
-/// Compares figures with their true values: returns the share of figures within two errors of the truth, and the
-/// mean error.
-fn judge(figures: &[(Figure, f64)]) -> [f64; 2] {
+/// The share of figures within two errors of their true values, and the mean error.
+fn hit_share_and_mean_error(figures: &[(Figure, f64)]) -> [f64; 2] {
     let hits = figures
         .iter()
         .filter(|(figure, truth)| (figure.value - truth).abs() <= 2.0 * figure.error);
@@ -86,83 +88,93 @@ fn judge(figures: &[(Figure, f64)]) -> [f64; 2] {
     [hits.count() as f64 / count, errors / count]
 }
 
-/// The true dead band nearest to the found one: any value from the controller's own width to that plus the gears'
-/// friction is right.
+/// The true width of the dead band that is nearest to the measured one, deg: any value between the controller's own
+/// width and that plus the effect of the gears' friction is right.
 fn nearest_dead_band(servo: &Servo, found_width: f64) -> f64 {
     let friction = 2.0 * FRICTION * FULL;
     found_width.clamp(servo.dead_band, servo.dead_band + friction)
 }
 
 #[test]
-fn the_truth_lies_within_two_errors_at_60_to_240_pictures_a_second() {
+fn over_90_percent_of_figures_lie_within_two_errors_at_60_to_240_pictures_a_second() {
     let mut rng = Rng::with_seed(1);
-    for pictures in [60.0, 120.0, 240.0] {
+    for picture_rate in [60.0, 120.0, 240.0] {
         let mut figures: [Vec<(Figure, f64)>; 4] = Default::default();
         for _ in 0..60 {
             let servo = random_servo(&mut rng);
-            let path = AngleCamera::of_rate(pictures).path(&servo, &mut rng);
-            let turns = Turns::of(&path, JIG).expect("it is measured");
-            let width = turns.dead_band.width.expect("a dead band");
-            figures[0].push((turns.gain, servo.gain));
-            figures[1].push((turns.rate, servo.own_rate()));
+            let path = AngleCamera::phone(picture_rate).path(&servo, &mut rng);
+            let measured = MeasuredServo::of(&path, JIG).expect("the servo can be measured");
+            let width = measured.dead_band.width.expect("the dead band is measured");
+            figures[0].push((measured.gain, servo.gain));
+            figures[1].push((measured.rate, servo.own_rate()));
             figures[2].push((width, nearest_dead_band(&servo, width.value)));
-            figures[3].extend(turns.spin_up.map(|spin_up| (spin_up, servo.spin_up)));
+            figures[3].extend(measured.spin_up.map(|spin_up| (spin_up, servo.spin_up)));
         }
-        for (i, largest) in [0.005, 8.0, 0.2, 0.002].into_iter().enumerate() {
-            let [share_within, error] = judge(&figures[i]);
+        for (i, max_error) in [0.005, 8.0, 0.2, 0.002].into_iter().enumerate() {
+            let [hit_share, mean_error] = hit_share_and_mean_error(&figures[i]);
             println!(
-                "{pictures} pictures a second, figure {i}: {share_within:.2}, error {error:.4}"
+                "{picture_rate} pictures a second, figure {i}: {hit_share:.2}, error {mean_error:.4}"
             );
-            assert!(share_within > 0.9, "{pictures} {i}: {share_within}");
-            assert!(error < largest, "{pictures} {i}: {error}");
+            assert!(hit_share > 0.9, "{picture_rate} {i}: {hit_share}");
+            assert!(mean_error < max_error, "{picture_rate} {i}: {mean_error}");
         }
         assert!(figures[3].len() > 30, "{}", figures[3].len());
     }
 }
 
 #[test]
-fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
+fn a_known_load_gives_the_stall_torque_within_two_errors_in_over_90_percent_of_film_pairs() {
     let mut rng = Rng::with_seed(2);
-    let camera = AngleCamera::of_rate(120.0);
+    let camera = AngleCamera::phone(120.0);
     let film_pair = |rng: &mut Rng| {
         let free = random_servo(rng);
         let loaded = Servo {
-            load: LOAD,
+            load: LOAD_SHARE,
             begin: 1.1,
             ..free.clone()
         };
-        [free, loaded].map(|servo| Turns::of(&camera.path(&servo, rng), JIG).expect("measured"))
+        [free, loaded].map(|servo| {
+            MeasuredServo::of(&camera.path(&servo, rng), JIG).expect("the servo can be measured")
+        })
     };
-    let mut stalls = Vec::new();
+    let mut stall_torques = Vec::new();
     for _ in 0..30 {
         let [free, loaded] = film_pair(&mut rng);
-        let stall = free.stall(&loaded, 19.6).expect("a stall");
-        // Friction reduces the torque at which the motor's torque-speed line ends.
-        stalls.push((stall, 19.6 / LOAD * (1.0 - FRICTION)));
-        assert_eq!(loaded.stall(&free, 19.6), Err(TurnsTrouble::Swapped));
+        let stall_torque = free
+            .stall_torque(&loaded, 19.6)
+            .expect("the load slows the servo");
+        // The gears' friction reduces the stall torque.
+        stall_torques.push((stall_torque, 19.6 / LOAD_SHARE * (1.0 - FRICTION)));
+        assert_eq!(
+            loaded.stall_torque(&free, 19.6),
+            Err(ServoTrouble::FilmsSwapped)
+        );
     }
-    let [share_within, error] = judge(&stalls);
-    println!("stall: {share_within:.2}, error {error:.1} N mm");
-    assert!(share_within > 0.9 && error < 25.0, "{share_within} {error}");
+    let [hit_share, mean_error] = hit_share_and_mean_error(&stall_torques);
+    println!("stall: {hit_share:.2}, error {mean_error:.1} N mm");
+    assert!(
+        hit_share > 0.9 && mean_error < 25.0,
+        "{hit_share} {mean_error}"
+    );
 }
 
 #[test]
-fn a_load_that_slows_nothing_down_tells_no_torque() {
+fn a_load_that_does_not_slow_the_servo_gives_no_torque() {
     let mut rng = Rng::with_seed(3);
     let measurements = [0, 1].map(|_| {
-        let path = AngleCamera::of_rate(120.0).path(&Servo::default(), &mut rng);
-        Turns::of(&path, JIG).expect("it is measured")
+        let path = AngleCamera::phone(120.0).path(&Servo::default(), &mut rng);
+        MeasuredServo::of(&path, JIG).expect("the servo can be measured")
     });
     let trouble = measurements[0]
-        .stall(&measurements[1], 19.6)
-        .expect_err("no torque");
+        .stall_torque(&measurements[1], 19.6)
+        .expect_err("the load does not slow the servo");
     let message = trouble.to_string();
     assert!(message.contains("take a heavier weight"), "{message}");
 }
 
 /// The reason why a path cannot be measured.
-fn trouble_of(path: &[PathPoint]) -> TurnsTrouble {
-    Turns::of(path, JIG).expect_err("it is not measured")
+fn trouble_of(path: &[PathPoint]) -> ServoTrouble {
+    MeasuredServo::of(path, JIG).expect_err("the path cannot be measured")
 }
 
 #[test]
@@ -171,19 +183,23 @@ fn a_servo_that_turns_the_wrong_way_has_a_negative_gain() {
         gain: -1.05,
         ..Servo::default()
     };
-    let path = AngleCamera::of_rate(120.0).path(&servo, &mut Rng::with_seed(4));
-    let gain = Turns::of(&path, JIG).expect("it is measured").gain;
+    let path = AngleCamera::phone(120.0).path(&servo, &mut Rng::with_seed(4));
+    let gain = MeasuredServo::of(&path, JIG)
+        .expect("the servo can be measured")
+        .gain;
     assert!((gain.value + 1.05).abs() < 2.0 * gain.error, "{gain:?}");
 }
 
 #[test]
-fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
+fn if_no_small_step_moves_the_servo_only_the_largest_ignored_step_is_known() {
     let servo = Servo {
         dead_band: 4.0,
         ..Servo::default()
     };
-    let path = AngleCamera::of_rate(60.0).path(&servo, &mut Rng::with_seed(5));
-    let dead_band = Turns::of(&path, JIG).expect("it is measured").dead_band;
+    let path = AngleCamera::phone(60.0).path(&servo, &mut Rng::with_seed(5));
+    let dead_band = MeasuredServo::of(&path, JIG)
+        .expect("the servo can be measured")
+        .dead_band;
     assert_eq!(
         (dead_band.width, dead_band.largest_ignored_step),
         (None, 3.0)
@@ -191,7 +207,7 @@ fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
 }
 
 #[test]
-fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
+fn a_horn_that_does_not_follow_all_steps_is_refused_with_the_reason() {
     let mut rng = Rng::with_seed(6);
     let mut angle = 0.0;
     let mut path_of = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<PathPoint> {
@@ -202,31 +218,34 @@ fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
             })
             .collect()
     };
-    assert_eq!(trouble_of(&[]), TurnsTrouble::NotTurned { turn: 0.0 });
+    assert_eq!(trouble_of(&[]), ServoTrouble::NotTurned { turn: 0.0 });
     let still_path = path_of(&mut |_| 0.0);
     assert_eq!(
         trouble_of(&still_path),
-        TurnsTrouble::NotTurned { turn: 0.0 }
+        ServoTrouble::NotTurned { turn: 0.0 }
     );
     let swaying_path = path_of(&mut |seconds| seconds.sin());
-    assert_eq!(trouble_of(&swaying_path), TurnsTrouble::NotTheSteps);
-    let whole_path = AngleCamera::of_rate(60.0).path(&Servo::default(), &mut rng);
+    assert_eq!(trouble_of(&swaying_path), ServoTrouble::StepsNotMatched);
+    let whole_path = AngleCamera::phone(60.0).path(&Servo::default(), &mut rng);
     let trouble = trouble_of(&whole_path[..whole_path.len() / 2]);
     assert!(
-        matches!(trouble, TurnsTrouble::TooShort { .. }),
+        matches!(trouble, ServoTrouble::TooShort { .. }),
         "{trouble}"
     );
 }
 
 #[test]
-fn a_film_in_slow_motion_or_with_few_pictures_is_named() {
+fn a_film_in_slow_motion_or_with_few_pictures_is_refused_with_the_reason() {
     let mut rng = Rng::with_seed(7);
-    let mut path = AngleCamera::of_rate(240.0).path(&Servo::default(), &mut rng);
+    let mut path = AngleCamera::phone(240.0).path(&Servo::default(), &mut rng);
     path.iter_mut().for_each(|point| point.seconds *= 4.0);
-    assert_eq!(trouble_of(&path), TurnsTrouble::AnotherPace { times: 4.0 });
-    let path = AngleCamera::of_rate(15.0).path(&Servo::default(), &mut rng);
+    assert_eq!(
+        trouble_of(&path),
+        ServoTrouble::AnotherStepInterval { ratio: 4.0 }
+    );
+    let path = AngleCamera::phone(15.0).path(&Servo::default(), &mut rng);
     let trouble = trouble_of(&path);
-    assert!(matches!(trouble, TurnsTrouble::FewPictures { rate } if (rate - 15.0).abs() < 0.1));
+    assert!(matches!(trouble, ServoTrouble::TooFewPictures { rate } if (rate - 15.0).abs() < 0.1));
     assert!(
         trouble
             .to_string()
@@ -235,25 +254,29 @@ fn a_film_in_slow_motion_or_with_few_pictures_is_named() {
 }
 
 #[test]
-fn orders_that_are_slower_than_the_servo_do_not_pass_for_its_rate() {
+fn a_slew_limit_below_the_rate_of_the_servo_is_not_taken_for_its_rate() {
     let slew = 300.0;
     let servo = Servo {
         slew,
         ..Servo::default()
     };
-    let path = AngleCamera::of_rate(120.0).path(&servo, &mut Rng::with_seed(8));
-    let trouble = Turns::of(&path, Jig { slew, ..JIG }).expect_err("it follows the orders");
-    assert!(matches!(trouble, TurnsTrouble::Ordered { .. }), "{trouble}");
+    let path = AngleCamera::phone(120.0).path(&servo, &mut Rng::with_seed(8));
+    let trouble = MeasuredServo::of(&path, Jig { slew, ..JIG })
+        .expect_err("the servo is as fast as the slew limit");
+    assert!(
+        matches!(trouble, ServoTrouble::AtSlewLimit { .. }),
+        "{trouble}"
+    );
 }
 
 /// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn rendered_films_of_horns_show_the_truth_within_two_errors() {
+fn in_at_least_85_percent_of_rendered_films_the_truth_lies_within_two_errors() {
     let mut rng = Rng::with_seed(10);
     let setup = Setup {
-        scale: 1.0,
-        height: 40.0,
+        print_scale: 1.0,
+        deck_height: 40.0,
     };
     let mut figures: [Vec<(Figure, f64)>; 3] = Default::default();
     for rate in [60.0, 120.0, 240.0] {
@@ -263,27 +286,29 @@ fn rendered_films_of_horns_show_the_truth_within_two_errors() {
             let servo = random_servo(&mut rng);
             let mut film = Film::default();
             servo.pictures(&studio, 1.0, rate, &mut rng, |seconds, picture| {
-                film.add(seconds, picture).expect("a picture");
+                film.add(seconds, picture)
+                    .expect("the picture fits the film");
             });
-            let watched = film.watch(setup).expect("it is watched");
-            let turns = Turns::of(&watched.path, JIG).expect("it is measured");
-            let width = turns.dead_band.width.expect("a dead band");
+            let analysed_film = film.analyse(setup).expect("the film can be analysed");
+            let measured =
+                MeasuredServo::of(&analysed_film.path, JIG).expect("the servo can be measured");
+            let width = measured.dead_band.width.expect("the dead band is measured");
             println!(
                 "{rate} pictures a second, shutter {shutter:.4} s: gain {:?} of {:.4}, rate {:?} of {:.1}, dead band {width:?} of {:.2}",
-                turns.gain,
+                measured.gain,
                 servo.gain,
-                turns.rate,
+                measured.rate,
                 servo.own_rate(),
                 servo.dead_band
             );
-            figures[0].push((turns.gain, servo.gain));
-            figures[1].push((turns.rate, servo.own_rate()));
+            figures[0].push((measured.gain, servo.gain));
+            figures[1].push((measured.rate, servo.own_rate()));
             figures[2].push((width, nearest_dead_band(&servo, width.value)));
         }
     }
     for (i, figures) in figures.iter().enumerate() {
-        let [share_within, error] = judge(figures);
-        println!("figure {i}: within two errors {share_within:.2}, mean error {error:.4}");
-        assert!(share_within > 0.85, "{i}: {share_within}");
+        let [hit_share, mean_error] = hit_share_and_mean_error(figures);
+        println!("figure {i}: within two errors {hit_share:.2}, mean error {mean_error:.4}");
+        assert!(hit_share > 0.85, "{i}: {hit_share}");
     }
 }

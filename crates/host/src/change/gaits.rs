@@ -55,7 +55,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// Prints the table, the JSON objects or the trace.
+/// Prints the table that the arguments select, the JSON objects or the trace.
 ///
 /// # Errors
 /// Fails for an invalid robot.toml, a gait that it does not have, or an output that cannot be written.
@@ -63,7 +63,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = std::io::stdout().lock();
     match args.trace {
-        Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
+        Some(name) => out.write_all(trace_csv(&robot, &name)?.as_bytes())?,
         None if args.sensitivity => write!(out, "{}", with_spinner(|| Sensitivity::of(&robot)))?,
         None if args.assumptions => write!(out, "{}", with_spinner(|| Assumptions::of(&robot)))?,
         None if args.servos => write!(out, "{}", with_spinner(|| ServoTable::of(&robot)))?,
@@ -87,8 +87,9 @@ fn with_spinner<T>(compute: impl FnOnce() -> T) -> T {
     compute()
 }
 
-/// The angles of one cycle of a gait as CSV, frame by frame, as the firmware reads them from its table.
-fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
+/// Returns the servo angles of one cycle of a gait as CSV, one row per frame, as the firmware reads them from its
+/// table.
+fn trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
     let Some(gait) = robot.gait(name) else {
         let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         return Err(Failure::Input(format!(
@@ -113,33 +114,43 @@ struct GaitLine<'a> {
     period: f64,
     /// Fastest speed of a servo over one frame, deg/s.
     peak_speed: f64,
+    /// The servo that has this speed, A1 to A4.
     peak_servo: &'static str,
     /// Largest error of the table over all phases, deg.
     table_error_max: f64,
+    /// Root mean square of that error, deg.
     table_error_rms: f64,
+    /// Smallest margin to a type-2 singularity.
     type2: LeastMargin,
+    /// Smallest margin to a type-1 singularity.
     type1: LeastMargin,
+    /// Smallest margin of a leg.
     leg: LeastMargin,
     /// Smallest and largest slider travel from nominal, mm.
     stroke: [f64; 2],
     /// Displacement of one cycle with ideal servos, mm and deg counter-clockwise. A value is null if the contact
     /// model cannot decide it, since two feet pull against two with equal force.
-    predicted: Predicted,
+    predicted: Displacement,
     /// Largest used share of a servo's torque-speed line.
     line: f64,
     /// Displacement of one cycle with the servos of robot.toml, in the form of `predicted`.
-    by_servos: Predicted,
+    by_servos: Displacement,
 }
 
+/// The smallest margin of a kind over a cycle.
 #[derive(Serialize)]
 struct LeastMargin {
+    /// As a sine.
     margin: f64,
+    /// The name of the check that has this margin.
     what: &'static str,
+    /// The phase at which it occurs, in cycles from 0 to 1.
     phase: f64,
 }
 
+/// A predicted displacement of the robot: mm ahead, mm to the left, and deg counter-clockwise.
 #[derive(Serialize)]
-struct Predicted {
+struct Displacement {
     forward: Option<f64>,
     left: Option<f64>,
     turn: Option<f64>,
@@ -149,36 +160,37 @@ struct Predicted {
 #[derive(Serialize)]
 struct RoutineLine<'a> {
     routine: &'a str,
+    /// Number of its steps.
     steps: usize,
-    /// Null for a routine without an end.
+    /// Number of rounds; null for a routine without an end.
     repeat: Option<u16>,
     /// Duration of one round that starts from standing, s.
     seconds: f64,
     /// Displacement of one round with ideal servos, in the form of [`GaitLine::predicted`].
-    predicted: Predicted,
+    predicted: Displacement,
     /// Displacement of one round with the servos of robot.toml.
-    by_servos: Predicted,
+    by_servos: Displacement,
 }
 
 impl<'a> RoutineLine<'a> {
     fn new(round: &'a Round) -> Self {
         Self {
             routine: &round.name,
-            steps: round.steps,
-            repeat: round.rounds,
+            steps: round.step_count,
+            repeat: round.round_count,
             seconds: round.seconds,
             predicted: round.movement.into(),
-            by_servos: round.driven.into(),
+            by_servos: round.driven_movement.into(),
         }
     }
 }
 
-impl From<Prediction> for Predicted {
-    fn from(movement: Prediction) -> Self {
+impl From<Prediction> for Displacement {
+    fn from(prediction: Prediction) -> Self {
         Self {
-            forward: movement.forward,
-            left: movement.left,
-            turn: movement.turn,
+            forward: prediction.forward,
+            left: prediction.left,
+            turn: prediction.turn,
         }
     }
 }
@@ -187,24 +199,24 @@ impl<'a> GaitLine<'a> {
     fn new(row: &'a Row) -> Self {
         let least_margin = |smallest: lizard_robot::LeastMargin| LeastMargin {
             margin: smallest.value,
-            what: Check::name(smallest.what),
+            what: Check::name(smallest.check),
             phase: smallest.phase,
         };
         let audit = &row.audit;
         Self {
             gait: &row.name,
             period: row.period,
-            peak_speed: audit.peak.speed,
-            peak_servo: servo::NAMES[audit.peak.servo],
-            table_error_max: row.error.max,
-            table_error_rms: row.error.rms,
+            peak_speed: audit.peak_speed.speed,
+            peak_servo: servo::SERVO_NAMES[audit.peak_speed.servo],
+            table_error_max: row.table_error.max,
+            table_error_rms: row.table_error.rms,
             type2: least_margin(audit.type2),
             type1: least_margin(audit.type1),
             leg: least_margin(audit.leg),
-            stroke: [audit.stroke.0, audit.stroke.1],
+            stroke: [audit.stroke_range.0, audit.stroke_range.1],
             predicted: row.movement.into(),
-            line: row.line,
-            by_servos: row.driven.into(),
+            line: row.line_share,
+            by_servos: row.driven_movement.into(),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Change the robot's gaits and measures: check the gaits of a robot.toml, search faster
-//! ones, and prove that the firmware's guard holds for it.
+//! The commands for changing the robot's gaits and measures: they write a new robot.toml, check its gaits, search for
+//! faster ones, and prove that the firmware's guard decides its poses right.
 
 pub mod gaits;
 pub mod new;

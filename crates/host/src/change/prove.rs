@@ -19,9 +19,9 @@ use crate::shared::spread::{Spread, Spreads};
 /// right side, in the firmware's own steps of 1/65536 turn, and decides it both with the
 /// firmware's integers and in floating point. In certified cells, where the firmware does
 /// not measure a pose, the guard must accept every pair. The command prints the largest
-/// error of each margin (of an end whose type-2 margin keeps its limit), and how far from
-/// its limit a pose is at most if the two decide differently. The exit code is 1 if that
-/// is farther than the documentation says, or if a pose in a cell is refused.
+/// error of each margin (at an end, only where the type-2 margin keeps its limit), and the
+/// largest distance from a limit at which the two decide differently. The exit code is 1 if
+/// that distance is larger than the documentation says, or if a pose in a cell is refused.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard prove
@@ -31,7 +31,7 @@ pub struct Args {
     /// Check only one pair in N, evenly spread
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     one_in: u32,
-    /// Offset of the selected pairs; each number below N selects other ones
+    /// Offset of the selected pairs; each number below N selects different pairs
     #[arg(long, value_name = "K", default_value_t = 0)]
     offset: u32,
     /// Print one JSON object
@@ -53,7 +53,7 @@ impl Spreads for Args {
 /// Compares the guard with floating point and prints the result.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, or if a pose is decided wrong.
+/// Fails for an invalid robot.toml, or if the guard decides a pose wrongly.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();
@@ -67,7 +67,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         "{bar:40} {percent} % of all rows, {eta} left",
     );
     let walk = Walk::new(&robot, guard, sample);
-    let check_piece = |index| walk.piece(index, &|rows| bar.inc(rows));
+    let check_piece = |index| walk.piece(index, &|checked_rows| bar.inc(checked_rows));
     let pieces = args.spread.all_pieces(&args, PIECES, check_piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
@@ -111,7 +111,7 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
             wrong,
             ..
         } = finding.tally;
-        let cell_text = |value: Option<f64>, digits: usize| {
+        let format_value = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
         };
         writeln!(
@@ -120,11 +120,11 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
             finding.part,
             finding.servos.join(" "),
             grouped(pairs as f64, 0),
-            cell_text(type2.or(leg), 5),
-            cell_text(type1, 5),
-            cell_text(travel, 4),
-            cell_text(margin_band, 6),
-            cell_text(length_band, 4),
+            format_value(type2.or(leg), 5),
+            format_value(type1, 5),
+            format_value(travel, 4),
+            format_value(margin_band, 6),
+            format_value(length_band, 4),
             wrong
         )?;
     }

@@ -17,8 +17,8 @@ pub(super) fn describe_feature(feature: &str) -> &'static str {
     }
 }
 
-/// True if this build has a feature.
-fn is_built(feature: &str) -> bool {
+/// True if this build has `feature`.
+fn is_feature_built(feature: &str) -> bool {
     let features = [
         ("simulator", cfg!(feature = "simulator")),
         ("paper", cfg!(feature = "paper")),
@@ -30,13 +30,17 @@ fn is_built(feature: &str) -> bool {
 
 /// Lists the commands that this build lacks, for the help; empty for a complete build.
 pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
-    list_in_build(commands, is_built)
+    list_absent_in_build(commands, is_feature_built)
 }
 
-fn list_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
-    let absent_commands = commands
-        .iter()
-        .filter(|command| !command.needs.iter().all(|feature| has_feature(feature)));
+/// Lists the commands that a build with only the features of `has_feature` lacks.
+fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
+    let absent_commands = commands.iter().filter(|command| {
+        !command
+            .needed_features
+            .iter()
+            .all(|feature| has_feature(feature))
+    });
     let names: Vec<String> = absent_commands.map(CommandEntry::name).collect();
     if names.is_empty() {
         return String::new();
@@ -55,7 +59,7 @@ fn list_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) 
     )
 }
 
-/// Explains why this build lacks the command that was typed.
+/// The failure of a command line that begins with a command which this build lacks or does not know.
 #[cfg_attr(
     all(
         feature = "simulator",
@@ -65,8 +69,8 @@ fn list_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) 
     ),
     allow(dead_code, reason = "a complete build lacks nothing")
 )]
-pub(super) fn explain(typed: &[OsString], commands: &[CommandEntry]) -> Failure {
-    explain_in_build(typed, commands, is_built)
+pub(super) fn explain_absence(typed: &[OsString], commands: &[CommandEntry]) -> Failure {
+    explain_absence_in_build(typed, commands, is_feature_built)
 }
 
 /// The arguments of a command that this build lacks; nothing reads them.
@@ -79,23 +83,23 @@ pub struct AbsentCommand {
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 impl AbsentCommand {
-    /// Explains why this build lacks this command.
-    pub fn failure(name: &str, needs: &[&str]) -> Failure {
-        missing_command_failure(name, needs, is_built)
+    /// The failure of a command that this build lacks, with the features that the command needs.
+    pub fn failure(name: &str, needed_features: &[&str]) -> Failure {
+        absent_command_failure(name, needed_features, is_feature_built)
     }
 }
 
-fn missing_command_failure(
+fn absent_command_failure(
     name: &str,
-    needs: &[&str],
+    needed_features: &[&str],
     has_feature: impl Fn(&str) -> bool,
 ) -> Failure {
-    let absent_features: Vec<&str> = needs
+    let absent_features: Vec<&str> = needed_features
         .iter()
         .filter(|feature| !has_feature(feature))
         .map(|feature| describe_feature(feature))
         .collect();
-    let is_simulator_absent = needs.contains(&"simulator") && !has_feature("simulator");
+    let is_simulator_absent = needed_features.contains(&"simulator") && !has_feature("simulator");
     let advice = match is_simulator_absent && !cfg!(target_os = "linux") {
         true => "the simulator runs on Linux",
         false => "make cli builds all",
@@ -106,7 +110,7 @@ fn missing_command_failure(
     ))
 }
 
-fn explain_in_build(
+fn explain_absence_in_build(
     typed: &[OsString],
     commands: &[CommandEntry],
     has_feature: impl Fn(&str) -> bool,
@@ -122,23 +126,23 @@ fn explain_in_build(
             "there is no command `{word}`{suggestion}; lizard --help lists them"
         ));
     };
-    missing_command_failure(&command.name(), command.needs, has_feature)
+    absent_command_failure(&command.name(), command.needed_features, has_feature)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::KNOWN;
+    use super::super::KNOWN_COMMANDS;
     use super::*;
 
     fn message_of(word: &str, features: &[&str]) -> String {
-        explain_in_build(&[word.into(), "--json".into()], KNOWN, |feature| {
+        explain_absence_in_build(&[word.into(), "--json".into()], KNOWN_COMMANDS, |feature| {
             features.contains(&feature)
         })
         .to_string()
     }
 
     #[test]
-    fn a_command_of_an_absent_feature_says_how_to_get_it() {
+    fn the_message_about_an_absent_command_names_the_feature_that_it_needs() {
         assert_eq!(
             message_of("sim", &["paper"]),
             "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
@@ -150,14 +154,14 @@ mod tests {
 
     #[test]
     fn the_help_names_exactly_the_commands_that_a_build_lacks() {
-        assert_eq!(list_in_build(KNOWN, |_| true), "");
+        assert_eq!(list_absent_in_build(KNOWN_COMMANDS, |_| true), "");
         assert_eq!(
-            list_in_build(KNOWN, |feature| feature != "simulator"),
+            list_absent_in_build(KNOWN_COMMANDS, |feature| feature != "simulator"),
             "Not in this program: sim, twin, tune. It was built without the simulator. The \
              simulator runs on Linux.\n\n"
         );
         assert_eq!(
-            list_in_build(KNOWN, |feature| feature != "parts"),
+            list_absent_in_build(KNOWN_COMMANDS, |feature| feature != "parts"),
             "Not in this program: measure, model, parts, fit. It was built without the parts to print.\n\n"
         );
     }
@@ -174,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mistyped_command_is_answered_with_a_suggestion() {
+    fn an_unknown_command_is_answered_with_a_suggestion_if_one_is_close() {
         assert_eq!(
             message_of("fly", &[]),
             "there is no command `fly`; lizard --help lists them"

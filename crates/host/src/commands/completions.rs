@@ -35,30 +35,32 @@ pub struct ManArgs {
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
-pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
-    let shell = args.shell.expect("clap requires it");
+pub fn print_completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
+    let shell = args.shell.expect("clap requires a shell");
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, "lizard", &mut script);
     let script = String::from_utf8_lossy(&script);
     let mut out = io::stdout().lock();
-    out.write_all(offer_robots(&script).as_bytes())?;
+    out.write_all(narrow_robot_suggestions(&script).as_bytes())?;
     Ok(out.flush()?)
 }
 
-/// Narrows a script's suggestions for `--robot` down to robot files and the program's own
-/// robots. clap knows only hints such as "a file".
-fn offer_robots(script: &str) -> String {
-    const BASH: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
+/// Narrows a completion script's suggestions for `--robot` to .toml files and the names of the built-in robots. clap
+/// itself can only suggest any file.
+fn narrow_robot_suggestions(script: &str) -> String {
+    const BASH_FILE_LINE: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
     let names = robot_file::names().join(" ");
-    let bash = format!(
+    let bash_robot_line = format!(
         "COMPREPLY=($(compgen -W '{names}' -- \"${{cur}}\") $(compgen -f -X '!*.toml' -- \
          \"${{cur}}\") $(compgen -d -S / -- \"${{cur}}\"))"
     );
     let mut is_after_robot = false;
     let lines = script.lines().map(|line| {
         let narrowed_line = match line.trim_start() {
-            // bash: the line after `--robot)`.
-            trimmed if is_after_robot && trimmed == BASH => line.replace(BASH, &bash),
+            // The three arms are for bash (the line after `--robot)`), zsh and fish.
+            trimmed if is_after_robot && trimmed == BASH_FILE_LINE => {
+                line.replace(BASH_FILE_LINE, &bash_robot_line)
+            }
             trimmed if trimmed.starts_with("'--robot=") => {
                 line.replace(":_files'", ":_files -g \"*.toml\"'")
             }
@@ -78,30 +80,30 @@ fn offer_robots(script: &str) -> String {
 ///
 /// # Errors
 /// Fails if a file cannot be written.
-pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
+pub fn write_manual_pages(args: ManArgs, command: Command) -> Result<(), Failure> {
     let mut command = command.disable_help_subcommand(true);
     command.build();
-    let mut count = 1;
-    write_page(&args, "lizard", command.clone())?;
+    let mut page_count = 1;
+    write_manual_page(&args, "lizard", command.clone())?;
     for sub in command.get_subcommands() {
         let name = format!("lizard-{}", sub.get_name());
-        write_page(&args, &name, sub.clone())?;
-        count += 1;
+        write_manual_page(&args, &name, sub.clone())?;
+        page_count += 1;
         for nested in sub.get_subcommands() {
-            write_page(
+            write_manual_page(
                 &args,
                 &format!("{name}-{}", nested.get_name()),
                 nested.clone(),
             )?;
-            count += 1;
+            page_count += 1;
         }
     }
     let folder = args.folder.display();
-    writeln!(io::stdout(), "{count} manual pages are in {folder}")?;
+    writeln!(io::stdout(), "{page_count} manual pages are in {folder}")?;
     Ok(())
 }
 
-fn write_page(args: &ManArgs, name: &str, command: Command) -> Result<(), Failure> {
+fn write_manual_page(args: &ManArgs, name: &str, command: Command) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(command).render(&mut text)?;
     files::write(&args.folder.join(format!("{name}.1")), &text)

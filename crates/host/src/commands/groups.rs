@@ -1,7 +1,7 @@
 //! The list of commands, grouped by purpose.
 //!
-//! Many commands in one list hide the five that the owner of a robot needs. So `lizard help` puts them under
-//! headings, and lists the commands for scripts by name only.
+//! The owner of a robot needs five commands, which one long list would hide. So `lizard help` groups the commands under
+//! headings, and gives only the names of those for scripts and development.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ use clap::Command;
 use super::absent;
 use super::known::{CommandEntry, Group};
 
-/// Returns the command with a help text that lists its subcommands in groups.
+/// Returns `command` with a help text that lists its subcommands in the groups of `known`.
 pub(super) fn with_groups(command: Command, known: &[CommandEntry]) -> Command {
     let list = list_commands(&command, known);
     let absent_note = absent::list_absent(known);
@@ -25,26 +25,26 @@ fn heading(text: &str) -> String {
     format!("{style}{text}:{style:#}")
 }
 
-/// Lists every subcommand once, under its heading.
+/// Lists every subcommand once, under the heading of its group.
 fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
     let subcommands: Vec<&Command> = command.get_subcommands().collect();
-    let widest = subcommands.iter().map(|sub| sub.get_name().len()).max();
-    let width = widest.unwrap_or(0);
+    let max_name_length = subcommands.iter().map(|sub| sub.get_name().len()).max();
+    let width = max_name_length.unwrap_or(0);
     let mut text = String::new();
-    let write_section = |text: &mut String, title: &str, subs: &[&Command]| {
-        if subs.is_empty() {
+    let write_section = |text: &mut String, title: &str, listed_subcommands: &[&Command]| {
+        if listed_subcommands.is_empty() {
             return;
         }
         _ = writeln!(text, "{}", heading(title));
-        for sub in subs {
+        for sub in listed_subcommands {
             let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
             let aliases: Vec<&str> = sub.get_visible_aliases().collect();
             let note_of = |word: &str, names: &[&str]| match names.join(", ") {
                 names if names.is_empty() => names,
                 names => format!(" [{word}: {names}]"),
             };
-            let nested: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
-            let notes = note_of("also", &aliases) + &note_of("with", &nested);
+            let nested_names: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
+            let notes = note_of("also", &aliases) + &note_of("with", &nested_names);
             // clap would read braces as placeholders of the template.
             let about = about.replace(['{', '}'], "");
             _ = writeln!(text, "  {:<width$}  {about}{notes}", sub.get_name());
@@ -52,8 +52,8 @@ fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
         text.push('\n');
     };
     for group in Group::ALL {
-        let names = known.iter().filter(|entry| entry.group == group);
-        let subs: Vec<&Command> = names
+        let entries = known.iter().filter(|entry| entry.group == group);
+        let group_subcommands: Vec<&Command> = entries
             .filter_map(|entry| {
                 let name = entry.name();
                 subcommands
@@ -62,11 +62,11 @@ fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
                     .copied()
             })
             .collect();
-        if group == Group::Itself && !subs.is_empty() {
-            let names: Vec<&str> = subs.iter().map(|sub| sub.get_name()).collect();
+        if group == Group::Development && !group_subcommands.is_empty() {
+            let names: Vec<&str> = group_subcommands.iter().map(|sub| sub.get_name()).collect();
             _ = writeln!(text, "{}\n  {}\n", heading(group.title()), names.join(", "));
         } else {
-            write_section(&mut text, group.title(), &subs);
+            write_section(&mut text, group.title(), &group_subcommands);
         }
     }
     text
@@ -77,23 +77,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_command_is_listed_once_and_the_owners_come_first() {
+    fn every_command_is_listed_once_in_the_order_of_the_groups() {
         let subcommand = |name: &'static str| Command::new(name).about(format!("does {name}"));
         let command = Command::new("lizard").subcommands([
             subcommand("pose").visible_alias("fk"),
             subcommand("completions"),
             subcommand("console"),
         ]);
-        let row = |group, variant| CommandEntry {
+        let entry_of = |group, variant| CommandEntry {
             group,
             variant,
             aliases: &[],
-            needs: &[],
+            needed_features: &[],
         };
         let known = [
-            row(Group::Drive, "Console"),
-            row(Group::Paper, "Pose"),
-            row(Group::Itself, "Completions"),
+            entry_of(Group::Drive, "Console"),
+            entry_of(Group::Paper, "Pose"),
+            entry_of(Group::Development, "Completions"),
         ];
         assert_eq!(
             strip_colours(&list_commands(&command, &known)),
@@ -105,12 +105,12 @@ mod tests {
 
     /// Removes a terminal's colour codes.
     fn strip_colours(text: &str) -> String {
-        let mut plain = String::new();
+        let mut plain_text = String::new();
         let mut rest = text;
         while let Some((before, after)) = rest.split_once('\u{1b}') {
-            plain.push_str(before);
+            plain_text.push_str(before);
             rest = after.split_once('m').map_or("", |(_, rest)| rest);
         }
-        plain + rest
+        plain_text + rest
     }
 }

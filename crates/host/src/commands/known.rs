@@ -1,4 +1,4 @@
-//! The rows of the table of commands, and their groups.
+//! An entry of the list of commands, and the groups of the entries.
 
 /// A group of commands, with its heading in the help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,12 +9,12 @@ pub(super) enum Group {
     Simulate,
     /// Parts and drawings.
     Build,
-    /// Gaits and measures in robot.toml.
+    /// Changes of gaits and dimensions in robot.toml.
     Change,
-    /// The paper's figures.
+    /// Results of the paper, computed for any robot.
     Paper,
-    /// Scripts and development.
-    Itself,
+    /// Commands for scripts and for the development of the program.
+    Development,
 }
 
 impl Group {
@@ -25,7 +25,7 @@ impl Group {
         Self::Build,
         Self::Change,
         Self::Paper,
-        Self::Itself,
+        Self::Development,
     ];
 
     /// The text of the heading.
@@ -36,7 +36,7 @@ impl Group {
             Self::Build => "Build it",
             Self::Change => "Change its gaits and measures",
             Self::Paper => "The paper, computed",
-            Self::Itself => "For scripts and development",
+            Self::Development => "For scripts and development",
         }
     }
 }
@@ -47,10 +47,10 @@ pub(super) struct CommandEntry {
     pub(super) group: Group,
     /// The name of the command's variant in the enum of commands.
     pub(super) variant: &'static str,
-    /// Aliases of the command.
+    /// Other names that the user may type.
     pub(super) aliases: &'static [&'static str],
     /// The cargo features that the command needs.
-    pub(super) needs: &'static [&'static str],
+    pub(super) needed_features: &'static [&'static str],
 }
 
 impl CommandEntry {

@@ -81,8 +81,10 @@ fn read_all_parts(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
 struct MergedParts {
     command: String,
     options: Value,
+    /// The text of robot.toml.
     robot: String,
-    found: BTreeMap<usize, Value>,
+    /// The results of all pieces of the computation, by their indices.
+    results: BTreeMap<usize, Value>,
 }
 
 impl MergedParts {
@@ -99,7 +101,7 @@ impl MergedParts {
             command: first.command.clone(),
             options: first.options.clone(),
             robot: first.robot.clone(),
-            found: BTreeMap::new(),
+            results: BTreeMap::new(),
         };
         let mut is_given = vec![false; part_count as usize];
         for part in parts {
@@ -132,7 +134,7 @@ impl MergedParts {
             if std::mem::replace(&mut is_given[index], true) {
                 return refuse(format!("part {name} is given twice"));
             }
-            merged.found.extend(part.found);
+            merged.results.extend(part.found);
         }
         if let Some(missing) = is_given.iter().position(|is_given| !is_given) {
             return refuse(format!("part {}/{part_count} is missing", missing + 1));
@@ -140,10 +142,10 @@ impl MergedParts {
         Ok(merged)
     }
 
-    /// Runs the command as on one machine, with the parts' results in place of the computation.
+    /// Runs the command as on one machine, but with the results of the parts instead of computing them.
     #[cfg_attr(
         not(any(feature = "paper", feature = "parts")),
-        allow(dead_code, reason = "nothing can be spread")
+        allow(dead_code, reason = "this build has no command with parts")
     )]
     fn run<C: Spreads>(
         self,
@@ -151,7 +153,7 @@ impl MergedParts {
     ) -> Result<(), Failure> {
         let mut command: C =
             serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
-        command.spread().set_merged(self.robot, self.found);
+        command.spread().set_merged(self.robot, self.results);
         run_command(command)
     }
 }
@@ -174,7 +176,7 @@ mod tests {
 
     fn refusal_of(parts: Vec<PartOutput>) -> String {
         match MergedParts::of(parts) {
-            Ok(_) => panic!("it is accepted"),
+            Ok(_) => panic!("the parts are accepted"),
             Err(failure) => failure.to_string(),
         }
     }
@@ -214,7 +216,7 @@ mod tests {
         assert!(refusal_of(Vec::new()).starts_with("there are no parts"));
         assert!(
             MergedParts::of(vec![part_output("2/2"), part_output("1/2")]).is_ok(),
-            "in any order"
+            "parts are accepted in any order"
         );
     }
 }

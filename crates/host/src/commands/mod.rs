@@ -1,8 +1,8 @@
-//! The table of the program's commands. For each command it has the group in the help, the name, the aliases, the
-//! cargo features that it needs, its arguments and the function that runs it.
+//! The table of the program's commands. A row has a command's name, its arguments, the function that runs it, the cargo
+//! features that it needs and its alias. The rows are grouped as in the help.
 //!
-//! A build without a feature lacks some commands, and explains that when one of them is used. So the table serves two
-//! purposes: it makes the enum of the commands of this build, and the list of all commands.
+//! A build without a feature lacks some commands, and explains that when one of them is used. The table therefore
+//! defines both the enum of the commands that this build has and the list of all commands.
 
 mod absent;
 pub mod completions;
@@ -19,9 +19,9 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use crate::Failure;
 use crate::shared::plain::readable_lines;
 use known::{CommandEntry, Group};
-use nested::With;
+use nested::WithSubcommand;
 
-/// Makes [`Command`] and [`KNOWN`] from the table below.
+/// Makes [`Command`] and [`KNOWN_COMMANDS`] from the table below.
 macro_rules! commands {
     ($(
         $group:ident {
@@ -41,7 +41,7 @@ macro_rules! commands {
                 #[allow(missing_docs, reason = "the help is that of the arguments")]
                 $name($arguments),
             )+)+
-            /// A command that this build may lack.
+            /// The words of a command line whose command this build lacks or does not know.
             #[cfg(not(all(
                 feature = "simulator",
                 feature = "paper",
@@ -65,18 +65,18 @@ macro_rules! commands {
                         feature = "console",
                         feature = "parts"
                     )))]
-                    Self::Other(words) => Err(absent::explain(&words, KNOWN)),
+                    Self::Other(words) => Err(absent::explain_absence(&words, KNOWN_COMMANDS)),
                 }
             }
         }
 
         /// All commands, including those that this build lacks, in the order of the help.
-        const KNOWN: &[CommandEntry] = &[$($(
+        const KNOWN_COMMANDS: &[CommandEntry] = &[$($(
             CommandEntry {
                 group: Group::$group,
                 variant: stringify!($name),
                 aliases: &[$($alias)?],
-                needs: &[$($($feature),+)?],
+                needed_features: &[$($($feature),+)?],
             },
         )+)+];
     };
@@ -84,19 +84,19 @@ macro_rules! commands {
 
 commands! {
     Drive {
-        Flash(With<crate::drive::flash::Args, nested::OfFlash>) => nested::flash, needs "console";
-        Info(With<crate::drive::console::info::Args, nested::OfInfo>) => nested::info, needs "console";
-        Console(With<crate::drive::console::interactive::ConsoleArgs, nested::OfConsole>) => nested::console, needs "console", also "monitor";
-        Calibrate(With<crate::drive::console::calibrate::Args, nested::OfCalibrate>) => nested::calibrate, needs "console";
-        Measure(With<crate::measure::Args, nested::OfMeasure>) => nested::measure, needs "parts";
+        Flash(WithSubcommand<crate::drive::flash::Args, nested::FlashSubcommand>) => nested::run_flash, needs "console";
+        Info(WithSubcommand<crate::drive::console::info::Args, nested::InfoSubcommand>) => nested::run_info, needs "console";
+        Console(WithSubcommand<crate::drive::console::interactive::ConsoleArgs, nested::ConsoleSubcommand>) => nested::run_console, needs "console", also "monitor";
+        Calibrate(WithSubcommand<crate::drive::console::calibrate::Args, nested::CalibrateSubcommand>) => nested::run_calibrate, needs "console";
+        Measure(WithSubcommand<crate::measure::Args, nested::MeasureSubcommand>) => nested::run_measure, needs "parts";
     }
     Simulate {
-        Sim(With<crate::simulate::sim::Args, nested::OfSim>) => nested::sim, needs "simulator";
+        Sim(WithSubcommand<crate::simulate::sim::Args, nested::SimSubcommand>) => nested::run_sim, needs "simulator";
         Twin(crate::simulate::twin::Args) => crate::simulate::twin::run, needs "simulator";
         Model(crate::make::model::Args) => crate::make::model::run, needs "parts", also "mjcf";
     }
     Build {
-        Draw(With<crate::make::draw::Args, nested::OfDraw>) => nested::draw;
+        Draw(WithSubcommand<crate::make::draw::Args, nested::DrawSubcommand>) => nested::run_draw;
         Parts(crate::make::parts::Args) => crate::make::parts::run, needs "parts";
         Fit(crate::make::parts::fit::Args) => crate::make::parts::fit::run, needs "parts";
     }
@@ -111,14 +111,14 @@ commands! {
         Design(crate::paper::design::Args) => crate::paper::design::run, needs "paper";
         Errata(crate::paper::errata::Args) => crate::paper::errata::run, needs "paper";
     }
-    Itself {
+    Development {
         Merge(merge::MergeArgs) => merge::merge;
-        Completions(With<completions::CompletionsArgs, nested::OfCompletions>) => completions_of_program;
+        Completions(WithSubcommand<completions::CompletionsArgs, nested::CompletionsSubcommand>) => run_completions;
     }
 }
 
-/// Commands of the previous version, and the words that replace each.
-const RENAMED: [(&str, &[&str]); 17] = [
+/// Commands of the previous version, each with the words that replace it.
+const RENAMED_COMMANDS: [(&str, &[&str]); 17] = [
     ("solve", &["pose"]),
     ("fk", &["pose"]),
     ("inverse", &["pose"]),
@@ -138,11 +138,11 @@ const RENAMED: [(&str, &[&str]); 17] = [
     ("man", &["completions", "man"]),
 ];
 
-/// Commands of the previous version that were removed.
-const REMOVED: [(&str, &str); 2] = [
+/// Commands of the previous version that were removed, each with advice.
+const REMOVED_COMMANDS: [(&str, &str); 2] = [
     (
         "spring",
-        "a spring's force and rate belong into robot.toml, under [leg.drive], or its coil under \
+        "a spring's force and rate belong in robot.toml, under [leg.drive], or its coil under \
          [parts.spring]",
     ),
     ("speed", "make bench measures how fast poses are solved"),
@@ -156,12 +156,12 @@ fn translate_old_arguments(mut arguments: Vec<OsString>) -> Result<Vec<OsString>
     let Some(word) = arguments.get(1).and_then(|word| word.to_str()) else {
         return Ok(arguments);
     };
-    if let Some((word, advice)) = REMOVED.iter().find(|(old, _)| *old == word) {
+    if let Some((word, advice)) = REMOVED_COMMANDS.iter().find(|(old, _)| *old == word) {
         return Err(Failure::Input(format!(
             "there is no command `{word}` any more; {advice}"
         )));
     }
-    if let Some((old, new)) = RENAMED.iter().find(|(old, _)| *old == word) {
+    if let Some((old, new)) = RENAMED_COMMANDS.iter().find(|(old, _)| *old == word) {
         eprintln!(
             "lizard: `{old}` is `lizard {}` now; the next version will not know the old word",
             new.join(" ")
@@ -171,10 +171,10 @@ fn translate_old_arguments(mut arguments: Vec<OsString>) -> Result<Vec<OsString>
     Ok(arguments)
 }
 
-fn completions_of_program(
-    args: With<completions::CompletionsArgs, nested::OfCompletions>,
+fn run_completions(
+    args: WithSubcommand<completions::CompletionsArgs, nested::CompletionsSubcommand>,
 ) -> Result<(), Failure> {
-    nested::completions(args, program())
+    nested::run_completions(args, program())
 }
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
@@ -192,14 +192,14 @@ struct Cli {
     command: Command,
 }
 
-/// The program's commands and options, with the commands in groups.
+/// The program's commands and options; the help lists the commands in groups.
 pub fn program() -> clap::Command {
-    let addresses = addresses(env!("CARGO_PKG_HOMEPAGE"), env!("CARGO_PKG_REPOSITORY"));
-    groups::with_groups(Cli::command().after_help(addresses), KNOWN)
+    let addresses = list_addresses(env!("CARGO_PKG_HOMEPAGE"), env!("CARGO_PKG_REPOSITORY"));
+    groups::with_groups(Cli::command().after_help(addresses), KNOWN_COMMANDS)
 }
 
-/// Lists the project's addresses for the end of the help, and leaves out empty ones.
-fn addresses(page: &str, source: &str) -> String {
+/// Lists the project's addresses that are not empty, one a line, for the end of the help.
+fn list_addresses(page: &str, source: &str) -> String {
     let lines = [
         ("Page", page, ""),
         ("Source", source, ""),
@@ -237,14 +237,14 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
     }
 }
 
-/// Ends the program with clap's message, which is the help or an error; a very long word in it is shortened.
+/// Prints clap's message, which is the help or an error, with very long words shortened, and ends the program.
 fn exit_with(error: &clap::Error) -> ! {
     let text = error.render().to_string();
-    let short = readable_lines(&text);
-    if short == text {
+    let shortened_text = readable_lines(&text);
+    if shortened_text == text {
         error.exit();
     }
-    eprint!("{short}");
+    eprint!("{shortened_text}");
     std::process::exit(error.exit_code())
 }
 
@@ -265,21 +265,21 @@ mod tests {
         use super::*;
 
         #[test]
-        fn a_complete_build_has_every_command_under_its_name_and_aliases() {
+        fn a_complete_build_has_exactly_the_known_names_and_aliases() {
             let program = Cli::command();
-            let built: BTreeSet<String> = program
+            let built_names: BTreeSet<String> = program
                 .get_subcommands()
                 .flat_map(|sub| std::iter::once(sub.get_name()).chain(sub.get_visible_aliases()))
                 .map(str::to_owned)
                 .collect();
-            let known_names: BTreeSet<String> = KNOWN
+            let known_names: BTreeSet<String> = KNOWN_COMMANDS
                 .iter()
                 .flat_map(|entry| {
                     let aliases = entry.aliases.iter().map(ToString::to_string);
                     std::iter::once(entry.name()).chain(aliases)
                 })
                 .collect();
-            assert_eq!(built, known_names);
+            assert_eq!(built_names, known_names);
             assert!(
                 known_names.contains("monitor") && known_names.contains("merge"),
                 "{known_names:?}"
@@ -287,10 +287,12 @@ mod tests {
         }
 
         #[test]
-        fn docs_commands_names_every_command_without_json() {
+        fn docs_commands_md_names_exactly_the_commands_without_json() {
             let page = include_str!("../../../../docs/commands.md");
-            let (_, list) = page.split_once("`--json`, except ").expect("the list");
-            let (list, _) = list.split_once(": they").expect("its end");
+            let (_, list) = page
+                .split_once("`--json`, except ")
+                .expect("the page has the list");
+            let (list, _) = list.split_once(": they").expect("the list has an end");
             let named_commands: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
             let program = Cli::command();
             let has_json =
@@ -306,10 +308,10 @@ mod tests {
     }
 
     #[test]
-    fn every_old_word_means_an_existing_command_and_hides_no_new_one() {
-        for (old, new) in RENAMED {
+    fn a_renamed_command_leads_to_an_existing_one_and_a_removed_one_to_advice() {
+        for (old, new) in RENAMED_COMMANDS {
             let [is_old_known, is_new_known] =
-                [old, new[0]].map(|word| KNOWN.iter().any(|entry| entry.name() == word));
+                [old, new[0]].map(|word| KNOWN_COMMANDS.iter().any(|entry| entry.name() == word));
             assert_eq!((is_old_known, is_new_known), (false, true), "{new:?}");
         }
         let arguments_of = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
@@ -325,32 +327,32 @@ mod tests {
             ("lizard console solve", "lizard console solve"),
         ] {
             assert_eq!(
-                translate_old_arguments(arguments_of(old)).expect("it is known"),
+                translate_old_arguments(arguments_of(old)).expect("the command was not removed"),
                 arguments_of(new)
             );
         }
         let error = translate_old_arguments(arguments_of("lizard spring --wire 0.6"))
-            .expect_err("it is gone");
+            .expect_err("the command was removed");
         assert!(error.to_string().contains("[leg.drive]"), "{error}");
     }
 
     #[test]
     fn the_help_names_the_addresses_that_the_project_has() {
-        assert_eq!(addresses("", ""), "");
+        assert_eq!(list_addresses("", ""), "");
         assert_eq!(
-            addresses("https://p.example", ""),
+            list_addresses("https://p.example", ""),
             "Page: https://p.example\n"
         );
         assert_eq!(
-            addresses("", "https://s.example/l"),
+            list_addresses("", "https://s.example/l"),
             "Source: https://s.example/l\nReport a fault: https://s.example/l/issues\n"
         );
     }
 
     #[test]
-    fn every_feature_that_a_command_needs_has_words() {
-        for entry in KNOWN {
-            for feature in entry.needs {
+    fn every_feature_that_a_command_needs_has_a_description() {
+        for entry in KNOWN_COMMANDS {
+            for feature in entry.needed_features {
                 assert_ne!(absent::describe_feature(feature), "", "{entry:?}");
             }
         }

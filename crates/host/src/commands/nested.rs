@@ -1,7 +1,7 @@
 //! Commands with subcommands, such as `lizard calibrate backup`.
 //!
 //! Related commands share one entry in the list of commands: `flash image` writes to a file what `flash` writes to
-//! a board, and `sim bench` measures the firmware that `sim` runs. The commands' own modules do not depend on the
+//! a board, and `sim bench` measures the firmware that `sim` runs. The modules of the commands know nothing of this
 //! nesting.
 
 use clap::{Args, Subcommand};
@@ -16,49 +16,52 @@ use crate::{Failure, commands::completions};
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 use super::absent::AbsentCommand;
 
-// The types of this file have no documentation comments: clap would show them in place of those of the arguments.
+// The types of this file have no documentation comments: clap would show them instead of those of the arguments. A
+// `WithSubcommand` is a command that runs either with its own arguments or with a subcommand.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct With<A: Args, B: Subcommand> {
+pub struct WithSubcommand<A: Args, B: Subcommand> {
     #[command(flatten)]
-    own: A,
+    arguments: A,
     #[command(subcommand)]
-    below: Option<B>,
+    subcommand: Option<B>,
 }
 
 #[cfg(feature = "console")]
 #[derive(Subcommand)]
-pub enum OfFlash {
+pub enum FlashSubcommand {
     Image(drive::image::Args),
 }
 
 /// Runs `lizard flash` or its subcommand.
 #[cfg(feature = "console")]
-pub fn flash(args: With<drive::flash::Args, OfFlash>) -> Result<(), Failure> {
-    match args.below {
-        Some(OfFlash::Image(args)) => drive::image::run(args),
-        None => drive::flash::run(args.own),
+pub fn run_flash(args: WithSubcommand<drive::flash::Args, FlashSubcommand>) -> Result<(), Failure> {
+    match args.subcommand {
+        Some(FlashSubcommand::Image(args)) => drive::image::run(args),
+        None => drive::flash::run(args.arguments),
     }
 }
 
 #[cfg(feature = "console")]
 #[derive(Subcommand)]
-pub enum OfInfo {
+pub enum InfoSubcommand {
     Ports(drive::ports::Args),
 }
 
 /// Runs `lizard info` or its subcommand.
 #[cfg(feature = "console")]
-pub fn info(args: With<drive::console::info::Args, OfInfo>) -> Result<(), Failure> {
-    match args.below {
-        Some(OfInfo::Ports(args)) => drive::ports::run(args),
-        None => drive::console::info::run(args.own),
+pub fn run_info(
+    args: WithSubcommand<drive::console::info::Args, InfoSubcommand>,
+) -> Result<(), Failure> {
+    match args.subcommand {
+        Some(InfoSubcommand::Ports(args)) => drive::ports::run(args),
+        None => drive::console::info::run(args.arguments),
     }
 }
 
 #[cfg(feature = "console")]
 #[derive(Subcommand)]
-pub enum OfConsole {
+pub enum ConsoleSubcommand {
     #[cfg(feature = "simulator")]
     Replay(drive::console::replay::Args),
     /// Draw a recorded session: missing, this program was built without the simulator
@@ -68,38 +71,42 @@ pub enum OfConsole {
 
 /// Runs `lizard console` or its subcommand.
 #[cfg(feature = "console")]
-pub fn console(
-    args: With<drive::console::interactive::ConsoleArgs, OfConsole>,
+pub fn run_console(
+    args: WithSubcommand<drive::console::interactive::ConsoleArgs, ConsoleSubcommand>,
 ) -> Result<(), Failure> {
-    match args.below {
+    match args.subcommand {
         #[cfg(feature = "simulator")]
-        Some(OfConsole::Replay(args)) => drive::console::replay::run(args),
+        Some(ConsoleSubcommand::Replay(args)) => drive::console::replay::run(args),
         #[cfg(not(feature = "simulator"))]
-        Some(OfConsole::Replay(_)) => Err(AbsentCommand::failure("console replay", &["simulator"])),
-        None => drive::console::interactive::console(args.own),
+        Some(ConsoleSubcommand::Replay(_)) => {
+            Err(AbsentCommand::failure("console replay", &["simulator"]))
+        }
+        None => drive::console::interactive::run(args.arguments),
     }
 }
 
 #[cfg(feature = "console")]
 #[derive(Subcommand)]
-pub enum OfCalibrate {
+pub enum CalibrateSubcommand {
     Backup(drive::console::backup::BackupArgs),
     Restore(drive::console::backup::RestoreArgs),
 }
 
 /// Runs `lizard calibrate` or one of its subcommands.
 #[cfg(feature = "console")]
-pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Result<(), Failure> {
-    match args.below {
-        Some(OfCalibrate::Backup(args)) => drive::console::backup::backup(args),
-        Some(OfCalibrate::Restore(args)) => drive::console::backup::restore(args),
-        None => drive::console::calibrate::run(args.own),
+pub fn run_calibrate(
+    args: WithSubcommand<drive::console::calibrate::Args, CalibrateSubcommand>,
+) -> Result<(), Failure> {
+    match args.subcommand {
+        Some(CalibrateSubcommand::Backup(args)) => drive::console::backup::backup(args),
+        Some(CalibrateSubcommand::Restore(args)) => drive::console::backup::restore(args),
+        None => drive::console::calibrate::run(args.arguments),
     }
 }
 
 #[cfg(feature = "parts")]
 #[derive(Subcommand)]
-pub enum OfMeasure {
+pub enum MeasureSubcommand {
     Sheet(crate::measure::SheetArgs),
     // Boxed, so that the variants have similar sizes.
     Servo(Box<crate::measure::ServoArgs>),
@@ -110,34 +117,36 @@ pub enum OfMeasure {
 
 /// Runs `lizard measure` or one of its subcommands.
 #[cfg(feature = "parts")]
-pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failure> {
-    match args.below {
-        Some(OfMeasure::Sheet(args)) => crate::measure::write_sheet(args),
-        Some(OfMeasure::Servo(args)) => crate::measure::measure_servo(*args),
-        Some(OfMeasure::Steps(args)) => crate::measure::print_steps(args),
-        Some(OfMeasure::Slope(args)) => crate::measure::measure_slope(args),
-        Some(OfMeasure::Keys(args)) => crate::measure::find_keys(args),
-        None => crate::measure::run(args.own),
+pub fn run_measure(
+    args: WithSubcommand<crate::measure::Args, MeasureSubcommand>,
+) -> Result<(), Failure> {
+    match args.subcommand {
+        Some(MeasureSubcommand::Sheet(args)) => crate::measure::write_sheet(args),
+        Some(MeasureSubcommand::Servo(args)) => crate::measure::measure_servo(*args),
+        Some(MeasureSubcommand::Steps(args)) => crate::measure::print_steps(args),
+        Some(MeasureSubcommand::Slope(args)) => crate::measure::measure_slope(args),
+        Some(MeasureSubcommand::Keys(args)) => crate::measure::find_keys(args),
+        None => crate::measure::run(args.arguments),
     }
 }
 
 #[cfg(feature = "simulator")]
 #[derive(Subcommand)]
-pub enum OfSim {
+pub enum SimSubcommand {
     Bench(simulate::bench::Args),
 }
 
 /// Runs `lizard sim` or its subcommand.
 #[cfg(feature = "simulator")]
-pub fn sim(args: With<simulate::sim::Args, OfSim>) -> Result<(), Failure> {
-    match args.below {
-        Some(OfSim::Bench(args)) => simulate::bench::run(args),
-        None => simulate::sim::run(args.own),
+pub fn run_sim(args: WithSubcommand<simulate::sim::Args, SimSubcommand>) -> Result<(), Failure> {
+    match args.subcommand {
+        Some(SimSubcommand::Bench(args)) => simulate::bench::run(args),
+        None => simulate::sim::run(args.arguments),
     }
 }
 
 #[derive(Subcommand)]
-pub enum OfDraw {
+pub enum DrawSubcommand {
     #[cfg(feature = "paper")]
     Charts(crate::paper::charts::Args),
     /// Draw all charts: missing, this program was built without the commands that compute
@@ -146,28 +155,28 @@ pub enum OfDraw {
 }
 
 /// Runs `lizard draw` or its subcommand.
-pub fn draw(args: With<draw::Args, OfDraw>) -> Result<(), Failure> {
-    match args.below {
+pub fn run_draw(args: WithSubcommand<draw::Args, DrawSubcommand>) -> Result<(), Failure> {
+    match args.subcommand {
         #[cfg(feature = "paper")]
-        Some(OfDraw::Charts(args)) => crate::paper::charts::run(args),
+        Some(DrawSubcommand::Charts(args)) => crate::paper::charts::run(args),
         #[cfg(not(feature = "paper"))]
-        Some(OfDraw::Charts(_)) => Err(AbsentCommand::failure("draw charts", &["paper"])),
-        None => draw::run(args.own),
+        Some(DrawSubcommand::Charts(_)) => Err(AbsentCommand::failure("draw charts", &["paper"])),
+        None => draw::run(args.arguments),
     }
 }
 
 #[derive(Subcommand)]
-pub enum OfCompletions {
+pub enum CompletionsSubcommand {
     Man(completions::ManArgs),
 }
 
 /// Runs `lizard completions` or its subcommand, for `program`.
-pub fn completions(
-    args: With<completions::CompletionsArgs, OfCompletions>,
+pub fn run_completions(
+    args: WithSubcommand<completions::CompletionsArgs, CompletionsSubcommand>,
     program: clap::Command,
 ) -> Result<(), Failure> {
-    match args.below {
-        Some(OfCompletions::Man(args)) => completions::man(args, program),
-        None => completions::completions(args.own, program),
+    match args.subcommand {
+        Some(CompletionsSubcommand::Man(args)) => completions::write_manual_pages(args, program),
+        None => completions::print_completions(args.arguments, program),
     }
 }

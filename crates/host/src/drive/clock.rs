@@ -1,28 +1,29 @@
 //! A clock that does not advance while this program is suspended, and a time limit by that clock.
 //!
 //! A machine that sleeps or is too busy suspends this program. When it continues, a time limit by the machine's clock
-//! would be over, although nothing could arrive or be read meanwhile.
+//! would be over, although the program could not read anything meanwhile.
 
 use std::time::{Duration, Instant};
 
 /// The longest time that counts between two readings of the machine's clock. A read of the port ends after some
-/// milliseconds.
+/// milliseconds, so a longer time means that the program was suspended.
 const LONGEST_STEP: Duration = Duration::from_millis(100);
 
 /// A clock that advances like the machine's, except during pauses of this program.
 #[derive(Debug)]
 pub struct Clock {
     now: Instant,
-    last_look: Instant,
+    last_reading: Instant,
 }
 
 impl Clock {
-    /// Starts at the machine's time. [`Clock::now`] must be called after each read.
+    /// Starts at the machine's time. [`Clock::now`] must be called after each read of the port, since at most
+    /// [`LONGEST_STEP`] counts between two calls.
     pub fn start() -> Self {
         let now = Instant::now();
         Self {
             now,
-            last_look: now,
+            last_reading: now,
         }
     }
 
@@ -32,9 +33,9 @@ impl Clock {
     }
 
     fn now_at(&mut self, reading: Instant) -> Instant {
-        let step = reading.saturating_duration_since(self.last_look);
+        let step = reading.saturating_duration_since(self.last_reading);
         self.now += step.min(LONGEST_STEP);
-        self.last_look = reading;
+        self.last_reading = reading;
         self.now
     }
 }
@@ -47,7 +48,7 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// Starts a time limit. [`Deadline::has_passed`] must be called after each read.
+    /// Starts a time limit. [`Deadline::has_passed`] must be called after each read of the port.
     pub fn after(time: Duration) -> Self {
         let clock = Clock::start();
         let end = clock.now + time;
@@ -65,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_passes_while_the_program_runs_and_hardly_in_a_pause() {
+    fn a_longer_pause_counts_as_the_longest_step_only() {
         let ms = Duration::from_millis;
         let mut clock = Clock::start();
         let start = clock.now;

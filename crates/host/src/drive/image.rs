@@ -6,7 +6,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
-use lizard_core::numbers::section::SPACE;
+use lizard_core::numbers::section::SPACE_BYTES;
 use serde::Serialize;
 
 use crate::drive::console::info;
@@ -39,8 +39,10 @@ struct ImageFile {
     file: String,
     /// The version of the firmware; null in a file with only the robot.
     firmware: Option<&'static str>,
-    robot: info::Robot,
+    robot: info::RobotIdentity,
+    /// The size of the robot's section.
     robot_bytes: usize,
+    /// The bytes of flash that are reserved for it.
     robot_space: u16,
 }
 
@@ -56,7 +58,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let robot = args.robot.load()?;
     let image = match args.only_robot {
-        true => file::robot_alone(&robot)?,
+        true => file::robot_only_image(&robot)?,
         false => file::image(&robot)?,
     };
     let hex = image.to_hex();
@@ -67,20 +69,20 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let image_file = ImageFile {
         file: path.display().to_string(),
         firmware: (!args.only_robot).then_some(env!("CARGO_PKG_VERSION")),
-        robot: info::Robot::of(robot.firmware()),
+        robot: info::RobotIdentity::of(robot.firmware()),
         robot_bytes: robot.section().len(),
-        robot_space: SPACE,
+        robot_space: SPACE_BYTES,
     };
     json::print_json_or(args.json, &image_file, || image_file.text())
 }
 
 impl ImageFile {
     fn text(&self) -> String {
-        let content = self
+        let firmware_text = self
             .firmware
             .map_or(String::new(), |version| format!("lizard {version} "));
         format!(
-            "{}: {content}robot {} {}; the robot has {} of {} bytes\n",
+            "{}: {firmware_text}robot {} {}; the robot has {} of {} bytes\n",
             self.file, self.robot.name, self.robot.hash, self.robot_bytes, self.robot_space
         )
     }

@@ -1,4 +1,4 @@
-//! Drive a board on USB: list the ports, write the firmware, open its console, calibrate it, save its
+//! The commands for a board on USB: they list the ports, write the firmware, open its console, calibrate it, save its
 //! settings, and replay a recorded session.
 
 mod clock;

@@ -10,7 +10,7 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::plain::escape_controls;
 
-/// List the USB serial ports: which chip each has, and if you may open it
+/// List the USB serial ports: which chip each has, and whether you may open it
 ///
 /// Opens none of them, since that would reset the board. The chip says which board it may be:
 /// only `lizard info` asks the board itself.
@@ -23,38 +23,39 @@ pub struct Args {
 
 /// A serial port, with the field names of `--json`.
 #[derive(Debug, Serialize)]
-struct Line {
+struct PortLine {
     port: String,
-    /// The USB vendor number as four hexadecimal digits, as lsusb prints it.
+    /// The USB vendor ID as four hexadecimal digits, as lsusb prints it.
     vendor: String,
-    /// The USB product number as four hexadecimal digits.
+    /// The USB product ID as four hexadecimal digits.
     product: String,
     /// The product name that the chip reports.
     name: Option<String>,
     /// The kind of chip and of board, if known.
     chip: Option<&'static str>,
+    /// True if this user may open the port.
     may_open: bool,
     /// Another program that has the port open, if the system shows it.
     open_in: Option<String>,
 }
 
-impl Line {
+impl PortLine {
     fn from_port(port: UsbPort) -> Self {
         Self {
-            vendor: format!("{:04x}", port.vendor),
+            vendor: format!("{:04x}", port.vendor_id),
             product: format!("{:04x}", port.product_id),
-            chip: chip_description([port.vendor, port.product_id]),
+            chip: chip_description([port.vendor_id, port.product_id]),
             may_open: port::may_open(&port.name),
-            open_in: port::holder(&port.name),
+            open_in: port::find_holder(&port.name),
             name: port
-                .product
+                .product_name
                 .map(|name| escape_controls(&name.replace('_', " "))),
             port: port.name,
         }
     }
 }
 
-/// Description of a chip by its USB numbers, vendor and product; `None` if the chip is not known.
+/// Returns the description of a chip by its USB vendor ID and product ID; `None` if the chip is not known.
 fn chip_description(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
         [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => {
@@ -74,11 +75,14 @@ fn chip_description(ids: [u16; 2]) -> Option<&'static str> {
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let lines: Vec<Line> = find::usb_ports().into_iter().map(Line::from_port).collect();
+    let lines: Vec<PortLine> = find::usb_ports()
+        .into_iter()
+        .map(PortLine::from_port)
+        .collect();
     json::print_json_or(args.json, &lines, || text(&lines))
 }
 
-fn text(lines: &[Line]) -> String {
+fn text(lines: &[PortLine]) -> String {
     if lines.is_empty() {
         return "this machine has no USB serial port. Connect the UNO by a cable that carries data \
                 (some only charge). A virtual machine, a container or WSL sees it only after the \
@@ -89,7 +93,7 @@ fn text(lines: &[Line]) -> String {
     for line in lines {
         let name = line.name.as_deref().unwrap_or("no name");
         let chip = line.chip.unwrap_or("a chip that no UNO has");
-        let Line {
+        let PortLine {
             port,
             vendor,
             product,
@@ -114,19 +118,19 @@ fn text(lines: &[Line]) -> String {
 mod tests {
     use super::*;
 
-    fn line(vendor: u16, product_id: u16, product: Option<&str>) -> Line {
-        Line::from_port(UsbPort {
+    fn port_line(vendor: u16, product_id: u16, product: Option<&str>) -> PortLine {
+        PortLine::from_port(UsbPort {
             name: "/dev/no-such-port".to_owned(),
-            vendor,
+            vendor_id: vendor,
             product_id,
-            product: product.map(str::to_owned),
+            product_name: product.map(str::to_owned),
         })
     }
 
     #[test]
-    fn a_port_says_what_its_chip_is_as_lsusb_names_it() {
-        let uno = line(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
-        let copy = line(0x1a86, 0x7523, None);
+    fn a_port_is_listed_with_its_usb_ids_and_its_kind_of_board() {
+        let uno = port_line(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
+        let copy = port_line(0x1a86, 0x7523, None);
         let output = text(&[uno, copy]);
         let output: Vec<&str> = output.lines().collect();
         assert!(output[0].contains("Arduino Uno"), "{output:?}");
@@ -141,22 +145,22 @@ mod tests {
         );
         assert!(
             chip_description([0x0483, 0x5740]).is_none(),
-            "another maker's"
+            "the chip of another maker"
         );
     }
 
     #[test]
-    fn a_forbidden_port_comes_with_the_remedy_and_an_open_one_with_its_program() {
-        let mut closed_port = line(0x2341, 0x0043, None);
-        closed_port.may_open = false;
-        closed_port.open_in = Some("screen (process 7)".to_owned());
-        let output = text(&[closed_port]);
+    fn a_forbidden_port_is_listed_with_the_remedy_and_the_program_that_has_it_open() {
+        let mut forbidden_port = port_line(0x2341, 0x0043, None);
+        forbidden_port.may_open = false;
+        forbidden_port.open_in = Some("screen (process 7)".to_owned());
+        let output = text(&[forbidden_port]);
         assert!(
             output.contains("; open in screen (process 7); you may not open it\n"),
             "{output}"
         );
         assert!(output.contains("usermod -aG dialout"), "{output}");
-        let mut free_port = line(0x2341, 0x0043, None);
+        let mut free_port = port_line(0x2341, 0x0043, None);
         free_port.may_open = true;
         assert!(!text(&[free_port]).contains("dialout"));
     }

@@ -1,12 +1,12 @@
-//! `lizard measure`: measures in films how far gaits move the robot.
+//! `lizard measure`: measures in films how far the gaits move the robot.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_measure::{Gaits, Report, height_of_board};
+use lizard_measure::{Gaits, Report, board_height};
 use lizard_robot::{CheckedGait, Robot};
 
-use super::filming::{Filming, height};
+use super::filming::{Filming, parse_height};
 use super::picture;
 use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
@@ -38,7 +38,7 @@ pub struct Args {
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(1..=100))]
     speed: u8,
     /// Height of the deck's tag above the floor, mm [default: the top of the board, by the robot's parts]
-    #[arg(long, value_name = "MM", value_parser = height)]
+    #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
     #[command(flatten)]
     filming: Filming,
@@ -65,20 +65,20 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let pace = f64::from(args.speed) / 100.0;
     let named_gaits = args.gait.iter().map(|name| find_gait(&robot, name));
     let gaits = Gaits::new(&robot, &named_gaits.collect::<Result<Vec<_>, _>>()?, pace);
-    let height = args.height.unwrap_or_else(|| height_of_board(&robot));
+    let height = args.height.unwrap_or_else(|| board_height(&robot));
     let setup = args.filming.setup(height);
     let spinner = Spinner::new("reading the pictures");
-    let watch_film = |path: &PathBuf| args.filming.watch(path, setup);
-    let films = args.films.iter().map(watch_film);
+    let analyse_film = |path: &PathBuf| args.filming.analyse(path, setup);
+    let films = args.films.iter().map(analyse_film);
     let films = films.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {
         drop(spinner);
         return match &films[..] {
-            [film] => Ok(io::stdout().lock().write_all(film.path().as_bytes())?),
+            [film] => Ok(io::stdout().lock().write_all(film.path_csv().as_bytes())?),
             _ => Err(Failure::Input("--csv has the path of one film".to_owned())),
         };
     }
-    let walks = gaits.walks(&films).map_err(Failure::Input)?;
+    let walks = gaits.measure_walks(&films).map_err(Failure::Input)?;
     let report = Report::new(&robot, args.speed, setup, &films, &gaits, &walks)
         .with_ranges(&robot)
         .with_mujoco(&args.robot.text()?);
@@ -89,16 +89,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || report.text())
 }
 
-/// Finds the gait of this name.
+/// Finds the gait that is called `name`.
 ///
 /// # Errors
 /// Fails if the robot has no such gait, or if the gait moves no servo.
 fn find_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     match robot.gait(name) {
-        Some(gait) if gait.moves() => Ok(gait),
+        Some(gait) if gait.has_movement() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
         None => {
-            let moving_gaits = robot.gaits().iter().filter(|gait| gait.moves());
+            let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
             let names: Vec<&str> = moving_gaits.map(CheckedGait::name).collect();
             Err(Failure::Input(format!(
                 "robot.toml has no gait `{name}`; those that move are {}{}",

@@ -1,4 +1,4 @@
-//! Measured values beside those of robot.toml, as a table and as lines for that file.
+//! Measured keys of robot.toml beside the file's own values, as a table and as lines for that file.
 
 use std::fmt::Write as _;
 
@@ -9,25 +9,29 @@ use serde::Serialize;
 
 /// A measured key of robot.toml.
 #[derive(Serialize)]
-pub(super) struct Key {
-    /// The key's table, such as `servo.A1`; `key` is its name.
+pub(super) struct MeasuredKey {
+    /// The key's table in robot.toml, such as `servo.A1`.
     table: String,
+    /// The key's name in its table.
     key: &'static str,
     measured: f64,
+    /// The standard error of `measured`.
     error: f64,
-    /// The value by robot.toml, for the same supply.
+    /// The value of robot.toml, converted to the supply voltage of the measurement.
     robot: f64,
     /// The measured value minus that of robot.toml, in standard errors.
     differs: f64,
+    /// True if the two values differ by no more than the measurement's error explains.
     agrees: bool,
+    /// Number of decimals with which the values are printed.
     #[serde(skip)]
     decimals: usize,
-    /// The value in robot.toml divided by that for the supply of the measurement.
+    /// The ratio of the value in robot.toml to `robot`.
     #[serde(skip)]
     scale: f64,
 }
 
-impl Key {
+impl MeasuredKey {
     pub(super) fn new(
         table: &str,
         key: &'static str,
@@ -49,8 +53,8 @@ impl Key {
         }
     }
 
-    /// Sets the ratio of the key's value in robot.toml to its value for the supply of the measurement.
-    pub(super) fn scaled(self, scale: f64) -> Self {
+    /// Sets the ratio of the key's value in robot.toml to its value at the supply voltage of the measurement.
+    pub(super) fn with_scale(self, scale: f64) -> Self {
         Self { scale, ..self }
     }
 
@@ -60,8 +64,8 @@ impl Key {
     }
 }
 
-/// The table of measured values.
-pub(super) fn table(keys: &[Key]) -> String {
+/// The measured keys as a table for people.
+pub(super) fn table_text(keys: &[MeasuredKey]) -> String {
     let mut text = format!("{:<28}measured   error  robot.toml\n", "");
     for key in keys {
         let verdict = verdict(key.differs);
@@ -76,7 +80,7 @@ pub(super) fn table(keys: &[Key]) -> String {
 }
 
 /// The measured keys as lines for robot.toml.
-pub(super) fn toml_lines(keys: &[Key]) -> String {
+pub(super) fn toml_lines(keys: &[MeasuredKey]) -> String {
     let mut text = String::new();
     let mut table = "";
     for key in keys {
@@ -94,12 +98,12 @@ pub(super) fn toml_lines(keys: &[Key]) -> String {
     text
 }
 
-/// Returns the text of robot.toml in which the keys that differ from their measurement are replaced, each with a
-/// comment; the rest stays as it is, byte for byte.
+/// Returns the text of robot.toml with the measured values of the keys that do not agree, each with a comment. The rest
+/// of the text stays as it is, byte for byte.
 ///
 /// # Errors
 /// Fails if the text has no place for a key.
-pub(super) fn with_measured_keys(text: &str, keys: &[Key]) -> Result<String, NoSuchKey> {
+pub(super) fn with_measured_keys(text: &str, keys: &[MeasuredKey]) -> Result<String, NoSuchKey> {
     let mut text = text.to_owned();
     for key in keys.iter().filter(|key| !key.agrees) {
         let name = format!("{}.{}", key.table, key.key);

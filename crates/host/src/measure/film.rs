@@ -1,10 +1,10 @@
-//! Reading a film's file, and finding the robot's path in it.
+//! The reading of a film's file, and the search for the robot's path in it.
 
 use std::fmt::Display;
 use std::path::Path;
 
 use lizard_film::{Film, Setup, Trouble};
-use lizard_measure::WatchedFilm;
+use lizard_measure::NamedFilm;
 
 use super::{frames, grey, through_ffmpeg};
 use crate::Failure;
@@ -14,13 +14,13 @@ use crate::shared::files::note_input;
 ///
 /// # Errors
 /// Fails for a film that cannot be read, or one whose tags show no path.
-pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<WatchedFilm, Failure> {
+pub(super) fn analyse(path: &Path, rate: Option<f64>, setup: Setup) -> Result<NamedFilm, Failure> {
     let name = path.display().to_string();
     let failure_of = |trouble: Trouble| film_failure(&name, &trouble);
-    let watched = read_film(path, rate, failure_of)?
-        .watch(setup)
+    let analysis = read_film(path, rate, failure_of)?
+        .analyse(setup)
         .map_err(failure_of)?;
-    Ok(WatchedFilm { name, watched })
+    Ok(NamedFilm { name, analysis })
 }
 
 /// The failure of a film, with its name and the reason.
@@ -37,7 +37,7 @@ fn read_film(
     let mut film = Film::default();
     if path.is_dir() {
         for (seconds, file) in frames::list_pictures(path, rate)? {
-            film.add(seconds, &grey::read(&file)?)
+            film.add(seconds, &grey::read_picture(&file)?)
                 .map_err(&failure_of)?;
         }
         return Ok(film);

@@ -57,7 +57,7 @@ fn stem_of(path: &Path) -> String {
         .into_owned()
 }
 
-/// A sort key for names: their words and numbers, so that 10 comes after 9.
+/// A sort key for a name: its numbers and words, so that 10 comes after 9.
 fn sort_key(name: &str) -> Vec<(u64, String)> {
     let mut parts: Vec<(u64, String)> = Vec::new();
     let mut was_digit = None;

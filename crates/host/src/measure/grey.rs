@@ -1,4 +1,4 @@
-//! Reading a picture file as a grey picture.
+//! The reading of a picture file as a grey picture.
 
 use std::fs;
 use std::io::Cursor;
@@ -11,11 +11,11 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 use crate::Failure;
 
-/// Reads a PNG or JPEG file.
+/// Reads a PNG or JPEG file as a grey picture.
 ///
 /// # Errors
-/// Fails if the file cannot be read or is no picture.
-pub(super) fn read(path: &Path) -> Result<Picture, Failure> {
+/// Fails if the file cannot be read or is not such a picture.
+pub(super) fn read_picture(path: &Path) -> Result<Picture, Failure> {
     let name = path.display();
     let bytes =
         fs::read(path).map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;

@@ -1,4 +1,4 @@
-//! `lizard measure keys`: identifies keys of robot.toml from measured distances per cycle.
+//! `lizard measure keys`: identifies keys of robot.toml from the measured movements per cycle of gaits.
 
 use std::path::{Path, PathBuf};
 
@@ -7,13 +7,13 @@ use lizard_robot::Robot;
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::keys_report::{KeysReport, text};
+use super::keys_report::{KeysReport, report_text};
 use crate::shared::files;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
-/// Largest difference between a gait's cycle times in two robot.toml files that count as the same robot, s.
+/// Largest difference between the cycle times of a gait by two robot.toml files that still count as the same robot, s.
 const MAX_PERIOD_DIFFERENCE_S: f64 = 0.005;
 
 /// Find the keys of robot.toml with which the model goes as far as the robot did
@@ -44,26 +44,26 @@ pub struct KeysArgs {
 
 /// The fields of the output of `lizard measure --json` that identification needs.
 #[derive(Deserialize)]
-struct Output {
-    gaits: Vec<Measured>,
+struct MeasureOutput {
+    gaits: Vec<MeasuredGait>,
 }
 
 /// The measured movement of a gait in a cycle.
 #[derive(Deserialize)]
-struct Measured {
+struct MeasuredGait {
     gait: String,
     /// Speed, percent.
     speed: f64,
-    /// Cycle time by the robot.toml with which the gait was measured, s.
+    /// Cycle time by the robot.toml with which the gait was measured, s; `None` if that file does not have the gait.
     period_expected: Option<f64>,
-    forward: Part,
-    left: Part,
-    turn: Part,
+    forward: Component,
+    left: Component,
+    turn: Component,
 }
 
 /// A component of a movement: its mean and the standard error of the mean, mm or deg.
 #[derive(Deserialize)]
-struct Part {
+struct Component {
     mean: f64,
     error: f64,
 }
@@ -81,35 +81,38 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
         movements.append(&mut read_movements(file, &robot)?);
     }
     files::check_replaceable(&args.output)?;
-    let spinner = Spinner::new("walking the model");
+    let spinner = Spinner::new("simulating the gaits");
     let failure_of = |trouble: Trouble| Failure::Input(trouble.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
         (0..count).into_par_iter().map(walk).collect()
     })
     .map_err(failure_of)?;
     drop(spinner);
-    let is_moved = identified.moved().next().is_some();
-    if is_moved {
+    let has_changes = identified.moved().next().is_some();
+    if has_changes {
         let new_text = identified.text(&old_text).map_err(failure_of)?;
         files::write(&args.output, new_text.as_bytes())?;
     }
-    let written_path = is_moved.then_some(args.output.as_path());
+    let written_path = has_changes.then_some(args.output.as_path());
     let report = KeysReport::new(&identified, written_path);
-    json::print_json_or(args.json, &report, || text(&identified, written_path))
+    json::print_json_or(args.json, &report, || {
+        report_text(&identified, written_path)
+    })
 }
 
 /// Reads the measured gaits of a file.
 fn read_movements(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
     let failure_of = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
-    let output: Output = serde_json::from_str(&files::read_text(path)?).map_err(|error| {
-        failure_of(format!(
-            "this is not what `lizard measure --json` prints: {error}"
-        ))
-    })?;
+    let output: MeasureOutput =
+        serde_json::from_str(&files::read_text(path)?).map_err(|error| {
+            failure_of(format!(
+                "this is not what `lizard measure --json` prints: {error}"
+            ))
+        })?;
     let movements = output
         .gaits
         .iter()
-        .map(|measured| measured_motion(measured, robot));
+        .map(|measured| measured_movement(measured, robot));
     movements.collect::<Result<_, _>>().map_err(failure_of)
 }
 
@@ -117,23 +120,23 @@ fn read_movements(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, F
 ///
 /// # Errors
 /// Fails if the gait was measured with a robot.toml that gives it another cycle time.
-fn measured_motion(measured: &Measured, robot: &Robot) -> Result<MeasuredMovement, String> {
-    let Measured { gait, speed, .. } = measured;
+fn measured_movement(measured: &MeasuredGait, robot: &Robot) -> Result<MeasuredMovement, String> {
+    let MeasuredGait { gait, speed, .. } = measured;
     let pace = speed / 100.0;
-    let own_period = robot.gait(gait).map(|gait| gait.period() / pace);
-    if let (Some(own_period), Some(film_period)) = (own_period, measured.period_expected)
-        && (own_period - film_period).abs() > MAX_PERIOD_DIFFERENCE_S
+    let robot_period = robot.gait(gait).map(|gait| gait.period() / pace);
+    if let (Some(robot_period), Some(measurement_period)) = (robot_period, measured.period_expected)
+        && (robot_period - measurement_period).abs() > MAX_PERIOD_DIFFERENCE_S
     {
         return Err(format!(
-            "a cycle of `{gait}` takes {own_period:.2} s by this robot.toml, but took {film_period:.2} s by that of the measurement; \
+            "a cycle of `{gait}` takes {robot_period:.2} s by this robot.toml, but took {measurement_period:.2} s by that of the measurement; \
              give the same one with --robot"
         ));
     }
-    let parts = [&measured.forward, &measured.left, &measured.turn];
+    let components = [&measured.forward, &measured.left, &measured.turn];
     Ok(MeasuredMovement {
         gait: gait.clone(),
         pace,
-        mean: parts.map(|part| part.mean),
-        error: parts.map(|part| part.error),
+        mean: components.map(|component| component.mean),
+        error: components.map(|component| component.error),
     })
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use lizard_identify::{Card, Goodness, Identified, KeyResult, PARTS, Row, Verdict};
 use serde::Serialize;
 
-/// The result, with the field names of `--json`.
+/// The identified keys, with the field names of `--json`.
 #[derive(Serialize)]
 pub(super) struct KeysReport {
     keys: Vec<KeyLine>,
@@ -19,6 +19,7 @@ pub(super) struct KeysReport {
     written: Option<PathBuf>,
 }
 
+/// A key of robot.toml: its values before and after the identification, and the standard error of the new one.
 #[derive(Serialize)]
 struct KeyLine {
     key: String,
@@ -30,7 +31,8 @@ struct KeyLine {
     verdict: &'static str,
 }
 
-/// The card on the deck: values and standard errors, deg and mm.
+/// The place of the card with the tag on the robot's deck, relative to the middle of the deck: values and standard
+/// errors, deg and mm.
 #[derive(Serialize)]
 struct CardLine {
     turn: [f64; 2],
@@ -38,14 +40,19 @@ struct CardLine {
     left: [f64; 2],
 }
 
+/// The quality of the fit: chi-square with the given robot.toml, with the new one, and with all keys free.
 #[derive(Serialize)]
 struct FitLine {
+    /// The number of measured values.
     figures: usize,
     chi_square_before: f64,
     chi_square: f64,
     chi_square_all_free: f64,
+    /// Degrees of freedom of `chi_square`.
     freedom: f64,
+    /// True if the model explains the measured values.
     explains: bool,
+    /// The factor by which the misfit of the model enlarges all standard errors.
     errors_widened: f64,
 }
 
@@ -64,23 +71,23 @@ struct GaitLine {
 impl KeysReport {
     pub(super) fn new(identified: &Identified, written_path: Option<&Path>) -> Self {
         let [card, error] = &identified.card;
-        let pair_of = |value_of: fn(&Card) -> f64| [value_of(card), value_of(error)];
+        let value_and_error = |value_of: fn(&Card) -> f64| [value_of(card), value_of(error)];
         let Goodness {
             chi_square: [chi_square_before, chi_square, chi_square_all_free],
             ..
         } = identified.goodness;
-        let names_of =
+        let named_pair =
             |(first, second, correlation): &(&lizard_identify::Key, &lizard_identify::Key, f64)| {
                 (first.full_name(), second.full_name(), *correlation)
             };
         Self {
             keys: identified.keys.iter().map(KeyLine::new).collect(),
             card: CardLine {
-                turn: pair_of(|card| card.turn),
-                ahead: pair_of(|card| card.ahead),
-                left: pair_of(|card| card.left),
+                turn: value_and_error(|card| card.turn),
+                ahead: value_and_error(|card| card.ahead),
+                left: value_and_error(|card| card.left),
             },
-            alike: identified.correlated.iter().map(names_of).collect(),
+            alike: identified.correlated.iter().map(named_pair).collect(),
             fit: FitLine {
                 figures: identified.goodness.figures,
                 chi_square_before,
@@ -131,7 +138,7 @@ impl GaitLine {
 }
 
 /// The result as text for people.
-pub(super) fn text(identified: &Identified, written_path: Option<&Path>) -> String {
+pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) -> String {
     let mut text = format!(
         "{:<35}{:>10}{:>10}{:>9}\n",
         "key", "before", "after", "error"
@@ -229,14 +236,14 @@ fn goodness_text(identified: &Identified) -> String {
     if !is_explained {
         let _ = writeln!(
             text,
-            "The model does not explain these ways, whatever its keys: chi-square {chi_free:.1} at best, and 1 % of true models exceed \
+            "The model does not explain these movements, whatever its keys: chi-square {chi_free:.1} at best, and 1 % of true models exceed \
              {limit:.1}. Worst is {worst_text}. All errors above are therefore {error_factor:.1} times as large. Look for a servo that is not \
              as robot.toml has it, a foot that catches, another floor."
         );
     } else if freedom >= 1.0 && chi_after > limit {
         let _ = writeln!(
             text,
-            "The keys that were left would explain more only together ({chi_free:.1}), and these gaits do not tell which of them. \
+            "The unchanged keys would explain more, but only together ({chi_free:.1}), and these gaits do not tell which of them. \
              Film further gaits. Worst is {worst_text}."
         );
     } else if freedom < 1.0 {
@@ -244,12 +251,12 @@ fn goodness_text(identified: &Identified) -> String {
     } else {
         let _ = writeln!(
             text,
-            "The model explains these ways. Worst is {worst_text}."
+            "The model explains these movements. Worst is {worst_text}."
         );
         if error_factor >= 1.05 {
             let _ = writeln!(
                 text,
-                "All errors above are {error_factor:.1} times as large, by what it leaves."
+                "All errors above are {error_factor:.1} times as large, because of the remaining misfit."
             );
         }
     }

@@ -1,6 +1,6 @@
 //! A picture to share: the path within a cycle and the distances per cycle of each gait, measured beside predicted.
 
-use lizard_measure::{GaitReport, PARTS, Report};
+use lizard_measure::{GaitReport, PART_NAMES, Report};
 use svg::node::element::Group;
 
 use crate::shared::ink::Anchor;
@@ -9,7 +9,7 @@ use crate::shared::ink::{
 };
 use crate::shared::plot::{Axis, Plot, draw_entry};
 
-const WIDTH: f64 = 1000.0;
+const PAGE_WIDTH: f64 = 1000.0;
 /// Height of the title with the legend below it, px.
 const TITLE_HEIGHT: f64 = 110.0;
 /// Height of a gait's row, px.
@@ -25,11 +25,11 @@ const BARS_WIDTH: f64 = 330.0;
 /// Height of each panel, px.
 const PANEL_HEIGHT: f64 = 220.0;
 /// Colour of measured values.
-const MEASURED: &str = SERVO[0];
+const MEASURED_COLOUR: &str = SERVO[0];
 /// Colour of predicted values.
-const PREDICTED: &str = GREY;
+const PREDICTED_COLOUR: &str = GREY;
 /// Half the length of an error bar, in standard errors.
-const ERROR_BAR_ERRORS: f64 = 2.0;
+const ERROR_BAR_STANDARD_ERRORS: f64 = 2.0;
 
 /// Draws a report as SVG.
 pub(super) fn draw(report: &Report) -> String {
@@ -39,11 +39,11 @@ pub(super) fn draw(report: &Report) -> String {
         "The robot measured",
         "mean of a cycle in a film, with twice its standard error, beside the prediction",
     );
-    group = draw_entry(group, (PATH_X, 92.0), MEASURED, "none", "measured");
+    group = draw_entry(group, (PATH_X, 92.0), MEASURED_COLOUR, "none", "measured");
     group = draw_entry(
         group,
         (PATH_X + 150.0, 92.0),
-        PREDICTED,
+        PREDICTED_COLOUR,
         "none",
         "predicted",
     );
@@ -51,12 +51,15 @@ pub(super) fn draw(report: &Report) -> String {
         group = draw_gait(group, gait, TITLE_HEIGHT + ROW_HEIGHT * row as f64);
     }
     page(
-        (WIDTH, TITLE_HEIGHT + ROW_HEIGHT * report.gaits.len() as f64),
+        (
+            PAGE_WIDTH,
+            TITLE_HEIGHT + ROW_HEIGHT * report.gaits.len() as f64,
+        ),
         group,
     )
 }
 
-/// Draws a gait with its upper edge at this height.
+/// Draws the row of a gait with its upper edge at y = `top`.
 fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
     let name = format!("{}, {} cycles", gait.gait, gait.cycles);
     let group = group.add(text_start(&name, (PATH_X, top + 35.0), 18.0).set("font-weight", "bold"));
@@ -64,10 +67,10 @@ fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
     draw_bars(group, gait, top + 55.0)
 }
 
-/// The path within a cycle on the floor. Ahead is to the right, left is upward.
+/// Draws the path within a cycle on the floor. Ahead is to the right, left is upward.
 fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let predicted: Vec<(f64, f64)> = gait
-        .expected
+        .predicted_path
         .iter()
         .map(|position| (position.forward, position.left))
         .collect();
@@ -85,7 +88,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         })
     };
     let ([min_x, max_x], [min_y, max_y]) = (range_of(|point| point.0), range_of(|point| point.1));
-    // The same scale in both directions, with a margin.
+    // The same scale in both directions, mm per pixel, with a margin.
     let scale = ((max_x - min_x) / PATH_WIDTH)
         .max((max_y - min_y) / PANEL_HEIGHT)
         .max(1e-3)
@@ -109,45 +112,45 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         Axis::new(tick_step, "left, mm"),
     );
     let group = plot.draw_grid(group, &ahead, &left);
-    let mut group = plot
-        .draw_axes(group, &ahead, &left)
-        .add(plot.curve(&predicted, PREDICTED, 2.0));
+    let mut group =
+        plot.draw_axes(group, &ahead, &left)
+            .add(plot.curve(&predicted, PREDICTED_COLOUR, 2.0));
     for point in &gait.within {
         let (x, y) = (point.forward.mean, point.left.mean);
-        let [error_x, error_y] =
-            [&point.forward, &point.left].map(|component| ERROR_BAR_ERRORS * component.error);
+        let [error_x, error_y] = [&point.forward, &point.left]
+            .map(|component| ERROR_BAR_STANDARD_ERRORS * component.error);
         group = group
             .add(line(
                 plot.page_point(x - error_x, y),
                 plot.page_point(x + error_x, y),
-                MEASURED,
+                MEASURED_COLOUR,
                 1.0,
             ))
             .add(line(
                 plot.page_point(x, y - error_y),
                 plot.page_point(x, y + error_y),
-                MEASURED,
+                MEASURED_COLOUR,
                 1.0,
             ));
     }
-    group = group.add(plot.curve(&points, MEASURED, 2.0));
+    group = group.add(plot.curve(&points, MEASURED_COLOUR, 2.0));
     let (start, last_point) = (plot.page_point(0.0, 0.0), points[points.len() - 1]);
     group
-        .add(edged(circle(start, 5.0, "white"), MEASURED, 2.0))
+        .add(edged(circle(start, 5.0, "white"), MEASURED_COLOUR, 2.0))
         .add(circle(
             plot.page_point(last_point.0, last_point.1),
             5.0,
-            MEASURED,
+            MEASURED_COLOUR,
         ))
 }
 
-/// The components of the motion in a cycle as bars.
+/// Draws the components of the movement in a cycle as bars.
 fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let parts = gait.parts();
     let ends = parts.iter().flat_map(|part| {
         let error_ends = [
-            part.mean - ERROR_BAR_ERRORS * part.error,
-            part.mean + ERROR_BAR_ERRORS * part.error,
+            part.mean - ERROR_BAR_STANDARD_ERRORS * part.error,
+            part.mean + ERROR_BAR_STANDARD_ERRORS * part.error,
         ];
         error_ends.into_iter().chain(part.predicted)
     });
@@ -161,25 +164,25 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         x: (0.5, 0.5 + parts.len() as f64),
         y: (low - margin, high + margin),
     };
-    // The step is longer than the axis, so no ticks are drawn; the names of the bars are below the axis.
+    // The tick step is longer than the axis, so no ticks are drawn; the names of the bars are below the axis.
     let name_axis = Axis::new(10.0, "");
     let value_axis = Axis::new(tick_step(high - low + 2.0 * margin), "");
     let mut group = plot.draw_grid(group, &name_axis, &value_axis);
     for (i, part) in parts.into_iter().enumerate() {
         // Each component has a slot of width 1, with the measured bar to the left of the predicted one.
-        let slot = 0.5 + i as f64;
-        let bar = |offset: f64, value: f64, colour: &str| {
-            let (left, top) = plot.page_point(slot + offset, value.max(0.0));
-            let (right, bottom) = plot.page_point(slot + offset + 0.28, value.min(0.0));
+        let slot_x = 0.5 + i as f64;
+        let draw_bar = |offset: f64, value: f64, colour: &str| {
+            let (left, top) = plot.page_point(slot_x + offset, value.max(0.0));
+            let (right, bottom) = plot.page_point(slot_x + offset + 0.28, value.min(0.0));
             rectangle((left, top), (right - left, bottom - top), colour)
         };
-        group = group.add(bar(0.2, part.mean, MEASURED));
+        group = group.add(draw_bar(0.2, part.mean, MEASURED_COLOUR));
         if let Some(predicted) = part.predicted {
-            group = group.add(bar(0.52, predicted, PREDICTED).set("fill-opacity", 0.6));
+            group = group.add(draw_bar(0.52, predicted, PREDICTED_COLOUR).set("fill-opacity", 0.6));
         }
-        let [low, high] =
-            [-ERROR_BAR_ERRORS, ERROR_BAR_ERRORS].map(|errors| part.mean + errors * part.error);
-        let x = slot + 0.34;
+        let [low, high] = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
+            .map(|errors| part.mean + errors * part.error);
+        let x = slot_x + 0.34;
         group = group.add(line(
             plot.page_point(x, low),
             plot.page_point(x, high),
@@ -195,11 +198,11 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             ));
         }
         let point_below = |lines: f64| {
-            let (x, y) = plot.page_point(slot + 0.5, plot.y.0);
+            let (x, y) = plot.page_point(slot_x + 0.5, plot.y.0);
             (x, y + 20.0 + 18.0 * lines)
         };
         group = group
-            .add(text_middle(PARTS[i], point_below(0.0), 15.0))
+            .add(text_middle(PART_NAMES[i], point_below(0.0), 15.0))
             .add(text(
                 &part.verdict(),
                 point_below(1.0),
@@ -217,10 +220,12 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     plot.draw_axes(group, &name_axis, &value_axis)
 }
 
-/// Distance between ticks for which `range` has four to ten of them: 1, 2 or 5 times a power of ten.
+/// The distance between ticks, 1, 2 or 5 times a power of ten, with which `range` has four to ten of them.
 fn tick_step(range: f64) -> f64 {
-    let rough = range / 4.0;
-    let power = 10f64.powf(rough.log10().floor());
-    let factor = [5.0, 2.0].into_iter().find(|times| times * power <= rough);
+    let max_step = range / 4.0;
+    let power = 10f64.powf(max_step.log10().floor());
+    let factor = [5.0, 2.0]
+        .into_iter()
+        .find(|times| times * power <= max_step);
     factor.unwrap_or(1.0) * power
 }

@@ -1,23 +1,23 @@
-//! `lizard measure servo`: measures a servo in the jig.
+//! `lizard measure servo`: measures the travel, rate and torque of a servo in a jig.
 
 use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
 
-use lizard_film::{AnalysedFilm, Figure, Jig, Turns};
-use lizard_measure::WatchedFilm;
-use lizard_robot::servo::NAMES;
+use lizard_film::{AnalysedFilm, Figure, Jig, MeasuredServo};
+use lizard_measure::NamedFilm;
+use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{GRAVITY, Robot, edit};
 use serde::Serialize;
 
-use super::figures::{self, Key};
+use super::figures::{self, MeasuredKey};
 use super::film::film_failure;
-use super::filming::{Filming, height, number};
-use super::steps::{self, servo};
+use super::filming::{Filming, parse_height, parse_number};
+use super::steps::{self, parse_servo};
 use crate::shared::progress::Spinner;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
-/// N mm per kg cm.
+/// The torque of 1 kg cm in N mm.
 const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
 
 /// Measure in a film how far and how fast a servo turns, for robot.toml
@@ -35,10 +35,10 @@ pub struct ServoArgs {
     /// A folder of pictures (PNG or JPEG), or a film
     film: PathBuf,
     /// The servo: A1, A2, A3 or A4
-    #[arg(long, value_name = "NAME", value_parser = servo)]
+    #[arg(long, value_name = "NAME", value_parser = parse_servo)]
     servo: usize,
     /// Height of the card above the strips, mm
-    #[arg(long, value_name = "MM", value_parser = height)]
+    #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: f64,
     /// A film of the same steps with a weight on a thread
     #[arg(long, value_name = "FILM", requires_all = ["grams", "arm"])]
@@ -65,15 +65,15 @@ pub struct ServoArgs {
 }
 
 fn parse_grams(text: &str) -> Result<f64, String> {
-    number(text, [1.0, 10_000.0], "it is the weight in g")
+    parse_number(text, [1.0, 10_000.0], "it is the weight in g")
 }
 
 fn parse_arm(text: &str) -> Result<f64, String> {
-    number(text, [1.0, 200.0], "it is mm")
+    parse_number(text, [1.0, 200.0], "it is a distance in mm")
 }
 
 fn parse_volts(text: &str) -> Result<f64, String> {
-    number(text, [2.0, 9.0], "it is V")
+    parse_number(text, [2.0, 9.0], "it is a voltage in V")
 }
 
 /// The result, with the field names of `--json`.
@@ -86,23 +86,24 @@ struct Report {
     height: f64,
     /// Height of the card above the strips as estimated from its size in the pictures, mm.
     height_by_size: f64,
-    figures: Vec<Key>,
+    figures: Vec<MeasuredKey>,
     /// Rates counter-clockwise and clockwise with their errors, deg/s.
     rates: [[f64; 2]; 2],
     /// Difference between the angles at which the horn stops from either side, deg, and its error.
     sides: [f64; 2],
-    /// The largest small step that did not move the servo, us.
+    /// The largest small step of the pulse that did not move the servo, us.
     still_us: f64,
     is_spin_up_known: bool,
     is_dead_band_known: bool,
+    /// True if the servo turns opposite to the sign of its `us_per_degree`.
     turns_the_other_way: bool,
-    /// Supply for which the figures hold, V.
+    /// Supply voltage for which the figures hold, V.
     volts: f64,
     /// True if the supply was measured, false if it is that of robot.toml.
     is_volts_measured: bool,
     /// The file of the new robot.toml; null without `--output`.
     written: Option<PathBuf>,
-    /// Slew limit of the jig's robot.toml, deg/s.
+    /// Slew limit in the robot.toml that was given, deg/s.
     #[serde(skip)]
     slew: f64,
 }
@@ -118,32 +119,32 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
         files::check_replaceable(output)?;
     }
     let jig = Jig {
-        way: steps::free_direction(&robot, args.servo)?,
-        slew: robot.pace().slew,
+        side: steps::free_direction(&robot, args.servo)?,
+        slew: robot.speed_limits().slew,
         spin_up: robot.servo_type().spin_up_ms / 1000.0,
     };
     let setup = args.filming.setup(args.height);
     let spinner = Spinner::new("reading the pictures");
-    let watch_film = |path: &Path| -> Result<(AnalysedFilm, Turns), Failure> {
-        let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
-        let turns =
-            Turns::of(&watched.path, jig).map_err(|trouble| film_failure(&name, &trouble))?;
-        Ok((watched, turns))
+    let analyse_film = |path: &Path| -> Result<(AnalysedFilm, MeasuredServo), Failure> {
+        let NamedFilm { name, analysis } = args.filming.analyse(path, setup)?;
+        let measured_servo = MeasuredServo::of(&analysis.path, jig)
+            .map_err(|trouble| film_failure(&name, &trouble))?;
+        Ok((analysis, measured_servo))
     };
-    let (watched, free_turns) = watch_film(&args.film)?;
+    let (analysis, free_servo) = analyse_film(&args.film)?;
     let stall = match (&args.load, args.grams, args.arm) {
         (Some(path), Some(grams), Some(arm)) => {
-            let (_, loaded_turns) = watch_film(path)?;
+            let (_, loaded_servo) = analyse_film(path)?;
             let torque_n_mm = grams / 1000.0 * GRAVITY * arm;
-            let stall = free_turns.stall(&loaded_turns, torque_n_mm);
+            let stall = free_servo.stall_torque(&loaded_servo, torque_n_mm);
             Some(stall.map_err(|trouble| Failure::Input(trouble.to_string()))?)
         }
         _ => None,
     };
     drop(spinner);
-    let report = Report::new(&robot, &args, &watched, &free_turns, stall);
+    let report = Report::new(&robot, &args, &analysis, &free_servo, stall);
     if let Some(output) = &args.output {
-        let new_text = report.new_robot(&text)?;
+        let new_text = report.new_robot_text(&text)?;
         files::write(output, new_text.as_bytes())?;
     }
     json::print_json_or(args.json, &report, || report.text())
@@ -153,11 +154,11 @@ impl Report {
     fn new(
         robot: &Robot,
         args: &ServoArgs,
-        watched: &AnalysedFilm,
-        turns: &Turns,
+        analysis: &AnalysedFilm,
+        measured_servo: &MeasuredServo,
         stall: Option<Figure>,
     ) -> Self {
-        let (name, servo) = (NAMES[args.servo], &robot.servos()[args.servo]);
+        let (name, servo) = (SERVO_NAMES[args.servo], &robot.servos()[args.servo]);
         let servo_type = robot.servo_type();
         let volts = args.volts.unwrap_or(servo_type.volts);
         let supply_ratio = volts / servo_type.at_volts;
@@ -165,7 +166,7 @@ impl Report {
             value: figure.value * scale,
             error: figure.error * scale.abs(),
         };
-        let inverse_of = |numerator: f64, figure: Figure| {
+        let quotient_of = |numerator: f64, figure: Figure| {
             let value = numerator / figure.value;
             let error = (value / figure.value * figure.error).abs();
             Figure { value, error }
@@ -173,10 +174,12 @@ impl Report {
         let us_per_degree = servo.us_per_degree;
         let mut figures = Vec::new();
         let mut push_key = |key, decimals, figure: Figure, robot: f64, scale: f64| {
-            figures
-                .push(Key::new("servo", key, decimals, figure, robot * scale).scaled(1.0 / scale));
+            figures.push(
+                MeasuredKey::new("servo", key, decimals, figure, robot * scale)
+                    .with_scale(1.0 / scale),
+            );
         };
-        let seconds_per_60_deg = inverse_of(60.0, turns.rate);
+        let seconds_per_60_deg = quotient_of(60.0, measured_servo.rate);
         push_key(
             "s_per_60_deg",
             4,
@@ -194,7 +197,7 @@ impl Report {
                 supply_ratio,
             );
         }
-        if let Some(width) = turns.dead_band.width {
+        if let Some(width) = measured_servo.dead_band.width {
             push_key(
                 "dead_band_us",
                 1,
@@ -203,7 +206,7 @@ impl Report {
                 1.0,
             );
         }
-        if let Some(spin_up) = turns.spin_up {
+        if let Some(spin_up) = measured_servo.spin_up {
             push_key(
                 "spin_up_ms",
                 1,
@@ -213,36 +216,36 @@ impl Report {
             );
         }
         let table = format!("servo.{name}");
-        figures.push(Key::new(
+        figures.push(MeasuredKey::new(
             &table,
             "us_per_degree",
             2,
-            inverse_of(us_per_degree, turns.gain),
+            quotient_of(us_per_degree, measured_servo.gain),
             us_per_degree,
         ));
         let value_and_error = |figure: Figure| [figure.value, figure.error];
         Self {
             servo: name,
-            pictures: turns.pictures,
+            pictures: measured_servo.picture_rate,
             height: args.height,
-            height_by_size: watched.sight.deck,
+            height_by_size: analysis.camera.deck_height,
             figures,
-            rates: turns.rates.map(value_and_error),
-            sides: value_and_error(turns.hysteresis),
-            still_us: turns.dead_band.largest_ignored_step * us_per_degree.abs(),
-            is_spin_up_known: turns.spin_up.is_some(),
-            is_dead_band_known: turns.dead_band.width.is_some(),
-            turns_the_other_way: turns.gain.value < 0.0,
+            rates: measured_servo.rates.map(value_and_error),
+            sides: value_and_error(measured_servo.hysteresis),
+            still_us: measured_servo.dead_band.largest_ignored_step * us_per_degree.abs(),
+            is_spin_up_known: measured_servo.spin_up.is_some(),
+            is_dead_band_known: measured_servo.dead_band.width.is_some(),
+            turns_the_other_way: measured_servo.gain.value < 0.0,
             volts,
             is_volts_measured: args.volts.is_some(),
             written: args.output.clone(),
-            slew: robot.pace().slew,
+            slew: robot.speed_limits().slew,
         }
     }
 
-    /// Returns the text of robot.toml in which the keys that the film contradicts are replaced, and the supply if it
-    /// was measured.
-    fn new_robot(&self, text: &str) -> Result<String, Failure> {
+    /// Returns the text of robot.toml with the measured values of the keys that the film contradicts, and with the
+    /// supply voltage if it was measured.
+    fn new_robot_text(&self, text: &str) -> Result<String, Failure> {
         let failure_of = |error: &dyn Display| Failure::Input(error.to_string());
         let mut new_text =
             figures::with_measured_keys(text, &self.figures).map_err(|error| failure_of(&error))?;
@@ -266,7 +269,7 @@ impl Report {
             self.pictures,
             self.height,
             self.height_by_size,
-            figures::table(&self.figures),
+            figures::table_text(&self.figures),
         );
         let _ = writeln!(
             text,

@@ -43,7 +43,7 @@ pub fn write_sheet(args: SheetArgs) -> Result<(), Failure> {
         PaperName::A4 => Paper::A4,
         PaperName::Letter => Paper::Letter,
     };
-    files::write(&args.output, &paper.sheet())?;
+    files::write(&args.output, &paper.tag_sheet_pdf())?;
     let file = args.output.display();
     writeln!(
         io::stdout(),

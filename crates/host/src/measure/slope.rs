@@ -1,16 +1,16 @@
-//! `lizard measure slope`: measures friction with a robot that slides down a tilted board.
+//! `lizard measure slope`: measures the friction of a robot that slides down a tilted board.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use lizard_film::{Figure, Slide};
-use lizard_measure::{WatchedFilm, height_of_board};
+use lizard_measure::{NamedFilm, board_height};
 use lizard_robot::Robot;
 use serde::Serialize;
 
-use super::figures::{self, Key};
+use super::figures::{self, MeasuredKey};
 use super::film::film_failure;
-use super::filming::{Filming, height};
+use super::filming::{Filming, parse_height};
 use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
@@ -29,7 +29,7 @@ pub struct SlopeArgs {
     #[arg(value_name = "FILM", required = true)]
     films: Vec<PathBuf>,
     /// Height of the deck's tag above the strips, mm [default: the top of the board, by the robot's parts]
-    #[arg(long, value_name = "MM", value_parser = height)]
+    #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
     #[command(flatten)]
     filming: Filming,
@@ -43,13 +43,13 @@ pub struct SlopeArgs {
 /// The result, with the field names of `--json`.
 #[derive(Serialize)]
 struct Report {
-    films: Vec<Line>,
-    figures: Vec<Key>,
+    films: Vec<SlideLine>,
+    figures: Vec<MeasuredKey>,
 }
 
-/// A film's slide. Pairs are a value and its standard error.
+/// The slide in a film. Pairs are a value and its standard error.
 #[derive(Serialize)]
-struct Line {
+struct SlideLine {
     film: String,
     is_head_first: bool,
     /// Tilt at which the slide begins, deg.
@@ -66,12 +66,12 @@ struct Line {
 /// Fails for a film that cannot be read or shows no slide.
 pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let height = args.height.unwrap_or_else(|| height_of_board(&robot));
+    let height = args.height.unwrap_or_else(|| board_height(&robot));
     let setup = args.filming.setup(height);
     let spinner = Spinner::new("reading the pictures");
     let slide_of = |path: &PathBuf| {
-        let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
-        let slide = Slide::of(&watched).map_err(|trouble| film_failure(&name, &trouble))?;
+        let NamedFilm { name, analysis } = args.filming.analyse(path, setup)?;
+        let slide = Slide::of(&analysis).map_err(|trouble| film_failure(&name, &trouble))?;
         Ok((name, slide))
     };
     let slides: Vec<(String, Slide)> = args
@@ -84,8 +84,8 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || report.text())
 }
 
-/// The mean of figures that share a systematic error, such as that of the level; `None` if `figures` is empty.
-fn mean(figures: &[Figure]) -> Option<Figure> {
+/// The mean of figures that share a systematic error, such as that of the level board; `None` if `figures` is empty.
+fn mean_figure(figures: &[Figure]) -> Option<Figure> {
     let count = figures.len() as f64;
     let mean_of =
         |value_of: &dyn Fn(&Figure) -> f64| figures.iter().map(value_of).sum::<f64>() / count;
@@ -103,13 +103,23 @@ impl Report {
             let slides = slides
                 .iter()
                 .filter(|(_, slide)| slide.is_head_first == is_head_first);
-            mean(&slides.map(|(_, slide)| slide.sliding).collect::<Vec<_>>())
+            mean_figure(
+                &slides
+                    .map(|(_, slide)| slide.sliding_friction)
+                    .collect::<Vec<_>>(),
+            )
         };
         let (forward, backward) = (friction_of(true), friction_of(false));
         let mut figures = Vec::new();
         let ground = robot.ground();
         if let Some(forward) = forward {
-            figures.push(Key::new("ground", "friction", 3, forward, ground.friction));
+            figures.push(MeasuredKey::new(
+                "ground",
+                "friction",
+                3,
+                forward,
+                ground.friction_coefficient,
+            ));
             if let Some(backward) = backward {
                 let value = backward.value / forward.value;
                 let error = (backward.error / backward.value).hypot(forward.error / forward.value);
@@ -118,16 +128,22 @@ impl Report {
                     error: value * error,
                 };
                 let key = "friction_back_over_forward";
-                figures.push(Key::new("ground", key, 3, ratio, ground.ratio));
+                figures.push(MeasuredKey::new(
+                    "ground",
+                    key,
+                    3,
+                    ratio,
+                    ground.friction_ratio,
+                ));
             }
         }
         let value_and_error = |figure: Figure| [figure.value, figure.error];
-        let line_of = |(film, slide): &(String, Slide)| Line {
+        let line_of = |(film, slide): &(String, Slide)| SlideLine {
             film: film.clone(),
             is_head_first: slide.is_head_first,
             tilt: value_and_error(slide.tilt),
-            resting: value_and_error(slide.resting),
-            sliding: value_and_error(slide.sliding),
+            resting: value_and_error(slide.static_friction),
+            sliding: value_and_error(slide.sliding_friction),
         };
         Self {
             films: slides.iter().map(line_of).collect(),
@@ -157,7 +173,7 @@ impl Report {
                 + "\nfriction in robot.toml is that of pads which slide head first: film the robot with its head \
                    downhill, too\n";
         }
-        let table = figures::table(&self.figures);
+        let table = figures::table_text(&self.figures);
         let _ = write!(text, "\n{table}\n{}", figures::toml_lines(&self.figures));
         if self.figures.len() == 1 {
             text += "A film with the head uphill gives friction_back_over_forward.\n";

@@ -4,18 +4,18 @@ use std::io::{self, Write};
 use std::thread;
 use std::time::Duration;
 
-use lizard_film::orders::{Order, PAUSE, orders};
+use lizard_film::orders::{ORDER_INTERVAL, Order, orders};
 use lizard_robot::Robot;
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::{Failure, RobotFile};
 
-/// Time before the first step, s: the console waits for the board meanwhile.
+/// Time before the first step, s, in which the console waits for the board.
 const LEAD_TIME_S: f64 = 6.0;
-/// Slew limit for the jig, deg/s: the largest that robot.toml allows, faster than servos turn.
-const JIG_SLEW: f64 = 1000.0;
+/// Slew limit that the jig needs, deg/s: the largest that robot.toml allows, faster than servos turn.
+const MIN_JIG_SLEW: f64 = 1000.0;
 /// Spacing of the poses that are checked along a step, deg.
-const CHECK_STEP_DEG: f64 = 1.0;
+const CHECK_SPACING_DEG: f64 = 1.0;
 
 /// Print the lines that turn a servo for `lizard measure servo`, one each second
 ///
@@ -27,7 +27,7 @@ const CHECK_STEP_DEG: f64 = 1.0;
   lizard measure steps --servo A1 --robot jig.toml | lizard console")]
 pub struct StepsArgs {
     /// The servo: A1, A2, A3 or A4
-    #[arg(long, value_name = "NAME", value_parser = servo)]
+    #[arg(long, value_name = "NAME", value_parser = parse_servo)]
     servo: usize,
     /// Print all of them at once, to read them
     #[arg(long)]
@@ -37,8 +37,8 @@ pub struct StepsArgs {
 }
 
 /// Parses a servo's name.
-pub(super) fn servo(text: &str) -> Result<usize, String> {
-    let index = NAMES
+pub(super) fn parse_servo(text: &str) -> Result<usize, String> {
+    let index = SERVO_NAMES
         .iter()
         .position(|name| name.eq_ignore_ascii_case(text));
     index.ok_or_else(|| "it is A1, A2, A3 or A4".to_owned())
@@ -51,7 +51,7 @@ pub(super) fn servo(text: &str) -> Result<usize, String> {
 pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     check_slew(&robot)?;
-    let lines = console_lines(&robot, args.servo)?;
+    let lines = timed_console_lines(&robot, args.servo)?;
     let mut out = io::stdout().lock();
     for (line, pause_s) in lines {
         writeln!(out, "{line}")?;
@@ -63,13 +63,13 @@ pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that the slew limit is at least [`JIG_SLEW`], so that it does not slow a servo down.
+/// Checks that the slew limit is at least [`MIN_JIG_SLEW`], so that it does not slow a servo down.
 pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
-    let slew = robot.pace().slew;
-    if slew < JIG_SLEW {
+    let slew = robot.speed_limits().slew;
+    if slew < MIN_JIG_SLEW {
         return Err(Failure::Input(format!(
             "robot {} changes its pulses by {slew} deg/s at most, so its servos cannot show their own rate: write \
-             slew = {JIG_SLEW:.1} under [limits] into a copy, flash that one, and give it with --robot",
+             slew = {MIN_JIG_SLEW:.1} under [limits] into a copy, flash that one, and give it with --robot",
             robot.name()
         )));
     }
@@ -77,12 +77,12 @@ pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
 }
 
 /// The lines for the console, each with the time until the next one, s.
-fn console_lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
+fn timed_console_lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
     let direction = free_direction(robot, servo)?;
     let pose_at = |sweep: f64| pose_line(robot, servo, sweep);
     let mut lines = vec![
-        ("factory".to_owned(), PAUSE),
-        (pose_at(0.0), LEAD_TIME_S - PAUSE),
+        ("factory".to_owned(), ORDER_INTERVAL),
+        (pose_at(0.0), LEAD_TIME_S - ORDER_INTERVAL),
     ];
     let sign_of = |is_reversed: bool| {
         let is_positive = robot.servos()[servo].us_per_degree > 0.0;
@@ -95,20 +95,20 @@ fn console_lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Fail
             false => format!("dir {} {}", servo + 1, sign_of(is_reversed)),
         };
         was_reversed = is_reversed;
-        lines.push((line, PAUSE));
+        lines.push((line, ORDER_INTERVAL));
     }
     lines.push((pose_at(0.0), 0.0));
     Ok(lines)
 }
 
-/// The neutral angles of all servos, but with one servo turned by `sweep` from neutral, deg.
+/// The angles of all servos, deg: neutral, but with one servo turned from neutral by `sweep`, deg.
 fn swept_angles(robot: &Robot, servo: usize, sweep: f64) -> [f64; 4] {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     angles[servo] += sweep;
     angles
 }
 
-/// The console line for the pose with one servo turned by `sweep` from neutral, deg.
+/// The console line for the pose with one servo turned from neutral by `sweep`, deg.
 fn pose_line(robot: &Robot, servo: usize, sweep: f64) -> String {
     let [a1, a2, a3, a4] = swept_angles(robot, servo, sweep).map(|angle| format!("{angle:.2}"));
     format!("pose {a1} {a2} {a3} {a4}")
@@ -122,17 +122,17 @@ pub(super) fn free_direction(robot: &Robot, servo: usize) -> Result<f64, Failure
     let is_free = |direction: &f64| {
         orders(*direction).iter().all(|order| {
             let Order { sweep, .. } = *order;
-            let steps = (sweep.abs() / CHECK_STEP_DEG).ceil().max(1.0);
-            let is_path_accepted = (0..=steps as usize).all(|i| {
-                let angles = swept_angles(robot, servo, sweep * i as f64 / steps);
-                robot.accepted(angles).is_some()
+            let interval_count = (sweep.abs() / CHECK_SPACING_DEG).ceil().max(1.0);
+            let is_path_accepted = (0..=interval_count as usize).all(|i| {
+                let angles = swept_angles(robot, servo, sweep * i as f64 / interval_count);
+                robot.solve_if_allowed(angles).is_some()
             });
             let travel = robot.servos()[servo].travel();
             is_path_accepted && (travel.0..=travel.1).contains(&order.pulse_angle())
         })
     };
     [1.0, -1.0].into_iter().find(is_free).ok_or_else(|| {
-        let name = NAMES[servo];
+        let name = SERVO_NAMES[servo];
         Failure::Input(format!(
             "the linkage of robot {} lets {name} turn to neither side by the steps' 30 deg, or its pulses do",
             robot.name()

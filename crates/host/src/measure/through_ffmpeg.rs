@@ -1,8 +1,8 @@
-//! Reading the pictures of a film file through the programs ffmpeg and ffprobe.
+//! The reading of a film file's pictures through the programs ffmpeg and ffprobe.
 //!
-//! Film decoders are large, and everybody who makes films has one. ffprobe gives the time of each picture, because
-//! a phone's pictures are not evenly spaced. ffmpeg sends the pictures as YUV4MPEG2: a line with the size, then for
-//! each picture a line and its grey pixels.
+//! A film decoder is too large to be part of this program, and ffmpeg is available everywhere. ffprobe gives the time
+//! of each picture, because the pictures of a phone are not evenly spaced in time. ffmpeg sends the pictures as
+//! YUV4MPEG2: a line with the size, then for each picture a line and its grey pixels.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
@@ -20,10 +20,11 @@ const FFPROBE_ARGUMENTS: &str =
 /// Largest width or height of a picture, px.
 const MAX_SIZE_PX: usize = 10_000;
 
-/// Calls a function for each picture of a film with its time, s.
+/// Calls `handle_picture` for each picture of a film, with its time, s. The times follow from `rate`, pictures per
+/// second, or are those of the film if `rate` is `None`.
 ///
 /// # Errors
-/// Fails if ffmpeg or ffprobe is missing or cannot read the film, or if the function fails.
+/// Fails if ffmpeg or ffprobe is missing or cannot read the film, or if `handle_picture` fails.
 pub(super) fn for_each_picture(
     film: &Path,
     rate: Option<f64>,
@@ -47,7 +48,7 @@ pub(super) fn for_each_picture(
         .stderr(Stdio::null())
         .spawn()
         .map_err(|error| start_failure("ffmpeg", &error))?;
-    let mut stream = BufReader::new(ffmpeg.stdout.take().expect("it is piped"));
+    let mut stream = BufReader::new(ffmpeg.stdout.take().expect("standard output is piped"));
     let mut line = String::new();
     let picture_size = stream
         .read_line(&mut line)
@@ -86,7 +87,7 @@ pub(super) fn for_each_picture(
     outcome
 }
 
-/// The times of a film's pictures, s.
+/// Asks ffprobe for the times of a film's pictures, s.
 fn picture_times(film: &Path) -> Result<Vec<f64>, Failure> {
     let output = Command::new("ffprobe")
         .args(FFPROBE_ARGUMENTS.split(' '))

@@ -167,8 +167,8 @@ impl Report {
             proportions,
             d,
             l0: bars.base,
-            l1: bars.crank_left,
-            l2: bars.coupler_left,
+            l1: bars.left_crank_length,
+            l2: bars.left_coupler_length,
             performance: Performance::of(&bars, FINE_RINGS),
         }
     }

@@ -111,7 +111,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, solution: InverseSolution)
         .servos()
         .into_iter()
         .zip(angles)
-        .filter_map(|(servo, angle)| verdict::beyond(robot, servo, angle))
+        .filter_map(|(servo, angle)| verdict::travel_violation(robot, servo, angle))
         .collect();
     let is_behind = solution.assembly_mode == AssemblyMode::Behind;
     if is_behind {
@@ -173,7 +173,7 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     }
     if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
-            Ok(solution) => reasons.extend(verdict::reasons(robot, &solution)),
+            Ok(solution) => reasons.extend(verdict::refusal_reasons(robot, &solution)),
             Err(infeasible) => reasons.push(infeasible.to_string()),
         }
     }

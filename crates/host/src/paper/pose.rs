@@ -83,7 +83,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let pose = args.pose.get();
     let lizard = robot.lizard();
-    let solve_pose = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
+    let solve_pose = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral_pose()));
     match args.show {
         Subject::Joints => solve::print(&robot, pose.as_ref(), args.json),
         Subject::Singularities => singularity::print(&robot, &solve_pose()?, args.json),

@@ -76,9 +76,9 @@ impl PoseLine {
                 };
             }
         };
-        let reasons = verdict::reasons(robot, solution);
+        let reasons = verdict::refusal_reasons(robot, solution);
         let (head, tail) = (solution.head_point(), solution.tail_point());
-        let passive = solution.passive();
+        let passive = solution.passive_joints();
         let [lf, rf, rh, lh] = solution.legs.map(|leg| Leg {
             follower: leg.follower(),
             coupler: leg.coupler(),
@@ -168,7 +168,7 @@ pub fn row(robot: &Robot, timed_pose: &TimedPose, solved: &Result<Solution, Infe
         round_decimals(solution.right.s, 2),
         round_decimals(value, 4),
     );
-    match verdict::reasons(robot, solution).first() {
+    match verdict::refusal_reasons(robot, solution).first() {
         None => line.push_str("safe"),
         Some(reason) => line.push_str(reason),
     }
@@ -239,7 +239,7 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
         round_4(margins.leg[2]),
         round_4(margins.leg[3]),
     );
-    let reasons = verdict::reasons(robot, solution);
+    let reasons = verdict::refusal_reasons(robot, solution);
     if reasons.is_empty() {
         let (check, value) = margins.min();
         let _ = writeln!(page, "safe     yes, the least margin is {check} {value:.4}");

@@ -122,7 +122,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
         tail,
         left,
         right,
-    } = solution.blocks();
+    } = solution.block_determinants();
     let leg = robot.lizard().leg;
     let mut nearest = vec![];
     for end in End::ALL {
@@ -203,7 +203,7 @@ pub fn nearest_singularity(
     let scan = |centre: f64, half_range: f64, step: f64| {
         let steps = (half_range / step).round() as i32;
         (-steps..=steps)
-            .flat_map(|i| bars.singular_with(centre + f64::from(i) * step))
+            .flat_map(|i| bars.singular_poses_with(centre + f64::from(i) * step))
             .filter(|pose| pose.kind == kind)
             .map(with_distance)
             .reduce(closer_of)
@@ -218,7 +218,7 @@ pub fn nearest_singularity(
         }
     }
     let points = bars
-        .coinciding_tips()
+        .poses_with_coinciding_tips()
         .filter(|_| kind == Singularity::Couplers);
     best.into_iter()
         .chain(points.map(with_distance))

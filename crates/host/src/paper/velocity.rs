@@ -1,6 +1,6 @@
 //! `lizard pose --show rates`: passive rates and accelerations from those of the servos.
 
-use lizard_kinematics::{Derivatives, Drive, Lizard, Pose, Solution, wrap};
+use lizard_kinematics::{Derivatives, Lizard, Pose, ServoMotion, Solution, wrap};
 use serde::Serialize;
 
 use crate::Failure;
@@ -57,7 +57,7 @@ struct Row {
     acceleration_deviation: Option<f64>,
 }
 
-impl From<DriveArgs> for Drive {
+impl From<DriveArgs> for ServoMotion {
     fn from(args: DriveArgs) -> Self {
         Self {
             rate: [args.omega1, args.omega4, args.omega8, args.omega5],
@@ -73,7 +73,7 @@ impl From<DriveArgs> for Drive {
 pub fn print(
     lizard: &Lizard,
     solution: &Solution,
-    drive: &Drive,
+    drive: &ServoMotion,
     is_json: bool,
 ) -> Result<(), Failure> {
     let singularity_margin = solution.margins.type2[0].min(solution.margins.type2[1]);
@@ -153,7 +153,7 @@ fn rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
 }
 
 /// Rates and accelerations in closed form, compared with finite differences of the poses around this one.
-fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
+fn rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
     let start_angles = <[f64; 4]>::from(solution.pose);
     let largest_of = |values: &[f64; 4]| {
         values

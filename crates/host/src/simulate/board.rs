@@ -9,34 +9,34 @@ use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, Pin, SerialByte, State
 use crate::Failure;
 use crate::shared::firmware;
 use crate::simulate::sim::frame::{
-    FRAME, Frame, first_cycle, group_frames, latest_start, next_start, servo_pins,
+    FRAME_CYCLES, Frame, first_cycle, group_frames, latest_start, next_start, servo_pins,
 };
 use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
 
 /// The longest wait for an answer after its command has been sent, ms. The
-/// firmware's console promises a much shorter time.
-const TIMEOUT_MS: u64 = 200;
+/// firmware answers much sooner.
+const ANSWER_TIMEOUT_MS: u64 = 200;
 /// The longest wait for the banner after power-on, ms.
-pub(crate) const BANNER_MS: u64 = 500;
-/// Cycles of the UNO that a byte takes on the serial line, rounded up.
-const BYTE_CYCLES: u64 = 1400;
+pub(crate) const BANNER_TIMEOUT_MS: u64 = 500;
+/// Cycles of the UNO per byte on the serial line, rounded up.
+const CYCLES_PER_BYTE: u64 = 1400;
 
-/// The reason why a board did not do what a test asked for.
+/// The reason why a simulated board did not do what it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// The firmware cannot be loaded.
     #[error(transparent)]
     Load(#[from] firmware::Unreadable),
     /// The first line is not the firmware's banner.
-    #[error("no banner `# lizard ...` within {BANNER_MS} ms of power-on, but {0:?}")]
-    Banner(Option<String>),
-    /// A command was not answered.
-    #[error("no answer to {line:?} within {TIMEOUT_MS} ms, only {notes:?}")]
-    Silent {
+    #[error("no banner `# lizard ...` within {BANNER_TIMEOUT_MS} ms of power-on, but {0:?}")]
+    NoBanner(Option<String>),
+    /// A command was not answered in time.
+    #[error("no answer to {line:?} within {ANSWER_TIMEOUT_MS} ms, only {notes:?}")]
+    NoAnswer {
         /// The command that was sent.
         line: String,
-        /// The information lines received instead.
+        /// The information lines (`# ...`) received instead.
         notes: Vec<String>,
     },
     /// The firmware sleeps with interrupts off.
@@ -52,17 +52,17 @@ pub enum BoardError {
     #[error("the watchdog reset the firmware")]
     Reset,
     /// The ELF has no function of this name, or more than one.
-    #[error("the ELF has no one function {0}")]
-    Function(String),
-    /// A line of `status` lacks a counter.
+    #[error("the ELF has no function {0}, or more than one")]
+    UnresolvedFunction(String),
+    /// The answer to `status` lacks a counter.
     #[error("`{status}` has no {key}")]
-    Counter {
+    MissingCounter {
         /// The answer to `status`.
         status: String,
         /// The name of the counter.
         key: String,
     },
-    /// The first servo gets no pulse.
+    /// Servo A1 gets no pulse.
     #[error("A1 gets no pulse")]
     NoPulse,
 }
@@ -78,24 +78,27 @@ impl From<BoardError> for Failure {
 
 /// A simulated UNO with a firmware in its flash.
 pub struct SimulatedBoard {
-    /// The UNO. Take its transmitted bytes through the board only.
+    /// The UNO. Its transmitted bytes must be taken only by [`SimulatedBoard::lines`] and [`SimulatedBoard::bytes`].
     pub uno: Uno,
+    /// The pins of the servos A1 to A4.
     pins: [Pin; 4],
     reader: LineReader,
+    /// Every byte that the firmware has sent since power-on.
     bytes: Vec<SerialByte>,
+    /// Every line that the firmware has sent since power-on.
     lines: Vec<Line>,
     /// Number of lines that [`SimulatedBoard::next_line`] has returned.
     returned_lines: usize,
-    /// The cycle at which a frame starts, from which the starts of the other frames are counted; `None` while
-    /// no pulse is known.
-    anchor: Option<u64>,
+    /// The cycle at which some frame starts; the other frames start a multiple of 20 ms before or after it. `None`
+    /// while no pulse is known.
+    frame_anchor: Option<u64>,
 }
 
 impl SimulatedBoard {
     /// Powers on a robot's board with healthy supplies; no cycle has run yet.
     ///
     /// # Errors
-    /// Fails if the ELF file is missing or wrong.
+    /// Fails if the ELF file is missing or invalid.
     pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
         let image = firmware::with_robot(elf, robot)?;
         Ok(Self::with_image(image, fidelity, robot))
@@ -111,16 +114,16 @@ impl SimulatedBoard {
     /// Powers a board on and waits for the lizard's banner.
     ///
     /// # Errors
-    /// Fails as [`SimulatedBoard::power_on`] does, or if the first line within 500 ms is no banner.
+    /// Fails as [`SimulatedBoard::power_on`] does, or if the banner is not the first line within 500 ms.
     pub fn boot(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
         let mut board = Self::power_on(elf, fidelity, robot)?;
-        match board.next_line(BANNER_MS) {
+        match board.next_line(BANNER_TIMEOUT_MS) {
             Some(line) if line.starts_with("# lizard") => Ok(board),
-            line => Err(BoardError::Banner(line)),
+            line => Err(BoardError::NoBanner(line)),
         }
     }
 
-    /// Wraps any simulated UNO. `pins` are those of the servos A1 to A4.
+    /// A board with a given UNO. `pins` are the pins of the servos A1 to A4.
     pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
         Self {
             uno,
@@ -129,7 +132,7 @@ impl SimulatedBoard {
             bytes: Vec::new(),
             lines: Vec::new(),
             returned_lines: 0,
-            anchor: None,
+            frame_anchor: None,
         }
     }
 
@@ -155,14 +158,14 @@ impl SimulatedBoard {
         self.returned_lines = self.lines().len();
         self.send(line);
         let mut notes = Vec::new();
-        while let Some(answer) = self.next_line(TIMEOUT_MS) {
+        while let Some(answer) = self.next_line(ANSWER_TIMEOUT_MS) {
             if !answer.starts_with('#') {
                 return Ok((notes, answer));
             }
             notes.push(answer);
         }
         let line = line.to_owned();
-        Err(BoardError::Silent { line, notes })
+        Err(BoardError::NoAnswer { line, notes })
     }
 
     /// Sends a line and a line feed, without waiting for the answer.
@@ -171,11 +174,11 @@ impl SimulatedBoard {
         self.uno.send(b"\n");
     }
 
-    /// Returns the next line without its line end; `None` if it does not come
-    /// within `ms` after the bytes still to be sent, or if the firmware stops.
+    /// Returns the next line without its line end; `None` if it does not come within `ms` after
+    /// the last byte still to be sent, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
-        let sending_cycles = self.uno.unsent() as u64 * BYTE_CYCLES;
-        let end_cycle = self.uno.cycle() + sending_cycles + ms * CYCLES_PER_MS;
+        let cycles_to_send = self.uno.bytes_unsent() as u64 * CYCLES_PER_BYTE;
+        let end_cycle = self.uno.cycle() + cycles_to_send + ms * CYCLES_PER_MS;
         loop {
             let index = self.returned_lines;
             if let Some(line) = self.lines().get(index) {
@@ -190,19 +193,19 @@ impl SimulatedBoard {
         }
     }
 
-    /// Every line the firmware has sent since power-on.
+    /// Every line that the firmware has sent since power-on.
     pub fn lines(&mut self) -> &[Line] {
         self.collect();
         &self.lines
     }
 
-    /// Every byte the firmware has sent since power-on.
+    /// Every byte that the firmware has sent since power-on.
     pub fn bytes(&mut self) -> &[SerialByte] {
         self.collect();
         &self.bytes
     }
 
-    /// Adds what the UNO has transmitted since the last call to the bytes and the lines.
+    /// Appends what the UNO has transmitted since the last call to `bytes` and `lines`.
     fn collect(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.lines.extend(self.reader.read(&bytes));
@@ -220,13 +223,13 @@ impl SimulatedBoard {
             (name == key).then(|| value.parse().ok())?
         });
         let key = key.to_owned();
-        value.ok_or(BoardError::Counter { status, key })
+        value.ok_or(BoardError::MissingCounter { status, key })
     }
 
     /// Runs the board for `ms` of simulated time.
     ///
     /// # Errors
-    /// Fails if the firmware crashes, halts or is reset, or the power is off.
+    /// Fails if the firmware crashes, halts or is reset, or if the power is off.
     pub fn run_ms(&mut self, ms: u64) -> Result<(), BoardError> {
         self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS)
     }
@@ -247,14 +250,14 @@ impl SimulatedBoard {
         }
     }
 
-    /// Runs the board for `ms` and times every call of a firmware function,
-    /// given by its path, such as `Control::frame`.
+    /// Runs the board for `ms` and times every call of a firmware function. The function is given
+    /// by its path, such as `Control::compute_frame`.
     ///
     /// # Errors
     /// Fails if the ELF has no such function, or more than one.
     pub fn time_calls(&mut self, function: &str, ms: u64) -> Result<Vec<Call>, BoardError> {
         let symbol = self.uno.image().function(function);
-        let symbol = symbol.ok_or_else(|| BoardError::Function(function.to_owned()))?;
+        let symbol = symbol.ok_or_else(|| BoardError::UnresolvedFunction(function.to_owned()))?;
         let entry = symbol.address as u32;
         Ok(self.uno.time_calls(entry, ms * CYCLES_PER_MS))
     }
@@ -268,11 +271,11 @@ impl SimulatedBoard {
         counted_interrupts.map(|interrupt| interrupt.cycles).sum()
     }
 
-    /// The cycle at which A1's first pulse starts, among the edges not yet taken.
+    /// The cycle at which A1's first pulse starts among the recorded edges.
     ///
     /// # Errors
-    /// Fails if A1 has no pulse among these edges.
-    pub fn first_pulse(&self) -> Result<u64, BoardError> {
+    /// Fails if the recorded edges contain no pulse of A1.
+    pub fn first_pulse_cycle(&self) -> Result<u64, BoardError> {
         let pulses = self.uno.pulses(self.pins[0]);
         let first = pulses.first().map(|pulse| pulse.start);
         first.ok_or(BoardError::NoPulse)
@@ -280,19 +283,21 @@ impl SimulatedBoard {
 
     /// Runs `count` whole frames, starting with the next, and returns their
     /// pulses. Frames are aligned to A1's latest pulse or, if there was none,
-    /// to the present cycle. Edges recorded earlier are dropped.
+    /// to the present cycle. Edges recorded before these frames are dropped.
     ///
     /// # Errors
     /// See [`SimulatedBoard::run_ms`].
     pub fn run_for_frames(&mut self, count: u64) -> Result<Vec<Frame>, BoardError> {
         let current_cycle = self.uno.cycle();
-        self.anchor = latest_start(&self.uno.edges(), self.pins).or(self.anchor);
-        let start = self.anchor.map_or(current_cycle + FRAME, |anchor| {
-            next_start(anchor, current_cycle)
-        });
+        self.frame_anchor = latest_start(&self.uno.edges(), self.pins).or(self.frame_anchor);
+        let start = self
+            .frame_anchor
+            .map_or(current_cycle + FRAME_CYCLES, |anchor| {
+                next_start(anchor, current_cycle)
+            });
         self.run_until(first_cycle(start))?;
         self.uno.take_edges();
-        self.run_until(first_cycle(start + count * FRAME))?;
+        self.run_until(first_cycle(start + count * FRAME_CYCLES))?;
         Ok(group_frames(&self.uno.edges(), self.pins, start, count))
     }
 }

@@ -1,4 +1,4 @@
-//! The servo angles that the firmware's pulses command during a gait, for a physics engine to follow.
+//! The servo angles that the firmware commands during a gait, for a physics engine to follow.
 
 use std::path::Path;
 
@@ -12,12 +12,13 @@ use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
-/// Records three cycles of a gait on the simulated UNO, with the firmware of an ELF or the one inside this program.
+/// Records the servo targets during three cycles of a gait on the simulated UNO. `elf` is the firmware to run instead
+/// of the one inside this program.
 ///
 /// # Errors
 /// Fails if the gait is unknown, if the firmware is missing or was built for another robot, or if the simulation
 /// fails.
-pub fn course(
+pub fn record_course(
     robot: &Robot,
     robot_file: &RobotFile,
     gait: &str,
@@ -30,19 +31,19 @@ pub fn course(
     let recording = twin::record(&mut uno, robot, &script)?;
     let log = &recording.frames;
     let stop_ms = script.steps.last().map_or(script.end_ms, |step| step.ms);
-    let end_s = log.index(stop_ms as f64 / 1000.0) as f64 * FRAME;
+    let end_s = log.index_at(stop_ms as f64 / 1000.0) as f64 * FRAME;
     Ok(Course {
         gait: gait.name().to_owned(),
-        frames: targets(robot, log),
+        frames: target_sweeps(robot, log),
         measure_start: end_s - gait.period(),
         period: gait.period(),
-        count: 1,
+        measured_cycles: 1,
     })
 }
 
-/// The servos' targets from their pulses: sweeps from neutral, deg. A servo without a pulse
-/// keeps its previous target.
-fn targets(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
+/// Each frame's servo targets, read from the pulses, as sweeps from neutral in degrees. A servo
+/// without a pulse keeps its previous target.
+fn target_sweeps(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
     let mut targets = [0.0; 4];
     let frames = log.widths.iter().map(|widths| {
         for (servo, width) in widths.iter().enumerate() {
@@ -71,7 +72,7 @@ mod tests {
             ],
             ..FrameLog::default()
         };
-        let sweeps = targets(&robot, &log);
+        let sweeps = target_sweeps(&robot, &log);
         assert_eq!(sweeps[0], [0.0; 4]);
         assert_eq!(sweeps[1], [0.0; 4]);
         assert!(

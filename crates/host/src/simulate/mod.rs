@@ -1,5 +1,5 @@
-//! Run the firmware on a simulated UNO: its pulses, where they take the robot, and how long
-//! its functions take.
+//! Commands that run the firmware on a simulated UNO and report its servo pulses, the robot's path, and the
+//! execution times of its functions.
 
 pub mod bench;
 pub mod board;

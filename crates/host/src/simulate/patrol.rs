@@ -8,10 +8,10 @@ use super::sim::tour;
 /// The name of the routine.
 pub const PATROL: &str = "patrol";
 
-/// The largest number of gaits in a patrol after the first.
-const MAX_MORE_GAITS: usize = 8;
+/// The largest number of gaits that follow the first gait of a patrol.
+const MAX_OTHER_GAITS: usize = 8;
 
-/// The Arduino pins that are tried for a missing input, in this order. Here A1 to A4 are analogue pins, not servos.
+/// The Arduino pins that are tried for a missing input, in this order. A1 to A4 are analogue pins here, not servos.
 const CANDIDATE_PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
 /// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine
@@ -30,7 +30,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     for name in ["button", "nose"] {
         if robot
             .inputs()
-            .each()
+            .named_pins()
             .any(|(input_name, _)| input_name == name)
         {
             continue;
@@ -39,7 +39,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         let free_pin = CANDIDATE_PINS
             .iter()
             .find(|pin| Robot::parse(&with_input(pin)).is_ok());
-        // If no pin is free, an occupied one is taken, so that the last `parse` reports the error.
+        // If no pin is free, the first one is taken although it is occupied, so that the last `parse` reports the error.
         text = with_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
     }
     let gaits: Vec<String> = tour::moving_gaits(&robot)
@@ -48,7 +48,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         .collect();
     let first_gait = gaits.first().map_or("stand 1 s", String::as_str);
     let mut steps = vec!["wait button".to_owned(), format!("{first_gait} until nose")];
-    let other_gaits = gaits.iter().skip(1).take(MAX_MORE_GAITS);
+    let other_gaits = gaits.iter().skip(1).take(MAX_OTHER_GAITS);
     steps.extend(other_gaits.map(|gait| format!("{gait} 1 until button")));
     steps.extend(last_steps.iter().map(|step| (*step).to_owned()));
     Robot::parse(&format!(
@@ -62,11 +62,12 @@ mod tests {
     use crate::shared::robot_file;
 
     #[test]
-    fn a_patrol_has_both_inputs_and_goes_through_the_gaits() {
-        let robot = with_patrol(robot_file::BUILT_IN, &[]).expect("a robot");
-        let inputs: Vec<&str> = robot.inputs().each().map(|(name, _)| name).collect();
+    fn a_patrol_adds_a_button_and_a_nose_that_its_routine_uses() {
+        let robot = with_patrol(robot_file::BUILT_IN, &[])
+            .expect("the built-in robot has room for a patrol");
+        let inputs: Vec<&str> = robot.inputs().named_pins().map(|(name, _)| name).collect();
         assert_eq!(inputs, ["button", "nose"]);
-        let patrol = robot.routine(PATROL).expect("a routine");
+        let patrol = robot.routine(PATROL).expect("the routine has been added");
         assert!(patrol.has_inputs());
     }
 }

@@ -293,7 +293,7 @@ fn wrong_input_is_a_message_and_starts_nothing() {
         ),
         (
             &["calibrate", "restore", "other.toml"],
-            "lizard: other.toml: format must be \"lizard calibration 1\": this is no calibration",
+            "lizard: other.toml: format must be \"lizard calibration 1\": this is not a calibration",
         ),
         (
             &["calibrate", "restore", "none.toml"],

@@ -1,10 +1,10 @@
 //! The generator of the polynomials' coefficients in `src/angle.rs`. A test compares the
-//! coefficients there with the generated ones, and prints these if they differ.
+//! coefficients there with the generated ones, and prints the latter if they differ.
 //!
-//! Each polynomial interpolates a smooth function of the square of an argument at Chebyshev
-//! nodes, which keeps the largest error within a few per cent of the minimum for
-//! a polynomial of its degree. The nodes, the functions and the solution
-//! are computed with 256 bits; each coefficient is rounded once, to the nearest f64.
+//! Each polynomial interpolates a smooth function of the squared argument at Chebyshev nodes,
+//! which keeps its largest error within a few percent of the least possible for its degree.
+//! Nodes, function values and coefficients are computed with 256 bits; each coefficient is
+//! rounded once, to the nearest f64.
 
 use dashu_float::{FBig, round::mode::HalfEven};
 
@@ -12,80 +12,81 @@ use dashu_float::{FBig, round::mode::HalfEven};
 type Number = FBig<HalfEven, 2>;
 
 /// Precision of every computation, bits.
-const BITS: usize = 256;
-/// Share by which the interval of nodes extends past the square of the largest argument,
-/// since rounding may push an argument over its limit.
-const MARGIN_SHARE: f64 = 1e-4;
+const PRECISION_BITS: usize = 256;
+/// Share by which the interval of the nodes extends beyond the square of the largest argument,
+/// because rounding may push an argument beyond its limit.
+const INTERVAL_MARGIN: f64 = 1e-4;
 /// Number of points at which an error is measured.
-const POINTS: u32 = 2000;
+const SAMPLE_COUNT: u32 = 2000;
 
-/// The polynomial P in an approximation f(x) = lead(x) + x^power P(x^2).
+/// The polynomial P in an approximation f(x) = leading_terms(x) + x^exponent P(x^2).
 pub struct Polynomial {
     /// The polynomial's name in `src/angle.rs`.
     pub name: &'static str,
     /// Number of coefficients.
-    terms: u32,
-    /// The largest argument: radians, or a tangent for `ATAN`.
-    limit: fn() -> Number,
+    coefficient_count: u32,
+    /// The largest argument x: radians, or a tangent for `ATAN`.
+    max_argument: fn() -> Number,
     /// The function f.
     function: fn(&Number) -> Number,
-    /// The exact first terms of the function's power series.
-    lead: fn(&Number) -> Number,
-    /// The exponent of the argument in the factor of the polynomial.
-    power: i32,
+    /// The first terms of the function's power series.
+    leading_terms: fn(&Number) -> Number,
+    /// The exponent of x in the polynomial's factor.
+    exponent: i32,
 }
 
 /// All three polynomials, in the order of `src/angle.rs`.
 pub const POLYNOMIALS: [Polynomial; 3] = [
     Polynomial {
         name: "SIN",
-        terms: 6,
-        limit: || Number::pi(BITS) / number_of(4),
+        coefficient_count: 6,
+        max_argument: || Number::pi(PRECISION_BITS) / number_from(4),
         function: Number::sin,
-        lead: Number::clone,
-        power: 3,
+        leading_terms: Number::clone,
+        exponent: 3,
     },
     Polynomial {
         name: "COS",
-        terms: 6,
-        limit: || Number::pi(BITS) / number_of(4),
+        coefficient_count: 6,
+        max_argument: || Number::pi(PRECISION_BITS) / number_from(4),
         function: Number::cos,
-        lead: |r| number_of(1) - r * r / number_of(2),
-        power: 4,
+        leading_terms: |r| number_from(1) - r * r / number_from(2),
+        exponent: 4,
     },
     Polynomial {
         name: "ATAN",
-        terms: 11,
-        limit: || (Number::pi(BITS) / number_of(8)).tan(),
+        coefficient_count: 11,
+        max_argument: || (Number::pi(PRECISION_BITS) / number_from(8)).tan(),
         function: Number::atan,
-        lead: Number::clone,
-        power: 3,
+        leading_terms: Number::clone,
+        exponent: 3,
     },
 ];
 
-fn number_of(value: u32) -> Number {
-    Number::from(value).with_precision(BITS).value()
+fn number_from(value: u32) -> Number {
+    Number::from(value).with_precision(PRECISION_BITS).value()
 }
 
 /// Converts an f64 exactly.
-fn exact_number_of(value: f64) -> Number {
-    let exact = Number::try_from(value).expect("a finite number");
-    exact.with_precision(BITS).value()
+fn exact_number_from(value: f64) -> Number {
+    let exact = Number::try_from(value).expect("the number is finite");
+    exact.with_precision(PRECISION_BITS).value()
 }
 
 impl Polynomial {
-    /// Computes the coefficients, the constant first.
+    /// Computes the coefficients of P, the constant first.
     pub fn coefficients(&self) -> Vec<f64> {
-        let limit = (self.limit)();
-        let largest_square = &limit * &limit * (number_of(1) + exact_number_of(MARGIN_SHARE));
-        let half_interval = largest_square / number_of(2);
-        let nodes: Vec<Number> = (0..self.terms)
+        let limit = (self.max_argument)();
+        let square_limit = &limit * &limit * (number_from(1) + exact_number_from(INTERVAL_MARGIN));
+        let half_interval = square_limit / number_from(2);
+        let nodes: Vec<Number> = (0..self.coefficient_count)
             .map(|k| {
-                let turn = Number::pi(BITS) * number_of(2 * k + 1) / number_of(2 * self.terms);
-                &half_interval * (number_of(1) + turn.cos())
+                let angle = Number::pi(PRECISION_BITS) * number_from(2 * k + 1)
+                    / number_from(2 * self.coefficient_count);
+                &half_interval * (number_from(1) + angle.cos())
             })
             .collect();
-        // Computes divided differences, then expands Newton's form to powers.
+        // Computes divided differences, then expands Newton's form of P to powers of z = x^2.
         let mut differences: Vec<Number> =
             nodes.iter().map(|z| self.target_value(&z.sqrt())).collect();
         for order in 1..nodes.len() {
@@ -94,42 +95,45 @@ impl Polynomial {
                 differences[i] = rise / (&nodes[i] - &nodes[i - order]);
             }
         }
-        let mut powers: Vec<Number> = Vec::new();
+        let mut coefficients: Vec<Number> = Vec::new();
         for (node, difference) in nodes.iter().zip(&differences).rev() {
-            // powers * (z - node) + difference
-            let mut next_powers = vec![number_of(0); powers.len() + 1];
-            for (i, power) in powers.iter().enumerate() {
-                next_powers[i + 1] += power;
-                next_powers[i] -= power * node;
+            // P becomes P * (z - node) + difference.
+            let mut next_coefficients = vec![number_from(0); coefficients.len() + 1];
+            for (i, power) in coefficients.iter().enumerate() {
+                next_coefficients[i + 1] += power;
+                next_coefficients[i] -= power * node;
             }
-            next_powers[0] += difference;
-            powers = next_powers;
+            next_coefficients[0] += difference;
+            coefficients = next_coefficients;
         }
-        powers.iter().map(|power| power.to_f64().value()).collect()
+        coefficients
+            .iter()
+            .map(|power| power.to_f64().value())
+            .collect()
     }
 
     /// The largest error of the approximation with these coefficients, relative
     /// to the function, for arguments up to the limit.
     pub fn error(&self, coefficients: &[f64]) -> f64 {
-        let limit = (self.limit)();
-        (1..=POINTS)
+        let limit = (self.max_argument)();
+        (1..=SAMPLE_COUNT)
             .map(|i| {
-                let x = &limit * number_of(i) / number_of(POINTS);
+                let x = &limit * number_from(i) / number_from(SAMPLE_COUNT);
                 let z = &x * &x;
                 let sum = coefficients
                     .iter()
                     .rev()
-                    .fold(number_of(0), |sum, c| sum * &z + exact_number_of(*c));
-                let deviation =
-                    (sum - self.target_value(&x)) * power_of(&x, self.power) / (self.function)(&x);
-                deviation.to_f64().value().abs()
+                    .fold(number_from(0), |sum, c| sum * &z + exact_number_from(*c));
+                let relative_error = (sum - self.target_value(&x)) * power_of(&x, self.exponent)
+                    / (self.function)(&x);
+                relative_error.to_f64().value().abs()
             })
             .fold(0.0, f64::max)
     }
 
     /// The exact value, at an argument x, that the polynomial P approximates.
     fn target_value(&self, x: &Number) -> Number {
-        ((self.function)(x) - (self.lead)(x)) / power_of(x, self.power)
+        ((self.function)(x) - (self.leading_terms)(x)) / power_of(x, self.exponent)
     }
 }
 

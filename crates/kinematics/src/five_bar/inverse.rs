@@ -1,13 +1,13 @@
-//! Inverse kinematics of the five-bar: the crank angles that put the end point at a given point.
+//! The inverse kinematics of the five-bar: the crank angles that put the end point at a given point.
 //!
-//! Each arm by itself is a triangle of crank, coupler and the line from its shaft to the point. An
-//! arm can bend to either side of that line, so a point has four solutions.
+//! Each arm forms a triangle of its crank, its coupler and the line from its shaft to the point. Each
+//! of the two arms can bend to either side of that line, so a point has four solutions.
 
 use super::{AssemblyMode, FiveBar, FiveBarPose, double_area};
 use crate::fault::Fault;
 use crate::vector::Vector;
 
-/// The direction in which a crank and its coupler bend.
+/// The direction in which an arm of crank and coupler is bent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Elbow {
     /// Away from the other crank, as the robot is built; positive type-1 margin.
@@ -16,13 +16,13 @@ pub enum Elbow {
     Inward,
 }
 
-/// The bends of both arms. A mechanism cannot change them without passing a type-1
+/// The elbows of both arms. A mechanism cannot change them without passing through a type-1
 /// singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorkingMode {
-    /// Bend of the left crank and coupler.
+    /// Elbow of the left arm.
     pub left: Elbow,
-    /// Bend of the right crank and coupler.
+    /// Elbow of the right arm.
     pub right: Elbow,
 }
 
@@ -30,8 +30,8 @@ impl WorkingMode {
     /// Both elbows outward, as the robot is built.
     pub const OUTWARD: Self = Self::new(Elbow::Outward, Elbow::Outward);
 
-    /// All four modes: outward-outward, outward-inward, inward-outward, inward-inward,
-    /// the left elbow first.
+    /// All four modes, with the left elbow named first: outward-outward, outward-inward,
+    /// inward-outward, inward-inward.
     pub const ALL: [Self; 4] = [
         Self::OUTWARD,
         Self::new(Elbow::Outward, Elbow::Inward),
@@ -47,28 +47,26 @@ impl WorkingMode {
 /// One of the four solutions that put the end point at a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseSolution {
-    /// The bends of both arms.
+    /// The elbows of both arms.
     pub working_mode: WorkingMode,
-    /// The assembly mode in which the forward solution finds the point again.
+    /// The assembly mode in which the forward kinematics returns to the point.
     pub assembly_mode: AssemblyMode,
-    /// Left crank angle, (-180, 180] degrees, the five-bar's own frame.
+    /// Left crank angle, (-180, 180] degrees, in the five-bar's own frame.
     pub theta_left: f64,
-    /// Right crank angle, (-180, 180] degrees, the five-bar's own frame.
+    /// Right crank angle, (-180, 180] degrees, in the five-bar's own frame.
     pub theta_right: f64,
 }
 
 impl FiveBar {
-    /// Crank angles that put the end point at a point (mm, own frame), one
-    /// solution for each of [`WorkingMode::ALL`], in that order. At the edge of
-    /// an arm's reach its two elbows coincide.
+    /// The crank angles that put the end point at a point (mm, own frame): one solution for each
+    /// of [`WorkingMode::ALL`], in that order. At the edge of an arm's reach, the solutions for
+    /// both of its elbows coincide.
     ///
-    /// The paper's second constraint equation has theta2, l1, l2 where theta4,
-    /// l4, l3 belong.
+    /// The paper's second constraint equation has theta2, l1, l2 where theta4, l4, l3 belong.
     ///
     /// # Errors
-    /// Returns [`Fault::OutOfReach`] where an arm does not reach the point, [`Fault::OnShaft`]
-    /// where a crank's angle is free, [`Fault::NotFinite`] for input that is not finite or that
-    /// overflows.
+    /// Returns [`Fault::OutOfReach`] if an arm does not reach the point, [`Fault::OnShaft`] if a
+    /// crank's angle is free, [`Fault::NotFinite`] if the input is not finite or overflows.
     pub fn inverse(&self, point: Vector) -> Result<[InverseSolution; 4], Fault> {
         let arms = self.solve_arms(point)?;
         let solution_of = |working_mode: WorkingMode| {
@@ -88,7 +86,7 @@ impl FiveBar {
     ///
     /// # Errors
     /// Fails as [`FiveBar::inverse`] and [`FiveBar::forward`] do.
-    pub fn reach(&self, point: Vector) -> Result<FiveBarPose, Fault> {
+    pub fn pose_at_point(&self, point: Vector) -> Result<FiveBarPose, Fault> {
         let (left, right, mode) = self.solve_arms(point)?.directions_in(WorkingMode::OUTWARD);
         self.close(mode, left, right)
     }
@@ -103,11 +101,16 @@ impl FiveBar {
             bars: *self,
             from_left_shaft,
             from_right_shaft,
-            left: crank_directions(from_left_shaft, self.crank_left, self.coupler_left, true)?,
-            right: crank_directions(
+            left_cranks: crank_directions(
+                from_left_shaft,
+                self.left_crank_length,
+                self.left_coupler_length,
+                true,
+            )?,
+            right_cranks: crank_directions(
                 from_right_shaft,
-                self.crank_right,
-                self.coupler_right,
+                self.right_crank_length,
+                self.right_coupler_length,
                 false,
             )?,
         })
@@ -121,29 +124,30 @@ struct Arms {
     from_left_shaft: Vector,
     /// Vector from the right shaft to the point, mm.
     from_right_shaft: Vector,
-    /// Directions of the left crank, length one, bent counter-clockwise and clockwise from the line
-    /// to the point.
-    left: [Vector; 2],
-    /// Directions of the right crank, length one, bent counter-clockwise and clockwise from the line
-    /// to the point.
-    right: [Vector; 2],
+    /// Directions of the left crank, length one: counter-clockwise and clockwise of the line to the
+    /// point.
+    left_cranks: [Vector; 2],
+    /// Directions of the right crank, length one: counter-clockwise and clockwise of the line to the
+    /// point.
+    right_cranks: [Vector; 2],
 }
 
 impl Arms {
-    /// Crank directions (length one) in a working mode, and the assembly mode.
+    /// The directions (length one) of the left and the right crank in a working mode, and the
+    /// assembly mode.
     fn directions_in(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
         // Outward is to the left of the line from the left shaft to the point,
         // and to the right of the line from the right shaft.
         let left = match mode.left {
-            Elbow::Outward => self.left[0],
-            Elbow::Inward => self.left[1],
+            Elbow::Outward => self.left_cranks[0],
+            Elbow::Inward => self.left_cranks[1],
         };
         let right = match mode.right {
-            Elbow::Outward => self.right[1],
-            Elbow::Inward => self.right[0],
+            Elbow::Outward => self.right_cranks[1],
+            Elbow::Inward => self.right_cranks[0],
         };
-        let left_coupler = self.from_left_shaft - left * self.bars.crank_left;
-        let right_coupler = self.from_right_shaft - right * self.bars.crank_right;
+        let left_coupler = self.from_left_shaft - left * self.bars.left_crank_length;
+        let right_coupler = self.from_right_shaft - right * self.bars.right_crank_length;
         let assembly_mode = if left_coupler.cross(right_coupler) >= 0.0 {
             AssemblyMode::Ahead
         } else {
@@ -153,8 +157,8 @@ impl Arms {
     }
 }
 
-/// The directions (length one) of a crank whose coupler ends at a point: bent counter-clockwise and
-/// clockwise from the line between shaft and point.
+/// The directions (length one) of a crank whose coupler ends at a point: counter-clockwise and
+/// clockwise of the line from the shaft to the point.
 fn crank_directions(
     to_point: Vector,
     crank: f64,
@@ -162,31 +166,32 @@ fn crank_directions(
     is_left: bool,
 ) -> Result<[Vector; 2], Fault> {
     let distance = to_point.length();
-    let (min, max) = ((crank - coupler).abs(), crank + coupler);
-    if !distance.is_finite() || !max.is_finite() {
+    let (min_reach, max_reach) = ((crank - coupler).abs(), crank + coupler);
+    if !distance.is_finite() || !max_reach.is_finite() {
         return Err(Fault::NotFinite);
     }
-    // A point on the edge of the reach that was computed elsewhere may miss it by rounding.
-    let slack = max * 4.0 * f64::EPSILON;
-    if distance > max + slack || distance < min - slack {
+    // A point that the caller computed to lie on the edge of the reach may be outside by rounding.
+    let slack = max_reach * 4.0 * f64::EPSILON;
+    if distance > max_reach + slack || distance < min_reach - slack {
         return Err(Fault::OutOfReach {
             is_left,
             distance,
-            least: min,
-            most: max,
+            min_reach,
+            max_reach,
         });
     }
     if distance <= slack {
         return Err(Fault::OnShaft);
     }
-    // Crank direction relative to the line to the point, scaled by twice the product of both lengths.
+    // The components of the crank's direction, relative to the line to the point, scaled by twice the product of crank
+    // and distance.
     let parallel = distance * distance + (crank - coupler) * (crank + coupler);
     let perpendicular = 2.0 * double_area(crank, coupler, distance);
     let directions = [perpendicular, -perpendicular].map(|perpendicular| {
         let crank = rotate(Vector::new(parallel, perpendicular), to_point);
         crank * (1.0 / crank.length())
     });
-    // If the products overflow or vanish, no direction of length one is left.
+    // If the products overflow or underflow, the results do not have length one.
     if directions
         .iter()
         .all(|crank| (crank.length_squared() - 1.0).abs() < 1e-9)
@@ -197,7 +202,7 @@ fn crank_directions(
     }
 }
 
-/// `vector` turned by the angle of `frame` and scaled by its length.
+/// `vector`, turned by the angle of `frame` and scaled by the length of `frame`.
 fn rotate(vector: Vector, frame: Vector) -> Vector {
     frame * vector.x + frame.rotated_left() * vector.y
 }

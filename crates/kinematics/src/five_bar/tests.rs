@@ -1,6 +1,6 @@
-//! Tests of the five-bar against Newton's method and the law of cosines.
+//! Comparisons of the five-bar's solutions with Newton's method and with the law of cosines.
 
-use crate::reference::{HEAD, end_point, loop_gap, newton};
+use crate::reference::{PAPER_HEAD, end_point_by_cosines, loop_residuals, solve_by_newton};
 use lizard_kinematics::{AssemblyMode, Elbow, Fault, FiveBar, Vector, wrap};
 use proptest::prelude::*;
 
@@ -13,27 +13,27 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4096, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_loop_that_closes_does_so_to_a_billionth_of_a_millimetre(
+    fn every_loop_that_closes_does_so_within_a_billionth_of_a_millimetre(
         bars in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
     ) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
             if let Ok(pose) = bars.forward_in(mode, left, right) {
-                let [x, y] = loop_gap(
+                let [x, y] = loop_residuals(
                     &bars,
                     [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
                 );
-                prop_assert!(x.hypot(y) < 1e-9, "{mode:?} gapes by {x} {y}");
+                prop_assert!(x.hypot(y) < 1e-9, "{mode:?}: the loop is open by {x} {y}");
                 let reach = (pose.end_point - pose.right_tip).length();
-                prop_assert!((reach - bars.coupler_right).abs() < 1e-9);
+                prop_assert!((reach - bars.right_coupler_length).abs() < 1e-9);
             }
         }
     }
 
     #[test]
-    fn the_solver_finds_a_position_exactly_where_the_law_of_cosines_does(
+    fn the_solver_agrees_with_the_law_of_cosines(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
-        match (bars.forward(left, right), end_point(&bars, left, right)) {
+        match (bars.forward(left, right), end_point_by_cosines(&bars, left, right)) {
             (Ok(pose), Some([x, y])) => {
                 // acos loses half the digits when the triangle is flat.
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
@@ -45,14 +45,14 @@ proptest! {
     }
 
     #[test]
-    fn newton_from_a_perturbed_start_returns_to_the_closed_form(
+    fn newtons_method_from_a_perturbed_start_returns_to_the_closed_form(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
         nudge in [-2.0..2.0, -2.0..2.0f64],
     ) {
         if let Ok(pose) = bars.forward(left, right) && pose.type2 > 0.3 {
             let expected = [pose.theta_left_coupler(), pose.theta_right_coupler()];
             let start = [expected[0] + nudge[0], expected[1] + nudge[1]];
-            let angles = newton(&bars, [left, right], start).expect("Newton converges");
+            let angles = solve_by_newton(&bars, [left, right], start).expect("Newton converges");
             for (a, b) in expected.iter().zip(angles) {
                 prop_assert!(wrap(a - b).abs() < 1e-9, "{expected:?} {angles:?}");
             }
@@ -60,7 +60,7 @@ proptest! {
     }
 
     #[test]
-    fn margins_are_the_sines_of_their_definitions(
+    fn margins_are_the_sines_of_the_angles_between_their_links(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
         if let Ok(pose) = bars.forward(left, right) {
@@ -73,15 +73,15 @@ proptest! {
     }
 
     #[test]
-    fn forward_after_inverse_returns_to_the_point_in_every_assembly(
+    fn forward_after_inverse_returns_to_the_point_for_all_four_solutions(
         bars in any_five_bar(), x in -300.0..300.0f64, y in -300.0..300.0f64,
     ) {
         let point = Vector::new(x, y);
         if let Ok(solutions) = bars.inverse(point) {
             for solution in solutions {
                 let pose = bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
-                // The end point is nearly free where the crank tips nearly coincide, and
-                // where the couplers are nearly in line.
+                // The end point is badly determined if the crank tips nearly coincide, and if the
+                // couplers nearly line up.
                 let stiffness = (pose.gap.length() / 1e3).min(pose.type2.abs());
                 let tolerance = 1e-9_f64.max(1e-12 / stiffness);
                 prop_assert!((pose.end_point - point).length() < tolerance, "{solution:?} {pose:?}");
@@ -95,10 +95,10 @@ proptest! {
     ) {
         if let Ok(pose) = bars.forward(left, right) {
             let (left_margin, right_margin) = (pose.type1_left(), pose.type1_right());
-            // Near a type-1 singularity, the angle varies like a square root of the point's
-            // distance.
+            // Near a type-1 singularity, the angles change in proportion to the square root of the
+            // point's displacement.
             prop_assume!(left_margin.abs() > 1e-2 && right_margin.abs() > 1e-2 && pose.type2 > 1e-3);
-            // A shaft under the end point leaves that crank's angle free.
+            // If the end point lies on a shaft, that crank's angle is free.
             prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);
             prop_assume!((pose.end_point - bars.right_shaft()).length() > 1.0);
             let elbow_of = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
@@ -112,63 +112,69 @@ proptest! {
 }
 
 #[test]
-fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
-    let (mut worst_mm, mut reached_count) = (0.0_f64, 0);
+fn the_papers_head_returns_from_point_to_angles_to_point_over_its_whole_workspace() {
+    let (mut max_error, mut reached_count) = (0.0_f64, 0);
     for i in -90..=90 {
         for j in 0..=90 {
             let point = Vector::new(f64::from(i), f64::from(j));
-            let Ok([solution, ..]) = HEAD.inverse(point) else {
+            let Ok([solution, ..]) = PAPER_HEAD.inverse(point) else {
                 continue;
             };
             let (left, right) = (solution.theta_left, solution.theta_right);
-            let pose = HEAD.forward_in(solution.assembly_mode, left, right);
-            worst_mm = worst_mm.max((pose.unwrap().end_point - point).length());
+            let pose = PAPER_HEAD.forward_in(solution.assembly_mode, left, right);
+            max_error = max_error.max((pose.unwrap().end_point - point).length());
             reached_count += 1;
         }
     }
-    assert!(worst_mm < 1e-9, "worst {worst_mm} mm");
-    // Half a disc of 80 mm has 10 000 such points, less those too near to a shaft.
+    assert!(max_error < 1e-9, "{max_error} mm");
+    // Half a disc with a radius of 80 mm has 10 000 such points, of which some are too near to a shaft.
     assert!(reached_count > 5_000, "{reached_count} points");
 }
 
 #[test]
-fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
-    // cos theta = 1/3: the tips meet at (0, 20 sqrt 2).
+fn coinciding_crank_tips_give_a_fault_or_a_finite_singular_pose() {
+    // With cos theta = 1/3 the tips meet at (0, 20 sqrt 2).
     let theta = (1.0f64 / 3.0).acos().to_degrees();
-    match HEAD.forward(theta, 180.0 - theta) {
+    match PAPER_HEAD.forward(theta, 180.0 - theta) {
         Err(Fault::Coincident) => {}
         Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.end_point.is_finite()),
         Err(fault) => panic!("{fault}"),
     }
-    let degenerate = FiveBar { base: 0.0, ..HEAD };
-    assert_eq!(degenerate.forward(50.0, 50.0), Err(Fault::Coincident));
-}
-
-#[test]
-fn the_solver_works_where_the_papers_a_vanishes() {
-    // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
-    let mut smallest_value = f64::INFINITY;
-    for step in 0..=1800 {
-        let theta4 = f64::from(step) / 10.0;
-        for theta1 in [100.0, 120.0, 138.59, 150.0] {
-            let Ok(pose) = HEAD.forward(theta1, theta4) else {
-                continue;
-            };
-            smallest_value =
-                smallest_value.min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
-            let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
-            let gap = loop_gap(&HEAD, [theta1, theta2, theta3, theta4]);
-            assert!(gap[0].hypot(gap[1]) < 1e-12);
-        }
-    }
-    assert!(
-        smallest_value < 10.0,
-        "the sweep passes A = 0 nearby, {smallest_value}"
+    let bars_without_base = FiveBar {
+        base: 0.0,
+        ..PAPER_HEAD
+    };
+    assert_eq!(
+        bars_without_base.forward(50.0, 50.0),
+        Err(Fault::Coincident)
     );
 }
 
 #[test]
-fn unreachable_points_and_bad_numbers_say_why() {
+fn the_loop_closes_near_the_poses_at_which_the_papers_a_vanishes() {
+    // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
+    let mut min_magnitude_of_double_a = f64::INFINITY;
+    for step in 0..=1800 {
+        let theta4 = f64::from(step) / 10.0;
+        for theta1 in [100.0, 120.0, 138.59, 150.0] {
+            let Ok(pose) = PAPER_HEAD.forward(theta1, theta4) else {
+                continue;
+            };
+            min_magnitude_of_double_a = min_magnitude_of_double_a
+                .min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
+            let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
+            let gap = loop_residuals(&PAPER_HEAD, [theta1, theta2, theta3, theta4]);
+            assert!(gap[0].hypot(gap[1]) < 1e-12);
+        }
+    }
+    assert!(
+        min_magnitude_of_double_a < 10.0,
+        "no pose is near A = 0: {min_magnitude_of_double_a}"
+    );
+}
+
+#[test]
+fn the_messages_of_faults_state_the_distances_and_limits() {
     for (x, y, message) in [
         (
             0.0,
@@ -182,7 +188,7 @@ fn unreachable_points_and_bad_numbers_say_why() {
         ),
         (f64::NAN, 5.0, "a value is not a finite number"),
     ] {
-        let fault = HEAD.inverse(Vector::new(x, y)).unwrap_err();
+        let fault = PAPER_HEAD.inverse(Vector::new(x, y)).unwrap_err();
         assert_eq!(fault.to_string(), message);
     }
     let short_bars = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
@@ -196,16 +202,19 @@ fn unreachable_points_and_bad_numbers_say_why() {
         "the crank tips are 20.000 mm apart, the couplers need 30.000 mm"
     );
     assert_eq!(
-        HEAD.forward(f64::INFINITY, 0.0).unwrap_err(),
+        PAPER_HEAD.forward(f64::INFINITY, 0.0).unwrap_err(),
         Fault::NotFinite
     );
 }
 
 #[test]
-fn a_distance_that_overflows_is_reported_as_not_finite_and_not_as_out_of_reach() {
+fn a_distance_or_reach_that_overflows_is_reported_as_not_finite() {
     let far_point = Vector::new(1e200, 0.0);
-    assert_eq!(HEAD.inverse(far_point).unwrap_err(), Fault::NotFinite);
-    assert_eq!(HEAD.reach(far_point).unwrap_err(), Fault::NotFinite);
+    assert_eq!(PAPER_HEAD.inverse(far_point).unwrap_err(), Fault::NotFinite);
+    assert_eq!(
+        PAPER_HEAD.pose_at_point(far_point).unwrap_err(),
+        Fault::NotFinite
+    );
     let endless_bars = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
     let near_point = Vector::new(0.0, 50.0);
     assert_eq!(

@@ -1,20 +1,23 @@
-//! Every condition of a safe pose, for robots without any symmetry, compared with formulas that name each link and
-//! each angle by its number in the paper.
+//! The conditions of a safe pose for robots without any symmetry, compared with formulas that name each link and each
+//! angle by its number in the paper.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use lizard_kinematics::{Check, End, Limits, Lizard, Side, Vector};
 use proptest::prelude::*;
 
-use crate::reference::{any_lizard, any_pose, any_solved, cases, circle_intersection, cis};
+use crate::reference::{
+    any_lizard, any_pose, any_solved_robot, circle_intersection, cis, config_with_cases,
+};
 
+/// The sine of the angle from `a` to `b`.
 fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
 }
 
 /// The values of all conditions by name, in the chassis frame; `None` where a loop does not
 /// close.
-fn reference_values(
+fn expected_values_of(
     robot: &Lizard,
     [t1, t4, t8, t5]: [f64; 4],
 ) -> Option<BTreeMap<&'static str, f64>> {
@@ -27,12 +30,12 @@ fn reference_values(
     // Crank tips.
     let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
     let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
-    // End points: left of the line from p1 to p4, and right of the line from p5 to p8.
+    // The end points are to the left of the line from p1 to p4, and to the right of that from p5 to p8.
     let head = circle_intersection(p1, l.l2, p4, l.l3)?;
     let tail = circle_intersection(p8, l.l8, p5, l.l7)?;
-    // Slider lengths.
-    let left = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
-    let right = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);
+    // Vectors along the sliders.
+    let left_span = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
+    let right_span = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);
     Some(BTreeMap::from([
         ("type2_head", sine_between(head - p1, head - p4)),
         ("type2_tail", sine_between(tail - p8, tail - p5)),
@@ -44,14 +47,20 @@ fn reference_values(
         ("leg_rf", t4.to_radians().sin()),
         ("leg_rh", -t8.to_radians().sin()),
         ("leg_lh", -t5.to_radians().sin()),
-        ("stroke_left", left.x.hypot(left.y) - l.l12 - l.l13),
-        ("stroke_right", right.x.hypot(right.y) - l.l17 - l.l18),
+        (
+            "stroke_left",
+            left_span.x.hypot(left_span.y) - l.l12 - l.l13,
+        ),
+        (
+            "stroke_right",
+            right_span.x.hypot(right_span.y) - l.l17 - l.l18,
+        ),
         ("uncrossed_head", p4.x - p1.x),
         ("uncrossed_tail", p8.x - p5.x),
     ]))
 }
 
-/// Limits that differ from kind to kind of condition.
+/// Random limits, with a different one for each kind of condition.
 fn any_limits() -> impl Strategy<Value = Limits> {
     let ranges = [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64];
     ranges.prop_map(|values| Limits {
@@ -63,8 +72,8 @@ fn any_limits() -> impl Strategy<Value = Limits> {
     })
 }
 
-/// The least and the greatest safe value of a condition, chosen by the first word of its name.
-fn range_of(limits: &Limits, name: &str) -> (f64, f64) {
+/// The smallest and the largest safe value of a condition, found by the first word of its name.
+fn safe_range_of(limits: &Limits, name: &str) -> (f64, f64) {
     match name.split('_').next().unwrap() {
         "type2" => (limits.type2, f64::INFINITY),
         "type1" => (limits.type1, f64::INFINITY),
@@ -75,15 +84,15 @@ fn range_of(limits: &Limits, name: &str) -> (f64, f64) {
 }
 
 proptest! {
-    #![proptest_config(cases(4096))]
+    #![proptest_config(config_with_cases(4096))]
 
     #[test]
-    fn every_condition_is_measured_on_its_own_links_and_servos(
+    fn every_condition_has_the_value_of_its_formula_for_robots_without_symmetry(
         robot in any_lizard(), pose in any_pose(), turns in -2..=2i32,
     ) {
         let pose = pose.map(|angle| angle + 360.0 * f64::from(turns));
         let solution = robot.solve(&pose.into()).ok();
-        let Some(expected_values) = reference_values(&robot, pose) else {
+        let Some(expected_values) = expected_values_of(&robot, pose) else {
             prop_assert!(solution.is_none_or(|s| s.head.type2.min(s.tail.type2) < 1e-6));
             return Ok(());
         };
@@ -91,7 +100,7 @@ proptest! {
             prop_assert!(expected_values["type2_head"].min(expected_values["type2_tail"]) < 1e-6);
             return Ok(());
         };
-        // In nearly flat triangles the law of cosines loses half its digits.
+        // For nearly flat triangles the law of cosines loses half of the digits.
         prop_assume!(expected_values["type2_head"].min(expected_values["type2_tail"]) > 1e-4);
         let conditions: BTreeMap<_, _> = solution.conditions().map(|(check, v)| (check.name(), v)).collect();
         prop_assert_eq!(conditions.len(), 14);
@@ -99,7 +108,7 @@ proptest! {
             let actual = conditions[name];
             prop_assert!((actual - expected).abs() < 1e-7, "{name} {actual} {expected}");
         }
-        // The array of margins and the conditions of each single end give the same values.
+        // The margins and the conditions of each end give the same values.
         for (check, value) in solution.margins.iter() {
             prop_assert_eq!(value, conditions[check.name()]);
         }
@@ -113,12 +122,12 @@ proptest! {
     }
 
     #[test]
-    fn a_limit_is_broken_exactly_by_the_conditions_of_its_kind(
-        (_, _, solution) in any_solved(), limits in any_limits(),
+    fn a_violation_is_reported_for_exactly_the_conditions_out_of_range(
+        (_, _, solution) in any_solved_robot(), limits in any_limits(),
     ) {
         let mut expected = Vec::new();
         for (check, value) in solution.conditions() {
-            let (min, max) = range_of(&limits, check.name());
+            let (min, max) = safe_range_of(&limits, check.name());
             if value < min {
                 let is_crossing = Check::UNCROSSED.contains(&check);
                 expected.push((check, value, if is_crossing { 0.0 } else { min }));
@@ -129,7 +138,7 @@ proptest! {
         let violations: Vec<_> = limits.violations(&solution).map(|v| (v.check, v.value, v.limit)).collect();
         prop_assert_eq!(limits.is_safe(&solution), violations.is_empty());
         prop_assert_eq!(&violations, &expected);
-        // Each end alone finds its own violations.
+        // The violations of each end alone are the same, except for those of the sliders.
         let violations_of_end = |end: End| limits.end_violations(end, solution.end(end));
         let names_of_ends = End::ALL.into_iter().flat_map(violations_of_end).map(|v| v.check.name());
         let expected_names = expected.iter().map(|(check, ..)| check);
@@ -138,7 +147,7 @@ proptest! {
     }
 
     #[test]
-    fn a_value_at_its_limit_is_safe_and_the_next_one_is_not(limits in any_limits()) {
+    fn a_value_at_its_limit_is_safe_and_the_next_one_beyond_is_not(limits in any_limits()) {
         let limits_of_kinds: [(&[Check], f64); 4] = [
             (&Check::TYPE2, limits.type2),
             (&Check::TYPE1, limits.type1),
@@ -164,8 +173,8 @@ proptest! {
     }
 
     #[test]
-    fn points_of_the_robot_lie_at_the_ends_of_their_links(
-        (robot, pose, solution) in any_solved(),
+    fn crank_tips_end_points_and_arm_tips_lie_at_the_ends_of_their_links(
+        (robot, pose, solution) in any_solved_robot(),
     ) {
         prop_assume!(solution.head.type2.min(solution.tail.type2) > 1e-3);
         let l = &robot.links;
@@ -186,7 +195,7 @@ proptest! {
             }
             prop_assert!(distance_of(robot.to_end(end, point), solution.end(end).end_point) < 1e-9);
         }
-        // Arm tips, relative to the rear shaft.
+        // The arm tips are relative to the rear shafts.
         let [left, right] = Side::ALL.map(|side| solution.side(side));
         prop_assert!(distance_of(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
         prop_assert!(distance_of(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
@@ -196,9 +205,9 @@ proptest! {
 
     #[test]
     fn the_angles_for_a_point_put_the_end_point_there_in_servo_order(
-        (robot, pose, solution) in any_solved(),
+        (robot, pose, solution) in any_solved_robot(),
     ) {
-        // The inverse returns outward elbows only, and loses digits near a singularity.
+        // `point_angles` returns only outward elbows, and loses digits near a singularity.
         prop_assume!(solution.margins.type1.iter().chain(&solution.margins.type2).all(|m| *m > 1e-2));
         let mut angles = Vec::new();
         for end in End::ALL {

@@ -1,12 +1,12 @@
-//! A solution holds finite numbers only, for any lengths and angles.
+//! For any lengths and angles, a solution contains only finite numbers.
 
 use lizard_kinematics::{AssemblyMode, Fault, FiveBar, FiveBarPose, Pose, Slider, Vector};
 use proptest::prelude::*;
 
-use crate::reference::{any_lizard, any_pose, lizard};
+use crate::reference::{any_lizard, any_pose, paper_lizard};
 
-/// Ordinary lengths, lengths over the whole range of an f64, and lengths near 1e77 and 1e154,
-/// whose fourth and second powers overflow.
+/// Ordinary lengths, lengths over the whole range of f64, and lengths near 1e77 and 1e154, whose
+/// fourth and second powers, respectively, begin to overflow.
 fn any_length() -> impl Strategy<Value = f64> {
     prop_oneof![
         5.0..200.0f64,
@@ -16,8 +16,9 @@ fn any_length() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Five-bars with links of similar size, most of which close, or of unrelated sizes.
-fn any_bars() -> impl Strategy<Value = FiveBar> {
+/// Five-bars with links of similar lengths, most of which close, and five-bars with links of unrelated
+/// lengths.
+fn any_five_bar() -> impl Strategy<Value = FiveBar> {
     let any_unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
         any_unit(),
@@ -53,7 +54,7 @@ proptest! {
     })]
 
     #[test]
-    fn a_five_bar_of_any_size(bars in any_bars(), left in any::<f64>(), right in -180.0..180.0f64) {
+    fn a_five_bar_of_any_size_has_a_finite_pose_or_a_fault(bars in any_five_bar(), left in any::<f64>(), right in -180.0..180.0f64) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
             if let Ok(pose) = bars.forward_in(mode, left, right) {
                 prop_assert!(is_finite_pose(&pose), "{pose:?}");
@@ -62,34 +63,33 @@ proptest! {
     }
 
     #[test]
-    fn the_inverse_of_a_five_bar_of_any_size(
-        bars in any_bars(), x in -1.0..1.0f64, y in 0.0..2.0f64, other_length in any_length(),
+    fn the_inverse_of_a_five_bar_of_any_size_is_finite_and_right_or_a_fault(
+        bars in any_five_bar(), x in -1.0..1.0f64, y in 0.0..2.0f64, other_length in any_length(),
     ) {
-        for unit in [bars.crank_left, other_length] {
+        for unit in [bars.left_crank_length, other_length] {
             let point = Vector::new(x * unit, y * unit);
             if let Ok(solutions) = bars.inverse(point) {
                 for solution in solutions {
                     prop_assert!(solution.theta_left.is_finite() && solution.theta_right.is_finite());
-                    // No intermediate result underflowed either: the computed arm ends at the
-                    // point.
-                    let tip = bars.left_shaft() + Vector::direction(solution.theta_left) * bars.crank_left;
+                    // No intermediate result has underflowed, either: the arm ends at the point.
+                    let tip = bars.left_shaft() + Vector::direction(solution.theta_left) * bars.left_crank_length;
                     let reach = (point - tip).length();
-                    let error = (reach - bars.coupler_left).abs();
-                    let size = bars.crank_left + bars.coupler_left + bars.base;
+                    let error = (reach - bars.left_coupler_length).abs();
+                    let size = bars.left_crank_length + bars.left_coupler_length + bars.base;
                     prop_assert!(error < 1e-6 * size, "{error} of {size}: {solution:?}");
                 }
             }
-            if let Ok(pose) = bars.reach(point) {
+            if let Ok(pose) = bars.pose_at_point(point) {
                 prop_assert!(is_finite_pose(&pose));
             }
         }
     }
 
     #[test]
-    fn a_slider_of_any_size(
+    fn a_slider_of_any_size_has_a_finite_pose_or_a_fault(
         l in proptest::array::uniform5(any_length()), rear in any::<f64>(), front in 0.0..360.0f64,
     ) {
-        let slider = Slider { offset: l[0], base: l[1], front: l[2], rear: l[3], nominal: l[4] };
+        let slider = Slider { front_offset: l[0], base: l[1], front_arm: l[2], rear_arm: l[3], nominal_length: l[4] };
         if let Ok(pose) = slider.forward(rear, front) {
             prop_assert!(pose.d.is_finite() && pose.s.is_finite() && pose.span.is_finite());
             prop_assert!(pose.rear_tip.is_finite() && pose.front_tip.is_finite());
@@ -97,7 +97,7 @@ proptest! {
     }
 
     #[test]
-    fn an_angle_of_any_size_is_the_angle_within_a_turn(
+    fn an_angle_of_any_size_gives_the_solution_of_its_remainder(
         robot in any_lizard(), pose in any_pose(), huge in any::<f64>(), servo in 0..4usize,
     ) {
         prop_assume!(huge.is_finite());
@@ -116,7 +116,7 @@ proptest! {
 }
 
 #[test]
-fn a_robot_whose_lengths_overflow_says_which_part_does() {
+fn a_length_that_is_not_finite_or_overflows_is_reported_with_its_part() {
     for (index, length, part) in [
         (0, 1e200, "head"),
         (1, f64::NAN, "head"),
@@ -128,12 +128,14 @@ fn a_robot_whose_lengths_overflow_says_which_part_does() {
         (16, 1e308, "right side"),
         (18, f64::NAN, "right side"),
     ] {
-        let mut robot = lizard();
+        let mut robot = paper_lizard();
         let mut l = robot.links.to_array();
         l[index] = length;
         robot.links = l.into();
         let neutral = [138.59, 41.41, 318.59, 221.41];
-        let infeasible = robot.solve(&neutral.into()).expect_err("no finite pose");
+        let infeasible = robot
+            .solve(&neutral.into())
+            .expect_err("the robot has no finite pose");
         let expected = (part.to_string(), Fault::NotFinite);
         assert_eq!(
             (infeasible.part.to_string(), infeasible.fault),

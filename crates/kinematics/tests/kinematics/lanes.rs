@@ -1,33 +1,36 @@
-//! Several five-bars or sliders computed at once give the same bits as each computed alone. Lanes that do not close
-//! do not affect the others.
+//! Five-bars or sliders that are computed together in lanes have the same bits as those that are computed alone, and
+//! lanes that do not close do not affect the others.
 
 use lizard_kinematics::{End, Lanes, Lizard, Side, Vector};
 use proptest::prelude::*;
 
 use crate::reference::any_lizard;
 
-const N: usize = 8;
+const LANE_COUNT: usize = 8;
 
 fn any_poses() -> impl Strategy<Value = Vec<[f64; 4]>> {
     let any_angle = || prop_oneof![0.0..360.0f64, Just(f64::NAN), -1e300..1e300];
-    proptest::collection::vec([any_angle(), any_angle(), any_angle(), any_angle()], N)
+    proptest::collection::vec(
+        [any_angle(), any_angle(), any_angle(), any_angle()],
+        LANE_COUNT,
+    )
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1024, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_mechanism_in_a_lane_has_the_bits_of_the_mechanism_alone(
+    fn a_mechanism_in_a_lane_has_the_same_bits_as_the_mechanism_alone(
         robot in any_lizard(), poses in any_poses(),
     ) {
-        let cranks: [Vector<Lanes<N>>; 4] = std::array::from_fn(|servo| {
-            let directions: [Vector; N] = std::array::from_fn(|i| Vector::direction(poses[i][servo]));
+        let cranks: [Vector<Lanes<LANE_COUNT>>; 4] = std::array::from_fn(|servo| {
+            let directions: [Vector; LANE_COUNT] = std::array::from_fn(|i| Vector::direction(poses[i][servo]));
             Vector::new(Lanes(directions.map(|v| v.x)), Lanes(directions.map(|v| v.y)))
         });
         for end in End::ALL {
-            let pose = robot.shape_end(end, cranks);
+            let pose = robot.end_pose_unchecked(end, cranks);
             let is_closed = robot.end(end).closes(&pose);
-            for i in 0..N {
+            for i in 0..LANE_COUNT {
                 let [left, right] = end.pick(poses[i]).map(|angle| end.sign() * angle);
                 let single_pose = robot.end(end).forward(left, right);
                 prop_assert_eq!(is_closed[i], single_pose.is_ok());
@@ -43,10 +46,10 @@ proptest! {
             }
         }
         for side in Side::ALL {
-            let pose = robot.shape_side(side, cranks);
+            let pose = robot.side_pose_unchecked(side, cranks);
             let is_closed = robot.side(side).closes(&pose);
-            for i in 0..N {
-                let single_travel = travel_by_arms(&robot, side, poses[i]);
+            for i in 0..LANE_COUNT {
+                let single_travel = slider_travel(&robot, side, poses[i]);
                 prop_assert_eq!(is_closed[i], single_travel.is_some());
                 let Some(single_travel) = single_travel else { continue };
                 prop_assert_eq!(pose.s.0[i].to_bits(), single_travel.to_bits());
@@ -55,8 +58,8 @@ proptest! {
     }
 }
 
-/// The travel of a side's slider, computed from the directions of its arms.
-fn travel_by_arms(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
+/// The travel of a side's slider in a single pose; `None` if the slider has no direction.
+fn slider_travel(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
     let [front, rear] = side.pick(pose).map(Vector::direction);
     let result = robot
         .side(side)

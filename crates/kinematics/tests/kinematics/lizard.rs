@@ -1,10 +1,10 @@
-//! The whole robot: loops, conventions, neutral pose, limits.
+//! The complete robot: loops, conventions, neutral pose, limits.
 
-use crate::reference::{any_solved, cases, cis, lizard, loop_gap};
+use crate::reference::{any_solved_robot, cis, config_with_cases, loop_residuals, paper_lizard};
 use lizard_kinematics::{Check, End, Limits, Vector, wrap};
 use proptest::prelude::*;
 
-const NEUTRAL: [f64; 4] = [138.590378, 41.409622, 318.590378, 221.409622];
+const NEUTRAL_POSE: [f64; 4] = [138.590378, 41.409622, 318.590378, 221.409622];
 
 const LIMITS: Limits = Limits {
     type2: 0.3,
@@ -14,16 +14,16 @@ const LIMITS: Limits = Limits {
     stroke_max: 45.0,
 };
 
-/// The limits that the paper's robot breaks at a pose, as messages.
-fn messages_of(pose: [f64; 4]) -> Vec<String> {
-    let solution = lizard().solve(&pose.into()).unwrap();
+/// The messages of the limits that the paper's robot breaks in a pose.
+fn violation_messages(pose: [f64; 4]) -> Vec<String> {
+    let solution = paper_lizard().solve(&pose.into()).unwrap();
     let violations = LIMITS.violations(&solution);
     violations.map(|violation| violation.to_string()).collect()
 }
 
 #[test]
-fn at_the_neutral_pose_the_sliders_are_at_nominal_and_the_head_at_57_840() {
-    let solution = lizard().solve(&NEUTRAL.into()).unwrap();
+fn the_neutral_pose_is_safe_with_nominal_sliders_and_the_ends_on_the_middle_line() {
+    let solution = paper_lizard().solve(&NEUTRAL_POSE.into()).unwrap();
     assert!(solution.left.s.abs() < 1e-6 && solution.right.s.abs() < 1e-6);
     assert!((solution.head.gap.length() - 65.0).abs() < 1e-6);
     assert!((solution.head.end_point - Vector::new(0.0, 57.840)).length() < 1e-3);
@@ -35,14 +35,14 @@ fn at_the_neutral_pose_the_sliders_are_at_nominal_and_the_head_at_57_840() {
 }
 
 proptest! {
-    #![proptest_config(cases(4096))]
+    #![proptest_config(config_with_cases(4096))]
 
     #[test]
-    fn all_four_loops_close_in_the_chassis_frame((robot, pose, solution) in any_solved()) {
+    fn all_four_loops_close_in_the_chassis_frame((robot, pose, solution) in any_solved_robot()) {
         let [t1, t4, t8, t5] = pose;
-        // In chassis angles both loops have the same vector equation; only the frames of the ends differ in sign.
-        let head = loop_gap(&robot.end(End::Head), [t1, solution.theta2(), solution.theta3(), t4]);
-        let tail = loop_gap(&robot.end(End::Tail), [t5, solution.theta6(), solution.theta7(), t8]);
+        // In chassis angles both loops have the same vector equation, although the frames of the ends are mirrored.
+        let head = loop_residuals(&robot.end(End::Head), [t1, solution.theta2(), solution.theta3(), t4]);
+        let tail = loop_residuals(&robot.end(End::Tail), [t5, solution.theta6(), solution.theta7(), t8]);
         prop_assert!(head[0].hypot(head[1]) < 1e-9);
         prop_assert!(tail[0].hypot(tail[1]) < 1e-9);
         // R10 + R14 = R11 + R12 + R13, and the same on the right.
@@ -53,7 +53,7 @@ proptest! {
             - a3 - cis(t8 + 90.0) * l.l16 - cis(solution.right.phi()) * (l.l17 + l.l18 + solution.right.s);
         prop_assert!(left.length() < 1e-9, "{left:?}");
         prop_assert!(right.length() < 1e-9, "{right:?}");
-        // End points: from each shaft along crank and coupler.
+        // The end points, from a shaft along crank and coupler.
         let head = a1 + cis(t1) * l.l1 + cis(solution.theta2()) * l.l2;
         let tail = a3 + cis(t8) * l.l9 + cis(solution.theta7()) * l.l8;
         prop_assert!((solution.head_point() - head).length() < 1e-9);
@@ -67,7 +67,7 @@ proptest! {
     fn swapping_left_and_right_mirrors_the_robot(
         t1 in 80.0..170.0f64, t4 in 10.0..100.0f64, t8 in 260.0..350.0f64, t5 in 190.0..280.0f64,
     ) {
-        let robot = lizard();
+        let robot = paper_lizard();
         let original = robot.solve(&[t1, t4, t8, t5].into());
         let mirrored = robot.solve(&[180.0 - t4, 180.0 - t1, 540.0 - t5, 540.0 - t8].into());
         prop_assume!(original.is_ok());
@@ -79,19 +79,19 @@ proptest! {
     }
 
     #[test]
-    fn the_box_of_safe_poses_keeps_every_margin(
+    fn every_pose_in_the_papers_safe_box_is_safe(
         t1 in 94.0..162.0f64, t4 in 18.0..86.0f64, t8 in 18.0..86.0f64, t5 in 94.0..162.0f64,
     ) {
-        let solution = lizard().solve(&[t1, t4, -t8, -t5].into()).unwrap();
-        let messages = messages_of([t1, t4, -t8, -t5]);
+        let solution = paper_lizard().solve(&[t1, t4, -t8, -t5].into()).unwrap();
+        let messages = violation_messages([t1, t4, -t8, -t5]);
         prop_assert!(messages.is_empty(), "{messages:?}");
         prop_assert!(solution.margins.min().1 >= 0.3);
     }
 }
 
 #[test]
-fn head_and_tail_angles_lead_back_to_the_points() {
-    let robot = lizard();
+fn the_angles_for_two_points_put_head_and_tail_there() {
+    let robot = paper_lizard();
     let angles_of = |end: End, x: f64, y: f64| robot.point_angles(end, Vector::new(x, y)).unwrap();
     let ([a1, a2], [a3, a4]) = (
         angles_of(End::Head, 8.0, 52.0),
@@ -105,12 +105,12 @@ fn head_and_tail_angles_lead_back_to_the_points() {
 
 #[test]
 fn each_broken_limit_has_its_message() {
-    let [_, a2, a3, a4] = NEUTRAL;
+    let [_, a2, a3, a4] = NEUTRAL_POSE;
     let leg_message = "margin leg_lf 0.070 is below 0.300";
     let arm_message = "margin type1_a1 -0.317 is below 0.300";
     let slider_message = "left slider travel +47.09 mm is above +45.00 mm";
     let crossed_message = "head crank tips are crossed: -18.57 mm from left to right";
-    // The leg is beyond its change point: its sine is large enough, but negative.
+    // The leg is beyond its change point: the magnitude of its margin is large enough, but its sign is negative.
     let beyond_message = "margin leg_rf -0.319 is below 0.300";
     for (pose, message) in [
         ([176.0, a2, a3, a4], leg_message),
@@ -119,13 +119,13 @@ fn each_broken_limit_has_its_message() {
         ([50.0, 130.0, a3, a4], crossed_message),
         ([138.59, 341.41, 318.59, 221.41], beyond_message),
     ] {
-        assert_eq!(messages_of(pose), [message]);
+        assert_eq!(violation_messages(pose), [message]);
     }
 }
 
 #[test]
-fn a_pose_that_is_not_a_number_is_refused_by_part() {
-    let result = lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
+fn a_pose_with_nan_is_infeasible_and_names_the_mechanism() {
+    let result = paper_lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
     assert_eq!(
         result.unwrap_err().to_string(),
         "head: a value is not a finite number"
@@ -133,8 +133,8 @@ fn a_pose_that_is_not_a_number_is_refused_by_part() {
 }
 
 #[test]
-fn margins_have_ten_names_and_a_least() {
-    let margins = lizard().margins(&NEUTRAL.into()).unwrap();
+fn there_are_ten_margins_and_the_least_is_that_of_a_leg_at_neutral() {
+    let margins = paper_lizard().margins(&NEUTRAL_POSE.into()).unwrap();
     let names: Vec<_> = margins.iter().map(|(check, _)| check.name()).collect();
     assert_eq!(
         names.join(" "),

@@ -1,5 +1,5 @@
-//! Tests across modules: the whole robot against solvers that share nothing
-//! with it but lengths.
+//! Tests across modules: the complete robot, compared with solvers that share only the link lengths
+//! with it.
 
 mod conditions;
 mod finite;

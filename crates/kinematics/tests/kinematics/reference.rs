@@ -1,5 +1,5 @@
-//! Reference solutions of the same mechanisms: Newton's method on the loop equations in joint angles, and
-//! intersections of circles by the law of cosines. They share nothing with the crate except the link lengths.
+//! Reference solutions of the same mechanisms: by Newton's method on the loop equations, and by intersections of
+//! circles with the law of cosines. They share nothing with the crate except the link lengths.
 
 #![allow(dead_code)] // Unit tests and integration tests use different parts.
 
@@ -9,9 +9,10 @@ use lizard_kinematics::{FiveBar, Leg, Lizard, Solution, Vector};
 use proptest::prelude::*;
 
 /// The head of the paper's robot.
-pub const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
+pub const PAPER_HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
 
-pub fn lizard() -> Lizard {
+/// The paper's robot.
+pub fn paper_lizard() -> Lizard {
     let mut l = [30.0; 20];
     for (length, links) in [
         (20.0, &[0, 5][..]),
@@ -34,52 +35,63 @@ pub fn lizard() -> Lizard {
     }
 }
 
-/// l1 cis theta1 + l2 cis theta2 - l3 cis theta3 - l4 cis theta4 - l0, in mm.
-pub fn loop_gap(bars: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
+/// The x and y residuals of the loop equation l1 cis(theta1) + l2 cis(theta2) - l3 cis(theta3) - l4 cis(theta4) - l0,
+/// mm, at theta1 to theta4 in degrees.
+pub fn loop_residuals(bars: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
     let [t1, t2, t3, t4] = degrees.map(|d| d * PI / 180.0);
-    let (l1, l2) = (bars.crank_left, bars.coupler_left);
-    let (l3, l4) = (bars.coupler_right, bars.crank_right);
+    let (l1, l2) = (bars.left_crank_length, bars.left_coupler_length);
+    let (l3, l4) = (bars.right_coupler_length, bars.right_crank_length);
     [
         l1 * t1.cos() + l2 * t2.cos() - l3 * t3.cos() - l4 * t4.cos() - bars.base,
         l1 * t1.sin() + l2 * t2.sin() - l3 * t3.sin() - l4 * t4.sin(),
     ]
 }
 
-/// theta2, theta3 in degrees by Newton's method from a start; `None` if it does not converge.
-pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
+/// theta2 and theta3 (degrees) by Newton's method, at the angles of both cranks and from `start` (degrees); `None` if
+/// it does not converge.
+pub fn solve_by_newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
     let [mut t2, mut t3] = start;
     for _ in 0..60 {
-        let [fx, fy] = loop_gap(bars, [cranks[0], t2, t3, cranks[1]]);
+        let [fx, fy] = loop_residuals(bars, [cranks[0], t2, t3, cranks[1]]);
         if fx.hypot(fy) < 1e-11 {
             return Some([t2, t3]);
         }
         let (a, b) = (t2 * PI / 180.0, t3 * PI / 180.0);
-        let (l2, l3) = (bars.coupler_left, bars.coupler_right);
+        let (l2, l3) = (bars.left_coupler_length, bars.right_coupler_length);
         let det = l2 * l3 * (a - b).sin();
         let da = (l3 * b.cos() * fx + l3 * b.sin() * fy) / det;
         let db = (l2 * a.cos() * fx + l2 * a.sin() * fy) / det;
         t2 += da.clamp(-0.5, 0.5) * 180.0 / PI;
         t3 += db.clamp(-0.5, 0.5) * 180.0 / PI;
     }
-    let [fx, fy] = loop_gap(bars, [cranks[0], t2, t3, cranks[1]]);
+    let [fx, fy] = loop_residuals(bars, [cranks[0], t2, t3, cranks[1]]);
     (fx.hypot(fy) < 1e-10).then_some([t2, t3])
 }
 
-/// The end point by the law of cosines at the left crank tip, to the left of the line from the left tip to
-/// the right one; `None` if the circles do not intersect.
-pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
+/// The end point, to the left of the line from the left crank tip to the right one, by the law of cosines; `None` if
+/// the couplers' circles do not intersect.
+pub fn end_point_by_cosines(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
-    let (half_base, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
+    let (half_base, l1, l4) = (
+        bars.base / 2.0,
+        bars.left_crank_length,
+        bars.right_crank_length,
+    );
     let left = Vector::new(l1 * a.cos() - half_base, l1 * a.sin());
     let right = Vector::new(l4 * b.cos() + half_base, l4 * b.sin());
-    let point = circle_intersection(left, bars.coupler_left, right, bars.coupler_right)?;
+    let point = circle_intersection(
+        left,
+        bars.left_coupler_length,
+        right,
+        bars.right_coupler_length,
+    )?;
     Some([point.x, point.y])
 }
 
-/// Robots of random proportions: each link 0.6 to 1.6 times that of the paper's robot, and l10 = l15.
+/// Robots of random proportions: each link is 0.6 to 1.6 times as long as that of the paper's robot, and l10 = l15.
 pub fn any_lizard() -> impl Strategy<Value = Lizard> {
     proptest::collection::vec(0.6..1.6f64, 20).prop_map(|factors| {
-        let paper = lizard();
+        let paper = paper_lizard();
         let mut l = paper.links.to_array();
         for (length, factor) in l.iter_mut().zip(factors) {
             *length *= factor;
@@ -92,25 +104,25 @@ pub fn any_lizard() -> impl Strategy<Value = Lizard> {
     })
 }
 
-/// Any robot and any pose at which it closes.
-pub fn any_solved() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
+/// Random robots, each with a pose in which all loops close, and with its solution.
+pub fn any_solved_robot() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
     (any_lizard(), any_pose()).prop_filter_map("a loop does not close", |(robot, pose)| {
         let solution = robot.solve(&pose.into()).ok()?;
         Some((robot, pose, solution))
     })
 }
 
-/// A proptest configuration with this number of cases that allows many rejected ones.
-pub fn cases(cases: u32) -> ProptestConfig {
+/// A proptest configuration with this number of cases, which tolerates many rejected ones.
+pub fn config_with_cases(case_count: u32) -> ProptestConfig {
     ProptestConfig {
-        cases,
+        cases: case_count,
         max_global_rejects: 100_000,
         max_local_rejects: 1_000_000,
         ..ProptestConfig::default()
     }
 }
 
-/// Servo angles at which most robots close, in servo order, degrees.
+/// Servo angles (degrees, servo order) at which the loops of most robots close.
 pub fn any_pose() -> impl Strategy<Value = [f64; 4]> {
     [0.0..180.0, 0.0..180.0, 180.0..360.0, 180.0..360.0f64]
 }

@@ -1,18 +1,18 @@
-//! Workspace, inscribed circle and conditioning.
+//! The workspace of a five-bar, its inscribed circle, and the conditioning index.
 
 use lizard_kinematics::{FiveBar, Vector, WorkingMode, Workspace};
 use proptest::prelude::*;
 
-use crate::reference::HEAD;
+use crate::reference::PAPER_HEAD;
 
-fn symmetrical_bars() -> impl Strategy<Value = FiveBar> {
+fn any_symmetrical_five_bar() -> impl Strategy<Value = FiveBar> {
     (5.0..100.0, 5.0..100.0, 0.0..150.0f64)
         .prop_map(|(crank, coupler, base)| FiveBar::new([base, crank, coupler, coupler, crank]))
 }
 
 #[test]
-fn the_papers_head_has_the_workspace_that_was_measured() {
-    let workspace = Workspace::of(&HEAD);
+fn the_papers_head_has_the_expected_workspace_and_inscribed_circle() {
+    let workspace = Workspace::of(&PAPER_HEAD);
     assert!((workspace.area() - 14_892.6).abs() < 0.05);
     let circle = workspace.inscribed_circle().unwrap();
     assert_eq!(circle.radius, 30.0);
@@ -25,48 +25,48 @@ proptest! {
     })]
 
     #[test]
-    fn the_area_is_that_of_the_points_that_can_be_reached(bars in symmetrical_bars()) {
+    fn the_workspace_consists_of_the_reachable_points(bars in any_symmetrical_five_bar()) {
         let workspace = Workspace::of(&bars);
-        let edge = workspace.outer;
-        let n = 400;
-        let cell = 2.0 * edge / f64::from(n);
+        let outer_radius = workspace.outer_radius;
+        let cells_per_side = 400;
+        let cell_width = 2.0 * outer_radius / f64::from(cells_per_side);
         let mut inside_count = 0;
-        for i in 0..n {
-            for j in 0..n {
-                let coordinate_of = |k: i32| -edge + (f64::from(k) + 0.5) * cell;
+        for i in 0..cells_per_side {
+            for j in 0..cells_per_side {
+                let coordinate_of = |k: i32| -outer_radius + (f64::from(k) + 0.5) * cell_width;
                 let point = Vector::new(coordinate_of(i), coordinate_of(j));
                 let is_reached = bars.inverse(point).is_ok();
                 prop_assert_eq!(workspace.contains(point), is_reached);
                 inside_count += i32::from(is_reached);
             }
         }
-        // The count is wrong by about one cell for each cell along the edge of the workspace.
-        let counted_area = f64::from(inside_count) * cell * cell;
-        prop_assert!((counted_area - workspace.area()).abs() < 6.0 * edge * cell, "{counted_area} {}", workspace.area());
+        // The counted area is off by at most about one cell for each cell along the rim of the workspace.
+        let counted_area = f64::from(inside_count) * cell_width * cell_width;
+        prop_assert!((counted_area - workspace.area()).abs() < 6.0 * outer_radius * cell_width, "{counted_area} {}", workspace.area());
     }
 
     #[test]
     fn the_inscribed_circle_is_as_large_as_the_unreachable_points_allow(
-        bars in symmetrical_bars(),
+        bars in any_symmetrical_five_bar(),
     ) {
         let workspace = Workspace::of(&bars);
         let radius = workspace.inscribed_circle().map_or(0.0, |circle| circle.radius);
-        let (largest_radius, cell) = largest_by_distance_field(&bars);
-        prop_assert!((radius - largest_radius).abs() <= 1.5 * cell, "{radius} {largest_radius} cell {cell}");
+        let (clearance, cell_width) = max_clearance_on_grid(&bars);
+        prop_assert!((radius - clearance).abs() <= 1.5 * cell_width, "{radius} {clearance} cell {cell_width}");
     }
 
     #[test]
-    fn the_inscribed_circle_stays_inside_and_none_is_larger(
-        bars in symmetrical_bars(), x in -1.0..1.0f64, y in -1.0..1.0f64,
+    fn the_inscribed_circle_touches_the_rim_and_none_is_larger(
+        bars in any_symmetrical_five_bar(), x in -1.0..1.0f64, y in -1.0..1.0f64,
     ) {
         let workspace = Workspace::of(&bars);
         let clearance_of = |point: Vector| {
             [-workspace.half_base, workspace.half_base].into_iter().map(|shaft| {
                 let distance = (point - Vector::new(shaft, 0.0)).length();
-                (distance - workspace.inner).min(workspace.outer - distance)
+                (distance - workspace.inner_radius).min(workspace.outer_radius - distance)
             }).fold(f64::INFINITY, f64::min)
         };
-        let other_clearance = clearance_of(Vector::new(x, y) * workspace.outer);
+        let other_clearance = clearance_of(Vector::new(x, y) * workspace.outer_radius);
         match workspace.inscribed_circle() {
             Some(circle) => {
                 prop_assert!(circle.centre.y >= 0.0);
@@ -79,9 +79,9 @@ proptest! {
 
     #[test]
     fn the_conditioning_index_lies_between_0_and_1_and_does_not_depend_on_scale(
-        bars in symmetrical_bars(), x in -100.0..100.0, y in 0.0..100.0f64, scale in 0.01..100.0f64,
+        bars in any_symmetrical_five_bar(), x in -100.0..100.0, y in 0.0..100.0f64, scale in 0.01..100.0f64,
     ) {
-        let (crank, coupler) = (bars.crank_left, bars.coupler_left);
+        let (crank, coupler) = (bars.left_crank_length, bars.left_coupler_length);
         let large_bars = [bars.base, crank, coupler, coupler, crank].map(|length| length * scale);
         let large_bars = FiveBar::new(large_bars);
         if let Ok(solutions) = bars.inverse(Vector::new(x, y)) {
@@ -98,60 +98,61 @@ proptest! {
     }
 }
 
-/// The largest distance of a reachable grid cell from the nearest unreachable point, and the width of a cell.
-/// A shaft counts as unreachable, even if an arm with two equal links can be folded onto it.
-fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
-    const CELLS: usize = 120;
-    let reach = bars.crank_left + bars.coupler_left;
-    let cell = 2.2 * reach / CELLS as f64;
-    let coordinate_of = |k: usize| (k as f64 + 0.5) * cell - 1.1 * reach;
+/// The largest distance of a reachable grid cell from the nearest unreachable point, and the width of a cell, mm.
+/// The shafts count as unreachable, even if an arm with equal links can be folded onto its shaft.
+fn max_clearance_on_grid(bars: &FiveBar) -> (f64, f64) {
+    const CELLS_PER_SIDE: usize = 120;
+    let reach = bars.left_crank_length + bars.left_coupler_length;
+    let cell_width = 2.2 * reach / CELLS_PER_SIDE as f64;
+    let coordinate_of = |k: usize| (k as f64 + 0.5) * cell_width - 1.1 * reach;
     let point_of = |i: usize, j: usize| Vector::new(coordinate_of(i), coordinate_of(j));
     let reached_column_of = |i| {
-        (0..CELLS)
+        (0..CELLS_PER_SIDE)
             .map(|j| bars.inverse(point_of(i, j)).is_ok())
             .collect()
     };
-    let is_inside: Vec<Vec<bool>> = (0..CELLS).map(reached_column_of).collect();
+    let is_inside: Vec<Vec<bool>> = (0..CELLS_PER_SIDE).map(reached_column_of).collect();
     let mut rim_points = vec![bars.left_shaft(), bars.right_shaft()];
-    for i in 1..CELLS - 1 {
-        for j in 1..CELLS - 1 {
+    for i in 1..CELLS_PER_SIDE - 1 {
+        for j in 1..CELLS_PER_SIDE - 1 {
             let neighbours = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
             if !is_inside[i][j] && neighbours.into_iter().any(|(i, j)| is_inside[i][j]) {
                 rim_points.push(point_of(i, j));
             }
         }
     }
-    let mut largest_square = 0.0_f64;
+    let mut max_clearance_squared = 0.0_f64;
     for (i, column) in is_inside.iter().enumerate() {
-        for j in (0..CELLS).filter(|&j| column[j]) {
+        for j in (0..CELLS_PER_SIDE).filter(|&j| column[j]) {
             let squares = rim_points
                 .iter()
                 .map(|&rim_point| (point_of(i, j) - rim_point).length_squared());
-            largest_square = largest_square.max(squares.fold(f64::INFINITY, f64::min));
+            max_clearance_squared =
+                max_clearance_squared.max(squares.fold(f64::INFINITY, f64::min));
         }
     }
-    (largest_square.sqrt(), cell)
+    (max_clearance_squared.sqrt(), cell_width)
 }
 
 #[test]
-fn a_wide_base_leaves_a_circle_between_the_shafts() {
-    // r1 .2, r2 .3, r3 .4 at a base of 20 mm.
+fn with_a_wide_base_the_inscribed_circle_is_centred_between_the_shafts() {
+    // Crank and coupler are .5 and .75 times half the base.
     let bars = FiveBar::new([20.0, 5.0, 7.5, 7.5, 5.0]);
     let circle = Workspace::of(&bars).inscribed_circle().unwrap();
     assert_eq!((circle.centre, circle.radius), (Vector::new(0.0, 0.0), 2.5));
 }
 
 #[test]
-fn conditioning_vanishes_where_the_inscribed_circle_touches_the_rim() {
-    let circle = Workspace::of(&HEAD).inscribed_circle().unwrap();
-    for shaft in [HEAD.left_shaft(), HEAD.right_shaft()] {
+fn the_conditioning_index_vanishes_where_the_inscribed_circle_touches_the_rim() {
+    let circle = Workspace::of(&PAPER_HEAD).inscribed_circle().unwrap();
+    for shaft in [PAPER_HEAD.left_shaft(), PAPER_HEAD.right_shaft()] {
         let shaft_line = circle.centre - shaft;
         for side in [1.0, -1.0] {
             let rim_point =
                 circle.centre + shaft_line * (side * circle.radius / shaft_line.length());
-            let solution = HEAD.inverse(rim_point).unwrap()[0];
+            let solution = PAPER_HEAD.inverse(rim_point).unwrap()[0];
             assert_eq!(solution.working_mode, WorkingMode::OUTWARD);
-            let pose = HEAD.forward_in(
+            let pose = PAPER_HEAD.forward_in(
                 solution.assembly_mode,
                 solution.theta_left,
                 solution.theta_right,

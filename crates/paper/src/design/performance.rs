@@ -38,7 +38,7 @@ pub struct Conditioning {
 /// The local conditioning index with the end point at `point` and outward elbows; 0 on the rim of the workspace and
 /// outside it.
 pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
-    bars.reach(point).map_or(0.0, |pose| pose.lci())
+    bars.pose_at_point(point).map_or(0.0, |pose| pose.lci())
 }
 
 impl Performance {

@@ -64,10 +64,10 @@ impl Proportions {
     pub fn at_scale(&self, d: f64) -> FiveBar {
         FiveBar {
             base: 2.0 * self.r3 * d,
-            crank_left: self.r1 * d,
-            coupler_left: self.r2 * d,
-            coupler_right: self.r2 * d,
-            crank_right: self.r1 * d,
+            left_crank_length: self.r1 * d,
+            left_coupler_length: self.r2 * d,
+            right_coupler_length: self.r2 * d,
+            right_crank_length: self.r1 * d,
         }
     }
 

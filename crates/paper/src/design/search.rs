@@ -110,7 +110,7 @@ pub fn merge_ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
 pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base);
     let bars = proportions.at_scale(d);
-    if bars.crank_left.min(bars.coupler_left) < demands.shortest {
+    if bars.left_crank_length.min(bars.left_coupler_length) < demands.shortest {
         return None;
     }
     let (neutral, sweep) = (90..=170)
@@ -183,11 +183,11 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
 /// The slider of a side, with arms as long as the cranks, as in the paper.
 fn slider_of_side(bars: &FiveBar, demands: &Demands) -> Slider {
     Slider {
-        offset: 0.0,
+        front_offset: 0.0,
         base: demands.chassis,
-        front: bars.crank_left,
-        rear: bars.crank_left,
-        nominal: 0.0,
+        front_arm: bars.left_crank_length,
+        rear_arm: bars.left_crank_length,
+        nominal_length: 0.0,
     }
 }
 

@@ -30,7 +30,7 @@ pub const EQUATIONS: &[Equation] = &[
         |sample| {
             let (d, proportions) = (10.0 + 100.0 * sample.random[0], Proportions::PAPER);
             let bars = proportions.at_scale(d);
-            let sum = bars.crank_left + bars.coupler_left + bars.base / 2.0;
+            let sum = bars.left_crank_length + bars.left_coupler_length + bars.base / 2.0;
             Some(
                 (sum / SUM - d)
                     .abs()
@@ -63,8 +63,8 @@ pub const EQUATIONS: &[Equation] = &[
         |sample| {
             let bars = sample.lizard.end(End::Head);
             let (sum, difference) = (
-                bars.crank_left + bars.coupler_left,
-                (bars.crank_left - bars.coupler_left).abs(),
+                bars.left_crank_length + bars.left_coupler_length,
+                (bars.left_crank_length - bars.left_coupler_length).abs(),
             );
             let r = (sum - difference) / 2.0;
             let y = ((sum + difference).powi(2) / 4.0 - (bars.base / 2.0).powi(2)).sqrt();
@@ -130,8 +130,8 @@ fn circle_error(sample: &Sample, term: fn(f64) -> f64) -> Option<f64> {
     let mut largest_error = 0.0_f64;
     for shaft in [-bars.base / 2.0, bars.base / 2.0] {
         for radius in [
-            bars.crank_left + bars.coupler_left,
-            (bars.crank_left - bars.coupler_left).abs(),
+            bars.left_crank_length + bars.left_coupler_length,
+            (bars.left_crank_length - bars.left_coupler_length).abs(),
         ] {
             let rim_point = cis(radius, PI * sample.random[0]);
             // x11 is measured from the middle of the base, the rim from the shaft.

@@ -5,8 +5,8 @@ use crate::price::Price;
 /// A row of the bill: number of pieces, name, mass of one piece in g, and price class.
 pub(super) type Row = (usize, &'static str, f64, Price);
 
-/// Things to buy that have no place of their own on the robot, such as wires. Their mass centre is assumed to be
-/// that of all other bodies.
+/// Things to buy that have no place of their own on the robot, such as wires. Their mass centre is assumed to be at
+/// the origin, in the middle of the plate.
 pub(super) const LOOSE_ITEMS: [Row; 12] = [
     (
         2,
@@ -49,7 +49,7 @@ pub(super) const LOOSE_ITEMS: [Row; 12] = [
 
 /// Things to buy for driving without a cable. They are optional, so neither the mass nor the sum of the prices
 /// includes them.
-pub(super) const RADIO: [Row; 5] = [
+pub(super) const RADIO_ITEMS: [Row; 5] = [
     (
         1,
         "radio module with a serial line: HM-10 or HC-05, at most 16 x 37 mm",
@@ -65,16 +65,16 @@ pub(super) const RADIO: [Row; 5] = [
     (1, "resistor 1 kOhm, 0.25 W", 0.2, Price::A),
     (
         1,
-        "resistor 2 kOhm, 0.25 W (or two of 1 kOhm in a row)",
+        "resistor 2 kOhm, 0.25 W (or two of 1 kOhm in series)",
         0.2,
         Price::A,
     ),
     (4, "jumper wire, socket to pin, 20 cm", 0.4, Price::B),
 ];
 
-/// Things to buy for the inputs of robot.toml: the input's name, and its row. They are optional, so neither the
+/// Things to buy for the inputs of robot.toml, each with the name of its input. They are optional, so neither the
 /// mass nor the sum of the prices includes them.
-pub(super) const INPUTS: [(&str, Row); 2] = [
+pub(super) const INPUT_ITEMS: [(&str, Row); 2] = [
     (
         "button",
         (
@@ -88,7 +88,7 @@ pub(super) const INPUTS: [(&str, Row); 2] = [
         "nose",
         (
             1,
-            "infrared obstacle switch with digital output (FC-51 or alike), with three wires of 20 cm",
+            "infrared obstacle switch with digital output (FC-51 or similar), with three wires of 20 cm",
             5.0,
             Price::B,
         ),

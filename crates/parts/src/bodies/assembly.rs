@@ -18,7 +18,7 @@ pub struct Assembly {
     stack: Stack,
     layout: Layout,
     bodies: Vec<Body>,
-    instead: Vec<Body>,
+    alternatives: Vec<Body>,
 }
 
 impl Assembly {
@@ -33,7 +33,7 @@ impl Assembly {
         struts::add(&mut builder);
         Self {
             robot: robot.clone(),
-            instead: struts::alternatives(&builder),
+            alternatives: struts::alternatives(&builder),
             stack: builder.stack,
             layout: builder.layout,
             bodies: builder.bodies,
@@ -60,9 +60,9 @@ impl Assembly {
         &self.bodies
     }
 
-    /// Bodies that may replace others: the struts of the other kind.
+    /// Bodies that may replace others: the struts of the kind that the robot does not have.
     pub fn alternatives(&self) -> &[Body] {
-        &self.instead
+        &self.alternatives
     }
 
     /// The body with a name.
@@ -72,7 +72,7 @@ impl Assembly {
 
     /// The same robot with changed bodies, for tests and for custom parts.
     #[must_use]
-    pub fn altered(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
+    pub fn with_changed_bodies(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
         change(&mut self.bodies);
         self
     }
@@ -86,15 +86,19 @@ impl Assembly {
 
     /// The placement of a mount's frame at a pose at which no leg lags behind its servo.
     pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
-        self.place_on(mount, &Cranks::of(self.robot.lizard(), pose))
+        self.place_for_cranks(mount, &Cranks::of(self.robot.lizard(), pose))
     }
 
-    /// The placement of a mount's frame, for joints of any number type.
-    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &Cranks<T>) -> Placement<T> {
-        let vector_of = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
+    /// The placement of a mount's frame, for crank directions of any number type.
+    pub(crate) fn place_for_cranks<T: Real>(
+        &self,
+        mount: Mount,
+        cranks: &Cranks<T>,
+    ) -> Placement<T> {
+        let vector_of = |v: Vector| Vector::new(T::constant(v.x), T::constant(v.y));
         let placement_on_crank = |servo: usize, origin: Vector| Placement {
             origin: vector_of(origin),
-            x_axis: joints.cranks[servo],
+            x_axis: cranks.directions[servo],
         };
         let link_placement_of = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;
@@ -107,16 +111,17 @@ impl Assembly {
             Mount::Crank(servo) => placement_on_crank(servo, legs[servo].crank_pivot),
             Mount::Follower(servo) => placement_on_crank(servo, legs[servo].follower_pivot),
             Mount::Foot(servo) => Placement {
-                origin: placement_on_crank(servo, legs[servo].crank_pivot).map(legs[servo].joint),
+                origin: placement_on_crank(servo, legs[servo].crank_pivot)
+                    .map(legs[servo].crank_joint),
                 x_axis: vector_of(legs[servo].coupler_direction),
             },
             Mount::Strut(servo) => Placement {
                 origin: link_placement_of(servo).map(legs[servo].anchor),
-                x_axis: vector_of(legs[servo].strut),
+                x_axis: vector_of(legs[servo].strut_direction),
             },
             Mount::Coupler(servo) => {
                 let (end, hand) = end_and_hand(servo);
-                let bars = joints.end(end);
+                let bars = cranks.five_bar(end);
                 let tip = [bars.left_tip, bars.right_tip][hand];
                 let coupler_direction = [bars.left_coupler, bars.right_coupler][hand];
                 Placement {
@@ -125,7 +130,7 @@ impl Assembly {
                 }
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
-                let slider = joints.side(side);
+                let slider = cranks.slider(side);
                 let rear = vector_of(self.layout.shafts[side.servos()[1]]);
                 let tip = match mount {
                     Mount::Rod(_) => slider.front_tip,
@@ -133,7 +138,7 @@ impl Assembly {
                 };
                 Placement {
                     origin: rear + tip,
-                    x_axis: slider.span.scaled(T::of(1.0) / slider.d),
+                    x_axis: slider.span.scaled(T::constant(1.0) / slider.d),
                 }
             }
         }

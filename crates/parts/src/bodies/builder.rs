@@ -1,5 +1,4 @@
-//! A builder of a robot's bodies, which adds them one by one, each screw together with its
-//! nut.
+//! A builder that adds a robot's bodies one by one, each bolt as a screw and a nut.
 
 use lizard_kinematics::Vector;
 use lizard_robot::{Parts, Robot};
@@ -8,7 +7,7 @@ use crate::bodies::layout::Layout;
 use crate::bodies::names;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEX_HEAD_HEIGHT, PLAY, Span, Stack, screw_length};
+use crate::layers::stack::{HEAD_PLAY, HEX_HEAD_HEIGHT, Span, Stack, stock_screw_length};
 
 /// The direction from a screw's head to its tip.
 #[derive(Clone, Copy, PartialEq)]
@@ -28,19 +27,26 @@ impl Direction {
 
 /// A robot's dimensions and the bodies added so far.
 pub struct Builder<'a> {
+    /// The robot whose bodies are built.
     pub robot: &'a Robot,
+    /// The dimensions of the robot's parts.
     pub parts: &'a Parts,
+    /// The heights of the layers in which the bodies lie.
     pub stack: Stack,
+    /// The positions of pivots and anchors, seen from above.
     pub layout: Layout,
+    /// The bodies added so far.
     pub bodies: Vec<Body>,
 }
 
 /// A screw and the place of its nut.
 pub struct Bolt<'a> {
+    /// The name of the bolt, without the word "screw" or "nut".
     pub name: &'a str,
     /// The mount that the screw moves with.
     pub mount: Mount,
-    pub at: Vector,
+    /// The position of the screw's axis in the mount's frame, mm.
+    pub position: Vector,
     /// Height of the face under the screw's head, mm.
     pub head_z: f64,
     pub direction: Direction,
@@ -48,31 +54,37 @@ pub struct Bolt<'a> {
     pub nut_z: f64,
     /// Length below the head, mm; `None` for the length that the nut needs.
     pub length: Option<f64>,
-    /// Names of the bodies that the screw passes through.
-    pub meets: &'a [&'a str],
-    /// True for a hexagonal head, which is sunk into the part under it.
+    /// Names of the bodies with other mounts that screw and nut may touch.
+    pub contacts: &'a [&'a str],
+    /// True for a hexagon head, which is sunk into the part at the head; false for a button head.
     pub is_hex: bool,
 }
 
 impl<'a> Bolt<'a> {
-    /// A button-head screw that passes through no body. Its nut, if it gets one, is at
-    /// height 0.
-    pub fn new(name: &'a str, mount: Mount, at: Vector, head: f64, direction: Direction) -> Self {
+    /// A bolt with a button head and without contacts. Its nut, if it gets one, is at height 0.
+    pub fn new(
+        name: &'a str,
+        mount: Mount,
+        position: Vector,
+        head_z: f64,
+        direction: Direction,
+    ) -> Self {
         Self {
             name,
             mount,
-            at,
-            head_z: head,
+            position,
+            head_z,
             direction,
             nut_z: 0.0,
             length: None,
-            meets: &[],
+            contacts: &[],
             is_hex: false,
         }
     }
 }
 
 impl<'a> Builder<'a> {
+    /// A builder for a robot, without any bodies.
     pub fn new(robot: &'a Robot) -> Self {
         let parts = robot.parts();
         Self {
@@ -85,21 +97,20 @@ impl<'a> Builder<'a> {
     }
 
     /// Half a bar's width, mm.
-    pub fn half_bar(&self) -> f64 {
+    pub fn half_bar_width(&self) -> f64 {
         self.parts.bar / 2.0
     }
 
-    /// Outer radius of the material around a nut's pocket, so that a wall is left at the
-    /// nut's corners, mm.
-    pub fn around_nut(&self) -> f64 {
-        let corner = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
-        self.half_bar().max(corner + self.parts.wall)
+    /// Outer radius of the boss around a nut's pocket, mm, which leaves a wall at the nut's corners.
+    pub fn nut_boss_radius(&self) -> f64 {
+        let corner_radius = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
+        self.half_bar_width().max(corner_radius + self.parts.wall)
     }
 
-    /// Outer radius of the material around a sunk screw head, wall included, mm.
-    pub fn around_head(&self) -> f64 {
-        let head = self.parts.screw.head / 2.0 + self.parts.fit;
-        self.half_bar().max(head + self.parts.wall)
+    /// Outer radius of the boss around a sunk screw head, wall included, mm.
+    pub fn head_boss_radius(&self) -> f64 {
+        let head_radius = self.parts.screw.head / 2.0 + self.parts.fit;
+        self.half_bar_width().max(head_radius + self.parts.wall)
     }
 
     /// True if the struts have a slot and a spring, false if they are rigid.
@@ -109,11 +120,11 @@ impl<'a> Builder<'a> {
 
     /// The name of a leg's strut.
     pub fn strut_name(&self, leg: &str) -> String {
-        names::strut(self.has_slotted_struts(), leg)
+        names::strut_name(self.has_slotted_struts(), leg)
     }
 
     /// A hole in which a screw can turn.
-    pub fn hole(&self, centre: Vector) -> Shape {
+    pub fn clearance_hole(&self, centre: Vector) -> Shape {
         Shape::disc(
             centre,
             self.parts.screw.diameter / 2.0 + self.parts.fit / 2.0,
@@ -121,17 +132,17 @@ impl<'a> Builder<'a> {
     }
 
     /// A hole into which a screw cuts its thread.
-    pub fn thread(&self, centre: Vector) -> Shape {
+    pub fn thread_hole(&self, centre: Vector) -> Shape {
         Shape::disc(centre, 0.43 * self.parts.screw.diameter)
     }
 
     /// The recess for a sunk screw head.
-    pub fn sink(&self, centre: Vector) -> Shape {
+    pub fn head_recess(&self, centre: Vector) -> Shape {
         Shape::disc(centre, self.parts.screw.head / 2.0 + self.parts.fit)
     }
 
     /// The pocket for a nut.
-    pub fn pocket(&self, centre: Vector) -> Shape {
+    pub fn nut_pocket(&self, centre: Vector) -> Shape {
         Shape::hexagon(centre, self.parts.screw.nut + self.parts.fit)
     }
 
@@ -170,23 +181,23 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds a printed ring between two parts on a screw.
+    /// Adds a printed ring that fills the gap between two parts on a screw.
     pub fn add_spacer(
         &mut self,
         name: String,
         mount: Mount,
         centre: Vector,
         z: Span,
-        meets: &[&str],
+        contacts: &[&str],
     ) {
-        let hole = self.hole(centre);
+        let hole = self.clearance_hole(centre);
         let ring = Prism::new(
             [Shape::disc(centre, hole.radius + self.parts.wall)],
             [hole],
             z,
         );
         self.add_printed(name, mount, [ring]);
-        self.allow_contact(meets);
+        self.allow_contact(contacts);
     }
 
     /// Adds a screw and its nut.
@@ -196,13 +207,13 @@ impl<'a> Builder<'a> {
         let nut_end = bolt.nut_z + sign * screw.nut_height;
         let length = bolt
             .length
-            .unwrap_or_else(|| screw_length((nut_end - bolt.head_z).abs()));
+            .unwrap_or_else(|| stock_screw_length((nut_end - bolt.head_z).abs()));
         self.add_screw(bolt, length);
-        let flats = Shape::hexagon(bolt.at, screw.nut);
-        let thread = Shape::disc(bolt.at, screw.diameter / 2.0);
+        let flats = Shape::hexagon(bolt.position, screw.nut);
+        let thread = Shape::disc(bolt.position, screw.diameter / 2.0);
         let nut = Prism::new([flats], [thread], order_heights(bolt.nut_z, nut_end));
         self.add_body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
-        self.allow_contact(bolt.meets);
+        self.allow_contact(bolt.contacts);
     }
 
     /// Adds a screw without a nut.
@@ -211,12 +222,12 @@ impl<'a> Builder<'a> {
         let sign = bolt.direction.sign();
         let solid_prism_of =
             |shape: Shape, from: f64, to: f64| Prism::solid([shape], order_heights(from, to));
-        let shank = Shape::disc(bolt.at, screw.diameter / 2.0);
+        let shank = Shape::disc(bolt.position, screw.diameter / 2.0);
         let (head, height, kind) = if bolt.is_hex {
-            let hexagon = Shape::hexagon(bolt.at, screw.nut);
+            let hexagon = Shape::hexagon(bolt.position, screw.nut);
             (hexagon, HEX_HEAD_HEIGHT, Kind::HexScrew(length))
         } else {
-            let disc = Shape::disc(bolt.at, screw.head / 2.0);
+            let disc = Shape::disc(bolt.position, screw.head / 2.0);
             (disc, screw.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
@@ -225,22 +236,23 @@ impl<'a> Builder<'a> {
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
         self.add_body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
-        self.allow_contact(bolt.meets);
+        self.allow_contact(bolt.contacts);
     }
 
-    /// Adds the screw of a joint on a servo's link. The link's underside holds the screw's
-    /// head, which no key can reach once the link is on its servo.
-    pub fn add_held_joint(
+    /// Adds the bolt of a joint on a servo's link. A pocket in the link's underside keeps the hexagon head from
+    /// turning, since no key can reach it once the link is on its servo. `top` is the height of the joint's upper
+    /// face, mm.
+    pub fn add_link_joint(
         &mut self,
         name: &str,
         mount: Mount,
         position: Vector,
         top: f64,
-        meets: &[&str],
+        contacts: &[&str],
     ) {
         self.add_bolt(&Bolt {
-            nut_z: top + PLAY,
-            meets,
+            nut_z: top + HEAD_PLAY,
+            contacts,
             is_hex: true,
             ..Bolt::new(
                 name,
@@ -253,7 +265,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Two heights, the lower one first.
+/// Orders two heights, the lower one first.
 fn order_heights(a: f64, b: f64) -> Span {
     [a.min(b), a.max(b)]
 }

@@ -4,22 +4,22 @@ use lizard_kinematics::{End, Vector};
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::fittings;
-use crate::bodies::layout::{STANDOFF_RADIUS, STANDOFFS, UNO, UNO_BOARD_THICKNESS};
+use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::bodies::leads;
-use crate::bodies::names::names;
+use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::mark;
 use crate::layers::shape::Shape;
 
 /// Radius of a servo's spline, mm.
-pub const SPLINE: f64 = 2.4;
-/// Radius of the hole that a servo's own screw cuts its thread into, mm. One of a servo's two
-/// holes is beside the notch for the lead, with 0.35 mm between hole and notch: there the screw
-/// holds on the three other sides.
+pub const SPLINE_RADIUS: f64 = 2.4;
+/// Radius of the hole in which a servo's own screw cuts its thread, mm. One of a servo's two
+/// holes is only 0.35 mm from the notch for the lead, so its screw holds on the three other
+/// sides.
 const PILOT_RADIUS: f64 = 0.75;
 
-/// Distance from a seat to the middle of its servo's number, and the number's outward shift from
-/// the servo's middle, mm.
+/// Distance from a seat to the middle of its servo's number, and from the servo's middle
+/// outward to the middle of the number, mm.
 const NUMBER_DISTANCE: f64 = 4.0;
 
 /// The holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600,
@@ -30,13 +30,15 @@ const UNO_HOLES: [(f64, f64); 4] = [
     (19.05, 31.75),
     (-8.89, 31.75),
 ];
-/// The hole beside the pin AREF, whose header leaves no room for a screw's head.
+/// Index in [`UNO_HOLES`] of the hole beside the pin AREF, whose header leaves no room for a
+/// screw's head.
 const UNO_TIGHT_HOLE: usize = 1;
 
 fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
+/// Adds the bodies that do not move.
 pub fn add(builder: &mut Builder) {
     add_plate(builder);
     for servo in 0..4 {
@@ -56,16 +58,18 @@ fn case_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     Shape::rectangle(case_middle(builder, servo), size, 0.0)
 }
 
+/// The middle of a servo's case from above, chassis frame, mm.
 fn case_middle(builder: &Builder, servo: usize) -> Vector {
-    builder.layout.plate.cases[servo]
+    builder.layout.plate.case_centres[servo]
 }
 
+/// The direction from the shaft's end of a servo's case towards its other end.
 fn inward_direction(servo: usize) -> Vector {
     vector(0.0, -End::of_servo(servo).sign())
 }
 
 /// The positions of the two screws that hold a servo's flange.
-fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
+fn flange_hole_positions(builder: &Builder, servo: usize) -> [Vector; 2] {
     let half = inward_direction(servo) * (builder.parts.servo.holes / 2.0);
     let middle = case_middle(builder, servo);
     [middle - half, middle + half]
@@ -79,23 +83,25 @@ fn seat_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     Shape::rectangle(case_middle(builder, servo), size, 1.0)
 }
 
-/// The cut-outs that a servo needs in the plate and in its seat: for its case, for its lead, and
-/// for its screws.
+/// The cut-outs that a servo needs in the plate and in its seat: first those for its case and
+/// its lead, then the holes for its screws.
 fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
     let (parts, outward) = (builder.parts, End::of_servo(servo).sign());
-    let notch = leads::notch(
+    let notch = leads::lead_notch(
         &parts.servo,
         case_middle(builder, servo),
         parts.fit,
         outward,
     );
     let mut cut = vec![case_outline(builder, servo, parts.fit), notch];
-    cut.extend(flange_holes(builder, servo).map(|position| Shape::disc(position, PILOT_RADIUS)));
+    cut.extend(
+        flange_hole_positions(builder, servo).map(|position| Shape::disc(position, PILOT_RADIUS)),
+    );
     cut
 }
 
 fn standoff_positions() -> [Vector; 4] {
-    let [x, y] = STANDOFFS;
+    let [x, y] = STANDOFF_DISTANCES;
     [vector(-x, y), vector(x, y), vector(x, -y), vector(-x, -y)]
 }
 
@@ -105,7 +111,7 @@ fn add_plate(builder: &mut Builder) {
     let seats: Vec<_> = (0..4)
         .map(|servo| seat_outline(builder, servo, 0.0))
         .collect();
-    // First all openings, then all holes: the shapes appear in this order in the files, which
+    // First all openings, then all holes: the files list the shapes in this order, and the files
     // must not change.
     let servo_cutouts: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
     let openings = servo_cutouts.iter().flat_map(|cut| &cut[..2]);
@@ -113,24 +119,28 @@ fn add_plate(builder: &mut Builder) {
         .chain(servo_cutouts.iter().flat_map(|cut| &cut[2..]))
         .cloned()
         .collect();
-    let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
-    let mut filled = vec![body];
+    let base = Shape::rectangle(
+        Vector::default(),
+        plate.half_size * 2.0,
+        plate.corner_radius,
+    );
+    let mut filled = vec![base];
     let mut through_holes = cut.clone();
     // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
     for (leg, [pivot_arm, driven_arm, idle_arm]) in layout.legs.iter().zip(plate.arms) {
         let bar_of = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
-        filled.push(bar_of(pivot_arm, plate.arm));
+        filled.push(bar_of(pivot_arm, plate.arm_half_width));
         for (pivot, arm) in [
             (leg.crank_pivot, driven_arm),
             (leg.follower_pivot, idle_arm),
         ] {
-            filled.push(bar_of(arm, plate.arm - 0.01));
-            through_holes.push(builder.hole(pivot));
+            filled.push(bar_of(arm, plate.arm_half_width - 0.01));
+            through_holes.push(builder.clearance_hole(pivot));
         }
     }
-    through_holes.extend(standoff_positions().map(|position| builder.hole(position)));
-    through_holes.extend(leads::holes());
-    through_holes.extend(fittings::slots(builder));
+    through_holes.extend(standoff_positions().map(|position| builder.clearance_hole(position)));
+    through_holes.extend(leads::wire_holes());
+    through_holes.extend(fittings::plate_slots(builder));
     let [low, high] = stack.plate;
     let engraved_cuts = [&through_holes[..], &number_strokes(builder)].concat();
     let prisms = [
@@ -145,24 +155,25 @@ fn add_plate(builder: &mut Builder) {
     builder.add_printed("plate", Mount::Chassis, prisms);
 }
 
-/// The piece of the plate around one servo and the pivots of its leg, which is printed first, as
-/// a trial.
-pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
-    /// Width of the plate around the seat, mm.
-    const AROUND: f64 = 2.0;
+/// The layers of the piece of the plate around one servo and the pivots of its leg. This piece is
+/// printed first, as a trial.
+pub fn corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
+    /// Margin of the plate around the seat, mm.
+    const SEAT_MARGIN: f64 = 2.0;
     let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
     let leg = &builder.layout.legs[servo];
     let middle = case_middle(builder, servo);
-    let mut filled = vec![seat_outline(builder, servo, AROUND)];
+    let mut filled = vec![seat_outline(builder, servo, SEAT_MARGIN)];
     let [pivot_arm, driven_arm, idle_arm] = plate.arms[servo];
     // As in the plate, bars that end at the same point differ by 0.01 mm.
-    filled.push(Shape::bar(pivot_arm[0], pivot_arm[1], plate.arm));
+    filled.push(Shape::bar(pivot_arm[0], pivot_arm[1], plate.arm_half_width));
     for [from, to] in [driven_arm, idle_arm] {
-        filled.push(Shape::bar(from, to, plate.arm - 0.01));
-        filled.push(Shape::bar(to, middle, plate.arm - 0.02));
+        filled.push(Shape::bar(from, to, plate.arm_half_width - 0.01));
+        filled.push(Shape::bar(to, middle, plate.arm_half_width - 0.02));
     }
     let cut = cutouts(builder, servo);
-    let pivots = [leg.crank_pivot, leg.follower_pivot].map(|position| builder.hole(position));
+    let pivots =
+        [leg.crank_pivot, leg.follower_pivot].map(|position| builder.clearance_hole(position));
     let raised_seat = stack.seat.map(|z| z + parts.plate);
     vec![
         Prism::new(filled, [&cut[..], &pivots].concat(), [0.0, parts.plate]),
@@ -170,11 +181,11 @@ pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
     ]
 }
 
-/// The servos' numbers, engraved beside the seats, so that head and tail can be told apart.
+/// The strokes of the servos' numbers, engraved beside the seats so that head and tail can be told apart.
 fn number_strokes(builder: &Builder) -> Vec<Shape> {
     let body = &builder.parts.servo;
     let strokes = (0..4).flat_map(|servo| {
-        let [width, height] = mark::size("1");
+        let [width, height] = mark::mark_size("1");
         let middle = case_middle(builder, servo);
         // On the inner side of the seat, away from the hole for the leads.
         let outward_shift = middle.x.signum() * NUMBER_DISTANCE;
@@ -186,9 +197,9 @@ fn number_strokes(builder: &Builder) -> Vec<Shape> {
 }
 
 fn add_case(builder: &mut Builder, servo: usize) {
-    let (name, _) = names(servo);
+    let (name, _) = servo_and_leg_names(servo);
     let body = builder.parts.servo;
-    let bottom = builder.stack.servo;
+    let bottom = builder.stack.servo_bottom;
     let shaft = builder.layout.shafts[servo];
     let solid_layer = |filled: Vec<Shape>, low: f64, high: f64| {
         Prism::solid(filled, [bottom + low, bottom + high])
@@ -204,7 +215,7 @@ fn add_case(builder: &mut Builder, servo: usize) {
         Shape::bar(shaft, shaft + inward_direction(servo) * body.shaft, 3.0),
     ];
     let flange_top = body.flange_height + body.flange_thickness;
-    let spline = vec![Shape::disc(shaft, SPLINE)];
+    let spline = vec![Shape::disc(shaft, SPLINE_RADIUS)];
     let prisms = [
         solid_layer(vec![case.clone()], 0.0, body.flange_height),
         solid_layer(vec![flange], body.flange_height, flange_top),
@@ -214,7 +225,10 @@ fn add_case(builder: &mut Builder, servo: usize) {
     ];
     builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.allow_contact(&[format!("horn {name}")]);
-    for (number, position) in flange_holes(builder, servo).into_iter().enumerate() {
+    for (number, position) in flange_hole_positions(builder, servo)
+        .into_iter()
+        .enumerate()
+    {
         let head = Prism::solid(
             [Shape::disc(position, 2.2)],
             [bottom + flange_top, bottom + flange_top + 1.6],
@@ -233,7 +247,7 @@ fn add_battery(builder: &mut Builder) {
 
 fn add_deck(builder: &mut Builder) {
     let (stack, parts) = (builder.stack, builder.parts);
-    let [x, y] = STANDOFFS;
+    let [x, y] = STANDOFF_DISTANCES;
     let bar_between =
         |a: (f64, f64), b: (f64, f64)| Shape::bar(vector(a.0, a.1), vector(b.0, b.1), 5.0);
     let mut filled = vec![
@@ -245,49 +259,56 @@ fn add_deck(builder: &mut Builder) {
         bar_between(UNO_HOLES[0], UNO_HOLES[1]),
         bar_between(UNO_HOLES[2], UNO_HOLES[3]),
     ];
-    let [wings, openings] = fittings::wings(UNO_HOLES);
+    let [wings, openings] = fittings::wing_shapes(UNO_HOLES);
     filled.extend(wings);
-    let screws = standoff_positions().map(|position| builder.hole(position));
-    let threads = UNO_HOLES.map(|(x, y)| builder.thread(vector(x, y)));
-    // The window saves weight, and cable ties for the parts below the deck pass through it.
+    let screws = standoff_positions().map(|position| builder.clearance_hole(position));
+    let threads = UNO_HOLES.map(|(x, y)| builder.thread_hole(vector(x, y)));
+    // The window saves weight, and the cable ties that hold the fittings under the deck pass through it.
     let window = Shape::rectangle(vector(0.0, 4.0), vector(12.0, 36.0), 3.0);
-    let holes = [&screws[..], &threads, &leads::holes(), &[window], &openings].concat();
+    let holes = [
+        &screws[..],
+        &threads,
+        &leads::wire_holes(),
+        &[window],
+        &openings,
+    ]
+    .concat();
     let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 4.0));
     let prisms = [
         Prism::new(filled, holes, stack.deck),
-        Prism::new(bosses, threads, stack.boss),
+        Prism::new(bosses, threads, stack.board_boss),
     ];
     builder.add_printed("deck", Mount::Chassis, prisms);
     for (number, position) in (1..).zip(standoff_positions()) {
         let length = stack.deck[0];
         let (post, thread) = (
             Shape::disc(position, STANDOFF_RADIUS),
-            builder.thread(position),
+            builder.thread_hole(position),
         );
         let post = Prism::new([post], [thread], [0.0, length]);
         let name = format!("standoff {number}");
         builder.add_body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
-        for (end, head, direction) in [
+        for (end, head_z, direction) in [
             ("below", stack.plate[0], Direction::Up),
             ("above", stack.deck[1], Direction::Down),
         ] {
             let name = format!("{name} {end}");
-            let bolt = Bolt::new(&name, Mount::Chassis, position, head, direction);
+            let bolt = Bolt::new(&name, Mount::Chassis, position, head_z, direction);
             builder.add_screw(&bolt, parts.plate + 4.0);
         }
     }
 }
 
 fn add_board(builder: &mut Builder) {
-    let low = builder.stack.boss[1];
-    let [x, y, z] = UNO;
+    let low = builder.stack.board_boss[1];
+    let [x, y, z] = UNO_SIZE;
     let top = low + UNO_BOARD_THICKNESS;
     let block_of = |x: f64, y: f64| [Shape::rectangle(Vector::default(), vector(x, y), 0.0)];
     let holes = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 1.6));
-    let heads = UNO_HOLES.map(|(x, y)| builder.sink(vector(x, y)));
+    let heads = UNO_HOLES.map(|(x, y)| builder.head_recess(vector(x, y)));
     let board = Prism::new(block_of(x, y), holes, [low, top]);
-    let parts = Prism::new(block_of(x - 4.0, y - 4.0), heads, [top, low + z]);
-    builder.add_body("board", Kind::Board, Mount::Chassis, [board, parts]);
+    let components = Prism::new(block_of(x - 4.0, y - 4.0), heads, [top, low + z]);
+    builder.add_body("board", Kind::Board, Mount::Chassis, [board, components]);
     for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
         if number != UNO_TIGHT_HOLE {
             let name = format!("board {}", number + 1);

@@ -1,15 +1,15 @@
 //! Bodies of the power supply, the terminal strips, the plugs and the straps.
 //!
-//! Each of these fittings is a body, so that the proof of fit and the mass include it. No part of the robot moves
-//! above the deck. So the deck has two wings beside the board for everything that must be reached by hand: on the
+//! Each of these fittings is a body, so that the proof of fit and the mass include it. Since no part of the robot
+//! moves above the deck, the deck has two wings beside the board for everything that must be reached by hand: on the
 //! right the parts of the battery's positive line; on the left, beside the board's pins, the signals.
 
 use lizard_kinematics::Vector;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::layout::{STANDOFF_RADIUS, STANDOFFS, UNO, UNO_BOARD_THICKNESS};
+use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::layers::body::{Kind, Mount, Prism};
-use crate::layers::fitting::{Fitting, PITCH, STRAP};
+use crate::layers::fitting::{Fitting, STRAP_SECTION, STRIP_PITCH};
 use crate::layers::shape::Shape;
 
 /// Size of a slot for the battery's strap, mm: along the plate and across.
@@ -23,11 +23,11 @@ const TIE_DISTANCE: f64 = 31.5;
 /// Thickness of a cable tie, mm.
 const TIE_THICKNESS: f64 = 1.6;
 
-/// A wing of the deck, mm: its inner and its outer edge from the middle, and half its length. A longer wing would
-/// cover nuts of the sliders.
-const WING: [f64; 3] = [25.2, 51.2, 40.0];
-/// The openings of a wing, mm: from and to in x, away from the middle, then from and to in y. They save weight;
-/// the material between them is the arm that carries the wing.
+/// Distances of a wing's inner and outer edge from the deck's middle, and half the wing's length, mm. A longer wing
+/// would cover nuts of the sliders.
+const WING_EDGES_AND_HALF_LENGTH: [f64; 3] = [25.2, 51.2, 40.0];
+/// The openings of a wing, mm: for each, its limits in x, away from the middle, and its limits in y. They save
+/// weight; the material between them is the arm that carries the wing.
 const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
     [[32.5, 43.0], [-36.5, -26.0]],
     [[32.5, 43.0], [-12.0, 26.0]],
@@ -35,9 +35,9 @@ const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
 /// Distance of the inner edge of the fittings on a wing from the middle, mm.
 const WING_FITTING_X: f64 = 29.5;
 /// Distances of the cable ties of a wing from the middle, mm: on the inner and on the outer side of the fittings.
-const WING_TIES: [f64; 2] = [28.0, 48.4];
+const WING_TIE_X: [f64; 2] = [28.0, 48.4];
 /// Height of the round socket's middle above the board, and its length beyond the board's edge, mm.
-const SOCKET: [f64; 2] = [6.5, 2.0];
+const SOCKET_HEIGHT_AND_OVERHANG: [f64; 2] = [6.5, 2.0];
 /// The round socket's middle, mm to the right of the board's middle.
 const SOCKET_X: f64 = 19.05;
 
@@ -45,13 +45,14 @@ fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
+/// A slot with its middle at `x`, `y`, mm.
 fn slot_shape(x: f64, y: f64, [slot_length, slot_width]: [f64; 2]) -> Shape {
     Shape::rectangle(vector(x, y), vector(slot_width, slot_length), 0.5)
 }
 
 /// Slots in the plate: for the strap beside the battery, if the plate is wide enough, and
 /// for cable ties beside the terminal strips.
-pub fn slots(builder: &Builder) -> Vec<Shape> {
+pub fn plate_slots(builder: &Builder) -> Vec<Shape> {
     let mut slots = Vec::new();
     if let Some(x) = strap_slot_x(builder) {
         slots.extend([-x, x].map(|x| slot_shape(x, 0.0, STRAP_SLOT)));
@@ -72,15 +73,15 @@ pub fn slots(builder: &Builder) -> Vec<Shape> {
 /// the strips, along the inner sides of the servos' cases.
 fn strip_x(builder: &Builder) -> f64 {
     let plate = builder.layout.plate;
-    let cases = plate.cases.iter().map(|case| case.x.abs());
-    let lead_edge = cases.fold(0.0, f64::max) - plate.case.x / 2.0;
-    MIN_STRIP_X.max(lead_edge + 0.3 + fitting_size(Fitting::Ground, 0) / 2.0)
+    let cases = plate.case_centres.iter().map(|case| case.x.abs());
+    let lead_edge = cases.fold(0.0, f64::max) - plate.case_size.x / 2.0;
+    MIN_STRIP_X.max(lead_edge + 0.3 + fitting_size(Fitting::GroundStrip, 0) / 2.0)
 }
 
-/// The outlines of the deck's wings and of the arms that carry them from the holes of the board; then the holes in
-/// the wings.
-pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
-    let [inner, outer, half_length] = WING;
+/// The filled shapes of the deck's wings and of the arms between them and the board's holes; then the openings and
+/// slots in the wings.
+pub fn wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
+    let [inner, outer, half_length] = WING_EDGES_AND_HALF_LENGTH;
     let middle = (inner + outer) / 2.0;
     let mut filled = Vec::new();
     let mut cut = Vec::new();
@@ -93,14 +94,14 @@ pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
             cut.push(Shape::rectangle(middle, size, 2.0));
         }
     }
-    for (x, y) in holes {
+    for (x, y) in board_holes {
         filled.push(Shape::bar(vector(x, y), vector(middle.copysign(x), y), 5.0));
     }
     // The ties of the signal strip are behind the resistors, whose wires lie beside the middle of the strip.
-    for x in WING_TIES {
+    for x in WING_TIE_X {
         cut.push(slot_shape(-x, signal_strip_y() - 11.0, TIE_SLOT));
     }
-    cut.push(slot_shape(WING_TIES[0], fuse_y(), TIE_SLOT));
+    cut.push(slot_shape(WING_TIE_X[0], fuse_y(), TIE_SLOT));
     cut.push(slot_shape(
         WING_FITTING_X + fitting_size(Fitting::Fuse, 0) + 2.4,
         fuse_y(),
@@ -111,6 +112,7 @@ pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     [filled, cut]
 }
 
+/// Size of a fitting along an axis, mm: 0 to the right, 1 forward, 2 up.
 fn fitting_size(fitting: Fitting, axis: usize) -> f64 {
     fitting.facts().size[axis]
 }
@@ -118,18 +120,18 @@ fn fitting_size(fitting: Fitting, axis: usize) -> f64 {
 /// Position of the middle of the signal strip, mm ahead of the plate's middle. The strip begins at the wing's rear
 /// end.
 fn signal_strip_y() -> f64 {
-    0.5 - WING[2] + fitting_size(Fitting::Signals, 1) / 2.0
+    0.5 - WING_EDGES_AND_HALF_LENGTH[2] + fitting_size(Fitting::SignalStrip, 1) / 2.0
 }
 
 /// Position of the fuse's middle, mm ahead of the plate's middle. The fuse is at the wing's front end.
 fn fuse_y() -> f64 {
-    WING[2] - 0.5 - fitting_size(Fitting::Fuse, 1) / 2.0
+    WING_EDGES_AND_HALF_LENGTH[2] - 0.5 - fitting_size(Fitting::Fuse, 1) / 2.0
 }
 
-/// Position of the switch's middle, mm ahead of the plate's middle. The switch is at the wing's rear end, which
-/// its cable tie goes around.
+/// Position of the switch's middle, mm ahead of the plate's middle. The switch is at the wing's rear end, and its
+/// cable tie goes around that end.
 fn switch_y() -> f64 {
-    0.3 - WING[2] + fitting_size(Fitting::Switch, 1) / 2.0
+    0.3 - WING_EDGES_AND_HALF_LENGTH[2] + fitting_size(Fitting::Switch, 1) / 2.0
 }
 
 /// Position of the slot for the switch's cable tie, in front of the switch, mm ahead of the plate's middle.
@@ -138,22 +140,23 @@ fn switch_tie_y() -> f64 {
 }
 
 /// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is too narrow for slots beside
-/// the battery, so that the strap goes around battery and plate.
+/// the battery, and the strap goes around battery and plate instead.
 fn strap_slot_x(builder: &Builder) -> Option<f64> {
     let [battery_width, _, _] = builder.parts.battery;
-    let x = (battery_width + STRAP[1]) / 2.0;
+    let x = (battery_width + STRAP_SECTION[1]) / 2.0;
     let min_half_width = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
-    (builder.layout.plate.half.x >= min_half_width).then_some(x)
+    (builder.layout.plate.half_size.x >= min_half_width).then_some(x)
 }
 
+/// Adds all fittings.
 pub fn add(builder: &mut Builder) {
-    add_below_plate(builder);
+    add_under_deck_and_plate(builder);
     add_on_deck(builder);
     add_plugs(builder);
     add_strap(builder);
 }
 
-/// Adds a fitting as a block.
+/// Adds a fitting as a block of its own size whose lower face is at the height `low`, mm.
 fn add_block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
     let size = fitting.facts().size;
     add_sized_block(
@@ -166,6 +169,7 @@ fn add_block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) 
     );
 }
 
+/// Adds a fitting as a block of a given width, length and height, mm.
 fn add_sized_block(
     builder: &mut Builder,
     fitting: Fitting,
@@ -180,34 +184,40 @@ fn add_sized_block(
 }
 
 /// Adds the fittings under the deck and under the plate.
-fn add_below_plate(builder: &mut Builder) {
+fn add_under_deck_and_plate(builder: &mut Builder) {
     let stack = builder.stack;
     // The fittings hang below the strap and the heads of the standoffs' screws.
-    let lower_ceiling = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
+    let lower_ceiling =
+        stack.plate[0] - STRAP_SECTION[1].max(builder.parts.screw.head_height) - 0.3;
     let deck = stack.deck[0];
-    let room = STANDOFFS[1] - 3.4;
+    let half_free_length = STANDOFF_DISTANCES[1] - 3.4;
     let half_length_of = |fitting: Fitting| fitting_size(fitting, 1) / 2.0;
     let strip_distance = strip_x(builder);
-    // The ground strip reaches this far forward and back; the supply strip ends there in front, the capacitor
-    // behind.
-    let strip_reach = half_length_of(Fitting::Ground);
-    let supply_y = strip_reach - half_length_of(Fitting::Supply);
+    // The ground strip reaches this far forward and back. The supply strip's front end and the capacitor's rear end
+    // are level with its ends.
+    let strip_reach = half_length_of(Fitting::GroundStrip);
+    let supply_y = strip_reach - half_length_of(Fitting::SupplyStrip);
     let capacitor_y = half_length_of(Fitting::Capacitor) - strip_reach;
     for (fitting, x, y, ceiling) in [
         (
             Fitting::Alarm,
             0.0,
-            half_length_of(Fitting::Alarm) - room,
+            half_length_of(Fitting::Alarm) - half_free_length,
             deck,
         ),
         (
             Fitting::Converter,
             0.0,
-            room - half_length_of(Fitting::Converter),
+            half_free_length - half_length_of(Fitting::Converter),
             deck,
         ),
-        (Fitting::Ground, -strip_distance, 0.0, lower_ceiling),
-        (Fitting::Supply, strip_distance, supply_y, lower_ceiling),
+        (Fitting::GroundStrip, -strip_distance, 0.0, lower_ceiling),
+        (
+            Fitting::SupplyStrip,
+            strip_distance,
+            supply_y,
+            lower_ceiling,
+        ),
         (
             Fitting::Capacitor,
             strip_distance,
@@ -231,15 +241,15 @@ fn add_on_deck(builder: &mut Builder) {
     let wing_x_of = |fitting: Fitting| WING_FITTING_X + half_width_of(fitting);
     add_block(
         builder,
-        Fitting::Signals,
-        vector(-wing_x_of(Fitting::Signals), signal_strip_y()),
+        Fitting::SignalStrip,
+        vector(-wing_x_of(Fitting::SignalStrip), signal_strip_y()),
         top,
     );
-    let radio_y = WING[2] - 0.5 - fitting_size(Fitting::Radio, 1) / 2.0;
+    let radio_y = WING_EDGES_AND_HALF_LENGTH[2] - 0.5 - fitting_size(Fitting::RadioSpace, 1) / 2.0;
     add_block(
         builder,
-        Fitting::Radio,
-        vector(-wing_x_of(Fitting::Radio), radio_y),
+        Fitting::RadioSpace,
+        vector(-wing_x_of(Fitting::RadioSpace), radio_y),
         top,
     );
     add_block(
@@ -254,64 +264,65 @@ fn add_on_deck(builder: &mut Builder) {
         vector(wing_x_of(Fitting::Switch), switch_y()),
         top,
     );
-    let plus_y =
-        fuse_y() - (fitting_size(Fitting::Fuse, 1) + fitting_size(Fitting::Plus, 1)) / 2.0 - 0.3;
+    let plus_y = fuse_y()
+        - (fitting_size(Fitting::Fuse, 1) + fitting_size(Fitting::PlusTerminal, 1)) / 2.0
+        - 0.3;
     add_block(
         builder,
-        Fitting::Plus,
-        vector(wing_x_of(Fitting::Plus), plus_y),
+        Fitting::PlusTerminal,
+        vector(wing_x_of(Fitting::PlusTerminal), plus_y),
         top,
     );
-    // Each resistor leads from a signal terminal to the middle one: two span one pitch, two span two.
+    // Each resistor leads from a signal terminal to the middle one: two resistors span one pitch, two span two.
     let resistor_x = -WING_FITTING_X
-        - fitting_size(Fitting::Signals, 0)
+        - fitting_size(Fitting::SignalStrip, 0)
         - 0.4
         - half_width_of(Fitting::Resistor);
     let row_pitch = fitting_size(Fitting::Resistor, 0) + 0.4;
-    let places = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
-    for (number, (row, pitches)) in (1..).zip(places) {
+    let rows_and_pitches = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
+    for (number, (row, pitches)) in (1..).zip(rows_and_pitches) {
         let middle = vector(
             resistor_x - row * row_pitch,
-            signal_strip_y() + pitches * PITCH,
+            signal_strip_y() + pitches * STRIP_PITCH,
         );
         let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
         add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
 }
 
-/// Adds the battery's plug, ahead of the battery or, if a long battery leaves no room there, on top of it; and the
+/// Adds the battery's plug, ahead of the battery or, if a long battery leaves no room there, on top of it. Adds the
 /// plug in the board's round socket.
 fn add_plugs(builder: &mut Builder) {
     let [_, battery_length, battery_height] = builder.parts.battery;
-    let [width, thickness, height] = Fitting::Plug.facts().size;
+    let [width, thickness, height] = Fitting::BatteryPlug.facts().size;
     let battery_end = battery_length / 2.0 + 0.3;
-    let name = Fitting::Plug.name().to_owned();
-    if battery_end + thickness <= STANDOFFS[1] - STANDOFF_RADIUS {
+    let name = Fitting::BatteryPlug.name().to_owned();
+    if battery_end + thickness <= STANDOFF_DISTANCES[1] - STANDOFF_RADIUS {
         let middle = vector(0.0, battery_end + thickness / 2.0);
         add_sized_block(
             builder,
-            Fitting::Plug,
+            Fitting::BatteryPlug,
             name,
             middle,
             TIE_THICKNESS,
             [width, thickness, height],
         );
     } else {
-        let middle = vector(0.0, STRAP[0] / 2.0 + 1.0 + height / 2.0);
+        let middle = vector(0.0, STRAP_SECTION[0] / 2.0 + 1.0 + height / 2.0);
         let low = battery_height + 0.2;
         add_sized_block(
             builder,
-            Fitting::Plug,
+            Fitting::BatteryPlug,
             name,
             middle,
             low,
             [width, height, thickness],
         );
     }
-    let [socket_height, socket_overhang] = SOCKET;
+    let [socket_height, socket_overhang] = SOCKET_HEIGHT_AND_OVERHANG;
     let [_, plug_length, plug_height] = Fitting::RoundPlug.facts().size;
-    let y = -(UNO[1] + plug_length) / 2.0 - socket_overhang - 0.1;
-    let low = builder.stack.boss[1] + UNO_BOARD_THICKNESS + socket_height - plug_height / 2.0;
+    let y = -(UNO_SIZE[1] + plug_length) / 2.0 - socket_overhang - 0.1;
+    let low = builder.stack.board_boss[1] + UNO_BOARD_THICKNESS + socket_height - plug_height / 2.0;
     add_block(builder, Fitting::RoundPlug, vector(SOCKET_X, y), low);
 }
 
@@ -319,7 +330,7 @@ fn add_plugs(builder: &mut Builder) {
 fn add_strap(builder: &mut Builder) {
     let stack = builder.stack;
     let [battery_x, battery_y, battery_z] = builder.parts.battery;
-    let [width, thickness] = STRAP;
+    let [width, thickness] = STRAP_SECTION;
     let width = width.min(battery_y);
     let x = battery_x / 2.0;
     let bar_between = |from: f64, to: f64| {
@@ -328,7 +339,7 @@ fn add_strap(builder: &mut Builder) {
     };
     let half_width = match strap_slot_x(builder) {
         Some(_) => x,
-        None => x.max(builder.layout.plate.half.x),
+        None => x.max(builder.layout.plate.half_size.x),
     };
     let sides = [
         bar_between(-half_width - thickness, -half_width),

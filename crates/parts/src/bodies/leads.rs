@@ -1,22 +1,22 @@
 //! The servos' leads: three wires side by side, which leave the case at the shaft's end.
 //!
-//! A servo is pushed into the plate from above, with its plug and its lead first. The
-//! lead sticks out of the case, so the opening needs a notch for it. Below the plate it
-//! is folded around the case's corner, runs between the servos towards the middle, and
-//! goes up through plate and deck to the board.
+//! A servo is pushed into the plate from above, plug and lead first. The lead sticks out
+//! of the case, so the opening needs a notch for it. Below the plate the lead is folded
+//! around the case's corner, runs between the servos towards the middle, and goes up
+//! through plate and deck to the board.
 
 use lizard_kinematics::{End, Vector};
 use lizard_robot::ServoBody;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::layout::STANDOFFS;
-use crate::bodies::names::names;
+use crate::bodies::layout::STANDOFF_DISTANCES;
+use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 
 /// Width and thickness of a lead, mm.
-pub const LEAD: [f64; 2] = [4.0, 1.2];
-/// Clearance of a lead in its notch, in the width, mm.
+pub const LEAD_SECTION: [f64; 2] = [4.0, 1.2];
+/// Difference in width between a notch and its lead, mm.
 const NOTCH_PLAY: f64 = 1.0;
 /// Height of a lead's lower edge above the bottom of the case, and the height of the lead
 /// on edge, mm.
@@ -25,51 +25,53 @@ const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
 const BEND_LENGTH: f64 = 4.0;
 /// Size of a hole for the leads and the wires, mm: across and along the plate.
 const WIRE_HOLE_SIZE: [f64; 2] = [8.4, 6.0];
-/// Distance of such a hole's middle beyond the middles of the standoffs, mm.
+/// Distance of the middle of a hole for leads beyond the middles of the standoffs, along the plate, mm.
 const HOLE_BEYOND_STANDOFFS: f64 = 2.0;
 
 /// The notch for the lead in a servo's opening. `fit` is the clearance on each side,
 /// `outward` the direction of the shaft's end of the case: 1 forward, -1 back.
-pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
-    let reach = body.length / 2.0 + LEAD[1] + fit;
+pub fn lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
+    let reach = body.length / 2.0 + LEAD_SECTION[1] + fit;
     // The notch overlaps the opening for the case.
     let from = body.length / 2.0 - 2.0;
-    let half = (LEAD[0] + NOTCH_PLAY) / 2.0;
+    let half = (LEAD_SECTION[0] + NOTCH_PLAY) / 2.0;
     let corner_at = |x: f64, y: f64| middle + Vector::new(x, outward * y);
     let [left, right] = [-half, half].map(|x| [from, reach].map(|y| corner_at(x, y)));
     Shape::hull(&[left, right].concat(), 0.0)
 }
 
+/// The centre of the front hole for leads if `sign` is 1, of the rear one if it is -1.
 fn wire_hole_centre(sign: f64) -> Vector {
-    Vector::new(0.0, sign * (STANDOFFS[1] + HOLE_BEYOND_STANDOFFS))
+    Vector::new(0.0, sign * (STANDOFF_DISTANCES[1] + HOLE_BEYOND_STANDOFFS))
 }
 
 /// The holes in plate and deck through which leads and wires go up.
-pub fn holes() -> [Shape; 2] {
+pub fn wire_holes() -> [Shape; 2] {
     let [width, length] = WIRE_HOLE_SIZE;
     [1.0, -1.0]
         .map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(width, length), 1.0))
 }
 
+/// Adds the leads of all servos.
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        let (name, _) = names(servo);
+        let (name, _) = servo_and_leg_names(servo);
         let outward = End::of_servo(servo).sign();
         let body = builder.parts.servo;
-        let middle = builder.layout.plate.cases[servo];
-        let half = Vector::new(body.width, body.length) * 0.5;
+        let middle = builder.layout.plate.case_centres[servo];
+        let half_size = Vector::new(body.width, body.length) * 0.5;
         // The neighbour's lead is on the other side of the middle line.
         let inner = -middle.x.signum();
-        let x = middle.x + inner * (half.x + LEAD[1]);
-        let bend_y = middle.y + outward * (half.y + BEND_LENGTH / 2.0);
+        let x = middle.x + inner * (half_size.x + LEAD_SECTION[1]);
+        let bend_y = middle.y + outward * (half_size.y + BEND_LENGTH / 2.0);
         let vector = Vector::new;
         let riser_position = wire_hole_centre(outward) + vector(-inner * 1.6, 0.0);
-        let radius = LEAD[1];
-        let low = builder.stack.servo + LEAD_EXIT[0];
+        let radius = LEAD_SECTION[1];
+        let low = builder.stack.servo_bottom + LEAD_EXIT[0];
         let [bend, corner] = [vector(middle.x, bend_y), vector(x, bend_y)];
-        let inner_corner = vector(x, middle.y - outward * half.y);
+        let inner_corner = vector(x, middle.y - outward * half_size.y);
         let lead_path = vec![
-            Shape::rectangle(bend, vector(LEAD[0], BEND_LENGTH), 0.0),
+            Shape::rectangle(bend, vector(LEAD_SECTION[0], BEND_LENGTH), 0.0),
             Shape::bar(bend, corner, radius),
             Shape::bar(corner, inner_corner, radius),
             Shape::bar(inner_corner, riser_position, radius),

@@ -1,18 +1,18 @@
 //! The legs: crank, follower, coupler with the foot, and the screws that join them.
 //!
 //! A stiff robot on four stiff feet rocks: two diagonal feet carry nearly all of its weight. So each foot is on a
-//! leaf spring, and a screw sets its height. If the leaf were high above the floor, the friction of the pad would
-//! bend it and turn the foot. So a column reaches down to a low leaf.
+//! leaf spring, and a screw sets its height. The higher a leaf is above the floor, the more the friction of the pad
+//! bends it and turns the foot; so a column reaches down from the coupler to a low leaf.
 
 use lizard_kinematics::Vector;
 use lizard_robot::LegPlan;
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
-use crate::bodies::names::names;
+use crate::bodies::names::servo_and_leg_names;
 use crate::bodies::pads;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{LEAF, PAD_LIP, PLAY};
+use crate::layers::stack::{HEAD_PLAY, LEAF_THICKNESS, PAD_LIP_HEIGHT};
 
 /// Radius of the boss around a foot's nut, mm.
 const TIP_RADIUS: f64 = 5.0;
@@ -28,16 +28,20 @@ const COLUMN_HALF_WIDTH: f64 = 3.2;
 const FOOT_SCREW_LENGTH: f64 = 10.0;
 /// Young's modulus of PLA, N/mm^2.
 const PLA_MODULUS: f64 = 3000.0;
-/// Stiffness of a leaf, N/mm. With 0.4 to 0.6 a foot that is 1 mm too long costs no gait
+/// Stiffness of a leaf, N/mm. From 0.4 to 0.6, a foot that is 1 mm too long costs no gait
 /// more than 5 % of its distance.
 const LEAF_STIFFNESS: f64 = 0.5;
 
-/// The free length of a leaf, mm. The stiffness of a beam clamped at one end is
-/// E b t^3 / (4 L^3).
+/// The free length L of a leaf, mm. The stiffness of a beam clamped at one end is E b t^3 / (4 L^3), with Young's
+/// modulus E, width b and thickness t.
 fn leaf_length(width: f64) -> f64 {
-    libm::cbrt(PLA_MODULUS * width * (LEAF * LEAF * LEAF) / (4.0 * LEAF_STIFFNESS))
+    libm::cbrt(
+        PLA_MODULUS * width * (LEAF_THICKNESS * LEAF_THICKNESS * LEAF_THICKNESS)
+            / (4.0 * LEAF_STIFFNESS),
+    )
 }
 
+/// Adds all legs.
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
         add_crank(builder, servo);
@@ -49,30 +53,34 @@ pub fn add(builder: &mut Builder) {
 }
 
 fn add_crank(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
+    let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
-    let (pivot, half) = (Vector::default(), builder.half_bar());
+    let LegPlan {
+        anchor,
+        crank_joint: joint,
+        ..
+    } = builder.layout.legs[servo];
+    let (pivot, half) = (Vector::default(), builder.half_bar_width());
     // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
     let filled = [
         Shape::disc(pivot, half + 1.0),
         Shape::bar(pivot, joint, half),
         Shape::bar(pivot, anchor, half - 0.01),
-        Shape::disc(anchor, builder.around_nut()),
+        Shape::disc(anchor, builder.nut_boss_radius()),
     ];
-    let holes = [builder.hole(pivot), builder.hole(joint)];
+    let holes = [builder.clearance_hole(pivot), builder.clearance_hole(joint)];
     let holes_with = |hole: Shape| [&holes[..], &[hole]].concat();
     let (pocket_holes, through_holes) = (
-        holes_with(builder.pocket(anchor)),
-        holes_with(builder.hole(anchor)),
+        holes_with(builder.nut_pocket(anchor)),
+        holes_with(builder.clearance_hole(anchor)),
     );
     let (nut, _) = stack.anchor_nut(parts);
-    let nut = nut.clamp(stack.crank[0], stack.crank[1]);
+    let nut_z = nut.clamp(stack.crank[0], stack.crank[1]);
     let bearing = Shape::disc(pivot, half - 0.2);
     let bosses = [bearing.clone(), Shape::disc(anchor, half - 0.4)];
     let mut prisms = vec![
-        Prism::new(filled.clone(), pocket_holes, [stack.crank[0], nut]),
-        Prism::new(filled, through_holes.clone(), [nut, stack.crank[1]]),
+        Prism::new(filled.clone(), pocket_holes, [stack.crank[0], nut_z]),
+        Prism::new(filled, through_holes.clone(), [nut_z, stack.crank[1]]),
         Prism::new(bosses, through_holes, stack.anchor),
         Prism::new([bearing], holes, [stack.anchor[1], stack.bearing[1]]),
     ];
@@ -81,10 +89,10 @@ fn add_crank(builder: &mut Builder, servo: usize) {
 }
 
 fn add_follower(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
-    let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].joint);
-    let (stack, half) = (builder.stack, builder.half_bar());
-    let holes = [builder.hole(pivot), builder.hole(joint)];
+    let (_, leg) = servo_and_leg_names(servo);
+    let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].crank_joint);
+    let (stack, half) = (builder.stack, builder.half_bar_width());
+    let holes = [builder.clearance_hole(pivot), builder.clearance_hole(joint)];
     let bearing = Shape::disc(pivot, half - 0.2);
     let bearing = Prism::new([bearing], [holes[0].clone()], stack.bearing);
     let bar = [
@@ -95,44 +103,44 @@ fn add_follower(builder: &mut Builder, servo: usize) {
     builder.add_printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
 }
 
-/// The places of the two screws between coupler and foot, in the coupler's frame.
+/// The positions of the two screws between coupler and foot, in the coupler's frame.
 fn clamp_positions(builder: &Builder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
     CLAMP_DISTANCES.map(|distance| Vector::new(ground - distance, 0.0))
 }
 
-/// Height of the faces under the heads of the screws between coupler and foot, which are sunk into the coupler,
-/// mm.
+/// Height of the faces under the heads of the screws between coupler and foot, mm. The heads are sunk into the
+/// coupler.
 fn clamp_seat(builder: &Builder) -> f64 {
-    builder.stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY
+    builder.stack.leg_coupler[1] - builder.parts.screw.head_height - HEAD_PLAY
 }
 
 fn add_coupler(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
+    let (_, leg) = servo_and_leg_names(servo);
     let stack = builder.stack;
     let ground = builder.robot.lizard().leg.ground;
     let (from, to) = (Vector::default(), Vector::new(ground, 0.0));
     let clamps = clamp_positions(builder);
-    let through_holes = clamps.map(|position| builder.hole(position));
-    let sinks = clamps.map(|position| builder.sink(position));
-    let joints = [builder.hole(from), builder.hole(to)];
-    let mut bar = vec![Shape::bar(from, to, builder.half_bar())];
-    bar.extend(clamps.map(|position| Shape::disc(position, builder.around_head())));
-    let (seat, [low, high]) = (clamp_seat(builder), stack.leg_coupler);
+    let through_holes = clamps.map(|position| builder.clearance_hole(position));
+    let sinks = clamps.map(|position| builder.head_recess(position));
+    let joints = [builder.clearance_hole(from), builder.clearance_hole(to)];
+    let mut bar = vec![Shape::bar(from, to, builder.half_bar_width())];
+    bar.extend(clamps.map(|position| Shape::disc(position, builder.head_boss_radius())));
+    let (seat_z, [low, high]) = (clamp_seat(builder), stack.leg_coupler);
     let through_holes = [joints.clone(), through_holes].concat();
     let prisms = [
-        Prism::new(bar.clone(), through_holes, [low, seat]),
-        Prism::new(bar, [joints, sinks].concat(), [seat, high]),
+        Prism::new(bar.clone(), through_holes, [low, seat_z]),
+        Prism::new(bar, [joints, sinks].concat(), [seat_z, high]),
     ];
     builder.add_printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
 
 fn add_foot(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
+    let (_, leg) = servo_and_leg_names(servo);
     let stack = builder.stack;
     let foot = builder.layout.legs[servo].foot;
     let clamps = clamp_positions(builder);
-    let half = builder.half_bar();
+    let half = builder.half_bar_width();
     // The column begins at the end of the leaf's free length.
     let column_offset = clamps[0] - foot;
     let column_direction = column_offset * (1.0 / column_offset.length());
@@ -149,17 +157,17 @@ fn add_foot(builder: &mut Builder, servo: usize) {
         Shape::bar(clamps[0], clamps[1], half - 0.01),
         Shape::bar(clamps[0], root, half - 0.02),
     ];
-    let (pocket, hole) = (builder.pocket(foot), builder.hole(foot));
-    let threads = clamps.map(|position| builder.thread(position));
-    let [_, boss] = stack.boss_of_foot;
-    let nut = stack.leaf[0] + builder.parts.screw.nut_height;
+    let (pocket, hole) = (builder.nut_pocket(foot), builder.clearance_hole(foot));
+    let threads = clamps.map(|position| builder.thread_hole(position));
+    let [_, boss_top] = stack.foot_boss;
+    let nut_z = stack.leaf[0] + builder.parts.screw.nut_height;
     let hole_bottom = stack.leg_coupler[0] - CLAMP_HOLE_DEPTH;
     let column_and_tip = [&column[..], &[tip]].concat();
     let prisms = [
         Prism::new(leaf, [pocket.clone()], stack.leaf),
-        Prism::new(column_and_tip.clone(), [pocket], [stack.leaf[1], nut]),
-        Prism::new(column_and_tip, [hole], [nut, boss]),
-        Prism::solid(column.clone(), [boss, hole_bottom]),
+        Prism::new(column_and_tip.clone(), [pocket], [stack.leaf[1], nut_z]),
+        Prism::new(column_and_tip, [hole], [nut_z, boss_top]),
+        Prism::solid(column.clone(), [boss_top, hole_bottom]),
         Prism::new(column, threads, [hole_bottom, stack.leg_coupler[0]]),
     ];
     let mount = Mount::Foot(servo);
@@ -169,10 +177,10 @@ fn add_foot(builder: &mut Builder, servo: usize) {
         let bolt = Bolt::new(&name, mount, position, clamp_seat(builder), Direction::Down);
         builder.add_screw(&bolt, CLAMP_SCREW_LENGTH);
     }
-    let head = stack.pad[1] - PAD_LIP;
+    let head_z = stack.pad[1] - PAD_LIP_HEIGHT;
     let name = format!("height {leg}");
     builder.add_screw(
-        &Bolt::new(&name, mount, foot, head, Direction::Up),
+        &Bolt::new(&name, mount, foot, head_z, Direction::Up),
         FOOT_SCREW_LENGTH,
     );
     let screw = builder.parts.screw;
@@ -180,33 +188,38 @@ fn add_foot(builder: &mut Builder, servo: usize) {
         Shape::hexagon(foot, screw.nut),
         Shape::disc(foot, screw.diameter / 2.0),
     );
-    let nut_prism = Prism::new([flats], [thread], [stack.leaf[0], nut]);
+    let nut_prism = Prism::new([flats], [thread], [stack.leaf[0], nut_z]);
     builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut_prism]);
     // The coupler never turns, so a direction stays the same in its frame.
     let coupler_direction = builder.layout.legs[servo].coupler_direction;
     let head_direction = Vector::new(coupler_direction.y, coupler_direction.x);
-    let pad = pads::layers(builder.parts, foot, stack.floor, head_direction);
+    let pad = pads::pad_layers(builder.parts, foot, stack.floor, head_direction);
     builder.add_body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 
+/// Adds the bolts of a leg's pivots and joints, and the bolt between crank and strut.
 fn add_screws(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
+    let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
+    let LegPlan {
+        anchor,
+        crank_joint: joint,
+        ..
+    } = builder.layout.legs[servo];
     let (pivot, coupler) = (Vector::default(), format!("leg coupler {leg}"));
     let crank = Mount::Crank(servo);
     for (mount, name) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
-        let (head, screw) = (stack.bearing[1] + PLAY, format!("{name} pivot {leg}"));
+        let (head_z, screw) = (stack.bearing[1] + HEAD_PLAY, format!("{name} pivot {leg}"));
         builder.add_bolt(&Bolt {
-            nut_z: stack.plate[0] - PLAY,
-            meets: &["plate"],
-            ..Bolt::new(&screw, mount, pivot, head, Direction::Down)
+            nut_z: stack.plate[0] - HEAD_PLAY,
+            contacts: &["plate"],
+            ..Bolt::new(&screw, mount, pivot, head_z, Direction::Down)
         });
-        let (head, screw) = (stack.leg_coupler[0], format!("{name} joint {leg}"));
+        let (head_z, screw) = (stack.leg_coupler[0], format!("{name} joint {leg}"));
         builder.add_bolt(&Bolt {
-            nut_z: stack.crank[1] + PLAY,
-            meets: &[&coupler],
-            ..Bolt::new(&screw, mount, joint, head, Direction::Up)
+            nut_z: stack.crank[1] + HEAD_PLAY,
+            contacts: &[&coupler],
+            ..Bolt::new(&screw, mount, joint, head_z, Direction::Up)
         });
     }
     let (nut, length) = stack.anchor_nut(parts);
@@ -214,7 +227,7 @@ fn add_screws(builder: &mut Builder, servo: usize) {
     builder.add_bolt(&Bolt {
         nut_z: nut,
         length: Some(length),
-        meets: &[&builder.strut_name(leg)],
+        contacts: &[&builder.strut_name(leg)],
         ..Bolt::new(
             &name,
             crank,

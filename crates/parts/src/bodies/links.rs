@@ -1,33 +1,34 @@
 //! The bodies that a servo turns: its horn and the link that is pushed over the horn.
 //!
-//! The link is at once the crank of head or tail, the arm of a slider and the anchor of the leg's
-//! strut; so one servo moves all three.
+//! The link is the crank of head or tail, the arm of a slider and the anchor of the leg's strut, so one servo
+//! moves all three.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
-use crate::bodies::chassis::SPLINE;
-use crate::bodies::names::names;
+use crate::bodies::chassis::SPLINE_RADIUS;
+use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{PLAY, Span};
+use crate::layers::stack::{HEAD_PLAY, Span};
 
-/// Positions of the horn's small screws along its arm, as shares of the arm's length.
+/// Distances of the horn's small screws from its shaft, as shares of the arm's length.
 const HORN_SCREW_SHARES: [f64; 2] = [0.52, 0.83];
-/// Radius of the hole that a horn's small screw cuts its thread into, mm.
+/// Radius of the hole in which a horn's small screw cuts its thread, mm.
 const PILOT_RADIUS: f64 = 0.7;
 /// Length of a horn's small screw, mm: one of 5 mm would reach the servo's boss under the link.
-pub const HORN_SCREW: f64 = 4.0;
+pub const HORN_SCREW_LENGTH: f64 = 4.0;
 /// Radius and height of the head of a horn's small screw, mm.
-const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
+const HORN_SCREW_HEAD_SIZE: [f64; 2] = [1.5, 1.0];
 
 /// Wall of the ring between strut and link, mm: the spring's coil leaves no room for more.
 const RING_WALL: f64 = 1.1;
 
 /// Clearance on each side of a horn's arm in its pocket, in multiples of `fit`: horns vary in size.
-pub const POCKET: f64 = 1.5;
+pub const POCKET_FIT_FACTOR: f64 = 1.5;
 
+/// Adds the horns and links of all servos, with their screws.
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
         add_horn(builder, servo);
@@ -38,12 +39,17 @@ pub fn add(builder: &mut Builder) {
 }
 
 /// The outline of the horn's arm, which points along the crank, widened by `margin` mm on each side.
-pub fn arm(horn: &Horn, margin: f64) -> Vec<Shape> {
+pub fn horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
     let (hub, tip) = (horn.hub / 2.0 + margin, horn.tip / 2.0 + margin);
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
     // From hub to tip the arm gets narrower.
-    let width = 0.8 * hub;
-    let corners = [(0.0, -width), (end.x, -tip), (end.x, tip), (0.0, width)];
+    let half_width = 0.8 * hub;
+    let corners = [
+        (0.0, -half_width),
+        (end.x, -tip),
+        (end.x, tip),
+        (0.0, half_width),
+    ];
     let taper = Shape::hull(&corners.map(|(x, y)| Vector::new(x, y)), 0.0);
     vec![
         Shape::disc(Vector::default(), hub),
@@ -53,16 +59,21 @@ pub fn arm(horn: &Horn, margin: f64) -> Vec<Shape> {
 }
 
 fn add_horn(builder: &mut Builder, servo: usize) {
-    let (name, _) = names(servo);
+    let (name, _) = servo_and_leg_names(servo);
     let horn = builder.parts.horn;
-    let [low, _] = builder.stack.horn;
-    let spline = Shape::disc(Vector::default(), SPLINE);
+    let [low, _] = builder.stack.horn_pocket;
+    let spline = Shape::disc(Vector::default(), SPLINE_RADIUS);
     let mut through_holes = vec![spline.clone()];
-    through_holes.extend(horn_holes(&horn).map(|position| Shape::disc(position, PILOT_RADIUS)));
+    through_holes
+        .extend(horn_screw_positions(&horn).map(|position| Shape::disc(position, PILOT_RADIUS)));
     let hub = Shape::disc(Vector::default(), horn.hub / 2.0);
     let prisms = [
         Prism::new([hub], [spline], [low + horn.thickness - horn.height, low]),
-        Prism::new(arm(&horn, 0.0), through_holes, [low, low + horn.thickness]),
+        Prism::new(
+            horn_arm(&horn, 0.0),
+            through_holes,
+            [low, low + horn.thickness],
+        ),
     ];
     builder.add_body(
         format!("horn {name}"),
@@ -74,13 +85,13 @@ fn add_horn(builder: &mut Builder, servo: usize) {
 }
 
 fn add_link(builder: &mut Builder, servo: usize) {
-    let (name, _) = names(servo);
+    let (name, _) = servo_and_leg_names(servo);
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
-    let tip = Vector::new(layout.crank[servo], 0.0);
-    let arm_tip = Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
+    let tip = Vector::new(layout.crank_lengths[servo], 0.0);
+    let arm_tip = Vector::new(0.0, layout.arm_side[servo] * layout.arm_lengths[servo]);
     let anchor = layout.legs[servo].anchor;
-    let half = builder.half_bar();
+    let half = builder.half_bar_width();
     let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
     // Without this brace the link would break in the corner between crank and arm.
     let brace = Shape::hull(&[hub, tip * 0.45, arm_tip * 0.45], 0.6 * half);
@@ -91,27 +102,28 @@ fn add_link(builder: &mut Builder, servo: usize) {
         Shape::bar(hub, arm_tip, half - 0.01),
         Shape::bar(hub, anchor, half - 0.02),
         brace,
-        Shape::disc(tip, builder.around_nut()),
-        Shape::disc(arm_tip, builder.around_nut()),
+        Shape::disc(tip, builder.nut_boss_radius()),
+        Shape::disc(arm_tip, builder.nut_boss_radius()),
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
-    let holes = [builder.hole(tip), builder.hole(arm_tip)];
-    let pilots = horn_holes(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
-    let pocket = arm(&parts.horn, POCKET * parts.fit);
-    let anchor_hole = builder.hole(anchor);
+    let holes = [builder.clearance_hole(tip), builder.clearance_hole(arm_tip)];
+    let pilots =
+        horn_screw_positions(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
+    let pocket = horn_arm(&parts.horn, POCKET_FIT_FACTOR * parts.fit);
+    let anchor_hole = builder.clearance_hole(anchor);
     let [low, high] = stack.link;
     // The holes and pockets, each with the heights between which it is cut.
     let cuts = [
         (&holes[..], [low, high]),
         (
-            &[tip, arm_tip].map(|position| builder.pocket(position)),
+            &[tip, arm_tip].map(|position| builder.nut_pocket(position)),
             [low, stack.hex_head_face],
         ),
-        (&[horn_hub], [low, stack.horn[0]]),
-        (&pilots, [low, stack.horn[0]]),
-        (&pocket, stack.horn),
+        (&[horn_hub], [low, stack.horn_pocket[0]]),
+        (&pilots, [low, stack.horn_pocket[0]]),
+        (&pocket, stack.horn_pocket),
         (&[anchor_hole], [low, high]),
-        (&[builder.sink(anchor)], stack.head_recess),
+        (&[builder.head_recess(anchor)], stack.head_recess),
     ];
     let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
     heights.sort_by(f64::total_cmp);
@@ -128,42 +140,45 @@ fn add_link(builder: &mut Builder, servo: usize) {
 }
 
 /// The positions of the small screws that hold the horn.
-fn horn_holes(horn: &Horn) -> [Vector; 2] {
+fn horn_screw_positions(horn: &Horn) -> [Vector; 2] {
     HORN_SCREW_SHARES.map(|share| Vector::new(share * horn.arm, 0.0))
 }
 
 fn add_horn_screws(builder: &mut Builder, servo: usize) {
-    let (name, _) = names(servo);
-    let top = builder.stack.horn[0] + builder.parts.horn.thickness;
-    let [radius, head_height] = HORN_SCREW_HEAD;
-    for (number, position) in horn_holes(&builder.parts.horn).into_iter().enumerate() {
+    let (name, _) = servo_and_leg_names(servo);
+    let top = builder.stack.horn_pocket[0] + builder.parts.horn.thickness;
+    let [radius, head_height] = HORN_SCREW_HEAD_SIZE;
+    for (number, position) in horn_screw_positions(&builder.parts.horn)
+        .into_iter()
+        .enumerate()
+    {
         let disc_prism_of = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
         let prisms = [
-            disc_prism_of(PILOT_RADIUS, [top - HORN_SCREW, top]),
+            disc_prism_of(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
             disc_prism_of(radius, [top, top + head_height]),
         ];
         let name = format!("horn screw {name} {}", number + 1);
-        let kind = Kind::HornScrew(HORN_SCREW);
+        let kind = Kind::HornScrew(HORN_SCREW_LENGTH);
         builder.add_body(name, kind, Mount::Link(servo), prisms);
     }
 }
 
 /// Adds the screw that holds the strut, and the ring that fills the gap below the link.
 fn add_anchor(builder: &mut Builder, servo: usize) {
-    let (name, leg) = names(servo);
+    let (name, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let position = builder.layout.legs[servo].anchor;
     let strut = builder.strut_name(leg);
-    let ring = [stack.anchor_head_face, stack.link[0] - PLAY];
-    // Thin enough to fit beside the spring's coil.
+    let ring_z = [stack.anchor_head_face, stack.link[0] - HEAD_PLAY];
+    // The ring is thin enough to fit beside the spring's coil.
     let ring_disc = Shape::disc(position, parts.screw.diameter / 2.0 + RING_WALL);
-    let prism = Prism::new([ring_disc], [builder.hole(position)], ring);
+    let prism = Prism::new([ring_disc], [builder.clearance_hole(position)], ring_z);
     builder.add_printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
     builder.allow_contact(&[&strut]);
     let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));
     builder.add_bolt(&Bolt {
-        nut_z: stack.strut[0] - PLAY,
-        meets: &[&strut],
+        nut_z: stack.strut_floor[0] - HEAD_PLAY,
+        contacts: &[&strut],
         ..Bolt::new(
             &screw,
             mount,

@@ -7,6 +7,7 @@
 pub(crate) mod assembly;
 pub(crate) mod builder;
 pub(crate) mod chassis;
+pub(crate) mod decoration;
 pub(crate) mod ends;
 pub(crate) mod fittings;
 pub(crate) mod joints;
@@ -14,7 +15,6 @@ pub(crate) mod layout;
 pub(crate) mod leads;
 pub(crate) mod legs;
 pub(crate) mod links;
-pub(crate) mod looks;
 pub(crate) mod names;
 pub(crate) mod pads;
 pub(crate) mod sliders;

@@ -1,25 +1,24 @@
 //! The sliders: a rod in a sleeve between the arms of a front and a rear servo.
 //!
-//! A sleeve between the pins would be too short for the stroke. So sleeve and rod lie
-//! beside the line of the pins, the sleeve begins at the rear pin, and the rod may pass
-//! that pin.
+//! A sleeve between the pins would be too short for the stroke. So sleeve and rod lie beside the line between the
+//! pins: the sleeve begins at the rear pin, and the rod may pass that pin.
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::Robot;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::names::names;
+use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Mount, Prism};
 use crate::layers::shape::Shape;
 
-/// Offset of sleeve and rod from the line of the pins, outward, mm.
+/// Outward offset of sleeve and rod from the line between the pins, mm.
 pub const ROD_OFFSET: f64 = 9.0;
 /// Width of a rod, mm.
-pub(crate) const ROD: f64 = 6.0;
+pub(crate) const ROD_WIDTH: f64 = 6.0;
 /// The least length of the rod inside its sleeve, mm.
-const OVERLAP: f64 = 20.0;
-/// Least gap between the sleeve's end and the front pin, at the shortest stroke, mm.
-const SHORTEST_GAP: f64 = 8.0;
+const MIN_OVERLAP: f64 = 20.0;
+/// Least gap between the sleeve's front end and the front pin, mm, at the shortest distance of the pins.
+const MIN_GAP: f64 = 8.0;
 
 /// Lengths of one slider, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,22 +27,23 @@ pub struct SliderLengths {
     pub sleeve: f64,
     /// Length of the rod, from the front pin to its rear end.
     pub rod: f64,
-    /// Offset of sleeve and rod from the line of the pins, mm, positive to the left.
-    pub beside: f64,
+    /// Offset of sleeve and rod from the line between the pins, mm, positive to the left.
+    pub lateral_offset: f64,
 }
 
 impl SliderLengths {
     /// The lengths for a side whose pins may be from `shortest` to `longest` mm apart.
     pub fn new(side: Side, [shortest, longest]: [f64; 2]) -> Self {
-        let sleeve = shortest - SHORTEST_GAP;
+        let sleeve = shortest - MIN_GAP;
         Self {
             sleeve,
-            rod: longest - sleeve + OVERLAP,
-            beside: side.sign() * ROD_OFFSET,
+            rod: longest - sleeve + MIN_OVERLAP,
+            lateral_offset: side.sign() * ROD_OFFSET,
         }
     }
 }
 
+/// Adds both sliders.
 pub fn add(builder: &mut Builder) {
     for side in Side::ALL {
         let lengths = SliderLengths::new(side, slider_range(builder.robot, side));
@@ -55,19 +55,19 @@ pub fn add(builder: &mut Builder) {
 
 fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let (parts, stack) = (builder.parts, builder.stack);
-    let half = builder.half_bar();
+    let half = builder.half_bar_width();
     let pin = Vector::default();
-    let bore = ROD + 2.0 * parts.fit;
-    let outer = bore + 2.0 * parts.wall;
-    let middle = Vector::new(lengths.sleeve / 2.0, lengths.beside);
-    let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer), 0.8);
+    let bore_width = ROD_WIDTH + 2.0 * parts.fit;
+    let outer_width = bore_width + 2.0 * parts.wall;
+    let middle = Vector::new(lengths.sleeve / 2.0, lengths.lateral_offset);
+    let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer_width), 0.8);
     // The sleeve's corners must not stick out beyond the arm of its eye.
-    let arm = Shape::bar(pin, Vector::new(half, lengths.beside), half - 0.02);
-    // The bore is open at both ends, so the cut is longer than the rod can reach.
-    let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore);
+    let arm = Shape::bar(pin, Vector::new(half, lengths.lateral_offset), half - 0.02);
+    // The bore is open at both ends, so the cut is longer than the sleeve.
+    let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore_width);
     let open_bore = Shape::rectangle(middle, size, 0.0);
     let eye = [Shape::disc(pin, half), arm, case.clone()];
-    let hole = builder.hole(pin);
+    let hole = builder.clearance_hole(pin);
     let (low, top) = (stack.sleeve[0], stack.lower_coupler[1]);
     let [begin, end] = stack.bore;
     let mut prisms = vec![
@@ -82,14 +82,14 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
 }
 
 fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
-    let half = builder.half_bar();
+    let half = builder.half_bar_width();
     let pin = Vector::default();
-    let middle = Vector::new(-lengths.rod / 2.0, lengths.beside);
-    let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD), 1.0);
-    // The bend lies ahead of the pin, so that the sleeve may come near the pin.
-    let bend = Shape::bar(pin, Vector::new(1.0, lengths.beside), half - 0.02);
+    let middle = Vector::new(-lengths.rod / 2.0, lengths.lateral_offset);
+    let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD_WIDTH), 1.0);
+    // The bend lies ahead of the pin, so that the sleeve can come near the pin.
+    let bend = Shape::bar(pin, Vector::new(1.0, lengths.lateral_offset), half - 0.02);
     let filled = [Shape::disc(pin, half), bend, bar];
-    let prism = Prism::new(filled, [builder.hole(pin)], builder.stack.rod);
+    let prism = Prism::new(filled, [builder.clearance_hole(pin)], builder.stack.rod);
     builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }
 
@@ -97,18 +97,19 @@ fn add_pins(builder: &mut Builder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
     let layout = builder.layout;
-    let arm_tip_of = |servo: usize| Vector::new(0.0, layout.arm_side[servo] * layout.arm[servo]);
+    let arm_tip_of =
+        |servo: usize| Vector::new(0.0, layout.arm_side[servo] * layout.arm_lengths[servo]);
     let [sleeve, rod] = ["sleeve", "rod"].map(|prefix| format!("{prefix} {side}"));
-    let name = format!("arm {}", names(rear).0);
+    let name = format!("arm {}", servo_and_leg_names(rear).0);
     let mount = Mount::Link(rear);
-    builder.add_held_joint(
+    builder.add_link_joint(
         &name,
         mount,
         arm_tip_of(rear),
         stack.lower_coupler[1],
         &[&sleeve],
     );
-    let (name, _) = names(front);
+    let (name, _) = servo_and_leg_names(front);
     let (position, mount) = (arm_tip_of(front), Mount::Link(front));
     let spacer_z = [stack.link[1], stack.rod[0]];
     builder.add_spacer(
@@ -118,7 +119,7 @@ fn add_pins(builder: &mut Builder, side: Side) {
         spacer_z,
         &[&rod],
     );
-    builder.add_held_joint(
+    builder.add_link_joint(
         &format!("arm {name}"),
         mount,
         position,
@@ -131,7 +132,7 @@ fn add_pins(builder: &mut Builder, side: Side) {
 pub fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
     let (slider, limits) = (robot.lizard().side(side), robot.limits());
     [
-        slider.nominal + limits.stroke_min,
-        slider.nominal + limits.stroke_max,
+        slider.nominal_length + limits.stroke_min,
+        slider.nominal_length + limits.stroke_max,
     ]
 }

@@ -1,22 +1,22 @@
-//! A fit coupon: an hour of printing that shows which `fit` a printer needs.
+//! A fit coupon: a test piece, printed within an hour, that shows which `fit` a printer needs.
 //!
-//! Each column has another fit, 0.0 to 0.4 mm from the left, marked by one to five dots: an M3
-//! hole, a horn's pocket, a servo's opening with the notch for its lead, a piece of a sleeve. Use
-//! the first column in which all of these can be assembled by hand.
+//! Each column has its own fit, from 0.0 mm on the left to 0.4 mm on the right, marked by one to five dots. It
+//! consists of an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, and a piece of a sleeve.
+//! Use the first column in which all of these can be assembled by hand.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
 
-use crate::bodies::leads::{LEAD, notch};
-use crate::bodies::links::{POCKET, arm};
-use crate::bodies::sliders::ROD;
+use crate::bodies::leads::{LEAD_SECTION, lead_notch};
+use crate::bodies::links::{POCKET_FIT_FACTOR, horn_arm};
+use crate::bodies::sliders::ROD_WIDTH;
 use crate::layers::body::Prism;
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 use crate::part::Part;
 
 /// Number of columns.
-const COLUMNS: u32 = 5;
+const COLUMN_COUNT: u32 = 5;
 /// Difference of the fit from column to column, mm.
 const FIT_STEP: f64 = 0.1;
 /// Thickness of the coupon, mm.
@@ -31,27 +31,27 @@ const GAUGE_LENGTH: f64 = 30.0;
 /// The coupon, and a piece of rod to try in its sleeves.
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
-    let pitch = servo.width + 2.0 * FIT_STEP * f64::from(COLUMNS) + 4.0;
+    let pitch = servo.width + 2.0 * FIT_STEP * f64::from(COLUMN_COUNT) + 4.0;
     // From the lower edge up: opening, pocket, hole with dots, sleeve.
-    let max_fit = FIT_STEP * f64::from(COLUMNS);
-    let opening_y = 3.0 + LEAD[1] + max_fit + servo.length / 2.0;
+    let max_fit = FIT_STEP * f64::from(COLUMN_COUNT);
+    let opening_y = 3.0 + LEAD_SECTION[1] + max_fit + servo.length / 2.0;
     let pocket_y = opening_y + servo.length / 2.0 + max_fit + 3.0 + horn.hub / 2.0;
     let hole_y = pocket_y + horn.arm + 5.0;
     let sleeve_y = hole_y + 6.0 + SLEEVE_LENGTH / 2.0;
     let top_y = sleeve_y + SLEEVE_LENGTH / 2.0 + 2.0;
-    let width = pitch * f64::from(COLUMNS);
+    let width = pitch * f64::from(COLUMN_COUNT);
     let vector = Vector::new;
     let plate = Shape::rectangle(vector(width / 2.0, top_y / 2.0), vector(width, top_y), 2.0);
     let (mut floor_cuts, mut upper_cuts, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
-    let mut roofs = Vec::new();
-    for column in 0..COLUMNS {
+    let mut roof_heights = Vec::new();
+    for column in 0..COLUMN_COUNT {
         let fit = FIT_STEP * f64::from(column);
         let x = pitch * (f64::from(column) + 0.5);
-        let case = vector(servo.width + 2.0 * fit, servo.length + 2.0 * fit);
+        let case_size = vector(servo.width + 2.0 * fit, servo.length + 2.0 * fit);
         let through_holes = [
             Shape::disc(vector(x - 3.0, hole_y), (parts.screw.diameter + fit) / 2.0),
-            Shape::rectangle(vector(x, opening_y), case, 0.0),
-            notch(servo, vector(x, opening_y), fit, -1.0),
+            Shape::rectangle(vector(x, opening_y), case_size, 0.0),
+            lead_notch(servo, vector(x, opening_y), fit, -1.0),
         ];
         floor_cuts.extend(through_holes.iter().cloned());
         upper_cuts.extend(through_holes);
@@ -60,40 +60,40 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
             origin: vector(x, pocket_y),
             x_axis: vector(0.0, 1.0),
         };
-        let arm_shapes = arm(horn, POCKET * fit).into_iter();
+        let arm_shapes = horn_arm(horn, POCKET_FIT_FACTOR * fit).into_iter();
         upper_cuts.extend(arm_shapes.map(|shape| shape.placed(&upright)));
         for dot in 0..=column {
             let dot_x = x + 1.6 + 1.6 * f64::from(dot % 3);
             let dot_position = vector(dot_x, hole_y + 1.6 - 3.2 * f64::from(dot / 3));
             upper_cuts.push(Shape::disc(dot_position, 0.5));
         }
-        let bore = ROD + 2.0 * fit;
-        let outer = bore + 2.0 * parts.wall;
+        let bore_width = ROD_WIDTH + 2.0 * fit;
+        let outer_width = bore_width + 2.0 * parts.wall;
         walls.push(Shape::rectangle(
             vector(x, sleeve_y),
-            vector(outer, SLEEVE_LENGTH),
+            vector(outer_width, SLEEVE_LENGTH),
             0.5,
         ));
         bores.push(Shape::rectangle(
             vector(x, sleeve_y),
-            vector(bore, 2.0 * SLEEVE_LENGTH),
+            vector(bore_width, 2.0 * SLEEVE_LENGTH),
             0.0,
         ));
-        roofs.push(THICKNESS + parts.thickness + 2.0 * fit);
+        roof_heights.push(THICKNESS + parts.thickness + 2.0 * fit);
     }
     let mut prisms = vec![
         Prism::new([plate.clone()], floor_cuts, [0.0, FLOOR_THICKNESS]),
         Prism::new([plate], upper_cuts, [FLOOR_THICKNESS, THICKNESS]),
     ];
-    // Each sleeve is two fits higher than the previous one, so its roof begins higher: each layer
-    // has one bore less.
+    // The roof of each sleeve begins higher than that of the previous one, since its fit is larger. So each layer
+    // has one bore less than the layer below it.
     let mut low = THICKNESS;
-    for (column, roof) in roofs.into_iter().enumerate() {
+    for (column, roof) in roof_heights.into_iter().enumerate() {
         prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));
         low = roof;
     }
     prisms.push(Prism::solid(walls, [low, low + 1.3]));
-    let gauge = Shape::rectangle(vector(0.0, 0.0), vector(GAUGE_LENGTH, ROD), 1.0);
+    let gauge = Shape::rectangle(vector(0.0, 0.0), vector(GAUGE_LENGTH, ROD_WIDTH), 1.0);
     let gauge = Prism::solid([gauge], [0.0, parts.thickness]);
     [
         Part::single("coupon", prisms),

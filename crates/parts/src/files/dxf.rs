@@ -1,14 +1,14 @@
-//! A sheet as a DXF file of AutoCAD's release 12, which every program for a cutter reads.
+//! A sheet as a DXF file of AutoCAD release 12, which the programs of all cutters can read.
 //!
-//! This is our own writer, for four entities, because the crate that writes DXF depends
-//! on an image decoder and a calendar.
+//! The crate that writes DXF depends on an image decoder and a calendar, so this module has its own writer for the
+//! few entities that a sheet needs.
 
 use std::fmt::Write;
 
 use crate::files::sheet::{Sheet, extent};
 use crate::layers::outline::Loop;
 
-/// The text of a DXF file.
+/// The text of a DXF file. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
 pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
     let [low, high] = extent(sheet);

@@ -74,16 +74,18 @@ impl Mesh {
     }
 }
 
+/// A solid and the part of its mesh that is made so far.
 struct MeshBuilder<'a> {
     solid: &'a Solid,
     mesh: Mesh,
-    /// Index in the mesh of each corner, by its point and its height.
+    /// Index in the mesh of each of the solid's corners, by the indices of its point and of its height.
     corner_indices: BTreeMap<(usize, usize), usize>,
-    /// The corners of each edge, from its first end point to its second.
+    /// The indices of the corners along each edge of the solid, from its first end to its second.
     lines: Vec<Vec<usize>>,
 }
 
 impl MeshBuilder<'_> {
+    /// Returns the index of a corner of the solid in the mesh; adds the corner if it is new.
     fn corner_index(&mut self, (point, level): (usize, usize)) -> usize {
         let (position, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;
@@ -96,6 +98,7 @@ impl MeshBuilder<'_> {
             })
     }
 
+    /// Divides an edge into chords, and returns the indices of the corners along it.
     fn divide_edge(&mut self, edge: usize) -> Vec<usize> {
         let edge = self.solid.edges[edge];
         let [from, to] = edge.ends;
@@ -110,7 +113,7 @@ impl MeshBuilder<'_> {
             (angle / chord.min(MAX_CHORD_ANGLE)).ceil() as u32
         };
         let z = self.solid.heights[from.1];
-        for position in side.along(self.solid.points[to.0], chord_count_of) {
+        for position in side.division_points(self.solid.points[to.0], chord_count_of) {
             line.push(self.mesh.corners.len());
             self.mesh.corners.push([position.x, position.y, z]);
         }
@@ -118,12 +121,12 @@ impl MeshBuilder<'_> {
         line
     }
 
-    /// The corners of a sequence of edges, without the last corner.
+    /// The corners along a sequence of edges, without the last corner.
     fn trail_of(&self, edges: &[(usize, bool)]) -> Vec<usize> {
         let mut trail = Vec::new();
-        for &(edge, forward) in edges {
+        for &(edge, is_forward) in edges {
             let line = &self.lines[edge];
-            match forward {
+            match is_forward {
                 true => trail.extend(&line[..line.len() - 1]),
                 false => trail.extend(line[1..].iter().rev()),
             }
@@ -131,6 +134,7 @@ impl MeshBuilder<'_> {
         trail
     }
 
+    /// Adds a horizontal face. Seen from below, it is triangulated as its mirror image.
     fn add_flat(&mut self, face: &Face, is_below: bool) {
         let mut corners: Vec<usize> = Vec::new();
         let mut starts = Vec::new();
@@ -163,6 +167,7 @@ impl MeshBuilder<'_> {
         self.mesh.triangles.extend(triangles);
     }
 
+    /// Adds a wall as a strip of triangles between its lower and its upper line of corners.
     fn add_wall(&mut self, face: &Face, side: Segment, end: Vector) {
         let levels_of = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
         let edges = &face.loops[0];
@@ -203,9 +208,9 @@ impl MeshBuilder<'_> {
     }
 
     /// The corner at which an edge of a loop begins or, if `is_last`, ends.
-    fn first_or_last_corner(&self, (edge, forward): (usize, bool), is_last: bool) -> usize {
+    fn first_or_last_corner(&self, (edge, is_forward): (usize, bool), is_last: bool) -> usize {
         let line = &self.lines[edge];
-        if forward == is_last {
+        if is_forward == is_last {
             line[line.len() - 1]
         } else {
             line[0]
@@ -213,8 +218,8 @@ impl MeshBuilder<'_> {
     }
 }
 
-/// Divides triangles at the corners that lie on their sides. The triangulation leaves out points on a straight
-/// line, but walls and other triangles have corners at these points.
+/// Divides triangles at the corners that lie on their sides. The triangulation skips points in the middle of a
+/// straight line, but walls and other triangles have corners at these points.
 fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     let mut index = 0;
     while index < triangles.len() {

@@ -12,8 +12,8 @@ pub(crate) mod step;
 pub(crate) mod stl;
 pub(crate) mod svg;
 
+use crate::build_problem::BuildProblem;
 use crate::part::Part;
-use crate::unfit::BuildProblem;
 use mesh::Mesh;
 use solid::Solid;
 
@@ -39,18 +39,18 @@ impl File {
 /// The files of a part: STEP and STL, and DXF and SVG if it can be cut from a sheet.
 ///
 /// # Errors
-/// Returns [`BuildProblem::Surface`] for a part whose layers do not form a closed surface.
+/// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not form a closed surface.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildProblem> {
     let solid = Solid::of(&part.prisms);
     let printed_solid = Solid::of(&part.printed_layers().0);
     let mesh = match printed_solid.is_closed() {
         true => Mesh::of(&printed_solid),
-        false => return Err(BuildProblem::Surface(part.name.clone())),
+        false => return Err(BuildProblem::OpenSurface(part.name.clone())),
     };
     if !solid.is_closed() || !mesh.is_closed() {
-        return Err(BuildProblem::Surface(part.name.clone()));
+        return Err(BuildProblem::OpenSurface(part.name.clone()));
     }
-    let name = part.file();
+    let name = part.file_stem();
     let step = step::step(&part.name, &solid);
     let mut files = vec![
         File::text(format!("step/{name}.step"), step),

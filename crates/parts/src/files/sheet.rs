@@ -23,7 +23,7 @@ pub struct Sheet {
 /// A layer of a drawing: lines of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
+    /// The kind of the lines: `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
     pub name: String,
     /// The closed lines of the layer.
     pub loops: Vec<Loop>,
@@ -109,10 +109,10 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let sides = hole.sides.iter();
     let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
     let middle = sum * (1.0 / hole.sides.len() as f64);
-    // The probed points lie slightly within the line, so that a hole of the same size counts as open.
+    // The probes lie slightly within the hole, so that a hole of the same size in the layer counts as open.
     let shrink = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.sides_with_end_points();
-    let mut probes = ends.flat_map(|(side, to)| [side.from, side.middle(to)]);
+    let mut probes = ends.flat_map(|(side, to)| [side.from, side.midpoint(to)]);
     probes.all(|point| !outline.contains(shrink(point)))
 }
 
@@ -123,7 +123,7 @@ pub fn extent(sheet: &Sheet) -> [Vector; 2] {
         lines
             .flat_map(Loop::sides_with_end_points)
             .flat_map(|(side, to)| {
-                let arc = side.along(to, |_, _| 16);
+                let arc = side.division_points(to, |_, _| 16);
                 std::iter::once(side.from).chain(arc)
             }),
     )

@@ -13,7 +13,7 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Segment};
 
-/// The surface of a part, as edges and faces.
+/// The surface of a part, as points, edges and faces. A `level` is the index of a height.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Points seen from above, mm.
@@ -56,18 +56,23 @@ pub enum Surface {
     Bottom(usize),
     /// A wall along a side of an outline; the vector is the side's end point.
     Wall(Segment, Vector),
-    /// A leaning wall along a side of an outline: the side, its end point, the index of its lower height, and the
-    /// arc's radius at the next height, mm.
+    /// A piece of a cone along an arc of an outline: the arc, its end point, the index of its height, and its radius
+    /// at the next height, mm.
     Slope(Segment, Vector, usize, f64),
 }
 
-/// A piece of an outline at a height.
+/// A piece of an outline at a height. All numbers are indices.
 #[derive(Clone, Copy)]
 struct Piece {
+    /// The point at which the piece begins.
     from: usize,
+    /// The point at which the piece ends.
     to: usize,
+    /// The piece's middle, in [`SolidBuilder::middles`].
     middle: usize,
+    /// The edge of the solid on which the piece lies.
     edge: usize,
+    /// True if the piece runs in the direction of its edge.
     is_forward: bool,
 }
 
@@ -101,30 +106,32 @@ impl Solid {
         builder.solid
     }
 
-    /// True if every edge has exactly two faces, which run along it in opposite directions.
+    /// True if every edge belongs to exactly two faces, whose loops run along it in opposite directions.
     pub fn is_closed(&self) -> bool {
-        let mut uses = vec![[0, 0]; self.edges.len()];
+        let mut use_counts = vec![[0, 0]; self.edges.len()];
         for &(edge, is_forward) in self.faces.iter().flat_map(|face| &face.loops).flatten() {
-            uses[edge][usize::from(is_forward)] += 1;
+            use_counts[edge][usize::from(is_forward)] += 1;
         }
-        uses.iter().all(|uses| *uses == [1, 1])
+        use_counts.iter().all(|uses| *uses == [1, 1])
     }
 }
 
 /// The outline of a layer and its pieces at a height.
-type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
+type OutlineAndPieces<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
+/// The part of a solid that is made so far, and the indices of its edges.
 #[derive(Default)]
 struct SolidBuilder {
     solid: Solid,
-    /// Index of the edge by height, two points and the middle of the piece.
-    edge_of: BTreeMap<(usize, usize, usize, usize), usize>,
+    /// Index of the edge at a height, by level, two points and the middle of the piece.
+    edge_indices: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
-    /// Index of the edge from a height to the next one, by lower point, upper point and upper height.
-    upright_of: BTreeMap<(usize, usize, usize), usize>,
+    /// Index of the edge from a height to the next one, by lower point, upper point and upper level.
+    upright_indices: BTreeMap<(usize, usize, usize), usize>,
 }
 
+/// Returns the index of a point in a list; adds the point if none is as near as [`SAME_POINT_MM`].
 fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
     let is_near =
         |other: &Vector| (*other - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
@@ -180,16 +187,17 @@ impl SolidBuilder {
             .collect()
     }
 
+    /// Returns a piece between two points; adds its edge and its middle if they are new.
     fn add_piece(&mut self, level: usize, from: usize, to: usize, bulge: f64) -> Piece {
         let points = &self.solid.points;
         let side = Segment {
             from: points[from],
             bulge,
         };
-        let middle = find_or_add(&mut self.middles, side.middle(points[to]));
+        let middle = find_or_add(&mut self.middles, side.midpoint(points[to]));
         let key = (level, from.min(to), from.max(to), middle);
         let edges = &mut self.solid.edges;
-        let edge = *self.edge_of.entry(key).or_insert_with(|| {
+        let edge = *self.edge_indices.entry(key).or_insert_with(|| {
             edges.push(Edge {
                 ends: [(from, level), (to, level)],
                 bulge,
@@ -206,7 +214,7 @@ impl SolidBuilder {
     }
 
     /// Adds the flat faces at a height, where one layer has material and the other has none.
-    fn add_flats(&mut self, level: usize, lower: Cut, upper: Cut) {
+    fn add_flats(&mut self, level: usize, lower: OutlineAndPieces, upper: OutlineAndPieces) {
         let tops = self.difference(lower, upper);
         self.add_faces(tops, Surface::Top(level), false);
         let bottoms = self.difference(upper, lower);
@@ -214,7 +222,7 @@ impl SolidBuilder {
     }
 
     /// The outline of `a` less `b`, as pieces with the material on their left.
-    fn difference(&self, a: Cut, b: Cut) -> Vec<Piece> {
+    fn difference(&self, a: OutlineAndPieces, b: OutlineAndPieces) -> Vec<Piece> {
         let find_in_b = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
         let mut outline = Vec::new();
         for piece in a.1.iter().flatten() {
@@ -240,7 +248,7 @@ impl SolidBuilder {
         outline
     }
 
-    /// Adds faces with these pieces as their edges. Seen from below, each loop runs in the opposite direction.
+    /// Adds the faces that the pieces bound. Each loop of a face seen from below runs in the opposite direction.
     fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_below: bool) {
         let mut outer_faces: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
@@ -346,7 +354,7 @@ impl SolidBuilder {
     fn find_or_add_upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
         *self
-            .upright_of
+            .upright_indices
             .entry((low, high, level))
             .or_insert_with(|| {
                 edges.push(Edge {
@@ -437,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn layers_whose_outlines_run_together_share_their_edges() {
+    fn layers_whose_outlines_coincide_in_part_have_a_closed_surface() {
         // A sleeve: floor, two walls, roof.
         let case = Shape::rectangle(vector(0.0, 0.0), vector(40.0, 10.0), 1.0);
         let bore = Shape::rectangle(vector(0.0, 0.0), vector(60.0, 6.0), 0.0);

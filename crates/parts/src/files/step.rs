@@ -1,7 +1,7 @@
 //! A part as a STEP file (ISO 10303-21, AP214): a solid of planes, cylinders and cones.
 //!
-//! This is our own writer, because existing ones turn circles into splines: then a
-//! CAD program no longer knows that a hole is round, or where its centre is.
+//! Existing writers turn circles into splines: then a CAD program no longer knows that a hole is round, or where its
+//! centre is. So this module has its own writer.
 
 use std::fmt::Write;
 
@@ -13,8 +13,8 @@ use crate::layers::outline::Segment;
 /// The text of a STEP file.
 pub fn step(name: &str, solid: &Solid) -> String {
     let mut file = StepWriter::default();
-    let solid = file.add_solid(name, solid);
-    file.add_product(name, solid);
+    let solid_id = file.add_solid(name, solid);
+    file.add_product(name, solid_id);
     let data = file.text;
     format!(
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('{name}, mm'),'2;1');\n\
@@ -24,18 +24,21 @@ pub fn step(name: &str, solid: &Solid) -> String {
     )
 }
 
+/// The entities that describe the product and its units, one a line; see [`StepWriter::add_product`].
 const PRODUCT: &str = include_str!("product.step");
 
 /// The index of the entity PRODUCT_DEFINITION_SHAPE in [`PRODUCT`].
-const PRODUCT_SHAPE: usize = 7;
+const PRODUCT_SHAPE_INDEX: usize = 7;
 
+/// The data section of a STEP file. Each method that adds an entity returns the number of the entity.
 #[derive(Default)]
 struct StepWriter {
     text: String,
+    /// The number of the entity added last.
     last_id: usize,
 }
 
-/// A number in the format's notation: with a point, and without an exponent, which some
+/// Formats a number as STEP requires, with a decimal point, and without an exponent, which some
 /// readers misread.
 fn format_real(number: f64) -> String {
     let text = format!("{number:.9}");
@@ -64,7 +67,7 @@ impl StepWriter {
         ))
     }
 
-    /// A frame by its origin, its z axis and its x axis.
+    /// Adds a frame with an origin, a z axis and an x axis.
     fn add_frame(&mut self, origin: [f64; 3], z: [f64; 3], x: [f64; 3]) -> usize {
         let origin = self.add_triple("CARTESIAN_POINT", origin);
         let z = self.add_triple("DIRECTION", z);
@@ -94,8 +97,8 @@ impl StepWriter {
             .iter()
             .map(|face| self.add_face(solid, face, &edges));
         let faces: Vec<_> = faces.collect();
-        let shell = self.add(&format!("CLOSED_SHELL('',{})", list_text(&faces)));
-        self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell})"))
+        let shell_id = self.add(&format!("CLOSED_SHELL('',{})", list_text(&faces)));
+        self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell_id})"))
     }
 
     fn add_face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
@@ -142,7 +145,7 @@ impl StepWriter {
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
 
-    /// Adds the surface of a face. The bool is true if the surface's normal points out of the part.
+    /// Adds the surface of a face. The second value is true if the surface's normal points out of the part.
     fn add_surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
@@ -155,7 +158,7 @@ impl StepWriter {
                 (self.add(&format!("PLANE('',#{frame})")), true)
             }
             Surface::Slope(side, end, level, upper_radius) => {
-                let (centre, radius) = side.arc(end).expect("a slope is round");
+                let (centre, radius) = side.arc(end).expect("a slope's side is an arc");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
                 // The angle of a cone in STEP is positive, so a cone that narrows upward gets a frame that points
                 // down.
@@ -192,7 +195,7 @@ impl StepWriter {
     }
 
     /// Adds the product's entities, which readers require, and its units.
-    fn add_product(&mut self, name: &str, solid: usize) {
+    fn add_product(&mut self, name: &str, solid_id: usize) {
         let first_id = self.last_id + 1;
         // `#+3` is the third entity of the list, `#NAME` the part's name.
         for entity in PRODUCT.lines() {
@@ -206,9 +209,9 @@ impl StepWriter {
             }
             self.add(&entity);
         }
-        let (shape_id, context_id) = (first_id + PRODUCT_SHAPE, self.last_id);
+        let (shape_id, context_id) = (first_id + PRODUCT_SHAPE_INDEX, self.last_id);
         let frame = self.add_frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-        let parts = format!("(#{frame},#{solid})");
+        let parts = format!("(#{frame},#{solid_id})");
         let body_id = self.add(&format!(
             "ADVANCED_BREP_SHAPE_REPRESENTATION('',{parts},#{context_id})"
         ));
@@ -223,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_a_point_and_no_exponent() {
+    fn numbers_have_a_point_no_exponent_and_no_negative_zero() {
         for (value, text) in [
             (0.0, "0."),
             (-1e-16, "0."),

@@ -9,10 +9,10 @@ use crate::layers::outline::Loop;
 
 /// Margin around the part, mm.
 const MARGIN: f64 = 5.0;
-/// Colours of the lines: first to cut through, then pockets.
+/// Colours of the lines: the first for lines to cut through, the others for pockets.
 const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
-/// The text of an SVG file.
+/// The text of an SVG file. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
 pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);

@@ -1,25 +1,25 @@
 //! One corner of the robot, to be printed first: a seat for one servo with the pivots of
 //! its leg, the servo's link, the leg, its strut and its foot.
 //!
-//! After three hours of printing it shows what all parts would show after fifteen: whether
-//! the servo fits its opening and the horn its link, whether bearings turn without play,
-//! and how much a foot yields.
+//! After three hours of printing, it shows what all parts together would show only after
+//! fifteen: whether the servo fits its opening and the horn its link, whether the bearings
+//! turn without play, and how much a foot yields.
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::builder::Builder;
 use crate::bodies::chassis;
-use crate::bodies::names::names;
-use crate::guide::CORNER;
+use crate::bodies::names::servo_and_leg_names;
+use crate::guide::CORNER_SERVO;
 use crate::layers::body::Mount;
 use crate::part::Part;
 
 impl Assembly {
     /// The printed parts of the corner of A1, each once.
-    pub fn corner(&self) -> Vec<Part> {
-        let (name, leg) = names(CORNER);
-        let prisms = chassis::corner(&Builder::new(self.robot()), CORNER);
-        let mut corner = vec![Part::single(&format!("seat {name}"), prisms)];
-        let is_own = |body: &str| {
+    pub fn corner_parts(&self) -> Vec<Part> {
+        let (name, leg) = servo_and_leg_names(CORNER_SERVO);
+        let prisms = chassis::corner_prisms(&Builder::new(self.robot()), CORNER_SERVO);
+        let mut parts = vec![Part::single(&format!("seat {name}"), prisms)];
+        let is_in_corner = |body: &str| {
             let body = self.body(body);
             body.is_some_and(|body| {
                 let is_no_coupler = !matches!(body.mount, Mount::Coupler(_));
@@ -28,11 +28,11 @@ impl Assembly {
             })
         };
         for mut part in self.parts() {
-            part.bodies.retain(|body| is_own(body));
-            if !part.bodies.is_empty() && !part.name.starts_with("spacer") {
-                corner.push(part);
+            part.body_names.retain(|body| is_in_corner(body));
+            if !part.body_names.is_empty() && !part.name.starts_with("spacer") {
+                parts.push(part);
             }
         }
-        corner
+        parts
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Replaces each pair of marks by an element around the text between them.
+/// Replaces each pair of marks with an element around the text between them.
 fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();
@@ -12,7 +12,7 @@ fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     result
 }
 
-/// The guide's Markdown as a page. Only headings, pictures, tables, code and paragraphs are supported.
+/// The guide's Markdown as a page. Only headings, pictures, tables, code, bold text and paragraphs are supported.
 pub fn html(markdown: &str) -> String {
     let escape = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_has_tables_code_and_pictures() {
+    fn a_page_has_headings_tables_code_and_pictures() {
         let page = html(
             "# A\n\n| a | b |\n|---|---|\n| 1 | x < y |\n\n![p](q.svg)\nrun `z`\n```toml\nk = 1\n```\n",
         );

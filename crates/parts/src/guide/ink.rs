@@ -1,4 +1,4 @@
-//! Polygons on a page, and names beside them, as SVG.
+//! Polygons on a page, and labels at and beside them, as SVG.
 
 use std::fmt::Write;
 
@@ -12,24 +12,25 @@ const MARGIN: f64 = 12.0;
 const LABEL_MARGIN: f64 = 165.0;
 /// Height of a line of a label, pixels.
 const LINE_HEIGHT: f64 = 16.0;
-const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
+/// SVG attributes of the labels' text.
+const FONT_ATTRIBUTES: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
 /// A line through points on the page.
 pub(super) type Trail = Vec<(f64, f64)>;
-/// A label and the point on the page that it names.
-pub(super) type Name<'a> = ((f64, f64), &'a Label);
+/// A label, and before it the point on the page that it names.
+pub(super) type PlacedLabel<'a> = ((f64, f64), &'a Label);
 
-/// A name in a picture.
+/// A label in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     /// The point that the label names, chassis frame, mm.
-    pub at: Vector,
+    pub position: Vector,
     /// Height of the named point, mm.
     pub z: f64,
     /// The text of the label.
     pub text: String,
-    /// True to write the text beside the picture with a line to the named point, as for names of parts; false
-    /// to write it at the point.
+    /// True for a text beside the picture with a line to the named point, as for parts; false for a text at the
+    /// point.
     pub is_beside: bool,
 }
 
@@ -43,9 +44,9 @@ impl Frame {
     /// The smallest frame around some points, with a margin in a close view.
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, is_close_up: bool) -> Self {
         /// Margin of a close view, mm.
-        const AROUND: f64 = 12.0;
+        const CLOSE_UP_MARGIN: f64 = 12.0;
         let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
-        let margin = if is_close_up { AROUND } else { 0.0 };
+        let margin = if is_close_up { CLOSE_UP_MARGIN } else { 0.0 };
         Self {
             low: (low.x - margin, low.y - margin),
             high: (high.x + margin, high.y + margin),
@@ -57,32 +58,37 @@ impl Frame {
     }
 }
 
-/// Shapes in the order in which they are drawn.
+/// A drawing: shapes in the order in which they are drawn.
 #[derive(Default)]
 pub(super) struct Ink {
-    /// Colour, loops, and true if the edge is drawn.
+    /// The colour and the loops of each shape, and true if its edge is drawn.
     shapes: Vec<(String, Vec<Trail>, bool)>,
 }
 
 impl Ink {
     /// Draws a polygon over everything drawn so far; loops within its outer loop are holes.
-    pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], has_edge: bool) {
+    pub(super) fn draw_polygon(
+        &mut self,
+        loops: &[Vec<(f64, f64)>],
+        colour: [f64; 3],
+        has_edge: bool,
+    ) {
         let [r, g, b] = colour.map(|channel| channel.clamp(0.0, 255.0).round() as u8);
         self.shapes
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
     }
 
-    /// The picture as SVG, `width` pixels wide, with labels at their points on the page.
-    pub(super) fn finish(self, width: f64, frame: &Frame, names: &[Name]) -> String {
+    /// Returns the picture as SVG, `width` pixels wide, with the labels that lie within the frame.
+    pub(super) fn into_svg(self, width: f64, frame: &Frame, labels: &[PlacedLabel]) -> String {
         let (low, high) = (frame.low, frame.high);
-        let side_margin = match names.iter().any(|(_, label)| label.is_beside) {
+        let side_margin = match labels.iter().any(|(_, label)| label.is_beside) {
             true => LABEL_MARGIN,
             false => 0.0,
         };
         let drawing_width = width - 2.0 * (MARGIN + side_margin);
         let scale = drawing_width / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
-        let x0 = MARGIN + side_margin;
+        let left_offset = MARGIN + side_margin;
         // Each colour is named once, and points are given in whole tenths of a pixel from the
         // previous one. That makes the text four times shorter.
         let mut styles: Vec<(&str, bool)> = Vec::new();
@@ -100,7 +106,10 @@ impl Ink {
             for line in loops {
                 let mut start = None;
                 for (x, y) in line {
-                    let point = (tenths_of(x - low.0, x0), tenths_of(y - low.1, MARGIN));
+                    let point = (
+                        tenths_of(x - low.0, left_offset),
+                        tenths_of(y - low.1, MARGIN),
+                    );
                     let (x, y) = (point.0 - position.0, point.1 - position.1);
                     // After the first point each pair is a relative line, and a minus sign separates numbers.
                     let _ = match (start, x < 0) {
@@ -123,7 +132,7 @@ impl Ink {
              width=\"{width}\" height=\"{height}\">\n<style>\n"
         );
         for (class, (colour, has_edge)) in styles.into_iter().enumerate() {
-            // A wall's own colour as a hair line closes the seams between walls.
+            // A thin line of a wall's own colour closes the seams between walls.
             let (stroke, stroke_width) = if has_edge { ("#333", 5) } else { (colour, 4) };
             let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
             let _ = writeln!(text, ".c{class}{{{style}}}");
@@ -134,27 +143,31 @@ impl Ink {
              <g transform=\"scale(.1)\" fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
         );
         text.push_str("</g>\n");
-        let page_point_of =
-            |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
-        let shown_names: Vec<_> = names
+        let page_point_of = |(x, y): (f64, f64)| {
+            (
+                (x - low.0) * scale + left_offset,
+                (y - low.1) * scale + MARGIN,
+            )
+        };
+        let shown_labels: Vec<_> = labels
             .iter()
             .filter(|(point, _)| frame.contains(*point))
             .collect();
         for (point, Label { text: name, .. }) in
-            shown_names.iter().filter(|(_, label)| !label.is_beside)
+            shown_labels.iter().filter(|(_, label)| !label.is_beside)
         {
             let (x, y) = page_point_of(*point);
             let _ = writeln!(
                 text,
-                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT} font-weight=\"bold\" \
+                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT_ATTRIBUTES} font-weight=\"bold\" \
                  stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{name}</text>"
             );
         }
         for is_left in [true, false] {
             let middle = width / 2.0;
-            let beside_names = shown_names.iter().filter(|(_, label)| label.is_beside);
-            let placed_names = beside_names.map(|(point, label)| (page_point_of(*point), *label));
-            let mut column: Vec<_> = placed_names
+            let beside_labels = shown_labels.iter().filter(|(_, label)| label.is_beside);
+            let page_labels = beside_labels.map(|(point, label)| (page_point_of(*point), *label));
+            let mut column: Vec<_> = page_labels
                 .filter(|((x, _), _)| (*x < middle) == is_left)
                 .collect();
             column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
@@ -166,10 +179,10 @@ impl Ink {
 }
 
 /// Writes a column of labels on one side of the picture, each with a line to its point.
-fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, height: f64) {
-    let count = column.len() as f64;
+fn write_column(text: &mut String, labels: &[PlacedLabel], is_left: bool, width: f64, height: f64) {
+    let count = labels.len() as f64;
     let mut min_y = LINE_HEIGHT;
-    for (number, ((x, y), label)) in column.iter().enumerate() {
+    for (number, ((x, y), label)) in labels.iter().enumerate() {
         let max_y = height - (count - number as f64) * LINE_HEIGHT + 8.0;
         let text_y = (y + 4.0).min(max_y).max(min_y);
         min_y = text_y + LINE_HEIGHT;
@@ -193,7 +206,7 @@ fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, h
             text,
             "<path d=\"M{line_start:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
              <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
-             <text x=\"{edge}\" y=\"{text_y:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+             <text x=\"{edge}\" y=\"{text_y:.1}\" text-anchor=\"{anchor}\" {FONT_ATTRIBUTES}>{}</text>",
             text_y - 4.0,
             label.text
         );

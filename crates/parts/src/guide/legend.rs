@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{Solution, Vector};
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::bodies::assembly::Assembly;
 use crate::guide::ink::Label;
@@ -12,8 +12,8 @@ use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
-/// A body's name in the guide, such as `M3 x 12` for a screw, or the noun and the mark of a
-/// printed part. `None` for a lead, and for a printed body that is in none of `parts`.
+/// A body's name in the guide, such as `M3 x 12` for a screw, or noun and mark for a printed
+/// part. `None` for a lead, and for a printed body that is in none of `parts`.
 pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
@@ -29,7 +29,9 @@ pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
         }
         Kind::Fitting(fitting) => fitting.name().to_owned(),
         Kind::Printed => {
-            let part = parts.iter().find(|part| part.bodies.contains(&body.name))?;
+            let part = parts
+                .iter()
+                .find(|part| part.body_names.contains(&body.name))?;
             let name = part.name.split(" A").next()?;
             let noun = name.split(['L', 'R']).next()?.trim();
             match part.mark.is_empty() {
@@ -41,7 +43,7 @@ pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
 }
 
 /// The names of bodies with their counts, such as `4 x M3 x 12`; printed parts first.
-pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
+pub fn counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
         if let Some(name) = display_name(body, parts) {
@@ -55,9 +57,9 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     texts.collect()
 }
 
-/// Labels for the new bodies in a picture: each name once, at the body nearest to the front
-/// left corner.
-pub fn names(
+/// Labels for the bodies in a picture that are not grey: each name once, with its count, at the
+/// body nearest to the front left corner.
+pub fn part_labels(
     assembly: &Assembly,
     parts: &[Part],
     picture_bodies: &[PictureBody],
@@ -76,7 +78,7 @@ pub fn names(
             .map(prism.filled_shapes[0].middle());
         let distance = (position - Vector::new(-60.0, 80.0)).length();
         let label = Label {
-            at: position,
+            position,
             z: (body.z()[0] + body.z()[1]) / 2.0 + lift,
             text: name.clone(),
             is_beside: true,
@@ -96,23 +98,23 @@ pub fn names(
     labels.collect()
 }
 
-/// Labels with the servos' names at their places, and with the names of both ends.
-pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
+/// Labels for the four servos and for both ends of the robot.
+pub fn servo_and_end_labels(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// Height of the links, mm.
     const LINK_HEIGHT: f64 = 18.0;
     let label_at = |position: Vector, text: &str| Label {
-        at: position,
+        position,
         z: LINK_HEIGHT,
         text: text.to_owned(),
         is_beside: false,
     };
     // The label is on the link and not at the shaft, which the board may hide.
     let point_on_link = |servo: usize| {
-        let link_point = Vector::new(0.7 * assembly.layout().crank[servo], 0.0);
+        let link_point = Vector::new(0.7 * assembly.layout().crank_lengths[servo], 0.0);
         assembly.place(Mount::Link(servo), pose).map(link_point)
     };
-    let servos = (0..4).map(|servo| label_at(point_on_link(servo), NAMES[servo]));
-    let end_y = assembly.layout().plate.half.y + 16.0;
+    let servos = (0..4).map(|servo| label_at(point_on_link(servo), SERVO_NAMES[servo]));
+    let end_y = assembly.layout().plate.half_size.y + 16.0;
     let ends = [(end_y, "HEAD"), (-end_y, "TAIL")];
     let ends = ends.map(|(y, name)| label_at(Vector::new(0.0, y), name));
     servos.chain(ends).collect()

@@ -3,10 +3,10 @@
 //! The order of the steps lets a screwdriver reach every screw, and tests the electronics before anything can jam.
 
 pub(crate) mod corner;
+pub(crate) mod documents;
 pub(crate) mod html;
 pub(crate) mod ink;
 pub(crate) mod legend;
-pub(crate) mod papers;
 pub(crate) mod picture;
 pub(crate) mod placements;
 
@@ -16,24 +16,24 @@ use lizard_kinematics::Solution;
 
 use crate::bill::Bill;
 use crate::bodies::assembly::Assembly;
-use crate::bodies::names::names;
+use crate::bodies::names::servo_and_leg_names;
+use crate::build_problem::BuildProblem;
 use crate::files::File;
 use crate::guide::html::html;
 use crate::guide::ink::Label;
 use crate::guide::picture::{PictureBody, View, picture};
 use crate::layers::body::{Body, Mount};
-use crate::layers::roof::LAYER_MM;
+use crate::layers::roof::PRINT_LAYER_MM;
 use crate::order::reach::AccessPose;
 use crate::order::steps::{ExtraView, Step, TurningPlace, steps};
 use crate::part::Part;
-use crate::unfit::BuildProblem;
 
-/// Lift of new parts in the exploded pictures, mm.
-const LIFT: f64 = 45.0;
-/// Width of a picture without the names next to it, pixels.
+/// Lift of new bodies in the exploded pictures, mm.
+const EXPLODED_LIFT: f64 = 45.0;
+/// Width of a step's picture, with the labels on its sides, pixels.
 const PICTURE_WIDTH: f64 = 950.0;
-/// The servo of the corner that is printed first and shown in close views: A1.
-pub const CORNER: usize = 0;
+/// Index of the servo whose corner is printed first and shown in close views: A1.
+pub const CORNER_SERVO: usize = 0;
 
 /// The guide's introduction.
 const INTRODUCTION: &str = "No printed robot has walked yet. So print in this order, and stop where something is not as it should be:\n\n\
@@ -43,41 +43,41 @@ const INTRODUCTION: &str = "No printed robot has walked yet. So print in this or
 Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
 roof: that is a bridge of 6.4 mm, which needs none.";
 
-/// Title of the step in which pads are put on their screws.
+/// Title of the step in which the pads are pressed onto their screws.
 const BENCH_TITLE: &str = "Legs, on the bench";
-/// Text added to the step of the pads for pads with a strip.
+/// Text added to the step in which the pads are pressed on, for pads with a strip.
 const STRIP_TEXT: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
 Take all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
-/// Title of the step after which each pad keeps its place.
+/// Title of the step that levels the feet, after which no pad is turned again.
 const LEVEL_TITLE: &str = "Level the feet";
 /// Text added to the step that levels the feet, for pads with a grain.
-const GRAIN_TEXT: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
+const GRAIN_TEXT: &str = " Finally, turn each pad on its screw until its grain is right: a finger glides smoothly over it \
 from head to tail. docs/gaits.md says more about pads with a grain.";
 /// Text added to the step that levels the feet, for pads with a strip.
 const NOTCH_TEXT: &str =
     " The notches of all four pads, LF, RF, RH and LH, then point straight to the head.";
 
-/// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
+/// The guide as Markdown and HTML, with pictures of the robot at `pose`, usually neutral.
 ///
 /// # Errors
 /// Returns [`BuildProblem::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, BuildProblem> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;
-    for (title, text, is_meant) in [
+    for (title, text, applies) in [
         (BENCH_TITLE, STRIP_TEXT, has_strip),
         (
             LEVEL_TITLE,
             GRAIN_TEXT,
-            has_strip || assembly.robot().ground().ratio > 1.0,
+            has_strip || assembly.robot().ground().friction_ratio > 1.0,
         ),
         (LEVEL_TITLE, NOTCH_TEXT, has_strip),
     ] {
         let step = steps.iter_mut().find(|step| step.title == title);
-        let step = step.expect("a step with this title");
-        if is_meant {
-            step.words += text;
+        let step = step.expect("a step has this title");
+        if applies {
+            step.instructions += text;
         }
     }
     let access_poses = assembly.access_poses(&steps)?;
@@ -87,9 +87,9 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     let picture_bodies: Vec<_> = bodies
         .map(|body| PictureBody::at_place(body, false))
         .collect();
-    let names = legend::places(assembly, pose);
-    let robot = picture(assembly, &picture_bodies, pose, &View::default(), &names);
-    files.push(File::text("guide/robot.svg".to_owned(), robot));
+    let labels = legend::servo_and_end_labels(assembly, pose);
+    let robot_picture = picture(assembly, &picture_bodies, pose, &View::default(), &labels);
+    files.push(File::text("guide/robot.svg".to_owned(), robot_picture));
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
         drilling_text(&parts)
@@ -100,28 +100,33 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         let is_already_on = |body: &Body| added_bodies.iter().any(|old| old.name == body.name);
         let is_new = |body: &&Body| step.adds(body) && !is_already_on(body);
         let new_bodies: Vec<&Body> = assembly.bodies().iter().filter(is_new).collect();
-        let _ = writeln!(text, "## {number}. {}\n\n{}\n", step.title, step.words);
+        let _ = writeln!(
+            text,
+            "## {number}. {}\n\n{}\n",
+            step.title, step.instructions
+        );
         if new_bodies.is_empty() {
             continue;
         }
         let _ = writeln!(
             text,
             "Take {}.\n",
-            legend::counted(&new_bodies, &parts).join("; ")
+            legend::counted_names(&new_bodies, &parts).join("; ")
         );
         let poses_here = access_poses
             .iter()
             .filter(|access_pose| access_pose.step == number);
-        let at_bench = step
+        let is_at_bench = step
             .stages
             .iter()
             .any(|stage| stage.turning_place == TurningPlace::Bench);
-        let turns = poses_here.map(|access_pose| turns_in_words(assembly, access_pose, at_bench));
+        let turns =
+            poses_here.map(|access_pose| turns_in_words(assembly, access_pose, is_at_bench));
         let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
-                "As drawn there is no way to some screws. Seen from above, turn {}.\n",
+                "In the pose drawn, some screws cannot be reached. Seen from above, turn {}.\n",
                 turns.join("; ")
             );
         }
@@ -130,8 +135,8 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             parts: &parts,
             pose,
             step,
-            before: &added_bodies,
-            new: &new_bodies,
+            old_bodies: &added_bodies,
+            new_bodies: &new_bodies,
         };
         for (view_name, caption, drawing) in scene.pictures() {
             let name = format!("step-{number}-{view_name}.svg");
@@ -146,40 +151,40 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     Ok(files)
 }
 
-/// The guide's text about holes that have to be drilled.
+/// The guide's text about holes that have to be drilled, and about the marks on the parts.
 fn drilling_text(parts: &[Part]) -> String {
     let hole_text_of = |part: &Part| match part.printed_layers().1 {
         0 => None,
         1 => Some(format!("a hole in each {}", part.name)),
         count => Some(format!("{count} holes in each {}", part.name)),
     };
-    let list: Vec<_> = parts.iter().filter_map(hole_text_of).collect();
+    let hole_texts: Vec<_> = parts.iter().filter_map(hole_text_of).collect();
     format!(
-        "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER_MM} mm; open it with a drill of 3 mm, \
-         or a screw: {}. Parts that are alike but for left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
-        list.join(", ")
+        "Where a pocket is on the underside in printing, the hole in its roof is closed by one layer of {PRINT_LAYER_MM} mm; open it with a drill of 3 mm, \
+         or a screw: {}. Parts that differ only as left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
+        hole_texts.join(", ")
     )
 }
 
-/// A step of the guide and the bodies that were added before it.
+/// A step of the guide, the bodies that were added before it, and those that it adds.
 struct Scene<'a> {
     assembly: &'a Assembly,
     parts: &'a [Part],
     pose: &'a Solution,
     step: &'a Step,
-    before: &'a [&'a Body],
-    new: &'a [&'a Body],
+    old_bodies: &'a [&'a Body],
+    new_bodies: &'a [&'a Body],
 }
 
 impl Scene<'_> {
-    /// The pictures of the step: a word for the file's name, the caption, and the drawing.
+    /// The pictures of the step, each as a word for the file's name, a caption, and the drawing as SVG.
     fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
         let view = View {
             width: PICTURE_WIDTH,
             ..View::default()
         };
         let view_from_below = |azimuth: f64, view: View| View {
-            from_below: true,
+            is_from_below: true,
             azimuth,
             ..view
         };
@@ -217,13 +222,13 @@ impl Scene<'_> {
         let mut pictures = vec![(
             "exploded",
             "apart",
-            self.picture(&view, LIFT, true, all_bodies),
+            self.picture(&view, EXPLODED_LIFT, true, all_bodies),
         )];
         pictures.extend(extra.map(|(view_name, caption, view, lift, filter)| {
             (
                 view_name,
                 caption,
-                self.picture(&view, lift * LIFT, true, filter),
+                self.picture(&view, lift * EXPLODED_LIFT, true, filter),
             )
         }));
         pictures.push(("done", "done", self.picture(&view, 0.0, false, all_bodies)));
@@ -234,22 +239,22 @@ impl Scene<'_> {
         &self,
         view: &View,
         lift: f64,
-        has_names: bool,
+        has_labels: bool,
         is_highlighted: fn(&Body) -> bool,
     ) -> String {
         let old_bodies = self
-            .before
+            .old_bodies
             .iter()
             .map(|body| PictureBody::at_place(body, true));
-        let new_bodies = self.new.iter().map(|&body| PictureBody {
+        let new_bodies = self.new_bodies.iter().map(|&body| PictureBody {
             body,
             lift: lift * (self.step.lift)(body),
             is_grey: !is_highlighted(body),
         });
         let drawn_bodies: Vec<_> = old_bodies.chain(new_bodies).collect();
-        let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
-        if has_names {
-            labels.extend(legend::names(
+        let mut labels: Vec<Label> = legend::servo_and_end_labels(self.assembly, self.pose);
+        if has_labels {
+            labels.extend(legend::part_labels(
                 self.assembly,
                 self.parts,
                 &drawn_bodies,
@@ -262,18 +267,18 @@ impl Scene<'_> {
 
 /// True if a body belongs to the corner that close views show.
 fn is_at_corner(body: &Body) -> bool {
-    let (name, leg) = names(CORNER);
+    let (name, leg) = servo_and_leg_names(CORNER_SERVO);
     match body.mount {
         Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => {
             body.name.split(' ').any(|word| word == name || word == leg)
         }
-        mount => mount.servos() == [CORNER],
+        mount => mount.servos() == [CORNER_SERVO],
     }
 }
 
-/// The guide's text about links to turn out of the way.
+/// The guide's text about the links to turn so that a tool can reach some screws.
 fn turns_in_words(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool) -> String {
-    let neutral: [f64; 4] = assembly.robot().neutral().into();
+    let neutral: [f64; 4] = assembly.robot().neutral_pose().into();
     let turns = (0..4).map(|servo| (servo, access_pose.pose[servo] - neutral[servo]));
     let turns = turns
         .filter(|(_, angle_deg)| angle_deg.abs() > 0.5)
@@ -283,7 +288,7 @@ fn turns_in_words(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bo
             } else {
                 "clockwise"
             };
-            let (name, leg) = names(servo);
+            let (name, leg) = servo_and_leg_names(servo);
             let subject = match is_at_bench {
                 true => format!("crank and follower {leg}"),
                 false => format!("link {name} with its leg"),
@@ -303,12 +308,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_body_is_put_on_in_exactly_one_step() {
+    fn every_body_is_added_in_exactly_one_step() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
-        let text = std::fs::read_to_string(path).expect("paper");
+        let text = std::fs::read_to_string(path).expect("paper.toml is readable");
         for (kind, is_slotted) in [("strut", true), ("rigid", false)] {
             let text = format!("{text}\n[leg.drive]\nkind = \"{kind}\"");
-            let robot = lizard_robot::Robot::parse(&text).expect("paper");
+            let robot = lizard_robot::Robot::parse(&text)
+                .expect("paper.toml is valid with either kind of strut");
             let steps = steps(is_slotted);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();

@@ -1,7 +1,7 @@
 //! A perspective drawing of the robot, or of some of its bodies.
 //!
-//! Everything is a flat layer seen from above, so the drawing order is known without a search. The space is cut at
-//! every height at which a layer begins or ends, and the slices are drawn from the lowest to the highest. In each
+//! Every body is a stack of flat layers, so the drawing order is known without a search. The space is cut into slices
+//! at every height at which a layer begins or ends, and the slices are drawn from the lowest to the highest. In each
 //! slice, the walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it
 //! cannot hide a top of that slice.
 
@@ -45,7 +45,7 @@ pub struct View {
     /// Width of the picture, pixels.
     pub width: f64,
     /// True to turn the robot over about its long axis and show it from below.
-    pub from_below: bool,
+    pub is_from_below: bool,
     /// True to frame only the bodies that are not grey, with a margin around them.
     pub is_close_up: bool,
 }
@@ -56,7 +56,7 @@ impl Default for View {
             azimuth: 240.0,
             elevation: 38.0,
             width: 900.0,
-            from_below: false,
+            is_from_below: false,
             is_close_up: false,
         }
     }
@@ -68,11 +68,12 @@ const EYE_DISTANCE: f64 = 900.0;
 const MAX_CHORD_ANGLE: f64 = 0.55;
 /// Least height of a slice, mm.
 const MIN_SLICE_HEIGHT: f64 = 0.45;
-/// Radius below which a hole is not drawn, since a screw fills it, mm; in a lifted body that is not grey, all holes
-/// are drawn.
+/// Radius below which a hole is not drawn, mm, since a screw fills it. A lifted body that is not grey has all its
+/// holes drawn.
 const HIDDEN_HOLE_RADIUS: f64 = 1.75;
 
-/// Colours of servos A1 to A4 and of the bodies that they move: three of Okabe and Ito's, and a purple of Tol's.
+/// Colours of the bodies that servos A1 to A4 move, 0 to 255 for red, green and blue: three from the palette of Okabe
+/// and Ito, and a purple from Tol's.
 const SERVO_COLOURS: [[f64; 3]; 4] = [
     [0.0, 114.0, 178.0],
     [213.0, 94.0, 0.0],
@@ -82,9 +83,13 @@ const SERVO_COLOURS: [[f64; 3]; 4] = [
 
 /// The viewer's eye, which looks at the robot's middle.
 struct Eye {
+    /// Direction to the right in the picture, in plan view, of length one.
     right: Vector,
+    /// Direction from the robot's middle to the eye, in plan view, of length one.
     away: Vector,
+    /// Sine of the eye's elevation.
     sin: f64,
+    /// Cosine of the eye's elevation.
     cos: f64,
 }
 
@@ -100,7 +105,7 @@ impl Eye {
         }
     }
 
-    /// Projects a point in space onto the page, mm before the page is scaled; y points down.
+    /// Projects a point in space onto the page: mm before the page is scaled, y down.
     fn project(&self, point: Vector, z: f64) -> (f64, f64) {
         let (x, floor_depth) = (point.dot(self.right), point.dot(self.away));
         let eye_depth = floor_depth * self.cos + z * self.sin;
@@ -122,9 +127,10 @@ type Wall = (f64, Trail, [f64; 3]);
 struct Layer {
     colour: [f64; 3],
     /// True if the body is drawn in grey.
-    grey: bool,
-    /// Outer loops and holes as points.
+    is_grey: bool,
+    /// Outer loops and holes as points, chassis frame, mm.
     loops: Vec<Vec<Vector>>,
+    /// Lower and upper height, mm.
     z: [f64; 2],
 }
 
@@ -138,7 +144,7 @@ pub fn picture(
 ) -> String {
     let eye = Eye::new(view);
     let mut layers = layers_of(assembly, picture_bodies, pose);
-    if view.from_below {
+    if view.is_from_below {
         for layer in &mut layers {
             layer.turn_over();
         }
@@ -157,7 +163,7 @@ pub fn picture(
         }
         walls.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, points, colour) in walls {
-            ink.polygon(&[points], colour, false);
+            ink.draw_polygon(&[points], colour, false);
         }
         for layer in slice_layers() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
@@ -165,27 +171,31 @@ pub fn picture(
                     line.iter().map(|point| eye.project(*point, high)).collect()
                 };
                 let loops: Vec<Trail> = layer.loops.iter().map(page_points_of).collect();
-                ink.polygon(&loops, layer.colour, true);
+                ink.draw_polygon(&loops, layer.colour, true);
             }
         }
     }
     // The frame is around all bodies, or in a close view around those that are not grey.
     let framed_layers = layers
         .iter()
-        .filter(|layer| !view.is_close_up || !layer.grey);
+        .filter(|layer| !view.is_close_up || !layer.is_grey);
     let points = framed_layers.flat_map(|layer| {
         let line_points = layer.loops.iter().flatten();
         line_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
     });
-    let page_point_of = |label: &Label| match view.from_below {
-        true => eye.project(turn_over_point(label.at), -label.z),
-        false => eye.project(label.at, label.z),
+    let page_point_of = |label: &Label| match view.is_from_below {
+        true => eye.project(turn_over_point(label.position), -label.z),
+        false => eye.project(label.position, label.z),
     };
-    let names: Vec<_> = labels
+    let placed_labels: Vec<_> = labels
         .iter()
         .map(|label| (page_point_of(label), label))
         .collect();
-    ink.finish(view.width, &Frame::around(points, view.is_close_up), &names)
+    ink.into_svg(
+        view.width,
+        &Frame::around(points, view.is_close_up),
+        &placed_labels,
+    )
 }
 
 /// A point of the robot after it is turned over about its long axis.
@@ -193,7 +203,7 @@ fn turn_over_point(point: Vector) -> Vector {
     Vector::new(-point.x, point.y)
 }
 
-/// The heights at which layers begin or end. Heights nearer to each other than `MIN_SLICE_HEIGHT`
+/// Returns the heights at which layers begin or end. Heights nearer to each other than [`MIN_SLICE_HEIGHT`]
 /// become one, and the layers are moved to it.
 fn merge_heights(layers: &mut [Layer]) -> Vec<f64> {
     let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
@@ -232,7 +242,7 @@ fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solutio
             };
             layers.push(Layer {
                 colour,
-                grey: *is_grey,
+                is_grey: *is_grey,
                 loops: outline
                     .loops()
                     .filter(is_drawn)
@@ -250,7 +260,7 @@ fn points_of(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, to) in line.sides_with_end_points() {
         points.push(side.from);
-        points.extend(side.along(to, |_, angle| (angle / MAX_CHORD_ANGLE).ceil() as u32));
+        points.extend(side.division_points(to, |_, angle| (angle / MAX_CHORD_ANGLE).ceil() as u32));
     }
     points
 }
@@ -282,12 +292,12 @@ impl Layer {
         };
         let mut i = 0;
         while i < n {
-            let Some(light) = shade_of(i) else {
+            let Some(shade) = shade_of(i) else {
                 i += 1;
                 continue;
             };
             let mut chain = vec![line[i]];
-            while i < n && shade_of(i) == Some(light) {
+            while i < n && shade_of(i) == Some(shade) {
                 chain.push(line[(i + 1) % n]);
                 i += 1;
             }
@@ -295,7 +305,7 @@ impl Layer {
             let distance = distances.sum::<f64>() / chain.len() as f64;
             let mut points: Vec<_> = chain.iter().map(|point| eye.project(*point, low)).collect();
             points.extend(chain.iter().rev().map(|point| eye.project(*point, high)));
-            let brightness = 0.5 + 0.09 * f64::from(light);
+            let brightness = 0.5 + 0.09 * f64::from(shade);
             walls.push((
                 distance,
                 points,

@@ -1,10 +1,10 @@
 //! The placements of all bodies as JSON, for programs.
 //!
-//! Lengths in mm; the chassis frame, z up from the top of the plate; servos at neutral. A
-//! printed part's file lies as it is printed: it is turned over if `flipped` is true
-//! (x, y, z to x, -y, -z), lifted by `lift`, turned about the upright axis by `turn` (deg,
-//! counter-clockwise) and shifted by `at`. Bought bodies have `solids`: upright prisms over
-//! convex outlines, already in place. `drill` are the holes to be drilled in a printed part.
+//! Lengths are in mm, in the chassis frame, with z up from the top of the plate. The file of
+//! a printed part has the part as it is printed. To put it in place, turn it over if `flipped`
+//! is true (x, y, z to x, -y, -z), lift it by `lift`, turn it about the z axis by `turn` (deg,
+//! counter-clockwise) and shift it by `at`. Bought bodies have `solids`: upright prisms over
+//! convex outlines, already in place. `drill` lists the holes to be drilled in a printed part.
 
 use lizard_kinematics::{Solution, Vector};
 use serde::Serialize;
@@ -18,15 +18,17 @@ use crate::part::Part;
 
 /// The placement of a body.
 #[derive(Serialize)]
-struct Placed<'a> {
+struct PlacedBody<'a> {
+    /// The body's name.
     name: &'a str,
+    /// The body's kind as a word, such as "screw".
     kind: &'static str,
     /// The step of the guide in which the body is added, from 1.
     step: usize,
     /// The stage of that step in which the body is added, from 1.
     stage: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
-    printed: Option<Print>,
+    printed: Option<PrintPlacement>,
     #[serde(skip_serializing_if = "Option::is_none")]
     screw: Option<Screw>,
     solids: Vec<Prism>,
@@ -34,43 +36,56 @@ struct Placed<'a> {
 
 /// The placement of a printed part's file.
 #[derive(Serialize)]
-struct Print {
+struct PrintPlacement {
+    /// Path of the file within the output folder.
     file: String,
+    /// The text engraved on the part; empty if there is none.
     mark: String,
+    /// True if the part is turned over.
     flipped: bool,
+    /// Shift upward.
     lift: f64,
+    /// Turn about the z axis, deg counter-clockwise.
     turn: f64,
+    /// Shift along x and y.
     at: [f64; 2],
     /// Middles of the holes to be drilled, chassis frame.
     drill: Vec<[f64; 2]>,
 }
 
-/// A screw: the position of its axis, the height of the face under its head, its length and
-/// diameter, and the side of its head.
+/// A screw in its place.
 #[derive(Serialize)]
 struct Screw {
+    /// Position of the axis.
     at: [f64; 2],
+    /// Height of the face under the head.
     head: f64,
+    /// Length below the head.
     length: f64,
+    /// Diameter of the thread.
     diameter: f64,
+    /// True if the head is above the shank.
     head_above: bool,
-    /// The steps in which the screw is turned again, on the robot.
+    /// The later steps of the guide in which the screw is turned again, from 1.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     turned: Vec<usize>,
 }
 
-/// A convex prism, and the holes in its layer.
+/// An upright prism between two heights, and the holes in it.
 #[derive(Serialize)]
 struct Prism {
     z: [f64; 2],
     #[serde(flatten)]
-    shape: Flat,
-    holes: Vec<Flat>,
+    shape: ConvexOutline,
+    holes: Vec<ConvexOutline>,
 }
 
+/// The convex hull of equal discs.
 #[derive(Serialize)]
-struct Flat {
+struct ConvexOutline {
+    /// Radius of the discs; 0 for a polygon.
     radius: f64,
+    /// Centres of the discs.
     outline: Vec<[f64; 2]>,
 }
 
@@ -83,14 +98,16 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let steps = steps(assembly.robot().drive().strut().is_some());
     let placed_body_of = |body| {
         let (step, stage) = step_and_stage(&steps, body);
-        let part = parts.iter().find(|part| part.bodies.contains(&body.name));
+        let part = parts
+            .iter()
+            .find(|part| part.body_names.contains(&body.name));
         let placement = assembly.place(body.mount, pose);
-        Placed {
+        PlacedBody {
             name: &body.name,
             kind: body.kind.word(),
             step,
             stage,
-            printed: part.map(|part| print_of(&placement, body, part)),
+            printed: part.map(|part| print_placement_of(&placement, body, part)),
             screw: screw_of(assembly, &steps, &placement, body),
             solids: match part {
                 Some(_) => Vec::new(),
@@ -98,20 +115,21 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
             },
         }
     };
-    let list: Vec<Placed> = assembly.bodies().iter().map(placed_body_of).collect();
-    serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
+    let placed_bodies: Vec<PlacedBody> = assembly.bodies().iter().map(placed_body_of).collect();
+    serde_json::to_string_pretty(&placed_bodies).expect("texts and numbers can be written as JSON")
+        + "\n"
 }
 
 fn pair_of(point: Vector) -> [f64; 2] {
     [point.x, point.y]
 }
 
-fn print_of(placement: &Placement, body: &Body, part: &Part) -> Print {
+fn print_placement_of(placement: &Placement, body: &Body, part: &Part) -> PrintPlacement {
     let motion = part.print_to_body(body);
     let frame = motion.frame;
     let origin = placement.map(frame.origin);
     let turn = placement.x_axis * frame.x_axis.x + placement.x_axis.rotated_left() * frame.x_axis.y;
-    let drill = part.closed_holes().into_iter().map(|hole| {
+    let drill = part.closed_hole_centres().into_iter().map(|hole| {
         let hole = if part.is_turned_over {
             hole.mirrored()
         } else {
@@ -119,10 +137,10 @@ fn print_of(placement: &Placement, body: &Body, part: &Part) -> Print {
         };
         pair_of(origin + turn * hole.x + turn.rotated_left() * hole.y)
     });
-    Print {
-        file: format!("stl/{}.stl", part.file()),
+    PrintPlacement {
+        file: format!("stl/{}.stl", part.file_stem()),
         mark: part.mark.clone(),
-        flipped: motion.flipped,
+        flipped: motion.is_flipped,
         lift: motion.lift,
         turn: turn.angle(),
         at: pair_of(origin),
@@ -142,20 +160,20 @@ fn screw_of(
     let [low, high] = &body.prisms[..] else {
         return None;
     };
-    let is_turned_in = |step: &Step| step.stages.iter().any(|stage| (stage.turns)(body));
+    let is_turned_in = |step: &Step| step.stages.iter().any(|stage| (stage.turns_again)(body));
     let turning_steps = (1..).zip(steps).filter(|(_, step)| is_turned_in(step));
     Some(Screw {
         at: pair_of(placement.map(low.filled_shapes[0].middle())),
         head: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
-        head_above: high.filled_shapes[0].width() > low.filled_shapes[0].width(),
+        head_above: high.filled_shapes[0].diameter() > low.filled_shapes[0].diameter(),
         turned: turning_steps.map(|(number, _)| number).collect(),
     })
 }
 
 fn solids_of(placement: &Placement, body: &Body) -> Vec<Prism> {
-    let flat_of = |shape: &Shape| Flat {
+    let outline_of = |shape: &Shape| ConvexOutline {
         radius: shape.radius,
         outline: shape
             .points
@@ -166,8 +184,8 @@ fn solids_of(placement: &Placement, body: &Body) -> Vec<Prism> {
     let layers = body.prisms.iter().flat_map(|prism| {
         prism.filled_shapes.iter().map(move |shape| Prism {
             z: prism.z,
-            shape: flat_of(shape),
-            holes: prism.cut_shapes.iter().map(flat_of).collect(),
+            shape: outline_of(shape),
+            holes: prism.cut_shapes.iter().map(outline_of).collect(),
         })
     });
     layers.collect()

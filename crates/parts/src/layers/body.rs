@@ -55,7 +55,7 @@ impl Prism {
         self.z[1] > self.z[0] + 1e-9
     }
 
-    /// The layer between two other heights; its walls keep their slope.
+    /// Returns the layer between two other heights; its walls keep their slope.
     pub fn at_heights(&self, z: Span) -> Self {
         let [low, high] = self.inset;
         let slope = (high - low) / (self.z[1] - self.z[0]);
@@ -94,7 +94,7 @@ pub enum Kind {
     Servo,
     /// A servo's horn.
     Horn,
-    /// A screw that is a joint or holds parts together, by its length below the head, mm.
+    /// A screw that forms a joint or holds parts together, by its length below the head, mm.
     Screw(f64),
     /// A screw with a hexagonal head, held from turning by the part's hexagonal recess.
     HexScrew(f64),
@@ -239,5 +239,5 @@ pub(crate) fn end_and_hand(servo: usize) -> (End, usize) {
 pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
     let (end, hand) = end_and_hand(servo);
     let bars = robot.lizard().end(end);
-    [bars.coupler_left, bars.coupler_right][hand]
+    [bars.left_coupler_length, bars.right_coupler_length][hand]
 }

@@ -1,4 +1,4 @@
-//! The parts that the robot carries besides its mechanism: supply, terminal strips, plugs.
+//! Parts that the robot carries besides its mechanism: supply, terminal strips, plugs.
 //!
 //! Shops sell such parts in many sizes, so the robot reserves a space for each one, into
 //! which common products fit. Two products are named with their sizes; a test checks that
@@ -6,22 +6,22 @@
 
 use std::fmt;
 
-use lizard_robot::{FUSE, SWITCH};
+use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
 use crate::price::Price;
 
 /// Width and thickness of the battery's strap, mm.
-pub const STRAP: [f64; 2] = [16.0, 1.5];
+pub const STRAP_SECTION: [f64; 2] = [16.0, 1.5];
 /// Pitch of the ways of a terminal strip of the 3 A size, mm.
-pub const PITCH: f64 = 8.0;
+pub const STRIP_PITCH: f64 = 8.0;
 
 /// Batteries of two lithium cells that fit into the space of `[parts] battery`.
-pub const BATTERIES: [Example; 2] = [
+pub const BATTERY_EXAMPLES: [Example; 2] = [
     Example::from_shops("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
     Example::from_shops("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
 ];
 
-/// A product that fits into a reserved space; or a kind of product, if shops name no make.
+/// A product, or a kind of product if shops name no make, that fits into a reserved space.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
     /// The maker's name or number for the product.
@@ -29,24 +29,32 @@ pub struct Example {
     /// Size to the right, forward, up, mm; includes tolerances if the data sheet gives any.
     pub size: [f64; 3],
     /// True if the size is from a data sheet or drawing; false if from shops or users.
-    pub drawn: bool,
+    pub is_from_drawing: bool,
 }
 
 impl Example {
     const fn from_drawing(name: &'static str, size: [f64; 3]) -> Self {
-        let drawn = true;
-        Self { name, size, drawn }
+        let is_from_drawing = true;
+        Self {
+            name,
+            size,
+            is_from_drawing,
+        }
     }
 
     const fn from_shops(name: &'static str, size: [f64; 3]) -> Self {
-        let drawn = false;
-        Self { name, size, drawn }
+        let is_from_drawing = false;
+        Self {
+            name,
+            size,
+            is_from_drawing,
+        }
     }
 }
 
 impl fmt::Display for Example {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let prefix = if self.drawn { "" } else { "~" };
+        let prefix = if self.is_from_drawing { "" } else { "~" };
         let [x, y, z] = self.size;
         write!(f, "{}: {prefix}{x} x {y} x {z}", self.name)
     }
@@ -62,13 +70,13 @@ pub enum Fitting {
     /// An alarm that beeps before the battery is damaged.
     Alarm,
     /// A terminal strip that joins all grounds.
-    Ground,
+    GroundStrip,
     /// Six ways of a terminal strip that join the servos' supply.
-    Supply,
+    SupplyStrip,
     /// Five ways of a terminal strip for the servos' signals, the middle one for ground.
-    Signals,
+    SignalStrip,
     /// One way of a terminal strip behind the switch: the battery's plus.
-    Plus,
+    PlusTerminal,
     /// A resistor from a signal to ground.
     Resistor,
     /// The switch in the battery's plus wire.
@@ -76,13 +84,13 @@ pub enum Fitting {
     /// The fuse in its holder, in the battery's plus wire.
     Fuse,
     /// The battery's plug and its counterpart.
-    Plug,
+    BatteryPlug,
     /// The plug in the board's round socket.
     RoundPlug,
     /// A strap that holds the battery.
     Strap,
     /// The space reserved for an optional radio module.
-    Radio,
+    RadioSpace,
 }
 
 /// The facts about a fitting.
@@ -95,18 +103,18 @@ pub struct FittingFacts {
     /// The space reserved for the fitting: to the right, forward, up, mm.
     pub size: [f64; 3],
     /// The article to buy, without rating and size.
-    pub what: &'static str,
+    pub article: &'static str,
     /// The position on the robot.
     pub place: &'static str,
-    /// The means of fastening it there.
-    pub hold: &'static str,
+    /// The means by which it is fastened there.
+    pub fastening: &'static str,
     /// Two products that fit into the space.
     pub examples: [Example; 2],
 }
 
 /// The two common makes of terminal strips with a pitch of 8 mm, cut to `ways` ways.
 const fn strip_examples(ways: f64) -> [Example; 2] {
-    let length = ways * PITCH;
+    let length = ways * STRIP_PITCH;
     [
         Example::from_shops("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
         Example::from_shops("Weidmueller MK 3", [17.0, length, 14.0]),
@@ -117,19 +125,19 @@ impl Fitting {
     /// Every kind of fitting, roughly in the order of the current's path from the battery.
     pub const ALL: [Self; 14] = [
         Self::Strap,
-        Self::Plug,
+        Self::BatteryPlug,
         Self::Fuse,
         Self::Switch,
-        Self::Plus,
+        Self::PlusTerminal,
         Self::Converter,
         Self::Capacitor,
-        Self::Ground,
-        Self::Supply,
-        Self::Signals,
+        Self::GroundStrip,
+        Self::SupplyStrip,
+        Self::SignalStrip,
         Self::Resistor,
         Self::Alarm,
         Self::RoundPlug,
-        Self::Radio,
+        Self::RadioSpace,
     ];
 
     /// Returns the facts about this kind of fitting.
@@ -139,9 +147,9 @@ impl Fitting {
                 name: "converter",
                 grams: 6.0,
                 size: [22.0, 28.0, 10.0],
-                what: "converter from 7.4 V to 5 V, 3 A",
+                article: "converter from 7.4 V to 5 V, 3 A",
                 place: "under the deck, towards the head",
-                hold: "foam tape, and a cable tie through the deck's window",
+                fastening: "foam tape, and a cable tie through the deck's window",
                 examples: [
                     Example::from_shops("Pololu D36V28F5", [17.8, 17.8, 8.9]),
                     Example::from_shops("MP1584EN board", [17.0, 22.0, 4.0]),
@@ -151,9 +159,9 @@ impl Fitting {
                 name: "capacitor",
                 grams: 2.0,
                 size: [10.5, 20.5, 10.5],
-                what: "capacitor 1000 uF, 10 V or more",
+                article: "capacitor 1000 uF, 10 V or more",
                 place: "under the plate, behind the strip for +5 V",
-                hold: "the same cable tie as the strip",
+                fastening: "the same cable tie as the strip",
                 examples: [
                     Example::from_drawing("Panasonic EEU-FR1A102, 10 V", [10.5, 18.0, 10.5]),
                     Example::from_drawing("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.5, 18.0, 10.5]),
@@ -163,57 +171,57 @@ impl Fitting {
                 name: "alarm",
                 grams: 9.0,
                 size: [26.0, 42.0, 13.0],
-                what: "low-voltage alarm for two lithium cells",
+                article: "low-voltage alarm for two lithium cells",
                 place: "under the deck, towards the tail",
-                hold: "foam tape, and a cable tie around the deck",
+                fastening: "foam tape, and a cable tie around the deck",
                 examples: [
                     Example::from_shops("BX100 for 1 to 8 cells", [25.0, 40.0, 11.0]),
                     Example::from_shops("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
                 ],
             },
-            Self::Ground => FittingFacts {
+            Self::GroundStrip => FittingFacts {
                 name: "ground strip",
                 grams: 18.0,
                 size: [17.5, 97.0, 14.5],
-                what: "terminal strip, 12 ways, pitch 8 mm, for ground",
+                article: "terminal strip, 12 ways, pitch 8 mm, for ground",
                 place: "under the plate, left",
-                hold: "two cable ties through the plate's slots",
+                fastening: "two cable ties through the plate's slots",
                 examples: strip_examples(12.0),
             },
-            Self::Supply => FittingFacts {
+            Self::SupplyStrip => FittingFacts {
                 name: "supply strip",
                 grams: 9.0,
                 size: [17.5, 49.0, 14.5],
-                what: "terminal strip, 6 ways of the second strip, for +5 V",
+                article: "terminal strip, 6 ways of the second strip, for +5 V",
                 place: "under the plate, right",
-                hold: "two cable ties through the plate's slots",
+                fastening: "two cable ties through the plate's slots",
                 examples: strip_examples(6.0),
             },
-            Self::Signals => FittingFacts {
+            Self::SignalStrip => FittingFacts {
                 name: "signal strip",
                 grams: 7.5,
                 size: [17.5, 41.0, 14.5],
-                what: "terminal strip, 5 ways of the second strip, for the signals",
+                article: "terminal strip, 5 ways of the second strip, for the signals",
                 place: "on the deck's left wing, rear half",
-                hold: "foam tape, and a cable tie through the wing's slots",
+                fastening: "foam tape, and a cable tie through the wing's slots",
                 examples: strip_examples(5.0),
             },
-            Self::Plus => FittingFacts {
+            Self::PlusTerminal => FittingFacts {
                 name: "plus way",
                 grams: 1.5,
                 size: [17.5, 8.5, 14.5],
-                what: "terminal strip, the last way of the second strip, for 7.4 V",
+                article: "terminal strip, the last way of the second strip, for 7.4 V",
                 place: "on the deck's right wing, between switch and fuse",
-                hold: "foam tape",
+                fastening: "foam tape",
                 examples: strip_examples(1.0),
             },
             Self::Resistor => FittingFacts {
                 name: "resistor",
                 grams: 0.2,
                 size: [2.6, 6.8, 2.6],
-                what: "resistor 10 kOhm, 0.25 W, from a servo's signal to ground",
+                article: "resistor 10 kOhm, 0.25 W, from a servo's signal to ground",
                 place: "beside the signal strip, outside",
-                hold: "its own wires, screwed into the strip",
+                fastening: "its own wires, screwed into the strip",
                 examples: [
                     Example::from_drawing("Yageo CFR-25JB-52-10K, carbon film", [2.6, 6.8, 2.6]),
                     Example::from_drawing("Yageo MFR-25FBF52-10K, metal film", [2.6, 6.8, 2.6]),
@@ -223,9 +231,9 @@ impl Fitting {
                 name: "switch",
                 grams: 5.0,
                 size: [27.0, 21.5, 15.5],
-                what: "or more, two contacts, for the battery's plus wire",
+                article: "or more, two contacts, for the battery's plus wire",
                 place: "on the deck's right wing, rear end, lying on its side with the rocker outward",
-                hold: "foam tape, and a cable tie around the wing's end and through its slot",
+                fastening: "foam tape, and a cable tie around the wing's end and through its slot",
                 examples: [
                     Example::from_shops("KCD1-101, 6 A at 250 V AC", [25.0, 21.0, 15.0]),
                     Example::from_shops("Marquardt 1801.1146", [26.0, 21.0, 15.0]),
@@ -235,21 +243,21 @@ impl Fitting {
                 name: "fuse",
                 grams: 6.0,
                 size: [14.0, 46.0, 14.0],
-                what: "(a glass one: 3.15 A), and a holder for it that sits in a wire",
+                article: "(a glass one: 3.15 A), and a holder for it that sits in a wire",
                 place: "on the deck's right wing, front half",
-                hold: "foam tape, and a cable tie through the wing's slots",
+                fastening: "foam tape, and a cable tie through the wing's slots",
                 examples: [
                     Example::from_shops("holder for mini blade fuses (ATM)", [10.0, 40.0, 13.5]),
                     Example::from_shops("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
                 ],
             },
-            Self::Plug => FittingFacts {
+            Self::BatteryPlug => FittingFacts {
                 name: "battery plug",
                 grams: 5.0,
                 size: [32.0, 6.6, 12.0],
-                what: "plug that fits the battery's, with two wires of 0.5 mm2, 10 cm long",
+                article: "plug that fits the battery's, with two wires of 0.5 mm2, 10 cm long",
                 place: "on the plate, before the battery, on edge",
-                hold: "foam tape on the battery's end",
+                fastening: "foam tape on the battery's end",
                 examples: [
                     Example::from_shops("Amass XT30U pair", [26.0, 5.2, 10.2]),
                     Example::from_shops("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
@@ -259,9 +267,9 @@ impl Fitting {
                 name: "round plug",
                 grams: 4.0,
                 size: [15.0, 42.0, 15.0],
-                what: "round plug 5.5 x 2.1 mm, plus inside, with two wires of 0.25 mm2 or more, 20 cm long",
+                article: "round plug 5.5 x 2.1 mm, plus inside, with two wires of 0.25 mm2 or more, 20 cm long",
                 place: "in the UNO's round socket",
-                hold: "the socket; its wires in a cable tie at the deck",
+                fastening: "the socket; its wires in a cable tie at the deck",
                 examples: [
                     Example::from_shops("moulded, with cable", [10.0, 36.0, 10.0]),
                     Example::from_shops("with screw terminals", [14.0, 38.0, 12.5]),
@@ -270,10 +278,10 @@ impl Fitting {
             Self::Strap => FittingFacts {
                 name: "battery strap",
                 grams: 3.0,
-                size: [STRAP[0], 150.0, STRAP[1]],
-                what: "hook-and-loop strap, 16 mm wide, 150 mm long",
+                size: [STRAP_SECTION[0], 150.0, STRAP_SECTION[1]],
+                article: "hook-and-loop strap, 16 mm wide, 150 mm long",
                 place: "around battery and plate, through the slots beside the battery",
-                hold: "itself",
+                fastening: "itself",
                 examples: [
                     Example::from_shops("hook-and-loop cable strap", [16.0, 150.0, 1.5]),
                     Example::from_shops(
@@ -282,13 +290,13 @@ impl Fitting {
                     ),
                 ],
             },
-            Self::Radio => FittingFacts {
+            Self::RadioSpace => FittingFacts {
                 name: "place for a radio module",
                 grams: 0.0,
                 size: [16.5, 37.5, 8.0],
-                what: "radio module with a serial line",
+                article: "radio module with a serial line",
                 place: "on the deck's left wing, front half",
-                hold: "foam tape",
+                fastening: "foam tape",
                 examples: [
                     Example::from_drawing("HM-10, bare board", [13.0, 27.0, 2.2]),
                     Example::from_shops("HC-05 or HM-10 on a carrier", [16.0, 37.0, 7.0]),
@@ -302,24 +310,30 @@ impl Fitting {
         self.facts().name
     }
 
-    /// The row in the shopping list; empty for a piece of another strip and for an option.
-    pub fn what(self) -> String {
-        let FittingFacts { what, size, .. } = self.facts();
+    /// The row in the shopping list; empty for a piece of another strip and for an optional part.
+    pub fn shopping_list_row(self) -> String {
+        let FittingFacts { article, size, .. } = self.facts();
         let [x, y, z] = size;
         match self {
-            Self::Ground => {
+            Self::GroundStrip => {
                 format!(
                     "terminal strip, 12 ways, pitch 8 mm (3 A size), at most {x} x {y} x {z} mm"
                 )
             }
             // A second strip is cut into the supply, signal and plus pieces.
-            Self::Supply => Self::Ground.what(),
-            Self::Signals | Self::Plus | Self::Radio => String::new(),
-            Self::Resistor | Self::Strap | Self::Plug | Self::RoundPlug => what.to_owned(),
-            Self::Capacitor => format!("{what}, at most {x} mm thick and {y} mm long"),
-            Self::Switch => format!("switch for {SWITCH} A {what}, at most {x} x {y} x {z} mm"),
-            Self::Fuse => format!("fuse of {FUSE} A {what}, at most {x} x {y} x {z} mm"),
-            _ => format!("{what}, at most {x} x {y} x {z} mm"),
+            Self::SupplyStrip => Self::GroundStrip.shopping_list_row(),
+            Self::SignalStrip | Self::PlusTerminal | Self::RadioSpace => String::new(),
+            Self::Resistor | Self::Strap | Self::BatteryPlug | Self::RoundPlug => {
+                article.to_owned()
+            }
+            Self::Capacitor => format!("{article}, at most {x} mm thick and {y} mm long"),
+            Self::Switch => {
+                format!("switch for {MIN_SWITCH_RATING_A} A {article}, at most {x} x {y} x {z} mm")
+            }
+            Self::Fuse => {
+                format!("fuse of {FUSE_RATING_A} A {article}, at most {x} x {y} x {z} mm")
+            }
+            _ => format!("{article}, at most {x} x {y} x {z} mm"),
         }
     }
 
@@ -327,7 +341,7 @@ impl Fitting {
     pub fn price(self) -> Price {
         match self {
             Self::Resistor => Price::A,
-            Self::Converter | Self::Alarm | Self::Radio => Price::C,
+            Self::Converter | Self::Alarm | Self::RadioSpace => Price::C,
             _ => Price::B,
         }
     }

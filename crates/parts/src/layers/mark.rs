@@ -1,4 +1,4 @@
-//! Marks for parts that differ only as left and right.
+//! Engraved marks for parts that differ only as left and right do.
 //!
 //! A link for A1 and its mirror image for A2 look alike in the hand. So if a part comes
 //! in several kinds, each kind has the numbers of its servos engraved: 13 is for A1 and
@@ -11,7 +11,7 @@ use crate::layers::outline::{Loop, Outline, bounds};
 use crate::layers::shape::Shape;
 
 /// Width and height of a digit between the middles of its lines, mm.
-const DIGIT: [f64; 2] = [1.9, 3.4];
+const DIGIT_SIZE: [f64; 2] = [1.9, 3.4];
 /// Distance from one digit to the next, mm.
 const DIGIT_PITCH: f64 = 3.5;
 /// Half the width of a line, mm.
@@ -22,7 +22,7 @@ pub const MARK_DEPTH: f64 = 0.4;
 const MIN_BORDER: f64 = 0.7;
 /// Distance in x between the positions that are tried for a mark, mm; in y it is half of
 /// this.
-const STEP: f64 = 0.8;
+const POSITION_STEP: f64 = 0.8;
 
 /// The lines of a digit, each by its two end points, in a unit square.
 fn digit_lines(digit: char) -> &'static [[(f64, f64); 2]] {
@@ -44,7 +44,7 @@ fn digit_lines(digit: char) -> &'static [[(f64, f64); 2]] {
 
 /// The lines of a mark whose lower left corner is at a position.
 pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
-    let [width, height] = DIGIT;
+    let [width, height] = DIGIT_SIZE;
     let mut strokes = Vec::new();
     for (index, digit) in text.chars().enumerate() {
         let left = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
@@ -58,9 +58,9 @@ pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
 }
 
 /// Width and height of a mark, mm.
-pub fn size(text: &str) -> [f64; 2] {
+pub fn mark_size(text: &str) -> [f64; 2] {
     let count = text.chars().count() as f64;
-    [DIGIT_PITCH * (count - 1.0) + DIGIT[0], DIGIT[1]]
+    [DIGIT_PITCH * (count - 1.0) + DIGIT_SIZE[0], DIGIT_SIZE[1]]
 }
 
 /// Layers with a mark engraved on an upper face; `None` if no face has room for it.
@@ -98,15 +98,19 @@ fn find_position(
     is_free: impl Fn(Vector) -> bool,
 ) -> Option<Vector> {
     let ends = outline.loops().flat_map(Loop::sides_with_end_points);
-    let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));
-    let [width, height] = size(text);
+    let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.midpoint(to)]));
+    let [width, height] = mark_size(text);
     let margin = LINE_HALF_WIDTH + MIN_BORDER;
     let positions_between = |from: f64, to: f64, step: f64| {
         let count = ((to - from) / step).ceil().max(0.0) as u32;
         (0..=count).map(move |i| (from + f64::from(i) * step).min(to))
     };
-    for x in positions_between(low.x + margin, high.x - margin - width, STEP) {
-        for y in positions_between(low.y + margin, high.y - margin - height, 0.5 * STEP) {
+    for x in positions_between(low.x + margin, high.x - margin - width, POSITION_STEP) {
+        for y in positions_between(
+            low.y + margin,
+            high.y - margin - height,
+            0.5 * POSITION_STEP,
+        ) {
             let mut columns = positions_between(x - margin, x + width + margin, 0.6);
             let rows = || positions_between(y - margin, y + height + margin, 0.6);
             if columns.all(|px| rows().all(|py| is_free(Vector::new(px, py)))) {

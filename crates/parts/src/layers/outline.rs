@@ -1,7 +1,7 @@
 //! The outline of a layer: loops of lines and arcs.
 //!
-//! A layer is a union of shapes less some holes. The library that unites them keeps
-//! arcs as arcs, so a hole stays a circle in every file.
+//! A layer is a union of shapes less some holes. The library that computes the union keeps arcs as arcs, so a round
+//! hole stays a circle in every file.
 
 use cavalier_contours::core::math::Vector2;
 use cavalier_contours::polyline::{
@@ -24,7 +24,7 @@ pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
     })
 }
 
-/// Points nearer to each other than this count as one, mm.
+/// Distance below which two points count as one, mm.
 pub(crate) const SAME_POINT_MM: f64 = 1e-5;
 
 /// A closed line of straight sides and arcs, with the material on its left:
@@ -63,22 +63,22 @@ impl Outline {
         let mut pieces = outer_lines;
         // Cuts that open a piece change its outer loop; the others are holes.
         cuts.retain(|cut| {
-            let mut is_opened = false;
+            let mut changes_piece = false;
             let mut remaining_pieces = Vec::new();
             for piece in pieces.drain(..) {
                 let difference = piece.boolean(cut, BooleanOp::Not);
                 match difference.result_info {
                     BooleanResultInfo::Intersected | BooleanResultInfo::Overlapping => {
-                        is_opened = true;
+                        changes_piece = true;
                         remaining_pieces
                             .extend(difference.pos_plines.into_iter().map(|result| result.pline));
                     }
-                    BooleanResultInfo::Pline1InsidePline2 => is_opened = true,
+                    BooleanResultInfo::Pline1InsidePline2 => changes_piece = true,
                     _ => remaining_pieces.push(piece),
                 }
             }
             pieces = remaining_pieces;
-            !is_opened
+            !changes_piece
         });
         let loops_of = |piece: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
@@ -105,9 +105,9 @@ impl Outline {
     }
 
     /// The area times its centroid: the first moment of area, mm^3.
-    pub fn moment(&self) -> Vector {
+    pub fn first_moment(&self) -> Vector {
         self.loops()
-            .fold(Vector::default(), |sum, line| sum + line.moment())
+            .fold(Vector::default(), |sum, line| sum + line.first_moment())
     }
 
     /// True if a point is in the material.
@@ -162,7 +162,7 @@ impl Loop {
     }
 
     /// The enclosed area times its centroid, mm^3.
-    fn moment(&self) -> Vector {
+    fn first_moment(&self) -> Vector {
         let mut sum = Vector::default();
         for (side, to) in self.sides_with_end_points() {
             let (a, b) = (side.from, to);
@@ -216,14 +216,18 @@ impl Segment {
     }
 
     /// The midpoint of the side, given its end point.
-    pub fn middle(&self, to: Vector) -> Vector {
-        let middle = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
-        Vector::new(middle.x, middle.y)
+    pub fn midpoint(&self, to: Vector) -> Vector {
+        let midpoint = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
+        Vector::new(midpoint.x, midpoint.y)
     }
 
     /// Points that divide the arc to the side's end point into as many parts as `count` returns for its radius and
     /// its angle, rad. The start and end points are left out; a straight side has no such points.
-    pub(crate) fn along(&self, to: Vector, count: impl Fn(f64, f64) -> u32) -> Vec<Vector> {
+    pub(crate) fn division_points(
+        &self,
+        to: Vector,
+        count: impl Fn(f64, f64) -> u32,
+    ) -> Vec<Vector> {
         let Some((centre, radius)) = self.arc(to) else {
             return Vec::new();
         };
@@ -333,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_with_two_holes_has_their_area_and_their_circles() {
+    fn a_bar_less_two_holes_has_the_exact_area_and_two_circles() {
         let (a, b) = (vector(0.0, 0.0), vector(30.0, 10.0));
         let bar = outline_of(
             vec![Shape::bar(a, b, 4.5)],
@@ -344,8 +348,11 @@ mod tests {
         let circles: Vec<_> = bar.loops().filter_map(Loop::circle).collect();
         assert_eq!(circles.len(), 2);
         assert!((circles[1].0 - b).length() < 1e-9 && (circles[1].1 - 1.6).abs() < 1e-9);
-        let middle = bar.moment() * (1.0 / bar.area());
-        assert!((middle - vector(15.0, 5.0)).length() < 1e-9, "{middle:?}");
+        let centroid = bar.first_moment() * (1.0 / bar.area());
+        assert!(
+            (centroid - vector(15.0, 5.0)).length() < 1e-9,
+            "{centroid:?}"
+        );
         assert!(
             bar.contains(vector(15.0, 5.0)) && !bar.contains(a) && !bar.contains(vector(0.0, 9.0))
         );
@@ -385,11 +392,11 @@ mod tests {
     }
 
     #[test]
-    fn the_middle_of_half_a_disc_is_where_it_should_be() {
+    fn the_centroid_of_a_half_disc_is_4_r_over_3_pi_from_the_discs_centre() {
         let disc = Shape::disc(vector(5.0, 2.0), 3.0);
         let lower_half = Shape::rectangle(vector(5.0, -8.0), vector(20.0, 20.0), 0.0);
         let half = outline_of(vec![disc], vec![lower_half]);
-        let middle = half.moment() * (1.0 / half.area());
-        assert!((middle - vector(5.0, 2.0 + 4.0 * 3.0 / (3.0 * PI))).length() < 1e-9);
+        let centroid = half.first_moment() * (1.0 / half.area());
+        assert!((centroid - vector(5.0, 2.0 + 4.0 * 3.0 / (3.0 * PI))).length() < 1e-9);
     }
 }

@@ -12,7 +12,7 @@ use crate::layers::outline::{Loop, Outline};
 use crate::layers::shape::Shape;
 
 /// Height of a printer's layer, mm. A hole is closed by one layer.
-pub const LAYER_MM: f64 = 0.2;
+pub const PRINT_LAYER_MM: f64 = 0.2;
 /// Distance from a hole's edge at which the layer below must support it, mm.
 const SUPPORT_DISTANCE_MM: f64 = 0.3;
 /// Tolerance within which heights count as equal, mm.
@@ -23,9 +23,9 @@ const SAME_HEIGHT_MM: f64 = 1e-6;
 pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
-    for (number, pair) in prisms.windows(2).enumerate() {
+    for (index, pair) in prisms.windows(2).enumerate() {
         let outline_below = Outline::of(&pair[0]);
-        let layer_above = &prisms[number + 1];
+        let layer_above = &prisms[index + 1];
         let low = layer_above.z[0];
         let high = first_layer_top(low);
         for hole in &layer_above.cut_shapes {
@@ -33,7 +33,10 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
                 continue;
             }
             count += 1;
-            layers = layers.iter().flat_map(|layer| split(layer, high)).collect();
+            layers = layers
+                .iter()
+                .flat_map(|layer| split_at(layer, high))
+                .collect();
             for layer in &mut layers {
                 if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
                     layer.cut_shapes.retain(|other| other != hole);
@@ -47,12 +50,13 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
 /// Top of the first printed layer above a height. A slicer samples each layer in its
 /// middle.
 fn first_layer_top(low: f64) -> f64 {
-    let layer_index = ((low - LAYER_MM / 2.0 + SAME_HEIGHT_MM) / LAYER_MM).floor() + 1.0;
-    LAYER_MM * (layer_index + 1.0)
+    let layer_index =
+        ((low - PRINT_LAYER_MM / 2.0 + SAME_HEIGHT_MM) / PRINT_LAYER_MM).floor() + 1.0;
+    PRINT_LAYER_MM * (layer_index + 1.0)
 }
 
 /// Cuts a layer in two at a height. Returns the layer alone if the height is outside it or at its bottom or top.
-fn split(layer: &Prism, height: f64) -> Vec<Prism> {
+fn split_at(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
     match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
         true => vec![layer.clone()],
@@ -65,27 +69,27 @@ fn split(layer: &Prism, height: f64) -> Vec<Prism> {
 
 /// Returns the centres of the holes that begin in mid-air.
 pub fn unsupported_hole_centres(prisms: &[Prism]) -> Vec<Vector> {
-    let mut middles = Vec::new();
+    let mut centres = Vec::new();
     for pair in prisms.windows(2) {
         let outline_below = Outline::of(&pair[0]);
         let holes = pair[1].cut_shapes.iter();
         let hanging_holes = holes.filter(|hole| begins_in_air(hole, &pair[1], &outline_below));
-        middles.extend(hanging_holes.map(Shape::middle));
+        centres.extend(hanging_holes.map(Shape::middle));
     }
-    middles
+    centres
 }
 
 /// True if there is material all around a hole, and none below that material.
 fn begins_in_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
     let outline = Outline::of(prism);
-    let edge = Shape {
+    let widened_hole = Shape {
         points: hole.points.clone(),
         radius: hole.radius + SUPPORT_DISTANCE_MM,
     };
-    let edge_outline = Outline::of(&Prism::solid([edge], prism.z));
-    let mut points = edge_outline.loops().flat_map(Loop::sides_with_end_points);
+    let hole_surround = Outline::of(&Prism::solid([widened_hole], prism.z));
+    let mut points = hole_surround.loops().flat_map(Loop::sides_with_end_points);
     let is_in_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
-    points.all(|(side, to)| is_in_air(side.from) && is_in_air(side.middle(to)))
+    points.all(|(side, to)| is_in_air(side.from) && is_in_air(side.midpoint(to)))
 }
 
 #[cfg(test)]
@@ -93,11 +97,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_closed_layer_is_one_that_a_slicer_sees() {
+    fn a_closing_layer_contains_exactly_one_height_that_a_slicer_samples() {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
             let high = first_layer_top(low);
             // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.
-            let sample_heights = (0..100).map(|i| 0.1 + LAYER_MM * f64::from(i));
+            let sample_heights = (0..100).map(|i| 0.1 + PRINT_LAYER_MM * f64::from(i));
             let count = sample_heights
                 .filter(|z| low + 1e-9 < *z && *z < high - 1e-9)
                 .count();

@@ -27,7 +27,7 @@ impl Shape {
         }
     }
 
-    /// A bar with round ends around two points.
+    /// A bar with round ends about two points.
     pub fn bar(from: Vector, to: Vector, radius: f64) -> Self {
         if from == to {
             return Self::disc(from, radius);
@@ -45,15 +45,15 @@ impl Shape {
         Self::hull(&corners.map(|(x, y)| middle + Vector::new(x, y)), radius)
     }
 
-    /// A nut's hexagon by its width over flats; a corner points along x.
-    pub fn hexagon(centre: Vector, flats: f64) -> Self {
-        let reach = flats / f64::sqrt(3.0);
+    /// A nut's hexagon by its width across flats; one corner points along x.
+    pub fn hexagon(centre: Vector, across_flats: f64) -> Self {
+        let circumradius = across_flats / f64::sqrt(3.0);
         let angles = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
-        let corners = angles.map(|angle| centre + Vector::direction(angle) * reach);
+        let corners = angles.map(|angle| centre + Vector::direction(angle) * circumradius);
         Self::hull(&corners, 0.0)
     }
 
-    /// The convex hull of any points.
+    /// The convex hull of any points, grown by a radius.
     pub fn hull(points: &[Vector], radius: f64) -> Self {
         let mut sorted_points = points.to_vec();
         sorted_points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -90,14 +90,17 @@ impl Shape {
     }
 
     /// The largest distance of any point of the shape from a given point, mm.
-    pub fn farthest(&self, from: Vector) -> f64 {
+    pub fn max_distance_from(&self, from: Vector) -> f64 {
         let distances = self.points.iter().map(|&point| (point - from).length());
         distances.fold(0.0, f64::max) + self.radius
     }
 
     /// The largest distance between two points of the shape, mm.
-    pub fn width(&self) -> f64 {
-        let distances = self.points.iter().map(|&point| self.farthest(point));
+    pub fn diameter(&self) -> f64 {
+        let distances = self
+            .points
+            .iter()
+            .map(|&point| self.max_distance_from(point));
         distances.fold(0.0, f64::max) + self.radius
     }
 
@@ -165,13 +168,14 @@ impl Shape {
             .fold(f64::NEG_INFINITY, f64::max);
         let general_bound = clearance - max_outside - max_displacement.length();
         // A sharper bound for a long hole with a shape that slides along it.
-        let lines = hole.side_lines().flat_map(|(from, normal)| {
-            let stray = normal.x.abs() * max_displacement.x + normal.y.abs() * max_displacement.y;
+        let outside_distances = hole.side_lines().flat_map(|(from, normal)| {
+            let normal_displacement =
+                normal.x.abs() * max_displacement.x + normal.y.abs() * max_displacement.y;
             self.points
                 .iter()
-                .map(move |&point| normal.dot(point - from) + stray)
+                .map(move |&point| normal.dot(point - from) + normal_displacement)
         });
-        let max_outside = lines.fold(f64::NEG_INFINITY, f64::max);
+        let max_outside = outside_distances.fold(f64::NEG_INFINITY, f64::max);
         if hole.points.len() > 2 && max_outside <= 0.0 {
             general_bound.max(clearance - max_outside)
         } else {
@@ -197,8 +201,8 @@ impl Shape {
     /// sides.
     fn max_side_separation(&self, other: &Self) -> f64 {
         let separations = self.side_lines().map(|(from, normal)| {
-            let depths = other.points.iter().map(|&point| normal.dot(point - from));
-            depths.fold(f64::INFINITY, f64::min)
+            let distances = other.points.iter().map(|&point| normal.dot(point - from));
+            distances.fold(f64::INFINITY, f64::min)
         });
         separations.fold(f64::NEG_INFINITY, f64::max)
     }
@@ -250,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gap_of_discs_and_bars_is_the_distance_of_their_middles_less_their_radii() {
+    fn the_distance_of_a_disc_from_a_bar_is_that_of_their_middles_less_their_radii() {
         let disc = Shape::disc(vector(10.0, 3.0), 2.0);
         let bar = Shape::bar(vector(0.0, 0.0), vector(20.0, 0.0), 0.5);
         assert_eq!(disc.distance(&bar), 0.5);
@@ -260,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_inside_or_across_a_polygon_overlap_it() {
+    fn the_distance_is_negative_for_overlapping_shapes_and_positive_for_separate_ones() {
         let plate = Shape::rectangle(vector(0.0, 0.0), vector(10.0, 8.0), 0.0);
         assert_eq!(plate.distance(&Shape::disc(vector(1.0, 1.0), 0.5)), -3.5);
         let crossing_bar = Shape::bar(vector(-20.0, 0.0), vector(20.0, 0.0), 1.0);
@@ -277,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pin_in_its_hole_has_the_air_that_is_left() {
+    fn the_depth_in_a_hole_is_the_least_clearance_to_its_edge() {
         let assert_near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
         let no_shift = vector(0.0, 0.0);
         let slot = Shape::bar(vector(0.0, 0.0), vector(5.0, 0.0), 1.6);
@@ -297,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hull_drops_what_lies_within_and_turns_counter_clockwise() {
+    fn a_hull_drops_inner_points_and_runs_counter_clockwise() {
         let corners = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (1.0, 0.2), (1.0, 0.0)];
         let hull = Shape::hull(&corners.map(|(x, y)| vector(x, y)), 0.0);
         assert_eq!(

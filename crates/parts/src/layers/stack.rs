@@ -13,13 +13,13 @@ pub type Span = [f64; 2];
 
 /// Lengths of screws that every shop has, mm. ISO 7380 and ISO 4017 define more, but few
 /// shops stock those.
-pub const SCREWS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
+pub const SCREW_LENGTHS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 
-/// Lengths of standoffs in the shops, mm.
-const STANDOFFS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
+/// Lengths of standoffs that shops have, mm.
+const STANDOFF_LENGTHS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
 
 /// Gap between a head or a nut and the part that turns under it, mm.
-pub const PLAY: f64 = 0.2;
+pub const HEAD_PLAY: f64 = 0.2;
 /// Height of a hexagonal head, mm (ISO 4017).
 pub const HEX_HEAD_HEIGHT: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
@@ -27,14 +27,14 @@ const SEAT_HEIGHT: f64 = 2.6;
 /// Height of a leg's bearing on the plate, mm. The foot is six times as far away: play of 0.2 mm in the bearing
 /// moves it by 1.2 mm.
 const BEARING_HEIGHT: f64 = 8.5;
-/// From the underside of a leg's crank to the tip of its anchor's screw, mm.
+/// Distance from the underside of a leg's crank up to the tip of its anchor's screw, mm.
 const ANCHOR_TIP_GAP: f64 = 0.1;
 /// Least thickness above a nut that is sunk into a part, mm.
 const MIN_NUT_COVER: f64 = 1.2;
 /// Thickness of a strut's floor under its spring, mm.
 const STRUT_FLOOR_THICKNESS: f64 = 1.6;
 /// Gap between a strut's floor and its spring, mm.
-const FLOOR_GAP: f64 = 0.15;
+const SPRING_FLOOR_GAP: f64 = 0.15;
 /// Gap above a spring's hook, mm.
 const HOOK_GAP: f64 = 0.5;
 /// Gap between a strut and the screw head that holds it down, mm.
@@ -43,10 +43,10 @@ const STRUT_HEAD_GAP: f64 = 0.3;
 const HORN_FLOOR_THICKNESS: f64 = 1.8;
 /// Thickness of a sleeve's floor and roof, mm.
 const SLEEVE_WALL_THICKNESS: f64 = 1.3;
-/// The leaf that carries a foot: five layers of a printer, mm.
-pub const LEAF: f64 = 1.0;
+/// Thickness of the leaf that carries a foot, mm: five layers of a printer.
+pub const LEAF_THICKNESS: f64 = 1.0;
 /// Height of a pad above the head that snaps into it, mm.
-pub const PAD_LIP: f64 = 0.8;
+pub const PAD_LIP_HEIGHT: f64 = 0.8;
 /// Gap between a pad and its leaf, mm: the height by which a foot's screw can raise the foot,
 /// and the width of the hex key that measures the gap. The screw can lower a foot by more.
 const MAX_FOOT_RAISE: f64 = 2.0;
@@ -62,38 +62,38 @@ pub struct Stack {
     pub pad: Span,
     /// The leaf on which a foot yields; the foot's nut is sunk into it.
     pub leaf: Span,
-    /// The boss of the leaf, around and above a foot's nut.
-    pub boss_of_foot: Span,
+    /// The boss on the leaf, around and above the foot's nut.
+    pub foot_boss: Span,
     /// The couplers of the legs.
     pub leg_coupler: Span,
     /// The chassis plate.
     pub plate: Span,
     /// The raised seats of the servos.
     pub seat: Span,
-    /// The bottom of a servo's case.
-    pub servo: f64,
+    /// The bottom of the servos' cases.
+    pub servo_bottom: f64,
     /// Cranks and followers of the legs.
     pub crank: Span,
     /// The bearings of cranks and followers on the plate; they reach higher than the cranks.
     pub bearing: Span,
     /// The anchors on the cranks, which carry the struts.
     pub anchor: Span,
-    /// The floor of the strut, along which its spring lies.
-    pub strut: Span,
-    /// The walls of the strut, beside spring, hooks and heads.
-    pub recess: Span,
+    /// The floors of the struts, on which the springs lie.
+    pub strut_floor: Span,
+    /// The walls of the struts, beside springs, hooks and screw heads.
+    pub strut_wall: Span,
     /// The middle of the spring's coil, and of its hooks.
-    pub coil: f64,
+    pub coil_middle: f64,
     /// The face under the head of a leg anchor's screw, above the hook.
     pub anchor_head_face: f64,
-    /// A rigid strut, as high as a slotted one.
-    pub rigid: Span,
+    /// The rigid struts, as high as slotted ones.
+    pub rigid_strut: Span,
     /// The servos' links.
     pub link: Span,
     /// The face under the hexagonal heads that the links hold.
     pub hex_head_face: f64,
     /// The pocket in the links' tops for the horns.
-    pub horn: Span,
+    pub horn_pocket: Span,
     /// The recess in the links' tops for the heads of the anchors' screws.
     pub head_recess: Span,
     /// The lower couplers of head and tail.
@@ -109,7 +109,7 @@ pub struct Stack {
     /// The deck. Its bottom is at the length of the standoffs.
     pub deck: Span,
     /// The bosses that carry the board.
-    pub boss: Span,
+    pub board_boss: Span,
 }
 
 impl Stack {
@@ -124,10 +124,11 @@ impl Stack {
         let bearing = [crank[1], crank[0] + BEARING_HEIGHT];
         let strut_low = crank[1] + 1.5;
         let strut = [strut_low, strut_low + STRUT_FLOOR_THICKNESS];
-        let coil = strut[1] + FLOOR_GAP + parts.spring.outer / 2.0;
+        let coil = strut[1] + SPRING_FLOOR_GAP + parts.spring.outer_diameter / 2.0;
         // The anchor's screw must not touch the plate under its crank.
         let tip = crank[0] + ANCHOR_TIP_GAP;
-        let anchor_head_face = tip + screw_length(coil + parts.spring.wire / 2.0 + HOOK_GAP - tip);
+        let anchor_head_face =
+            tip + stock_screw_length(coil + parts.spring.wire_diameter / 2.0 + HOOK_GAP - tip);
         let wall_top = anchor_head_face - STRUT_HEAD_GAP;
         // The underside of the horn's arm on the shaft.
         let hub_z = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
@@ -141,10 +142,11 @@ impl Stack {
         let bore_low = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
         let bore = [bore_low, bore_low + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider_top = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
-            + link[0]
-            + HEX_HEAD_HEIGHT;
-        let deck = STANDOFFS
+        let slider_top =
+            stock_screw_length(rod[1] + HEAD_PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
+                + link[0]
+                + HEX_HEAD_HEIGHT;
+        let deck = STANDOFF_LENGTHS
             .into_iter()
             .find(|length| *length >= slider_top + gap)
             .unwrap_or(slider_top + gap);
@@ -154,34 +156,34 @@ impl Stack {
         Self {
             floor: -parts.height,
             pad,
-            leaf: [leaf_low, leaf_low + LEAF],
-            boss_of_foot: [
-                leaf_low + LEAF,
+            leaf: [leaf_low, leaf_low + LEAF_THICKNESS],
+            foot_boss: [
+                leaf_low + LEAF_THICKNESS,
                 leaf_low + screw.nut_height + FOOT_NUT_COVER,
             ],
             leg_coupler,
             plate,
             seat,
-            servo: seat[1] - parts.servo.flange_height,
+            servo_bottom: seat[1] - parts.servo.flange_height,
             crank,
             bearing,
-            anchor: [crank[1], strut[0] - PLAY],
-            strut,
-            recess: [strut[1], wall_top],
-            coil,
+            anchor: [crank[1], strut[0] - HEAD_PLAY],
+            strut_floor: strut,
+            strut_wall: [strut[1], wall_top],
+            coil_middle: coil,
             anchor_head_face,
             hex_head_face: link[0] + HEX_HEAD_HEIGHT,
-            rigid: [strut[0], wall_top],
+            rigid_strut: [strut[0], wall_top],
             link,
-            horn: [arm_z, link[1]],
-            head_recess: [link[1] - screw.head_height - PLAY, link[1]],
+            horn_pocket: [arm_z, link[1]],
+            head_recess: [link[1] - screw.head_height - HEAD_PLAY, link[1]],
             lower_coupler,
             upper_coupler,
             sleeve: [lower_coupler[0], bore[1] + SLEEVE_WALL_THICKNESS],
             bore,
             rod,
             deck: [deck, deck + parts.plate],
-            boss: [deck + parts.plate, deck + parts.plate + 5.0],
+            board_boss: [deck + parts.plate, deck + parts.plate + 5.0],
         }
     }
 
@@ -194,26 +196,26 @@ impl Stack {
 
     /// Height of the head of a pad's screw above the floor, mm.
     pub fn pad_head_height(&self, parts: &Parts) -> f64 {
-        self.pad[1] - PAD_LIP - parts.screw.head_height - self.floor
+        self.pad[1] - PAD_LIP_HEIGHT - parts.screw.head_height - self.floor
     }
 
     /// True if a leg's crank is thick enough above the nut that is sunk into it.
-    pub fn holds_nut(&self, parts: &Parts) -> bool {
+    pub fn crank_holds_nut(&self, parts: &Parts) -> bool {
         self.anchor[1] - self.anchor_nut(parts).0 >= MIN_NUT_COVER
     }
 }
 
 /// The shortest screw length on sale of at least `min`, mm; `min` if all screws on sale are shorter.
-pub fn screw_length(min: f64) -> f64 {
-    SCREWS
+pub fn stock_screw_length(min: f64) -> f64 {
+    SCREW_LENGTHS
         .into_iter()
         .find(|length| *length >= min - 1e-9)
         .unwrap_or(min)
 }
 
 /// True if shops have a screw of this length, mm.
-pub fn is_sold(length: f64) -> bool {
-    SCREWS
+pub fn is_screw_sold(length: f64) -> bool {
+    SCREW_LENGTHS
         .iter()
         .any(|stock_length| (stock_length - length).abs() < 1e-9)
 }

@@ -1,4 +1,4 @@
-//! The floor: level or sloping, with blocks on it, and with its own friction for each pad.
+//! The floor: level or sloping, with blocks on it, and with a friction coefficient for each pad.
 
 use lizard_robot::Robot;
 
@@ -7,10 +7,10 @@ use lizard_robot::Robot;
 pub struct Floor {
     /// The blocks that lie on the floor.
     pub blocks: Vec<Block>,
-    /// Slope: the angle by which the floor rises in the robot's forward direction, deg.
+    /// Angle by which the floor rises in the robot's forward direction, deg.
     pub slope: f64,
     /// The friction coefficient under each pad, in servo order.
-    pub friction: [f64; 4],
+    pub friction_coefficients: [f64; 4],
 }
 
 /// A block on the floor.
@@ -31,7 +31,7 @@ impl Floor {
         Self {
             blocks: Vec::new(),
             slope: 0.0,
-            friction: [robot.ground().friction; 4],
+            friction_coefficients: [robot.ground().friction_coefficient; 4],
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::files::mesh::Mesh;
 
-/// Moments of a mass distribution of order 0, 1 and 2 about the origin.
+/// Moments of order 0, 1 and 2 of a mass distribution about the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Inertia {
     /// Mass, g.
@@ -41,7 +41,7 @@ impl Inertia {
     }
 
     /// A point mass at the origin, g.
-    pub fn point(mass: f64) -> Self {
+    pub fn point_mass(mass: f64) -> Self {
         Self {
             mass,
             ..Self::default()
@@ -86,14 +86,14 @@ impl Inertia {
     }
 
     /// The mass centre, mm.
-    pub fn centre(&self) -> [f64; 3] {
+    pub fn mass_centre(&self) -> [f64; 3] {
         self.first_moments.map(|component| component / self.mass)
     }
 
     /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz. The products have the sign that they have
     /// in the inertia tensor.
     pub fn tensor(&self) -> [f64; 6] {
-        let centre = self.centre();
+        let centre = self.mass_centre();
         let central_moment_of =
             |i: usize, j: usize| self.second_moments[i][j] - self.mass * centre[i] * centre[j];
         let [x, y, z] = [0, 1, 2].map(|i| central_moment_of(i, i));
@@ -106,11 +106,11 @@ impl Inertia {
     }
 
     /// Formats [`Self::tensor`] in kg m^2, as the model files write numbers.
-    pub fn written_tensor(&self) -> [String; 6] {
+    pub fn formatted_tensor(&self) -> [String; 6] {
         // kg m^2 per g mm^2.
-        const MILLI_CUBED: f64 = 1e-9;
+        const KG_M2_PER_G_MM2: f64 = 1e-9;
         self.tensor()
-            .map(|component| format!("{:.6e}", component * MILLI_CUBED))
+            .map(|component| format!("{:.6e}", component * KG_M2_PER_G_MM2))
     }
 }
 
@@ -129,15 +129,22 @@ mod tests {
     }
 
     #[test]
-    fn a_box_has_the_inertia_of_a_box() {
+    fn a_box_has_the_mass_centre_and_the_inertia_of_the_closed_forms() {
         let (middle, size) = (Vector::new(7.0, -3.0), Vector::new(20.0, 10.0));
         let inertia = inertia_of(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
         assert!((inertia.mass - 800.0).abs() < 1e-9);
-        for (component, expected) in inertia.centre().into_iter().zip([7.0, -3.0, 4.0]) {
+        for (component, expected) in inertia.mass_centre().into_iter().zip([7.0, -3.0, 4.0]) {
             assert!((component - expected).abs() < 1e-9);
         }
-        let third = 800.0 / 12.0;
-        let expected = [third * 116.0, third * 416.0, third * 500.0, 0.0, 0.0, 0.0];
+        let twelfth_of_mass = 800.0 / 12.0;
+        let expected = [
+            twelfth_of_mass * 116.0,
+            twelfth_of_mass * 416.0,
+            twelfth_of_mass * 500.0,
+            0.0,
+            0.0,
+            0.0,
+        ];
         for (component, expected) in inertia.tensor().into_iter().zip(expected) {
             assert!(
                 (component - expected).abs() < 1e-6,
@@ -147,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_is_moved_is_the_same_body_elsewhere() {
+    fn moved_moments_equal_those_of_the_body_at_the_new_place() {
         let block_at = |x: f64, y: f64, z: f64| {
             let (middle, size) = (Vector::new(x, y), Vector::new(20.0, 10.0));
             inertia_of(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
@@ -157,9 +164,9 @@ mod tests {
             block_at(-2.0, 2.0, 3.0),
         );
         let pairs = moved_block
-            .centre()
+            .mass_centre()
             .into_iter()
-            .zip(expected_block.centre());
+            .zip(expected_block.mass_centre());
         let pairs = pairs.chain(
             moved_block
                 .tensor()
@@ -175,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn two_halves_have_the_inertia_of_the_whole() {
+    fn two_halves_at_half_the_density_have_half_the_inertia_of_the_whole() {
         let block_of = |x: f64, length: f64| {
             let (middle, size) = (Vector::new(x, 1.0), Vector::new(length, 8.0));
             inertia_of(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])

@@ -1,11 +1,11 @@
 //! Joints for URDF and SDF: names without blanks, ranges, friction.
 
 use lizard_kinematics::Side;
-use lizard_robot::SLOT;
-use lizard_robot::servo::NAMES;
+use lizard_robot::SLOT_LENGTH;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::closed::LoopJoint;
+use crate::model::loops::LoopJoint;
 use crate::model::node::Node;
 use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
@@ -29,13 +29,13 @@ impl Writer<'_> {
     /// made from the body's. In SDF no joint may have the name of a body.
     pub(super) fn joint_name(&self, node: Node) -> String {
         match self.driving_servo(node) {
-            Some(servo) => NAMES[servo].to_owned(),
+            Some(servo) => SERVO_NAMES[servo].to_owned(),
             None => format!("{}_joint", node.identifier()),
         }
     }
 
     /// The range of a body's joint, rad or m from neutral; `None` if it is unlimited.
-    pub(super) fn range(&self, node: Node) -> Option<[f64; 2]> {
+    pub(super) fn joint_range(&self, node: Node) -> Option<[f64; 2]> {
         let robot = self.assembly.robot();
         let range = match (self.driving_servo(node), node) {
             (Some(servo), _) => {
@@ -46,34 +46,33 @@ impl Writer<'_> {
                 let play = self.scene.play.to_radians();
                 [-play, play]
             }
-            (None, Node::OnMount(Mount::Rod(side))) => self.stroke(side).map(|mm| mm * MILLI),
-            (None, Node::Slot(_)) => [0.0, SLOT * MILLI],
+            (None, Node::OnMount(Mount::Rod(side))) => self.stroke_range(side).map(|mm| mm * MILLI),
+            (None, Node::SlotPin(_)) => [0.0, SLOT_LENGTH * MILLI],
             _ => return None,
         };
         Some(range.map(round))
     }
 
     /// The smallest and largest change of a slider's length from neutral, mm.
-    fn stroke(&self, side: Side) -> [f64; 2] {
+    fn stroke_range(&self, side: Side) -> [f64; 2] {
         let limits = self.assembly.robot().limits();
-        let neutral_travel = self.neutral.side(side).s;
-        [limits.stroke_min, limits.stroke_max].map(|limit| limit - neutral_travel)
+        let neutral_stroke = self.neutral.side(side).s;
+        [limits.stroke_min, limits.stroke_max].map(|limit| limit - neutral_stroke)
     }
 
     /// Damping, N m s or N s/m, and dry friction, N m or N, of a body's joint.
-    pub(super) fn resistance(&self, node: Node) -> [f64; 2] {
+    pub(super) fn damping_and_friction(&self, node: Node) -> [f64; 2] {
         let motors = &self.scene.motors;
-        let resistance = match (self.driving_servo(node), node) {
-            (Some(servo), _) => {
-                [motors.each[servo].damping(), motors.joints.drag].map(|value| value * MILLI)
-            }
-            (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joints.slider],
+        let values = match (self.driving_servo(node), node) {
+            (Some(servo), _) => [motors.per_servo[servo].damping(), motors.joints.pin_torque]
+                .map(|value| value * MILLI),
+            (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joints.slider_force],
             (None, Node::Pad(_)) => [self.leaf_spring()[1], 0.0],
             // Grease: it damps a link that moves freely within its play.
             (None, Node::OnMount(Mount::Link(_))) => [1e-5, 0.0],
-            (None, Node::Slot(_)) => [0.1, 0.0],
+            (None, Node::SlotPin(_)) => [0.1, 0.0],
             _ => [0.0, self.scene.pin_friction * MILLI],
         };
-        resistance.map(round)
+        values.map(round)
     }
 }

@@ -3,7 +3,7 @@
 use crate::files::File;
 use crate::files::mesh::Mesh;
 use crate::files::stl::stl;
-use crate::model::looks::Material;
+use crate::model::material::Material;
 use crate::model::node::Node;
 use crate::model::pieces::Piece;
 
@@ -22,25 +22,25 @@ pub(super) fn mesh_file_name(node: Node, material: Material) -> String {
 }
 
 /// The mesh files of all bodies, mm, each in the frame of its body.
-pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
-    let mut files = Vec::new();
+pub(super) fn mesh_files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
+    let mut mesh_files = Vec::new();
     for &node in nodes {
         for material in materials_of(pieces, node) {
             let mut mesh = Mesh::default();
-            let is_own =
+            let has_node_and_material =
                 |piece: &&Piece| piece.node == node && Material::of(piece.kind) == material;
-            for piece in pieces.iter().filter(is_own) {
+            for piece in pieces.iter().filter(has_node_and_material) {
                 let first_corner = mesh.corners.len();
                 mesh.corners.extend(&piece.mesh.corners);
                 let triangles = piece.mesh.triangles.iter();
                 mesh.triangles
                     .extend(triangles.map(|triangle| triangle.map(|corner| first_corner + corner)));
             }
-            files.push(File {
+            mesh_files.push(File {
                 bytes: stl(&node.name(), &mesh),
                 path: mesh_file_name(node, material),
             });
         }
     }
-    files
+    mesh_files
 }

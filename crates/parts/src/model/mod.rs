@@ -2,7 +2,7 @@
 //!
 //! Every part of the assembly becomes part of a rigid body, with the mass and the inertia of its own volume, at its
 //! place in the assembly. Hinges and slides join the bodies as pins and sleeves do. MJCF and URDF require a tree,
-//! so each closed loop is cut at one of its joints (`closed.rs`); MJCF and SDF close it again. The files contain no
+//! so each closed loop is cut at one of its joints (`loops.rs`); MJCF and SDF close it again. The files contain no
 //! gait logic. MJCF, with which an independent engine lets the robot walk, also has motors and a floor.
 //!
 //! # Simplifications
@@ -14,11 +14,11 @@
 //! - The pads' friction is equal in all directions, as in MuJoCo. The file states the ratio of backward to forward
 //!   friction of the robot's pads, and `tools/physics/grain.py` applies it.
 
-mod closed;
 mod floor;
 mod inertia;
 mod joint;
-mod looks;
+mod loops;
+mod material;
 mod meshes;
 mod mjcf;
 mod node;
@@ -32,19 +32,19 @@ mod writer;
 use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
+use crate::build_problem::BuildProblem;
 use crate::files::File;
-use crate::unfit::BuildProblem;
 pub use floor::{Block, Floor};
 use node::Node;
-use pieces::{Piece, pieces};
-pub use scene::{Course, Pads, Pull, Scene};
+use pieces::{Piece, compute_pieces};
+pub use scene::{Course, Pads, Scene, StrutSpring};
 use text::Xml;
 use writer::Writer;
 
 /// Returns a scene as an MJCF file for MuJoCo.
 ///
 /// # Errors
-/// Returns [`BuildProblem::Surface`] for a part whose layers do not make a body.
+/// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not make a body.
 pub fn mjcf(
     assembly: &Assembly,
     neutral: &Solution,
@@ -64,9 +64,9 @@ impl<'a> Pieces<'a> {
     /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// Returns [`BuildProblem::Surface`] for a part whose layers do not make a body.
+    /// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not make a body.
     pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildProblem> {
-        let pieces = pieces(assembly, scene)?;
+        let pieces = compute_pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })
     }
 
@@ -94,8 +94,8 @@ impl<'a> Pieces<'a> {
     /// The meshes to which URDF and SDF refer, each with its file name in the mesh folder.
     #[must_use]
     pub fn meshes(&self, scene: &Scene) -> Vec<File> {
-        let nodes = Node::all(scene.pull.is_some(), scene.play > 0.0);
-        meshes::files(&self.pieces, &nodes)
+        let nodes = Node::all(scene.strut_spring.is_some(), scene.play > 0.0);
+        meshes::mesh_files(&self.pieces, &nodes)
     }
 
     fn write_with(

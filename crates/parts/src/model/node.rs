@@ -1,9 +1,9 @@
 //! Rigid bodies of the model: the parent of each, and its motion on the parent.
 //!
-//! The bodies form a tree: each closed loop of the robot is cut at one of its joints (`closed.rs`).
+//! The bodies form a tree: each closed loop of the robot is cut at one of its joints (`loops.rs`).
 
 use lizard_kinematics::Side;
-use lizard_robot::servo::{LEGS, NAMES};
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
 use crate::layers::body::Mount;
 
@@ -17,7 +17,7 @@ pub(crate) enum Node {
     /// The post of a foot with its pad, which moves up and down on the leaf.
     Pad(usize),
     /// The pin in the slot of a strut, and the spring that pulls at it.
-    Slot(usize),
+    SlotPin(usize),
 }
 
 /// The degree of freedom of a body on its parent.
@@ -26,7 +26,7 @@ pub(crate) enum Freedom {
     /// Free in space.
     Free,
     /// Turning about a vertical axis through its origin.
-    Turns,
+    TurnsAboutZ,
     /// Sliding along its own x axis.
     SlidesAlongX,
     /// Sliding up and down.
@@ -35,7 +35,7 @@ pub(crate) enum Freedom {
 
 impl Node {
     /// Every body of the robot, each after its parent.
-    pub fn all(is_slotted: bool, has_play: bool) -> Vec<Self> {
+    pub fn all(has_slotted_struts: bool, has_play: bool) -> Vec<Self> {
         let mut nodes = vec![Self::OnMount(Mount::Chassis)];
         for servo in 0..4 {
             if has_play {
@@ -51,8 +51,8 @@ impl Node {
             ];
             nodes.extend(mounts.map(|mount| Self::OnMount(mount(servo))));
             nodes.push(Self::Pad(servo));
-            if is_slotted {
-                nodes.push(Self::Slot(servo));
+            if has_slotted_struts {
+                nodes.push(Self::SlotPin(servo));
             }
         }
         for side in Side::ALL {
@@ -76,7 +76,7 @@ impl Node {
             Self::OnMount(Mount::Sleeve(side)) => Self::OnMount(Mount::Link(side.servos()[1])),
             Self::OnMount(Mount::Rod(side)) => Self::OnMount(Mount::Sleeve(side)),
             Self::Pad(servo) => Self::OnMount(Mount::Foot(servo)),
-            Self::Slot(servo) => Self::OnMount(Mount::Strut(servo)),
+            Self::SlotPin(servo) => Self::OnMount(Mount::Strut(servo)),
         })
     }
 
@@ -84,19 +84,19 @@ impl Node {
     pub fn freedom(self) -> Freedom {
         match self {
             Self::OnMount(Mount::Chassis) => Freedom::Free,
-            Self::OnMount(Mount::Rod(_)) | Self::Slot(_) => Freedom::SlidesAlongX,
+            Self::OnMount(Mount::Rod(_)) | Self::SlotPin(_) => Freedom::SlidesAlongX,
             Self::Pad(_) => Freedom::SlidesVertically,
-            _ => Freedom::Turns,
+            _ => Freedom::TurnsAboutZ,
         }
     }
 
     /// The mount whose frame the node uses.
-    pub fn frame(self) -> Mount {
+    pub fn frame_mount(self) -> Mount {
         match self {
             Self::OnMount(mount) => mount,
             Self::Horn(servo) => Mount::Link(servo),
             Self::Pad(servo) => Mount::Foot(servo),
-            Self::Slot(servo) => Mount::Strut(servo),
+            Self::SlotPin(servo) => Mount::Strut(servo),
         }
     }
 
@@ -105,17 +105,17 @@ impl Node {
         let name_of = |kind: &str, name: &str| format!("{kind} {name}");
         match self {
             Self::OnMount(Mount::Chassis) => "chassis".to_owned(),
-            Self::OnMount(Mount::Link(servo)) => name_of("link", NAMES[servo]),
-            Self::OnMount(Mount::Coupler(servo)) => name_of("coupler", NAMES[servo]),
-            Self::OnMount(Mount::Crank(servo)) => name_of("crank", LEGS[servo]),
-            Self::OnMount(Mount::Follower(servo)) => name_of("follower", LEGS[servo]),
-            Self::OnMount(Mount::Foot(servo)) => name_of("leg coupler", LEGS[servo]),
-            Self::OnMount(Mount::Strut(servo)) => name_of("strut", LEGS[servo]),
+            Self::OnMount(Mount::Link(servo)) => name_of("link", SERVO_NAMES[servo]),
+            Self::OnMount(Mount::Coupler(servo)) => name_of("coupler", SERVO_NAMES[servo]),
+            Self::OnMount(Mount::Crank(servo)) => name_of("crank", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Follower(servo)) => name_of("follower", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Foot(servo)) => name_of("leg coupler", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Strut(servo)) => name_of("strut", LEG_NAMES[servo]),
             Self::OnMount(Mount::Sleeve(side)) => name_of("sleeve", side.name()),
             Self::OnMount(Mount::Rod(side)) => name_of("rod", side.name()),
-            Self::Horn(servo) => name_of("horn", NAMES[servo]),
-            Self::Pad(servo) => name_of("foot", LEGS[servo]),
-            Self::Slot(servo) => name_of("slot", LEGS[servo]),
+            Self::Horn(servo) => name_of("horn", SERVO_NAMES[servo]),
+            Self::Pad(servo) => name_of("foot", LEG_NAMES[servo]),
+            Self::SlotPin(servo) => name_of("slot", LEG_NAMES[servo]),
         }
     }
 }
@@ -126,8 +126,10 @@ mod tests {
 
     #[test]
     fn each_body_comes_once_and_after_its_parent() {
-        for (is_slotted, has_play) in [(false, false), (true, false), (false, true), (true, true)] {
-            let nodes = Node::all(is_slotted, has_play);
+        for (has_slotted_struts, has_play) in
+            [(false, false), (true, false), (false, true), (true, true)]
+        {
+            let nodes = Node::all(has_slotted_struts, has_play);
             for (index, node) in nodes.iter().enumerate() {
                 assert!(!nodes[..index].contains(node), "{node:?}");
                 match node.parent(has_play) {

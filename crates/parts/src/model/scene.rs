@@ -1,4 +1,4 @@
-//! The conditions of a simulation: feet, springs and servos, and the servos' angles.
+//! The conditions of a simulation: feet, springs, servos and floor, and the servos' target angles.
 
 use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Motors, Robot};
 
@@ -13,11 +13,11 @@ pub struct Scene {
     /// Length by which each foot is too long, mm, in servo order.
     pub excess_lengths: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
-    pub stiffness: f64,
+    pub leaf_stiffness: f64,
     /// Friction of a pad that slides backward, divided by its friction when it slides forward.
-    pub ratio: f64,
-    /// The spring in the slotted struts; `None` for rigid struts.
-    pub pull: Option<Pull>,
+    pub friction_ratio: f64,
+    /// The spring in each slotted strut; `None` for rigid struts.
+    pub strut_spring: Option<StrutSpring>,
     /// Free play between a servo's horn and its link to either side, deg.
     pub play: f64,
     /// The servos' motors, and the friction of the joints.
@@ -49,10 +49,10 @@ impl Scene {
         Self {
             name: "lizard".to_owned(),
             excess_lengths: [stance.twist, 0.0, 0.0, 0.0],
-            stiffness: stance.stiffness,
-            ratio: ground.ratio,
-            pull: drive.strut().map(|strut| Pull {
-                force: strut.force,
+            leaf_stiffness: stance.stiffness,
+            friction_ratio: ground.friction_ratio,
+            strut_spring: drive.strut().map(|strut| StrutSpring {
+                preload: strut.force,
                 rate: strut.rate,
             }),
             play: drive.play,
@@ -82,9 +82,9 @@ pub enum Pads {
 
 /// A tension spring in a slotted strut.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pull {
+pub struct StrutSpring {
     /// Force while the leg does not lag, N.
-    pub force: f64,
+    pub preload: f64,
     /// Rate of the spring, N/mm.
     pub rate: f64,
 }
@@ -102,7 +102,7 @@ pub struct Course {
     /// Period of a cycle, s.
     pub period: f64,
     /// Number of cycles to measure.
-    pub count: u32,
+    pub measured_cycles: u32,
 }
 
 /// Time of the motion from neutral to the gait's first pose, s.
@@ -111,35 +111,35 @@ const APPROACH_S: f64 = 0.4;
 const SETTLE_S: f64 = 0.3;
 
 impl Course {
-    /// The course of `cycles` cycles of a gait at its own pace, after a slow approach from
-    /// neutral, with the angles of the firmware's tables. The last `count` cycles are measured.
+    /// Returns the course of `cycles` cycles of a gait at its own pace, after a slow approach from
+    /// neutral, with the angles of the firmware's tables. The last `measured_cycles` cycles are measured.
     #[must_use]
-    pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32, count: u32) -> Self {
+    pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32, measured_cycles: u32) -> Self {
         let angles_at = |seconds: f64| {
-            let phase = (gait.phase(seconds) * 65536.0).round() as i64;
+            let phase = (gait.phase_at(seconds) * 65536.0).round() as i64;
             gait.table_angles(phase.rem_euclid(65536) as u16)
         };
         let sweeps_of = |angles: [f64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| lizard_kinematics::wrap(angles[i] - robot.servos()[i].neutral))
         };
         let start_sweeps = sweeps_of(angles_at(0.0));
-        let begin_s = APPROACH_S + SETTLE_S;
+        let start_s = APPROACH_S + SETTLE_S;
         let period = gait.period();
-        let seconds = begin_s + f64::from(cycles) * period;
+        let end_s = start_s + f64::from(cycles) * period;
         let targets_at = |frame: usize| {
             let time_s = frame as f64 / FRAMES_PER_SECOND;
-            match time_s < begin_s {
+            match time_s < start_s {
                 true => start_sweeps.map(|sweep| sweep * (time_s / APPROACH_S).min(1.0)),
-                false => sweeps_of(angles_at(time_s - begin_s)),
+                false => sweeps_of(angles_at(time_s - start_s)),
             }
         };
-        let last_frame = (seconds * FRAMES_PER_SECOND).ceil() as usize;
+        let last_frame = (end_s * FRAMES_PER_SECOND).ceil() as usize;
         Self {
             gait: gait.name().to_owned(),
             frames: (0..=last_frame).map(targets_at).collect(),
-            measure_start: begin_s + f64::from(cycles - count) * period,
+            measure_start: start_s + f64::from(cycles - measured_cycles) * period,
             period,
-            count,
+            measured_cycles,
         }
     }
 }

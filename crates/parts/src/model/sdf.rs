@@ -2,22 +2,22 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::model::closed;
+use crate::model::loops;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
-use crate::model::scene::Pull;
-use crate::model::text::{MILLI, escape_attribute, metres, round};
+use crate::model::scene::StrutSpring;
+use crate::model::text::{MILLI, escape_attribute, format_metres, round};
 use crate::model::writer::Writer;
 
 /// The oldest version of SDF in which a pose may be relative to another link.
-const VERSION: &str = "1.7";
+const SDF_VERSION: &str = "1.7";
 
 impl Writer<'_> {
     /// Writes the whole file. The meshes are in `folder`, a path or a URL.
     pub(super) fn write_sdf(&mut self, folder: &str) {
         let name = escape_attribute(&self.scene.name);
-        self.xml.declaration();
-        self.xml.open(format!(r#"sdf version="{VERSION}""#));
+        self.xml.write_declaration();
+        self.xml.open(format!(r#"sdf version="{SDF_VERSION}""#));
         self.xml.open(format!(r#"model name="{name}""#));
         for node in self.nodes() {
             self.write_sdf_link(node, folder);
@@ -25,13 +25,13 @@ impl Writer<'_> {
         for node in self.nodes() {
             self.write_sdf_joint(node);
         }
-        for loop_joint in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
+        for loop_joint in loops::cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
             let [first, second] = loop_joint.bodies.map(Node::identifier);
             // A ball is enough: all axes are vertical already, and a hinge would constrain their direction twice.
             self.write_sdf_connection(&loop_joint.identifier(), "ball", &first, &second);
-            let position = metres([loop_joint.at.x, loop_joint.at.y, 0.0]);
+            let position = format_metres([loop_joint.point.x, loop_joint.point.y, 0.0]);
             let pose = format!(r#"pose relative_to="{first}""#);
-            self.xml.value(pose, format_args!("{position} 0 0 0"));
+            self.xml.write_value(pose, format_args!("{position} 0 0 0"));
             self.xml.close();
         }
     }
@@ -47,16 +47,16 @@ impl Writer<'_> {
                 self.write_pose(&pose, [placement.origin.x, placement.origin.y, 0.0], turn);
             }
             // The model's x axis points ahead, its y axis to the left.
-            None => self.write_pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
+            None => self.write_pose("pose", [0.0, 0.0, self.chassis_height()], turn - FRAC_PI_2),
         }
-        let mass = self.mass(node);
+        let inertia = self.inertia(node);
         self.xml.open("inertial");
-        self.write_pose("pose", mass.centre(), 0.0);
-        self.xml.value("mass", round(mass.mass * MILLI));
+        self.write_pose("pose", inertia.mass_centre(), 0.0);
+        self.xml.write_value("mass", round(inertia.mass * MILLI));
         self.xml.open("inertia");
         let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
-        for (name, value) in names.into_iter().zip(mass.written_tensor()) {
-            self.xml.value(name, value);
+        for (name, value) in names.into_iter().zip(inertia.formatted_tensor()) {
+            self.xml.write_value(name, value);
         }
         self.xml.close();
         self.xml.close();
@@ -65,13 +65,13 @@ impl Writer<'_> {
             self.xml.open("geometry");
             self.xml.open("mesh");
             let file = format!("{folder}{}", meshes::mesh_file_name(node, material));
-            self.xml.value("uri", escape_attribute(&file));
-            self.xml.value("scale", "0.001 0.001 0.001");
+            self.xml.write_value("uri", escape_attribute(&file));
+            self.xml.write_value("scale", "0.001 0.001 0.001");
             self.xml.close();
             self.xml.close();
             self.xml.open("material");
-            self.xml.value("ambient", material.colour);
-            self.xml.value("diffuse", material.colour);
+            self.xml.write_value("ambient", material.colour);
+            self.xml.write_value("diffuse", material.colour);
             self.xml.close();
             self.xml.close();
         }
@@ -87,15 +87,15 @@ impl Writer<'_> {
         self.xml.open("geometry");
         self.xml.open("sphere");
         let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
-        self.xml.value("radius", radius);
+        self.xml.write_value("radius", radius);
         self.xml.close();
         self.xml.close();
         for element in ["surface", "friction", "ode"] {
             self.xml.open(element);
         }
-        let friction = self.scene.floor.friction[servo];
-        self.xml.value("mu", friction);
-        self.xml.value("mu2", friction);
+        let friction = self.scene.floor.friction_coefficients[servo];
+        self.xml.write_value("mu", friction);
+        self.xml.write_value("mu2", friction);
         for _ in ["ode", "friction", "surface", "collision"] {
             self.xml.close();
         }
@@ -107,7 +107,7 @@ impl Writer<'_> {
         };
         let (kind, axis) = match node.freedom() {
             Freedom::Free => return,
-            Freedom::Turns => ("revolute", "0 0 1"),
+            Freedom::TurnsAboutZ => ("revolute", "0 0 1"),
             Freedom::SlidesAlongX => ("prismatic", "1 0 0"),
             Freedom::SlidesVertically => ("prismatic", "0 0 1"),
         };
@@ -118,26 +118,27 @@ impl Writer<'_> {
         );
         self.write_sdf_connection(&name, kind, &parent, &child);
         self.xml.open("axis");
-        self.xml.value("xyz", axis);
-        if let Some([smallest, largest]) = self.range(node) {
+        self.xml.write_value("xyz", axis);
+        if let Some([smallest, largest]) = self.joint_range(node) {
             self.xml.open("limit");
-            self.xml.value("lower", smallest);
-            self.xml.value("upper", largest);
+            self.xml.write_value("lower", smallest);
+            self.xml.write_value("upper", largest);
             if let Some(servo) = self.driving_servo(node) {
-                let motor = &self.scene.motors.each[servo];
-                self.xml.value("effort", round(motor.stall * MILLI));
+                let motor = &self.scene.motors.per_servo[servo];
                 self.xml
-                    .value("velocity", round(motor.no_load_speed.to_radians()));
+                    .write_value("effort", round(motor.stall_torque * MILLI));
+                self.xml
+                    .write_value("velocity", round(motor.no_load_speed.to_radians()));
             }
             self.xml.close();
         }
-        let [damping, friction] = self.resistance(node);
+        let [damping, friction] = self.damping_and_friction(node);
         self.xml.open("dynamics");
-        self.xml.value("damping", damping);
-        self.xml.value("friction", friction);
+        self.xml.write_value("damping", damping);
+        self.xml.write_value("friction", friction);
         if let Some([reference, stiffness]) = self.spring_values(node) {
-            self.xml.value("spring_reference", reference);
-            self.xml.value("spring_stiffness", stiffness);
+            self.xml.write_value("spring_reference", reference);
+            self.xml.write_value("spring_stiffness", stiffness);
         }
         self.xml.close();
         self.xml.close();
@@ -147,10 +148,10 @@ impl Writer<'_> {
     /// The position at which the spring of a body's joint is relaxed, m, and the spring's stiffness, N/m; `None` for
     /// a joint without a spring.
     fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
-        match (node, self.scene.pull) {
+        match (node, self.scene.strut_spring) {
             (Node::Pad(_), _) => Some([0.0, self.leaf_spring()[0]]),
-            (Node::Slot(_), Some(Pull { force, rate })) => {
-                Some([-force / rate * MILLI, rate / MILLI].map(round))
+            (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
+                Some([-preload / rate * MILLI, rate / MILLI].map(round))
             }
             _ => None,
         }
@@ -160,13 +161,13 @@ impl Writer<'_> {
     fn write_sdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
-        self.xml.value("parent", parent);
-        self.xml.value("child", child);
+        self.xml.write_value("parent", parent);
+        self.xml.write_value("child", child);
     }
 
     fn write_pose(&mut self, element: &str, position: [f64; 3], turn: f64) {
-        let (position, turn) = (metres(position), round(turn));
+        let (position, turn) = (format_metres(position), round(turn));
         self.xml
-            .value(element, format_args!("{position} 0 0 {turn}"));
+            .write_value(element, format_args!("{position} 0 0 {turn}"));
     }
 }

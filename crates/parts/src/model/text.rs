@@ -6,7 +6,7 @@ use std::fmt::{Display, Write};
 pub(super) const MILLI: f64 = 1e-3;
 
 /// Formats a position in mm as three numbers in metres.
-pub(super) fn metres(position: [f64; 3]) -> String {
+pub(super) fn format_metres(position: [f64; 3]) -> String {
     position
         .map(|component| round(component * MILLI).to_string())
         .join(" ")
@@ -32,21 +32,22 @@ pub(super) fn escape_attribute(value: &str) -> String {
     value.replace('"', "&quot;")
 }
 
-/// XML text, one element per line. An element is given as its name and attributes.
+/// A writer of XML text, one element per line. Callers give an element as its name and attributes.
 #[derive(Default)]
 pub(super) struct Xml {
     text: String,
-    open: Vec<String>,
+    /// Names of the open elements, the outermost first.
+    open_elements: Vec<String>,
 }
 
 impl Xml {
     fn write_line(&mut self, text: impl Display) {
-        let indent = self.open.len();
+        let indent = self.open_elements.len();
         let _ = writeln!(self.text, "{:indent$}{text}", "");
     }
 
     /// Writes the XML declaration, the first line of a document.
-    pub fn declaration(&mut self) {
+    pub fn write_declaration(&mut self) {
         self.write_line(r#"<?xml version="1.0"?>"#);
     }
 
@@ -56,7 +57,7 @@ impl Xml {
     }
 
     /// Writes an element that holds a value.
-    pub fn value(&mut self, element: impl Display, value: impl Display) {
+    pub fn write_value(&mut self, element: impl Display, value: impl Display) {
         let element = element.to_string();
         let name = element.split(' ').next().unwrap_or_default();
         self.write_line(format_args!("<{element}>{value}</{name}>"));
@@ -67,19 +68,19 @@ impl Xml {
         let element = element.to_string();
         self.write_line(format_args!("<{element}>"));
         let name = element.split(' ').next().unwrap_or_default();
-        self.open.push(name.to_owned());
+        self.open_elements.push(name.to_owned());
     }
 
     /// Closes the innermost open element.
     pub fn close(&mut self) {
-        if let Some(name) = self.open.pop() {
+        if let Some(name) = self.open_elements.pop() {
             self.write_line(format_args!("</{name}>"));
         }
     }
 
-    /// The text, after all open elements are closed.
+    /// Closes all open elements and returns the text.
     pub fn finish(mut self) -> String {
-        while !self.open.is_empty() {
+        while !self.open_elements.is_empty() {
             self.close();
         }
         self.text

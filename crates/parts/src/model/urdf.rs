@@ -6,24 +6,24 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::closed::{self, LoopJoint};
-use crate::model::looks::Material;
+use crate::model::loops::{self, LoopJoint};
+use crate::model::material::Material;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
-use crate::model::text::{MILLI, escape_attribute, metres, round};
+use crate::model::text::{MILLI, escape_attribute, format_metres, round};
 use crate::model::writer::Writer;
 
 /// The link on the floor under the chassis: x ahead, y to the left, z up, as ROS requires.
-const BASE: &str = "base_link";
+const BASE_LINK: &str = "base_link";
 
 impl Writer<'_> {
     /// Writes the whole file. The meshes are in `folder`, a path or a URL.
     pub(super) fn write_urdf(&mut self, folder: &str) {
         let name = escape_attribute(&self.scene.name);
-        self.xml.declaration();
+        self.xml.write_declaration();
         self.xml.open(format!(r#"robot name="{name}""#));
         for Material { name, colour } in Material::ALL {
             self.xml.open(format!(r#"material name="{name}""#));
@@ -32,12 +32,12 @@ impl Writer<'_> {
             self.xml.close();
         }
         self.xml
-            .write_empty_element(format!(r#"link name="{BASE}""#));
+            .write_empty_element(format!(r#"link name="{BASE_LINK}""#));
         for node in self.nodes() {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
         }
-        for loop_joint in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
+        for loop_joint in loops::cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
             self.write_coinciding_frames(&loop_joint);
         }
     }
@@ -45,12 +45,12 @@ impl Writer<'_> {
     fn write_urdf_link(&mut self, node: Node, folder: &str) {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
-        let mass = self.mass(node);
-        let [xx, yy, zz, xy, xz, yz] = mass.written_tensor();
+        let inertia = self.inertia(node);
+        let [xx, yy, zz, xy, xz, yz] = inertia.formatted_tensor();
         self.xml.open("inertial");
-        self.write_origin(mass.centre(), 0.0);
+        self.write_origin(inertia.mass_centre(), 0.0);
         self.xml
-            .write_empty_element(format!(r#"mass value="{}""#, round(mass.mass * MILLI)));
+            .write_empty_element(format!(r#"mass value="{}""#, round(inertia.mass * MILLI)));
         self.xml.write_empty_element(format!(
             r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
         ));
@@ -84,18 +84,18 @@ impl Writer<'_> {
     }
 
     fn write_urdf_joint(&mut self, node: Node) {
-        let range = self.range(node);
+        let range = self.joint_range(node);
         let kind = match (node.freedom(), range) {
             // URDF has no springs, so the feet are fixed to their leaves.
             (Freedom::Free | Freedom::SlidesVertically, _) => "fixed",
-            (Freedom::Turns, Some(_)) => "revolute",
-            (Freedom::Turns, None) => "continuous",
+            (Freedom::TurnsAboutZ, Some(_)) => "revolute",
+            (Freedom::TurnsAboutZ, None) => "continuous",
             (Freedom::SlidesAlongX, _) => "prismatic",
         };
         let placement = self.place_on_parent(node);
         let (parent, height, base_turn) = match self.parent(node) {
             Some(parent) => (parent.identifier(), 0.0, 0.0),
-            None => (BASE.to_owned(), self.height(), -FRAC_PI_2),
+            None => (BASE_LINK.to_owned(), self.chassis_height(), -FRAC_PI_2),
         };
         let turn = placement.x_axis.angle().to_radians() + base_turn;
         let name = self.joint_name(node);
@@ -111,8 +111,8 @@ impl Writer<'_> {
             if let Some([smallest, largest]) = range {
                 let (effort, rate) = match self.driving_servo(node) {
                     Some(servo) => {
-                        let motor = &self.scene.motors.each[servo];
-                        (motor.stall * MILLI, motor.no_load_speed.to_radians())
+                        let motor = &self.scene.motors.per_servo[servo];
+                        (motor.stall_torque * MILLI, motor.no_load_speed.to_radians())
                     }
                     // No motor drives this joint.
                     None => (0.0, 0.0),
@@ -122,13 +122,13 @@ impl Writer<'_> {
                     r#"limit lower="{smallest}" upper="{largest}" effort="{effort}" velocity="{rate}""#
                 ));
             }
-            let [damping, friction] = self.resistance(node);
+            let [damping, friction] = self.damping_and_friction(node);
             self.xml.write_empty_element(format!(
                 r#"dynamics damping="{damping}" friction="{friction}""#
             ));
         }
         if let Some((servo, factor)) = mimicked_servo(node) {
-            let servo = NAMES[servo];
+            let servo = SERVO_NAMES[servo];
             self.xml
                 .write_empty_element(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
         }
@@ -146,7 +146,7 @@ impl Writer<'_> {
     }
 
     fn write_origin(&mut self, position: [f64; 3], turn: f64) {
-        let (position, turn) = (metres(position), round(turn));
+        let (position, turn) = (format_metres(position), round(turn));
         self.xml
             .write_empty_element(format!(r#"origin xyz="{position}" rpy="0 0 {turn}""#));
     }
@@ -154,9 +154,9 @@ impl Writer<'_> {
     /// Writes the two frames of a joint that closes a loop, one on each body.
     fn write_coinciding_frames(&mut self, loop_joint: &LoopJoint) {
         let [first, second] = loop_joint.bodies;
-        let point = self.place(first).map(loop_joint.at);
+        let point = self.place(first).map(loop_joint.point);
         let point_on_second = self.place(second).unmap(point);
-        for (number, (node, position)) in [(first, loop_joint.at), (second, point_on_second)]
+        for (number, (node, position)) in [(first, loop_joint.point), (second, point_on_second)]
             .iter()
             .enumerate()
         {

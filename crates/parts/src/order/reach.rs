@@ -1,8 +1,8 @@
 //! A check that every screw can be put in and turned in the order of the guide.
 //!
 //! A screw is pushed in along its axis from the side of its head. So the space above its head must be free, as long
-//! as the screw and as wide as its head. A hex key holds the head while the nut is turned, so a [`KEY`] must also
-//! fit above the head. A socket goes over the nut and needs the room of a [`SOCKET`]. A nut that is sunk into a
+//! as the screw and as wide as its head. A hex key holds the head while the nut is turned, so a [`KEY_SIZE`] must also
+//! fit above the head. A socket goes over the nut and needs the room of a [`SOCKET_SIZE`]. A nut that is sunk into a
 //! part is pushed in with a finger; the part then keeps it from turning, as a pocket does for a hexagonal head.
 //!
 //! When a screw is turned, all bodies of the earlier stages are in place, and all bodies of its own stage except
@@ -24,17 +24,17 @@ use crate::layers::shape::Shape;
 use crate::order::steps::{Step, TurningPlace};
 
 /// Radius of a screwdriver or hex key, and its length above the head, mm.
-pub const KEY: [f64; 2] = [2.0, 30.0];
+pub const KEY_SIZE: [f64; 2] = [2.0, 30.0];
 /// Radius of the bare hex key for an M3 button head, 2 mm over its flats, in the hole of a pad, mm.
-const HEX_KEY: f64 = 1.2;
+const HEX_KEY_RADIUS: f64 = 1.2;
 /// Wall thickness of a socket around a nut, and the socket's length beyond the nut, mm.
-pub const SOCKET: [f64; 2] = [1.0, 10.0];
+pub const SOCKET_SIZE: [f64; 2] = [1.0, 10.0];
 /// Angles by which one servo is turned in the search for a pose, deg.
 const SEARCH_ANGLES: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
 ];
 /// Number of angles per servo in the grid of poses that are searched if turning one servo is not enough.
-const GRID_ANGLES: u32 = 9;
+const GRID_ANGLES_PER_SERVO: u32 = 9;
 
 /// An operation on a screw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,12 +44,12 @@ pub enum ScrewOperation {
     /// Turning or holding the screw at its head.
     Turn,
     /// Pushing in or turning its nut.
-    Nut,
+    FitNut,
 }
 
 /// A screw that another body blocks.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{screw} {operation} at step {step} of the guide: {by} is in the way")]
+#[error("{screw} {operation} at step {step} of the guide: {obstacle} is in the way")]
 pub struct BlockedScrew {
     /// The step of the guide, from 1.
     pub step: usize,
@@ -58,7 +58,7 @@ pub struct BlockedScrew {
     /// The operation that is impossible.
     pub operation: ScrewOperation,
     /// The name of the body in the way.
-    pub by: String,
+    pub obstacle: String,
 }
 
 impl fmt::Display for ScrewOperation {
@@ -66,7 +66,7 @@ impl fmt::Display for ScrewOperation {
         f.write_str(match self {
             Self::Push => "cannot be pushed in",
             Self::Turn => "cannot be turned",
-            Self::Nut => "cannot be given its nut",
+            Self::FitNut => "cannot be given its nut",
         })
     }
 }
@@ -84,75 +84,82 @@ pub struct AccessPose {
 
 /// A space that must be free: a vertical prism over a shape, in the chassis frame.
 struct FreeSpace {
+    /// The outline as seen from above.
     shape: Shape,
+    /// Heights of the bottom and the top, mm.
     z: [f64; 2],
 }
 
 /// The axis of a screw in the robot.
-struct Axis {
-    at: Vector,
+struct ScrewAxis {
+    /// The point where the axis crosses the plane, mm.
+    position: Vector,
     /// Radius of the screw's head, mm.
-    radius: f64,
+    head_radius: f64,
+    /// Length of the screw below its head, mm.
     length: f64,
-    /// Height of the head's outer face, mm.
-    head_height: f64,
+    /// Height of the head's outer face, mm above the chassis plate's top.
+    head_face_z: f64,
     /// 1 if the head is at the top, else -1.
     direction: f64,
 }
 
-impl Axis {
-    /// The cylinder about the axis that begins at a height and has a length; a negative length goes down.
-    fn room(&self, radius: f64, from: f64, length: f64) -> FreeSpace {
+impl ScrewAxis {
+    /// The cylinder about the axis that begins at a height and has a length; one of negative length extends down.
+    fn cylinder(&self, radius: f64, from: f64, length: f64) -> FreeSpace {
         let to = from + length;
         FreeSpace {
-            shape: Shape::disc(self.at, radius),
+            shape: Shape::disc(self.position, radius),
             z: [from.min(to), from.max(to)],
         }
     }
 }
 
-/// The robot at a pose, in the course of its assembly.
-struct Bench<'a> {
+/// The robot at a pose, in which screws are to be put in.
+struct PosedAssembly<'a> {
     assembly: &'a Assembly,
     pose: &'a Solution,
 }
 
-impl Bench<'_> {
+impl PosedAssembly<'_> {
     /// The axis of a screw; `None` for other bodies.
-    fn axis(&self, body: &Body) -> Option<Axis> {
+    fn screw_axis(&self, body: &Body) -> Option<ScrewAxis> {
         /// Length of a servo's own screws, mm.
-        const SERVO_SCREW: f64 = 8.0;
+        const SERVO_SCREW_LENGTH: f64 = 8.0;
         let length = match body.kind {
             Kind::Screw(length) | Kind::HexScrew(length) => length,
-            Kind::ServoScrew => SERVO_SCREW,
+            Kind::ServoScrew => SERVO_SCREW_LENGTH,
             _ => return None,
         };
-        let width_of = |i: usize| body.prisms[i].filled_shapes[0].width();
+        let diameter_of = |i: usize| body.prisms[i].filled_shapes[0].diameter();
         let last_index = body.prisms.len().checked_sub(1)?;
         // A screw's head is its widest layer.
-        let head_index = (0..=last_index).max_by(|a, b| width_of(*a).total_cmp(&width_of(*b)))?;
+        let head_index =
+            (0..=last_index).max_by(|a, b| diameter_of(*a).total_cmp(&diameter_of(*b)))?;
         let (is_above, prism) = (head_index == last_index, &body.prisms[head_index]);
         let placement = self.assembly.place(body.mount, self.pose);
-        Some(Axis {
-            at: placement.map(prism.filled_shapes[0].middle()),
-            radius: prism.filled_shapes[0].width() / 2.0,
+        Some(ScrewAxis {
+            position: placement.map(prism.filled_shapes[0].middle()),
+            head_radius: prism.filled_shapes[0].diameter() / 2.0,
             length,
-            head_height: prism.z[usize::from(is_above)],
+            head_face_z: prism.z[usize::from(is_above)],
             direction: if is_above { 1.0 } else { -1.0 },
         })
     }
 
-    /// True if a body extends into a space.
-    fn fills(&self, body: &Body, space: &FreeSpace) -> bool {
+    /// True if a body extends into a space, outside the holes that enclose the space.
+    fn extends_into(&self, body: &Body, space: &FreeSpace) -> bool {
         /// Overlap that still counts as touching, mm.
-        const TOUCH: f64 = 1e-6;
+        const TOUCH_TOLERANCE: f64 = 1e-6;
         let placement = self.assembly.place(body.mount, self.pose);
         let [low, high] = space.z;
-        let is_beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
+        let is_beside = |z: [f64; 2]| z[0] > high - TOUCH_TOLERANCE || z[1] < low + TOUCH_TOLERANCE;
         let no_motion = Vector::default();
-        let meets = |shape: &Shape| space.shape.distance(&shape.placed(&placement)) < -TOUCH;
-        let encloses =
-            |hole: &Shape| space.shape.depth_in(&hole.placed(&placement), no_motion) > -TOUCH;
+        let meets =
+            |shape: &Shape| space.shape.distance(&shape.placed(&placement)) < -TOUCH_TOLERANCE;
+        let encloses = |hole: &Shape| {
+            space.shape.depth_in(&hole.placed(&placement), no_motion) > -TOUCH_TOLERANCE
+        };
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
         prisms.any(|prism| {
             prism.filled_shapes.iter().any(meets) && !prism.cut_shapes.iter().any(encloses)
@@ -160,10 +167,10 @@ impl Bench<'_> {
     }
 
     /// The space that a nut needs on its screw.
-    fn nut_space(&self, nut: &Body, axis: &Axis, bodies_around: &[&Body]) -> FreeSpace {
+    fn nut_space(&self, nut: &Body, axis: &ScrewAxis, surrounding_bodies: &[&Body]) -> FreeSpace {
         let placement = self.assembly.place(nut.mount, self.pose);
         let nut_outline = nut.prisms[0].filled_shapes[0].placed(&placement);
-        let corner_radius = (nut_outline.points[0] - axis.at).length();
+        let corner_radius = (nut_outline.points[0] - axis.position).length();
         // The face that touches the part, and the outer face.
         let [low, high] = nut.z();
         let (bearing_height, outer_height) = match axis.direction > 0.0 {
@@ -174,54 +181,62 @@ impl Bench<'_> {
             let depth = nut_outline.depth_in(&hole.placed(&placement), Vector::default());
             hole.points.len() == 6 && depth > 0.0
         };
-        let mut mount_bodies = bodies_around.iter().filter(|body| body.mount == nut.mount);
+        let mut mount_bodies = surrounding_bodies
+            .iter()
+            .filter(|body| body.mount == nut.mount);
         let is_sunk = mount_bodies.any(|body| {
             body.prisms
                 .iter()
                 .any(|prism| prism.cut_shapes.iter().any(encloses))
         });
-        let length = -axis.direction * SOCKET[1];
+        let length = -axis.direction * SOCKET_SIZE[1];
         match is_sunk {
             true => FreeSpace {
                 shape: nut_outline,
-                ..axis.room(0.0, outer_height, length)
+                ..axis.cylinder(0.0, outer_height, length)
             },
-            false => axis.room(
-                corner_radius + SOCKET[0],
+            false => axis.cylinder(
+                corner_radius + SOCKET_SIZE[0],
                 bearing_height,
                 outer_height - bearing_height + length,
             ),
         }
     }
 
-    /// The impossible operations on a screw when the bodies `new_bodies` are added, each with the name of the body in
-    /// the way.
-    fn obstacles(
+    /// The impossible operations on a screw once `new_bodies` are added, each with the name of the body in the way.
+    fn blocked_operations(
         &self,
         screw: &Body,
         new_bodies: &[&Body],
-        bodies_around: &[&Body],
+        surrounding_bodies: &[&Body],
         is_turned_later: bool,
     ) -> Vec<(ScrewOperation, String)> {
-        let Some(axis) = self.axis(screw) else {
+        let Some(axis) = self.screw_axis(screw) else {
             return Vec::new();
         };
         let nut = self.assembly.body(&screw.name.replacen("screw", "nut", 1));
         let nut = nut.filter(|nut| nut.kind == Kind::Nut);
-        let is_own = |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
+        let is_screw_or_its_nut =
+            |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
         let is_in = |list: &[&Body], body: &Body| list.iter().any(|other| other.name == body.name);
         let new_nut = nut.filter(|nut| is_in(new_bodies, nut));
-        let is_complete =
-            is_in(bodies_around, screw) && nut.is_none_or(|nut| is_in(bodies_around, nut));
+        let is_complete = is_in(surrounding_bodies, screw)
+            && nut.is_none_or(|nut| is_in(surrounding_bodies, nut));
         let is_new = is_in(new_bodies, screw);
         let leg_of_pad = screw.name.strip_prefix("screw height ");
         let pad = leg_of_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
         let is_pad = |body: &Body| pad.is_some_and(|pad| pad.name == body.name);
-        let other_bodies = bodies_around.iter().filter(|body| !is_own(&body.name));
+        let other_bodies = surrounding_bodies
+            .iter()
+            .filter(|body| !is_screw_or_its_nut(&body.name));
         let other_bodies: Vec<&Body> = other_bodies.filter(|body| !is_pad(body)).copied().collect();
         let mut spaces = Vec::new();
         if is_new {
-            let space = axis.room(axis.radius, axis.head_height, axis.direction * axis.length);
+            let space = axis.cylinder(
+                axis.head_radius,
+                axis.head_face_z,
+                axis.direction * axis.length,
+            );
             spaces.push((ScrewOperation::Push, space));
         }
         // A hexagonal head is held by its pocket.
@@ -229,19 +244,23 @@ impl Bench<'_> {
         // The pad of a height screw, if the hex key does not fit through the pad's hole.
         let mut blocking_pad = None;
         if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
-            let key_space = |radius| axis.room(radius, axis.head_height, axis.direction * KEY[1]);
-            spaces.push((ScrewOperation::Turn, key_space(KEY[0])));
-            blocking_pad =
-                pad.filter(|pad| is_in(bodies_around, pad) && self.fills(pad, &key_space(HEX_KEY)));
+            let key_space =
+                |radius| axis.cylinder(radius, axis.head_face_z, axis.direction * KEY_SIZE[1]);
+            spaces.push((ScrewOperation::Turn, key_space(KEY_SIZE[0])));
+            blocking_pad = pad.filter(|pad| {
+                is_in(surrounding_bodies, pad) && self.extends_into(pad, &key_space(HEX_KEY_RADIUS))
+            });
         }
         if let Some(nut) = new_nut {
             spaces.push((
-                ScrewOperation::Nut,
+                ScrewOperation::FitNut,
                 self.nut_space(nut, &axis, &other_bodies),
             ));
         }
         let obstacle_of = |(operation, space): (ScrewOperation, FreeSpace)| {
-            let obstacle = other_bodies.iter().find(|body| self.fills(body, &space))?;
+            let obstacle = other_bodies
+                .iter()
+                .find(|body| self.extends_into(body, &space))?;
             Some((operation, obstacle.name.clone()))
         };
         let pad_obstacle = blocking_pad.map(|pad| (ScrewOperation::Turn, pad.name.clone()));
@@ -255,12 +274,12 @@ impl Bench<'_> {
 
 impl Assembly {
     /// The screws that cannot be inserted or turned in the order of these steps, with the servos at a pose.
-    pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<BlockedScrew> {
-        let bench = Bench {
+    pub fn blocked_screws(&self, steps: &[Step], pose: &Solution) -> Vec<BlockedScrew> {
+        let posed_assembly = PosedAssembly {
             assembly: self,
             pose,
         };
-        let mut all_blocked = Vec::new();
+        let mut blocked_screws = Vec::new();
         let mut bodies_so_far: Vec<&Body> = Vec::new();
         for (step_number, step) in (1..).zip(steps) {
             let first_of_step = bodies_so_far.len();
@@ -273,7 +292,7 @@ impl Assembly {
                 for screw in self.bodies() {
                     let is_on_same_servos =
                         |body: &&&Body| body.mount.servos() == screw.mount.servos();
-                    let bodies_around: Vec<_> = match stage.turning_place {
+                    let surrounding_bodies: Vec<_> = match stage.turning_place {
                         TurningPlace::Robot => bodies_so_far.clone(),
                         TurningPlace::Bench => bodies_so_far[first_of_step..]
                             .iter()
@@ -281,20 +300,27 @@ impl Assembly {
                             .copied()
                             .collect(),
                     };
-                    let is_turned_later = (stage.turns)(screw);
-                    let obstacles = bench
-                        .obstacles(screw, &new_bodies, &bodies_around, is_turned_later)
+                    let is_turned_later = (stage.turns_again)(screw);
+                    let blocked_operations = posed_assembly
+                        .blocked_operations(
+                            screw,
+                            &new_bodies,
+                            &surrounding_bodies,
+                            is_turned_later,
+                        )
                         .into_iter();
-                    all_blocked.extend(obstacles.map(|(operation, obstacle)| BlockedScrew {
-                        step: step_number,
-                        screw: screw.name.clone(),
-                        operation,
-                        by: obstacle,
+                    blocked_screws.extend(blocked_operations.map(|(operation, obstacle)| {
+                        BlockedScrew {
+                            step: step_number,
+                            screw: screw.name.clone(),
+                            operation,
+                            obstacle,
+                        }
                     }));
                 }
             }
         }
-        all_blocked
+        blocked_screws
     }
 
     /// The poses to which the servos must be turned in some steps so that every screw can be reached; empty if all
@@ -304,24 +330,24 @@ impl Assembly {
     /// Returns a screw that cannot be reached at neutral or at any of the poses that are tried.
     pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, BlockedScrew> {
         let mut access_poses: Vec<AccessPose> = Vec::new();
-        let neutral = self.robot().neutral();
+        let neutral = self.robot().neutral_pose();
         let Ok(solution) = self.robot().lizard().solve(&neutral) else {
             return Ok(access_poses);
         };
-        let mut unreached = self.blocked(steps, &solution);
-        if unreached.is_empty() {
+        let mut unreached_screws = self.blocked_screws(steps, &solution);
+        if unreached_screws.is_empty() {
             return Ok(access_poses);
         }
         for pose in self.poses_near(neutral) {
-            let still_blocked = self.blocked(steps, &pose);
-            let is_reached = |obstacle: &mut BlockedScrew| {
+            let still_blocked = self.blocked_screws(steps, &pose);
+            let is_now_reached = |obstacle: &mut BlockedScrew| {
                 let is_same_screw = |other: &BlockedScrew| {
                     other.step == obstacle.step && other.screw == obstacle.screw
                 };
                 !still_blocked.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();
-            for blocked_screw in unreached.extract_if(.., is_reached) {
+            for blocked_screw in unreached_screws.extract_if(.., is_now_reached) {
                 let is_same_pose = |access_pose: &&mut AccessPose| {
                     access_pose.step == blocked_screw.step && access_pose.pose == angles
                 };
@@ -335,12 +361,12 @@ impl Assembly {
                     }),
                 }
             }
-            if unreached.is_empty() {
+            if unreached_screws.is_empty() {
                 access_poses.sort_by_key(|access_pose| access_pose.step);
                 return Ok(access_poses);
             }
         }
-        Err(unreached.swap_remove(0))
+        Err(unreached_screws.swap_remove(0))
     }
 
     /// Poses that the guard accepts: first those with one servo turned from neutral, the smallest angle first, and
@@ -352,7 +378,7 @@ impl Assembly {
             for (servo, turn) in (0..4).flat_map(|servo| [(servo, turn), (servo, -turn)]) {
                 let mut angles = neutral_angles;
                 angles[servo] += turn;
-                poses.extend(self.robot().accepted(angles));
+                poses.extend(self.robot().solve_if_allowed(angles));
             }
         }
         let distance_from_neutral = |solution: &Solution| {
@@ -363,7 +389,7 @@ impl Assembly {
                 .map(|(a, b)| (a - b).abs());
             turns.fold(0.0, f64::max)
         };
-        let mut grid_poses: Vec<_> = self.poses(GRID_ANGLES).collect();
+        let mut grid_poses: Vec<_> = self.grid_poses(GRID_ANGLES_PER_SERVO).collect();
         grid_poses.sort_by(|a, b| distance_from_neutral(a).total_cmp(&distance_from_neutral(b)));
         poses.extend(grid_poses);
         poses

@@ -17,10 +17,10 @@ pub struct Step {
     /// The headline.
     pub title: &'static str,
     /// The instructions, as Markdown with each paragraph in one line.
-    pub words: String,
-    /// The bodies to add and the screws to turn, in stages; empty for a step at the console.
+    pub instructions: String,
+    /// The stages, each with the bodies to add and the screws to turn; empty for a step at the console.
     pub stages: Vec<Stage>,
-    /// Lift of a body in the exploded picture, as a share.
+    /// Lift of a body in the exploded picture, as a multiple of the standard lift; negative moves it down.
     pub lift: fn(&Body) -> f64,
     /// An extra picture, if any.
     pub extra_view: ExtraView,
@@ -46,7 +46,7 @@ pub struct Stage {
     /// True for a body that the stage adds, unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
     /// True for a screw that an earlier stage added and that is turned again.
-    pub turns: fn(&Body) -> bool,
+    pub turns_again: fn(&Body) -> bool,
 }
 
 /// The place where the screws of a stage are turned.
@@ -91,11 +91,11 @@ fn bench_stage(adds: fn(&Body) -> bool) -> Stage {
 }
 
 fn stage(turning_place: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
-    let turns = |_: &Body| false;
+    let turns_again = |_: &Body| false;
     Stage {
         turning_place,
         adds,
-        turns,
+        turns_again,
     }
 }
 
@@ -113,10 +113,10 @@ fn step(
     let (_, text) = section.expect("each title is in steps.md");
     let paragraphs = text.trim().split("\n\n");
     let paragraphs = paragraphs.map(|paragraph| paragraph.replace('\n', " "));
-    let words = paragraphs.collect::<Vec<_>>().join("\n\n");
+    let instructions = paragraphs.collect::<Vec<_>>().join("\n\n");
     Step {
         title,
-        words,
+        instructions,
         stages,
         lift,
         extra_view,
@@ -129,7 +129,7 @@ fn console_step(title: &'static str) -> Step {
 }
 
 /// The steps of a robot with slotted or with rigid struts.
-pub fn steps(is_slotted: bool) -> Vec<Step> {
+pub fn steps(has_slotted_struts: bool) -> Vec<Step> {
     vec![
         chassis_step(),
         supply_step(),
@@ -139,7 +139,7 @@ pub fn steps(is_slotted: bool) -> Vec<Step> {
         console_step("Prove the signs"),
         legs_step(),
         legs_on_plate_step(),
-        struts_step(is_slotted),
+        struts_step(has_slotted_struts),
         sliders_step(),
         ends_step(),
         level_step(),
@@ -263,7 +263,7 @@ fn sets_height(body: &Body) -> bool {
 
 fn level_step() -> Step {
     let stage = Stage {
-        turns: |body| has_name_prefix(body, &["screw height"]),
+        turns_again: |body| has_name_prefix(body, &["screw height"]),
         ..robot_stage(|_| false)
     };
     step("Level the feet", |_| 0.0, ExtraView::None, vec![stage])
@@ -283,7 +283,7 @@ fn legs_on_plate_step() -> Step {
     )
 }
 
-fn struts_step(is_slotted: bool) -> Step {
+fn struts_step(has_slotted_struts: bool) -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Screw(_) => 1.6,
         Kind::Nut => -0.4,
@@ -295,7 +295,7 @@ fn struts_step(is_slotted: bool) -> Step {
     });
     let link_stage =
         robot_stage(|body| has_name_prefix(body, &["strut ring", "screw anchor", "nut anchor"]));
-    let title = match is_slotted {
+    let title = match has_slotted_struts {
         true => "Struts and springs",
         false => "Struts",
     };

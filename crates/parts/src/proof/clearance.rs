@@ -44,13 +44,13 @@ impl fmt::Display for Clearance {
 
 impl Assembly {
     /// Pairs of bodies that come closer than `limit_mm` at some pose, the nearest first, each pair once.
-    pub fn nearest(
+    pub fn close_pairs(
         &self,
         poses: impl IntoIterator<Item = Solution>,
         limit_mm: f64,
     ) -> Vec<Clearance> {
         // The pairs of shapes, each with the indices of its bodies and an enclosing disc around each shape.
-        let disc_of = |shape: &Shape| (shape.middle(), shape.farthest(shape.middle()));
+        let disc_of = |shape: &Shape| (shape.middle(), shape.max_distance_from(shape.middle()));
         let bodies = self.bodies();
         let mut pairs = Vec::new();
         for (i, a) in bodies.iter().enumerate() {
@@ -103,16 +103,17 @@ impl Assembly {
     }
 
     /// Poses that the guard accepts, on a grid of `steps` angles over each servo's travel.
-    pub fn poses(&self, steps: u32) -> impl Iterator<Item = Solution> + '_ {
+    pub fn grid_poses(&self, angles_per_servo: u32) -> impl Iterator<Item = Solution> + '_ {
         let robot = self.robot();
         let angle_at = move |servo: usize, step: u32| {
             let servo = &robot.servos()[servo];
             let (low, high) = servo.travel();
-            servo.neutral + low + (high - low) * f64::from(step) / f64::from(steps - 1)
+            servo.neutral + low + (high - low) * f64::from(step) / f64::from(angles_per_servo - 1)
         };
-        (0..steps.pow(4)).filter_map(move |index| {
-            let digit_at = |position: u32| index / steps.pow(position) % steps;
-            robot.accepted([0, 1, 2, 3].map(|i| angle_at(i as usize, digit_at(i))))
+        (0..angles_per_servo.pow(4)).filter_map(move |index| {
+            let digit_at =
+                |position: u32| index / angles_per_servo.pow(position) % angles_per_servo;
+            robot.solve_if_allowed([0, 1, 2, 3].map(|i| angle_at(i as usize, digit_at(i))))
         })
     }
 }

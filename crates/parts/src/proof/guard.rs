@@ -1,7 +1,7 @@
 //! The poses that the guard accepts, as bounds on the servos' angles.
 //!
-//! [`Limits`] defines a safe pose; this module only applies it. The firmware decides in integers, so it may decide
-//! otherwise within a band around each limit. The limits are relaxed by more than that band ([`SINE_RELAXATION`],
+//! [`Limits`] defines a safe pose; this module only applies it. The firmware computes in integers, so its decision may
+//! differ within a band around each limit. The limits are relaxed by more than that band ([`SINE_RELAXATION`],
 //! [`LENGTH_RELAXATION_MM`]), so the proof also covers every pose that the firmware accepts.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -10,7 +10,7 @@ use lizard_kinematics::{Check, End, Limits, Real, Side, Solution, Vector};
 use lizard_robot::Robot;
 
 use super::interval::Interval;
-use super::slope::Slope;
+use super::interval_dual::IntervalDual;
 use crate::bodies::joints::Cranks;
 
 /// Relaxation of the margins' limits, as a sine.
@@ -25,7 +25,7 @@ const RANGE_RESOLUTION_DEG: f64 = 0.01;
 /// Resolution of the angle of a pair's other servo in [`Guard::range_end`], deg.
 const OTHER_RESOLUTION_DEG: f64 = 0.2;
 /// Largest number of regions that [`Guard::find_pose`] searches.
-const ATTEMPTS: u32 = 300;
+const MAX_SEARCHED_REGIONS: u32 = 300;
 
 /// A key that orders numbers as [`f64::total_cmp`] does.
 pub fn total_order_key(value: f64) -> i64 {
@@ -33,20 +33,22 @@ pub fn total_order_key(value: f64) -> i64 {
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
-/// A box of angles of `N` servos: centres and half widths, deg.
+/// A box of angles of `N` servos: their middles and half widths, deg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<const N: usize> {
     pub middle: [f64; N],
-    pub half: [f64; N],
+    pub half_widths: [f64; N],
 }
 
 impl<const N: usize> Region<N> {
+    /// The region between bounds of each servo's angle, deg.
     pub fn of(bounds: [Interval; N]) -> Self {
         Self {
             middle: bounds.map(|bounds_of_servo| {
                 bounds_of_servo.low + (bounds_of_servo.high - bounds_of_servo.low) / 2.0
             }),
-            half: bounds.map(|bounds_of_servo| (bounds_of_servo.high - bounds_of_servo.low) / 2.0),
+            half_widths: bounds
+                .map(|bounds_of_servo| (bounds_of_servo.high - bounds_of_servo.low) / 2.0),
         }
     }
 
@@ -54,15 +56,15 @@ impl<const N: usize> Region<N> {
     pub fn halves(&self, servo: usize) -> [Self; 2] {
         [-0.5, 0.5].map(|share| {
             let mut part = *self;
-            part.middle[servo] += share * self.half[servo];
-            part.half[servo] *= 0.5;
+            part.middle[servo] += share * self.half_widths[servo];
+            part.half_widths[servo] *= 0.5;
             part
         })
     }
 
     /// The bounds of one servo's angle, slightly widened so that halves overlap.
     pub fn bounds(&self, servo: usize) -> Interval {
-        let half = self.half[servo] + 1e-10;
+        let half = self.half_widths[servo] + 1e-10;
         Interval::new(self.middle[servo] - half, self.middle[servo] + half)
     }
 }
@@ -74,12 +76,15 @@ fn cranks_at<'a, const N: usize, T: Real>(
     angles: [T; N],
 ) -> Cranks<'a, T> {
     let (sines, cosines) = T::sin_cos_each(angles);
-    let mut cranks = [Vector::new(T::of(1.0), T::of(0.0)); 4];
+    let mut cranks = [Vector::new(T::constant(1.0), T::constant(0.0)); 4];
     for (i, servo) in servos.iter().enumerate() {
         cranks[*servo] = Vector::new(cosines[i], sines[i]);
     }
     let lizard = robot.lizard();
-    Cranks { lizard, cranks }
+    Cranks {
+        lizard,
+        directions: cranks,
+    }
 }
 
 /// The guard of a robot.
@@ -92,6 +97,7 @@ pub struct Guard<'a> {
 }
 
 impl<'a> Guard<'a> {
+    /// Relaxes a robot's limits and bounds each servo's range.
     pub fn new(robot: &'a Robot) -> Self {
         let limits = robot.limits();
         let sine_relaxation = SINE_RELAXATION * (FULL_RELAXATION_TYPE2 / limits.type2).max(1.0);
@@ -130,24 +136,27 @@ impl<'a> Guard<'a> {
     /// the other servo.
     fn range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
         let sign = if is_high { -1.0 } else { 1.0 };
-        let end_of = |region: &Region<2>| region.middle[index] - sign * region.half[index];
+        let end_of = |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
         let whole_region = Region::of(pair.map(|servo| self.ranges[servo]));
         // The outermost region comes first; of regions that reach equally far, the one that was found first.
-        let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole_region)]), 0);
+        let (mut regions, mut insertion_number) = (BTreeMap::from([((0, 0), whole_region)]), 0);
         while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
                 continue;
             }
             let mut resolution = [OTHER_RESOLUTION_DEG; 2];
             resolution[index] = RANGE_RESOLUTION_DEG;
-            let [a, b] = [0, 1].map(|i| region.half[i] / resolution[i]);
+            let [a, b] = [0, 1].map(|i| region.half_widths[i] / resolution[i]);
             if a.max(b) < 1.0 {
                 return end_of(&region);
             }
             for half_region in region.halves(usize::from(b > a)) {
-                count += 1;
+                insertion_number += 1;
                 regions.insert(
-                    (total_order_key(sign * end_of(&half_region)), count),
+                    (
+                        total_order_key(sign * end_of(&half_region)),
+                        insertion_number,
+                    ),
                     half_region,
                 );
             }
@@ -167,34 +176,39 @@ impl<'a> Guard<'a> {
         &self,
         servos: &[usize; N],
         region: &Region<N>,
-    ) -> Option<(Cranks<'a, Slope<N>>, Cranks<'a, f64>)> {
-        let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
+    ) -> Option<(Cranks<'a, IntervalDual<N>>, Cranks<'a, f64>)> {
+        let angles = std::array::from_fn(|i| IntervalDual::angle(i, region.bounds(i)));
         let bounds = cranks_at(self.robot, servos, angles);
         let middle = cranks_at(self.robot, servos, region.middle);
-        let is_broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
-            let value = bounds.tighten(middle, &region.half).value;
+        let is_broken = |(check, bounds, middle): (Check, IntervalDual<N>, f64)| {
+            let value = bounds.tighten(middle, &region.half_widths).value;
             let [low, high] = [value.low, value.high].map(|value| self.broken_limit(check, value));
             low.is_some() && low == high
         };
         let has_all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
         // A leg's margin depends only on the crank's direction, not on the angle.
-        let (leg, zero) = (&self.robot.lizard().leg, Slope::of(0.0));
+        let (leg, zero) = (&self.robot.lizard().leg, IntervalDual::constant(0.0));
         let breaks_leg = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
-            let bounds = leg.shape(end, zero, bounds.cranks[servo]).margin;
-            let middle = leg.shape(end, 0.0, middle.cranks[servo]).margin;
+            let bounds = leg
+                .pose_of_direction(end, zero, bounds.directions[servo])
+                .margin;
+            let middle = leg
+                .pose_of_direction(end, 0.0, middle.directions[servo])
+                .margin;
             is_broken((Check::LEG[servo], bounds, middle))
         });
         let breaks_end = |end: End| {
-            let values = middle.end(end).conditions(end).map(|(_, value)| value);
-            let conditions = bounds.end(end).conditions(end).into_iter().zip(values);
+            let values = middle.five_bar(end).conditions(end).map(|(_, value)| value);
+            let conditions = bounds.five_bar(end).conditions(end).into_iter().zip(values);
             has_all(end.servos()) && { conditions }
                 .any(|((check, servos_needed), value)| is_broken((check, servos_needed, value)))
         };
         let breaks_side = |side: Side| {
             let check = Check::STROKE[usize::from(side == Side::Right)];
-            has_all(side.servos()) && is_broken((check, bounds.side(side).s, middle.side(side).s))
+            has_all(side.servos())
+                && is_broken((check, bounds.slider(side).s, middle.slider(side).s))
         };
         let is_refused = breaks_leg
             || End::ALL.into_iter().any(breaks_end)
@@ -217,26 +231,31 @@ impl<'a> Guard<'a> {
     /// A pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if the
     /// search finds none.
     pub fn find_pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
-        const ALL: [usize; 4] = [0, 1, 2, 3];
+        const ALL_SERVOS: [usize; 4] = [0, 1, 2, 3];
         let angles_or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
-            ALL.map(|servo| angles[servo].unwrap_or(bound_of(&self.robot.servos()[servo])))
+            ALL_SERVOS.map(|servo| angles[servo].unwrap_or(bound_of(&self.robot.servos()[servo])))
         };
-        if let Some(pose) = self.robot.accepted(angles_or(|servo| servo.neutral)) {
+        if let Some(pose) = self
+            .robot
+            .solve_if_allowed(angles_or(|servo| servo.neutral))
+        {
             return Some(pose);
         }
-        let bounds = ALL.map(|servo| match angles[servo] {
+        let bounds = ALL_SERVOS.map(|servo| match angles[servo] {
             Some(angle) => Interval::new(angle, angle),
             None => self.ranges[servo],
         });
         let mut regions = VecDeque::from([Region::of(bounds)]);
-        for _ in 0..ATTEMPTS {
+        for _ in 0..MAX_SEARCHED_REGIONS {
             let region: Region<4> = regions.pop_front()?;
-            if let Some(pose) = self.robot.accepted(region.middle) {
+            if let Some(pose) = self.robot.solve_if_allowed(region.middle) {
                 return Some(pose);
             }
-            if !self.refuses(&ALL, &region) {
-                let by_width = |a: &usize, b: &usize| region.half[*a].total_cmp(&region.half[*b]);
-                let widest = ALL.into_iter().max_by(by_width)?;
+            if !self.refuses(&ALL_SERVOS, &region) {
+                let by_width = |a: &usize, b: &usize| {
+                    region.half_widths[*a].total_cmp(&region.half_widths[*b])
+                };
+                let widest = ALL_SERVOS.into_iter().max_by(by_width)?;
                 regions.extend(region.halves(widest));
             }
         }
@@ -249,11 +268,11 @@ mod tests {
     use super::*;
 
     /// Largest error of the firmware's integer arithmetic, as a sine (docs/firmware.md).
-    const BAND: f64 = 0.002;
+    const SINE_ERROR: f64 = 0.002;
     /// Largest error of the firmware's integer arithmetic, mm (docs/firmware.md).
     const LENGTH_ERROR_MM: f64 = 4.0 / 256.0;
 
-    /// A robot of `robots/`. "At its type-2 limit": the paper's robot with all limits except the type-2 one lifted.
+    /// Reads a robot of `robots/`. The suffix " at its type-2 limit" lifts all its limits except that of type 2.
     fn robot(name: &str) -> Robot {
         let file = name.trim_end_matches(" at its type-2 limit");
         let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -276,9 +295,9 @@ mod tests {
     fn relaxed_limits(robot: &Robot) -> Limits {
         let limits = robot.limits();
         Limits {
-            type2: limits.type2 - BAND,
-            type1: limits.type1 - BAND,
-            leg: limits.leg - BAND,
+            type2: limits.type2 - SINE_ERROR,
+            type1: limits.type1 - SINE_ERROR,
+            leg: limits.leg - SINE_ERROR,
             stroke_min: limits.stroke_min - LENGTH_ERROR_MM,
             stroke_max: limits.stroke_max + LENGTH_ERROR_MM,
         }
@@ -287,11 +306,11 @@ mod tests {
     /// Each limit is tested alone, because a pose that approaches some limits, such as that of crossed tips, always
     /// breaks another limit first.
     #[test]
-    fn every_limit_is_relaxed_by_more_than_the_firmware_may_be_off() {
+    fn each_limit_is_relaxed_by_more_than_the_firmwares_error_but_not_without_bound() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
             let (guard, limits) = (Guard::new(&robot), robot.limits());
-            let sines_around = |limit: f64| [limit - BAND, limit - 0.1];
+            let sines_around = |limit: f64| [limit - SINE_ERROR, limit - 0.1];
             let strokes_around = |end: f64, sign: f64| {
                 [LENGTH_ERROR_MM, 1.0].map(|distance_mm| end + sign * distance_mm)
             };
@@ -316,8 +335,8 @@ mod tests {
     }
 
     #[test]
-    fn no_pose_that_the_firmware_may_accept_is_left_out_at_any_limit() {
-        const ALL: [usize; 4] = [0, 1, 2, 3];
+    fn a_pose_at_a_limit_that_the_firmware_may_accept_is_never_refused() {
+        const ALL_SERVOS: [usize; 4] = [0, 1, 2, 3];
         let mut seen_checks: Vec<Check> = Vec::new();
         for name in ["paper", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
@@ -335,10 +354,10 @@ mod tests {
             for direction_index in 0..81 {
                 let direction =
                     [1, 3, 9, 27].map(|divisor| f64::from(direction_index / divisor % 3) - 1.0);
-                for share in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
+                for shares in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
                     let angles_at = |angle_deg: f64| {
-                        ALL.map(|servo| {
-                            neutral[servo] + angle_deg * direction[servo] * share[servo]
+                        ALL_SERVOS.map(|servo| {
+                            neutral[servo] + angle_deg * direction[servo] * shares[servo]
                         })
                     };
                     let (mut accepted_deg, mut refused_deg) = (0.0, 90.0);
@@ -354,10 +373,10 @@ mod tests {
                     }
                     let region = Region {
                         middle: angles_at(accepted_deg),
-                        half: [1e-7; 4],
+                        half_widths: [1e-7; 4],
                     };
                     assert!(
-                        !guard.refuses(&ALL, &region),
+                        !guard.refuses(&ALL_SERVOS, &region),
                         "{name}: {:?}",
                         angles_at(accepted_deg)
                     );

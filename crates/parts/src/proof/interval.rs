@@ -43,17 +43,17 @@ impl Interval {
     }
 
     /// Rounds computed bounds outward. Returns all numbers if a bound is NaN.
-    fn outward(low: f64, high: f64) -> Self {
+    fn rounded_outward(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
         }
         Self::new(low.next_down(), high.next_up())
     }
 
-    /// Returns the sines and the cosines of all angles in the interval, deg.
+    /// Returns bounds of the sine and of the cosine over all angles in the interval, deg.
     fn sine_and_cosine(self) -> (Self, Self) {
-        // True if the interval, slightly widened, contains this angle or one that differs by full turns.
-        let passes = |angle: f64| {
+        // True if the interval, slightly widened, contains this angle or one that differs from it by full turns.
+        let contains_angle = |angle: f64| {
             let turns = ((self.low - angle) / 360.0 - 1e-9).ceil();
             turns * 360.0 + angle <= self.high + 1e-6
         };
@@ -61,8 +61,12 @@ impl Interval {
         let (sin_b, cos_b) = sin_cos(self.high);
         let bounds_between = |a: f64, b: f64, top_deg: f64, bottom_deg: f64| {
             let (low, high) = (a.min(b) - SINE_ERROR, a.max(b) + SINE_ERROR);
-            let low = if passes(bottom_deg) { -1.0 } else { low };
-            Self::new(low, if passes(top_deg) { 1.0 } else { high })
+            let low = if contains_angle(bottom_deg) {
+                -1.0
+            } else {
+                low
+            };
+            Self::new(low, if contains_angle(top_deg) { 1.0 } else { high })
         };
         let sine = bounds_between(sin_a, sin_b, 90.0, -90.0);
         (sine, bounds_between(cos_a, cos_b, 0.0, 180.0))
@@ -80,7 +84,7 @@ macro_rules! operators {
 }
 
 operators! {
-    Add add(self, other: Self) { Self::outward(self.low + other.low, self.high + other.high) }
+    Add add(self, other: Self) { Self::rounded_outward(self.low + other.low, self.high + other.high) }
     Sub sub(self, other: Self) { self + -other }
     Mul mul(self, other: Self) {
         let low = [self.low * other.low, self.low * other.high];
@@ -90,18 +94,18 @@ operators! {
         if (a + b + c + d).is_nan() {
             return Self::ALL;
         }
-        Self::outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
+        Self::rounded_outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
     }
     Mul mul(self, factor: f64) {
         let (a, b) = (self.low * factor, self.high * factor);
-        Self::outward(a.min(b), a.max(b))
+        Self::rounded_outward(a.min(b), a.max(b))
     }
     // A quotient is a product with the reciprocal, which is itself rounded outward.
     Div div(self, other: Self) {
         if other.low <= 0.0 && other.high >= 0.0 {
             return Self::ALL;
         }
-        self * Self::outward(1.0 / other.high, 1.0 / other.low)
+        self * Self::rounded_outward(1.0 / other.high, 1.0 / other.low)
     }
 }
 
@@ -113,13 +117,13 @@ impl Neg for Interval {
 }
 
 impl Real for Interval {
-    fn of(value: f64) -> Self {
+    fn constant(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    fn root(self) -> Self {
+    fn sqrt_or_zero(self) -> Self {
         let root_of = |value: f64| value.max(0.0).sqrt();
-        let Self { low, high } = Self::outward(root_of(self.low), root_of(self.high));
+        let Self { low, high } = Self::rounded_outward(root_of(self.low), root_of(self.high));
         Self::new(low.max(0.0), high)
     }
 
@@ -161,7 +165,7 @@ mod tests {
                 assert!(contains(x + y, p + q) && contains(x - y, p - q) && contains(-x, -p));
                 assert!(contains(x * y, p * q) && contains(x * c, p * c));
                 assert!(q == 0.0 || contains(x / y, p / q), "{x:?} / {y:?}");
-                assert!(contains(x.root(), p.max(0.0).sqrt()));
+                assert!(contains(x.sqrt_or_zero(), p.max(0.0).sqrt()));
                 let degrees = Interval::new(x.low * 100.0, x.high * 100.0);
                 let ([sine], [cosine]) = Interval::sin_cos_each([degrees]);
                 let (sin, cos) = (p * 100.0).to_radians().sin_cos();
@@ -172,14 +176,14 @@ mod tests {
     }
 
     #[test]
-    fn a_result_is_no_wider_than_it_has_to_be() {
+    fn a_result_is_as_narrow_as_the_exact_range_up_to_rounding() {
         let is_near = |interval: Interval, low: f64, high: f64| {
             (interval.low - low).abs() < 1e-14 && (interval.high - high).abs() < 1e-14
         };
         let (x, y) = (Interval::new(-1.0, 2.0), Interval::new(3.0, 5.0));
         assert!(is_near(x + y, 2.0, 7.0) && is_near(x - y, -6.0, -1.0));
         assert!(is_near(x * y, -5.0, 10.0) && is_near(x / y, -1.0 / 3.0, 2.0 / 3.0));
-        assert!(is_near(y.root(), 3.0_f64.sqrt(), 5.0_f64.sqrt()));
+        assert!(is_near(y.sqrt_or_zero(), 3.0_f64.sqrt(), 5.0_f64.sqrt()));
         let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(30.0, 120.0)]);
         assert!(is_near(sine, 0.5, 1.0) && is_near(cosine, -0.5, 0.75_f64.sqrt()));
         let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(-450.0, -340.0)]);
@@ -188,9 +192,9 @@ mod tests {
 
     #[test]
     fn a_quotient_by_an_interval_with_0_is_unbounded() {
-        let quotient = Interval::of(1.0) / Interval::new(-1.0, 2.0);
+        let quotient = Interval::constant(1.0) / Interval::new(-1.0, 2.0);
         assert_eq!(quotient, Interval::ALL);
-        assert_eq!(quotient * Interval::of(0.0), Interval::ALL);
+        assert_eq!(quotient * Interval::constant(0.0), Interval::ALL);
         assert_eq!(quotient - quotient, Interval::ALL);
     }
 }

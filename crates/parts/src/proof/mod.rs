@@ -4,7 +4,7 @@
 //! region the proof shows either that the guard accepts no pose in it, or that the parts stay
 //! apart in all of it: their distance is measured at the region's centre, and in the region no
 //! point moves by more than its largest rate times the region's half width. The rates come from
-//! the closed forms of the mechanism in interval arithmetic (`interval.rs`, `slope.rs`), which
+//! the closed forms of the mechanism in interval arithmetic (`interval.rs`, `interval_dual.rs`), which
 //! is valid for a coupler near a singularity, too. A region that is too large for either proof
 //! is halved (`search.rs`).
 //!
@@ -14,12 +14,12 @@
 //! out pairs that are never close, `guard.rs` finds the regions that the guard certainly refuses.
 
 pub(crate) mod clearance;
-mod first;
 mod guard;
 mod interval;
+mod interval_dual;
+mod quick_check;
 mod search;
 mod shape_pairs;
-mod slope;
 mod sweep;
 
 use std::fmt;
@@ -37,11 +37,11 @@ use shape_pairs::Task;
 
 /// Least allowed distance of parts that are not designed to touch, mm: more than a printer's error.
 pub const MIN_GAP_MM: f64 = 0.2;
-/// Overlap that still counts as touching, for parts that are designed to touch, mm.
-const TOUCH: f64 = 0.02;
+/// Largest overlap that still counts as touching, for parts that are designed to touch, mm.
+const TOUCH_OVERLAP: f64 = 0.02;
 
 /// Number of angles per servo in the grid of poses that shows which pairs are pinned to each other.
-const JOINT_STEPS: u32 = 6;
+const JOINT_GRID_ANGLES: u32 = 6;
 
 /// Two bodies and their least distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,9 +72,9 @@ pub struct Proof {
     /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
     /// Number of pairs of shapes checked.
-    pub pairs: usize,
+    pub shape_pair_count: usize,
     /// Number of regions of poses checked.
-    pub regions: u64,
+    pub region_count: u64,
 }
 
 /// Two parts that do not keep clear of each other.
@@ -107,7 +107,7 @@ impl fmt::Display for NearestPair {
 }
 
 impl NearestPair {
-    /// The clash of the bodies if they come, or may come, closer than `min_mm`, mm; `None` otherwise.
+    /// The clash of the bodies if they come, or may come, closer than `min_mm`; `None` otherwise.
     fn clash(&self, min_mm: f64) -> Option<Clash> {
         match &self.seen {
             Some(seen) if seen.mm < min_mm.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
@@ -125,7 +125,7 @@ impl NearestPair {
 
 impl Proof {
     /// The nearest two bodies that are not designed to touch; `None` if no such pair was checked.
-    pub fn nearest(&self) -> Option<&NearestPair> {
+    pub fn nearest_separate_pair(&self) -> Option<&NearestPair> {
         self.separate_pairs.first()
     }
 
@@ -135,30 +135,31 @@ impl Proof {
     /// Returns the worst pair: parts that overlap, that come nearer than [`MIN_GAP_MM`], or that could
     /// not be proved to keep that distance.
     pub fn judge(&self) -> Result<(), Clash> {
-        let separate = self
+        let separate_clashes = self
             .separate_pairs
             .iter()
             .map(|pair| (pair.clash(MIN_GAP_MM), pair.least_distance()));
-        let touching = self
+        let touching_clashes = self
             .touching_pairs
             .iter()
-            .map(|pair| (pair.clash(-TOUCH), pair.least_distance()));
-        let clashes = separate
-            .chain(touching)
+            .map(|pair| (pair.clash(-TOUCH_OVERLAP), pair.least_distance()));
+        let clashes = separate_clashes
+            .chain(touching_clashes)
             .filter(|(clash, _)| clash.is_some());
         let (worst_clash, _) = clashes.min_by(|a, b| a.1.total_cmp(&b.1)).unzip();
         worst_clash.flatten().map_or(Ok(()), Err)
     }
 }
 
-/// The questions of a proof: the least distance of the bodies, for each pair of mounts. The
-/// questions are independent, so each can be answered on another machine.
+/// The questions of a proof. Each asks for the least distance between the bodies of two mounts, and can be answered
+/// on another machine, because it does not depend on the others.
 pub struct Questions<'a> {
     assembly: &'a Assembly,
     guard: Guard<'a>,
     tasks: Vec<Task>,
     /// True if the quick check found parts that come too near. Then `tasks` holds only the worst.
     has_clash: bool,
+    /// Accepted poses at which pairs are tested for being pinned to each other.
     joint_poses: Vec<Solution>,
 }
 
@@ -177,11 +178,11 @@ impl<'a> Questions<'a> {
     pub fn new(assembly: &'a Assembly, is_chosen: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
         let tasks = Task::all(assembly, &guard, FAR_MM, is_chosen);
-        let worst = first::worst_tasks(assembly, &tasks);
+        let clashing_tasks = quick_check::worst_tasks(assembly, &tasks);
         Self {
-            has_clash: worst.is_some(),
-            tasks: worst.unwrap_or(tasks),
-            joint_poses: assembly.poses(JOINT_STEPS).collect(),
+            has_clash: clashing_tasks.is_some(),
+            tasks: clashing_tasks.unwrap_or(tasks),
+            joint_poses: assembly.grid_poses(JOINT_GRID_ANGLES).collect(),
             guard,
             assembly,
         }
@@ -209,7 +210,7 @@ impl<'a> Questions<'a> {
         let nearest = (!task.shape_pairs.is_empty()).then(|| {
             let nearest =
                 search::find_least_distance(self.assembly, &self.guard, &task, max_regions);
-            let regions = nearest.regions;
+            let regions = nearest.region_count;
             (self.assembly.nearest_pair(nearest), regions)
         });
         Answer { pinned, nearest }
@@ -220,7 +221,7 @@ impl<'a> Questions<'a> {
     /// do not fit, unless the quick check has found such parts: then each of its worst pairs is
     /// bounded. After parts that may not fit, the remaining questions are answered with fewer
     /// regions and without `known_answer`.
-    pub fn answer(
+    pub fn answer_all(
         &self,
         mut known_answer: impl FnMut(usize) -> Option<Answer>,
         mut progress: impl FnMut(usize, usize),
@@ -230,8 +231,8 @@ impl<'a> Questions<'a> {
             separate_pairs: Vec::new(),
             touching_pairs: Vec::new(),
             ranges: self.guard.ranges.map(|range| [range.low, range.high]),
-            pairs: self.tasks.iter().map(|task| task.shape_pairs.len()).sum(),
-            regions: 0,
+            shape_pair_count: self.tasks.iter().map(|task| task.shape_pairs.len()).sum(),
+            region_count: 0,
         };
         let count = self.count();
         for (index, task) in self.tasks.iter().enumerate() {
@@ -246,7 +247,7 @@ impl<'a> Questions<'a> {
             let Some((nearest_pair, regions)) = answer.nearest else {
                 continue;
             };
-            proof.regions += regions;
+            proof.region_count += regions;
             let clash = nearest_pair.clash(task.min_distance());
             if task.may_touch {
                 proof.touching_pairs.push(nearest_pair);
@@ -275,16 +276,16 @@ impl Assembly {
     /// ends at the first parts that do not fit. `progress` is called with the number of
     /// questions answered and their total.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
-        self.prove_some(|_, _| true, progress)
+        self.prove_chosen(|_, _| true, progress)
     }
 
     /// [`Assembly::prove`] for the pairs of bodies that `is_chosen` accepts.
-    pub fn prove_some(
+    pub fn prove_chosen(
         &self,
         is_chosen: impl Fn(&Body, &Body) -> bool,
         progress: impl FnMut(usize, usize),
     ) -> Proof {
-        Questions::new(self, is_chosen).answer(|_| None, progress)
+        Questions::new(self, is_chosen).answer_all(|_| None, progress)
     }
 
     /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` if
@@ -308,7 +309,7 @@ impl Assembly {
                     bodies: pair.bodies,
                     seen: Some((*pose, mm)),
                     doubt: None,
-                    regions: 0,
+                    region_count: 0,
                 }));
             }
             gap.is_none()

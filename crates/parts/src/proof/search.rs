@@ -1,32 +1,32 @@
 //! Branch and bound: the least distance in a region, with a proven lower bound.
 //!
-//! The region is halved again and again, always in the part where the distance may be least. In each part, the
-//! distance at the middle less the largest motion of all points from there is a lower bound of every distance in
-//! the part. The distance at any accepted pose is an upper bound of the least distance. The search ends when the two
-//! bounds are close.
+//! The region is halved again and again; the half in which the distance may be least is always halved next. The
+//! distance at a region's middle, less the largest motion of any point from there, is a lower bound of every
+//! distance in the region. The distance at any accepted pose is an upper bound of the least distance. The search ends
+//! when the two bounds are close.
 
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{Solution, Vector};
 
 use super::guard::{Guard, Region, total_order_key};
+use super::interval_dual::IntervalDual;
 use super::shape_pairs::Task;
-use super::slope::Slope;
 use crate::bodies::assembly::Assembly;
 use crate::layers::placement::Placement;
 
 /// Distance beyond which parts count as far apart and are not measured, mm.
 pub const FAR_MM: f64 = 2.0;
 /// A bound of the rounding error of a distance, mm.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING_MM: f64 = 1e-6;
 /// Absolute part of the difference between lower and upper bound at which the search ends, mm.
-const TOLERANCE: f64 = 0.01;
+const TOLERANCE_MM: f64 = 0.01;
 /// Relative part of the difference at which the search ends, as a share of the distance.
 const RELATIVE_TOLERANCE: f64 = 0.05;
 /// Relative part of the difference for parts designed to touch, for which only the sign of the gap matters.
-const TOUCHING_SHARE_TOLERANCE: f64 = 0.5;
+const TOUCHING_RELATIVE_TOLERANCE: f64 = 0.5;
 /// Half width below which regions are not halved, deg.
-const MIN_HALF_WIDTH: f64 = 0.002;
+const MIN_HALF_WIDTH_DEG: f64 = 0.002;
 /// The largest number of regions checked.
 pub const MAX_REGIONS: u64 = 100_000;
 /// The largest number of regions once an overlap is found: its exact depth does not matter.
@@ -46,11 +46,11 @@ pub struct SearchResult {
     /// than the distance in `seen`.
     pub doubt: Option<[Option<f64>; 4]>,
     /// Number of regions checked.
-    pub regions: u64,
+    pub region_count: u64,
 }
 
 /// A region, and the pairs of shapes that may be near each other in it.
-struct Part<const N: usize> {
+struct BoundedRegion<const N: usize> {
     region: Region<N>,
     /// Lower bound of all distances in the region, mm.
     lower_bound: f64,
@@ -58,7 +58,8 @@ struct Part<const N: usize> {
     bounding_pair: u32,
     /// The servo across whose angle the region is to be halved.
     split_servo: usize,
-    candidates: Vec<u32>,
+    /// The indices of the pairs of shapes that may come nearer than the least distance found.
+    candidate_pairs: Vec<u32>,
 }
 
 /// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max_regions`
@@ -91,8 +92,8 @@ fn search<const N: usize>(
         task,
         servos,
         seen: None,
-        by: 0,
-        regions: 0,
+        nearest_pair_index: 0,
+        region_count: 0,
     };
     search.run(max_regions)
 }
@@ -105,8 +106,8 @@ struct Search<'a, const N: usize> {
     /// The accepted pose with the least distance found, and that distance, mm.
     seen: Option<(Solution, f64)>,
     /// The index of the pair of shapes with the distance in `seen`.
-    by: u32,
-    regions: u64,
+    nearest_pair_index: u32,
+    region_count: u64,
 }
 
 impl<const N: usize> Search<'_, N> {
@@ -118,54 +119,64 @@ impl<const N: usize> Search<'_, N> {
     fn run(mut self, max_regions: u64) -> SearchResult {
         let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all_pairs: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
-        let tolerance_share = if self.task.may_touch {
-            TOUCHING_SHARE_TOLERANCE
+        let relative_tolerance = if self.task.may_touch {
+            TOUCHING_RELATIVE_TOLERANCE
         } else {
             RELATIVE_TOLERANCE
         };
-        // The part with the least bound comes first. Parts of equal bounds are ordered by their regions, so the order
-        // is always the same.
-        let key_of = |part: &Part<N>| {
+        // The region with the least bound comes first. Regions with equal bounds are ordered by their middles, so the
+        // order is always the same.
+        let key_of = |bounded_region: &BoundedRegion<N>| {
             (
-                total_order_key(part.lower_bound),
-                part.region.middle.map(total_order_key),
+                total_order_key(bounded_region.lower_bound),
+                bounded_region.region.middle.map(total_order_key),
             )
         };
-        let first_part = self.bound_region(all_poses, &all_pairs).into_iter();
-        let mut parts: BTreeMap<_, _> = first_part.map(|part| (key_of(&part), part)).collect();
-        while let Some((_, part)) = parts.pop_first() {
+        let whole_region = self.bound_region(all_poses, &all_pairs).into_iter();
+        let mut open_regions: BTreeMap<_, _> = whole_region
+            .map(|bounded_region| (key_of(&bounded_region), bounded_region))
+            .collect();
+        while let Some((_, bounded_region)) = open_regions.pop_first() {
             let upper_bound = self.upper_bound();
-            if part.lower_bound >= upper_bound - TOLERANCE - tolerance_share * upper_bound.abs() {
-                return self.into_result(part.lower_bound.min(upper_bound), None);
+            if bounded_region.lower_bound
+                >= upper_bound - TOLERANCE_MM - relative_tolerance * upper_bound.abs()
+            {
+                return self.into_result(bounded_region.lower_bound.min(upper_bound), None);
             }
             let max_regions = if upper_bound < 0.0 {
                 MAX_REGIONS_OVERLAPPING
             } else {
                 max_regions
             };
-            if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH)
-                || self.regions >= max_regions
+            if bounded_region
+                .region
+                .half_widths
+                .iter()
+                .all(|half| *half < MIN_HALF_WIDTH_DEG)
+                || self.region_count >= max_regions
             {
-                return self.into_result(part.lower_bound, Some(&part));
+                return self.into_result(bounded_region.lower_bound, Some(&bounded_region));
             }
-            for half_region in part.region.halves(part.split_servo) {
-                let half_part = self.bound_region(half_region, &part.candidates);
-                parts.extend(half_part.map(|part| (key_of(&part), part)));
+            for half_region in bounded_region.region.halves(bounded_region.split_servo) {
+                let bounded_half = self.bound_region(half_region, &bounded_region.candidate_pairs);
+                open_regions
+                    .extend(bounded_half.map(|bounded_half| (key_of(&bounded_half), bounded_half)));
             }
         }
         let upper_bound = self.upper_bound();
         self.into_result(upper_bound, None)
     }
 
-    fn into_result(self, proved: f64, doubt: Option<&Part<N>>) -> SearchResult {
-        let unseen_part = doubt.filter(|_| self.seen.is_none());
-        let pair_index = unseen_part.map_or(self.by, |part| part.bounding_pair);
+    fn into_result(self, proved: f64, doubt: Option<&BoundedRegion<N>>) -> SearchResult {
+        let unseen_region = doubt.filter(|_| self.seen.is_none());
+        let pair_index =
+            unseen_region.map_or(self.nearest_pair_index, |region| region.bounding_pair);
         SearchResult {
-            proved: proved - ROUNDING,
+            proved: proved - ROUNDING_MM,
             bodies: self.task.shape_pairs[pair_index as usize].bodies,
-            doubt: doubt.map(|part| self.angles(&part.region)),
+            doubt: doubt.map(|doubt| self.angles(&doubt.region)),
             seen: self.seen,
-            regions: self.regions,
+            region_count: self.region_count,
         }
     }
 
@@ -180,32 +191,36 @@ impl<const N: usize> Search<'_, N> {
 
     /// Bounds a region's distances. Returns `None` if no pair of shapes can be nearer than the least distance found
     /// so far, or if the guard accepts no pose of the region.
-    fn bound_region(&mut self, region: Region<N>, candidates: &[u32]) -> Option<Part<N>> {
-        self.regions += 1;
+    fn bound_region(
+        &mut self,
+        region: Region<N>,
+        candidate_pairs: &[u32],
+    ) -> Option<BoundedRegion<N>> {
+        self.region_count += 1;
         let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
         // The placements of both mounts: at the region's middle, and bounds for the whole region.
         let [(a, bounds_a), (b, bounds_b)] = self.task.mounts.map(|mount| {
-            let placement = self.assembly.place_on(mount, &middle);
-            let bounds = self.assembly.place_on(mount, &bounds);
+            let placement = self.assembly.place_for_cranks(mount, &middle);
+            let bounds = self.assembly.place_for_cranks(mount, &bounds);
             (placement, tighten(&bounds, &placement, &region))
         });
         let placement = b.relative_to(&a);
         let bounds = tighten(&bounds_b.relative_to(&bounds_a), &placement, &region);
         let deviations = [bounds.origin, bounds.x_axis].map(|vector| {
-            let [x, y] =
-                [vector.x, vector.y].map(|coordinate| coordinate.largest_change(&region.half));
+            let [x, y] = [vector.x, vector.y]
+                .map(|coordinate| coordinate.largest_change(&region.half_widths));
             x.hypot(y)
         });
-        let mut part = Part {
+        let mut bounded_region = BoundedRegion {
             region,
             lower_bound: f64::INFINITY,
             bounding_pair: 0,
             split_servo: most_influential_servo(&bounds, &region),
-            candidates: Vec::new(),
+            candidate_pairs: Vec::new(),
         };
         let is_closed = placement.origin.is_finite() && placement.x_axis.is_finite();
         let mut nearest = (f64::INFINITY, 0);
-        for &index in candidates {
+        for &index in candidate_pairs {
             let shape_pair = &self.task.shape_pairs[index as usize];
             let lower_bound = if !is_closed {
                 f64::NEG_INFINITY
@@ -224,32 +239,33 @@ impl<const N: usize> Search<'_, N> {
                 }
             };
             if lower_bound < self.upper_bound() {
-                part.candidates.push(index);
-                if lower_bound < part.lower_bound {
-                    (part.lower_bound, part.bounding_pair) = (lower_bound, index);
+                bounded_region.candidate_pairs.push(index);
+                if lower_bound < bounded_region.lower_bound {
+                    (bounded_region.lower_bound, bounded_region.bounding_pair) =
+                        (lower_bound, index);
                 }
             }
         }
-        if nearest.0 < self.upper_bound() - TOLERANCE / 4.0
+        if nearest.0 < self.upper_bound() - TOLERANCE_MM / 4.0
             && let Some(pose) = self.guard.find_pose(self.angles(&region))
         {
             self.seen = Some((pose, nearest.0));
-            self.by = nearest.1;
+            self.nearest_pair_index = nearest.1;
         }
-        (!part.candidates.is_empty()).then_some(part)
+        (!bounded_region.candidate_pairs.is_empty()).then_some(bounded_region)
     }
 }
 
 /// Tightens the bounds of a placement in a region by its value at the region's middle and its largest change from
 /// that value.
 fn tighten<const N: usize>(
-    bounds: &Placement<Slope<N>>,
+    bounds: &Placement<IntervalDual<N>>,
     middle: &Placement,
     region: &Region<N>,
-) -> Placement<Slope<N>> {
-    let tighten_vector = |bounds: Vector<Slope<N>>, middle: Vector| {
-        let x = bounds.x.tighten(middle.x, &region.half);
-        Vector::new(x, bounds.y.tighten(middle.y, &region.half))
+) -> Placement<IntervalDual<N>> {
+    let tighten_vector = |bounds: Vector<IntervalDual<N>>, middle: Vector| {
+        let x = bounds.x.tighten(middle.x, &region.half_widths);
+        Vector::new(x, bounds.y.tighten(middle.y, &region.half_widths))
     };
     Placement {
         origin: tighten_vector(bounds.origin, middle.origin),
@@ -259,7 +275,7 @@ fn tighten<const N: usize>(
 
 /// The index of the servo whose range in a region changes a placement most.
 fn most_influential_servo<const N: usize>(
-    bounds: &Placement<Slope<N>>,
+    bounds: &Placement<IntervalDual<N>>,
     region: &Region<N>,
 ) -> usize {
     /// The lever arm by which a rotation is converted into a distance, mm.
@@ -267,7 +283,7 @@ fn most_influential_servo<const N: usize>(
     let (origin, axis_shift) = (bounds.origin, bounds.x_axis * LEVER_MM);
     let coordinates = [origin.x, origin.y, axis_shift.x, axis_shift.y];
     let influence_of = |servo: usize| {
-        let half = region.half[servo];
+        let half = region.half_widths[servo];
         coordinates.iter().fold(0.0, |sum, coordinate| {
             // Without a finite bound, the widest angle is halved.
             let change = coordinate.derivatives[servo].max_abs() * half;

@@ -6,8 +6,8 @@
 use lizard_kinematics::Vector;
 
 use super::guard::{Guard, Region};
-use super::slope::Slope;
-use super::{MIN_GAP_MM, TOUCH, sweep};
+use super::interval_dual::IntervalDual;
+use super::{MIN_GAP_MM, TOUCH_OVERLAP, sweep};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount, Prism};
 use crate::layers::placement::Placement;
@@ -22,7 +22,7 @@ pub struct ShapePair {
     /// The bodies, by their index in [`Assembly::bodies`].
     pub bodies: [usize; 2],
     /// Vertical gap between the shapes, mm; 0 if their heights overlap.
-    gap: f64,
+    height_gap: f64,
     /// The first shape, in the first mount's frame.
     first: Shape,
     /// The second shape, in the second mount's frame.
@@ -30,7 +30,7 @@ pub struct ShapePair {
     /// Enclosing discs of both shapes: centre and radius.
     discs: [(Vector, f64); 2],
     /// Largest distance of the second shape's points from the origin of its frame, mm.
-    lever: f64,
+    lever_arm: f64,
     /// Holes of the second shape's layer that may hold the first shape.
     holes_for_first: Vec<Shape>,
     /// Holes of the first shape's layer that may hold the second shape.
@@ -40,16 +40,22 @@ pub struct ShapePair {
 /// The pairs of shapes on two mounts.
 #[derive(Clone, Debug)]
 pub struct Task {
+    /// The two mounts, in the order of the pairs' shapes.
     pub mounts: [Mount; 2],
     /// True if the pairs are designed to touch.
     pub may_touch: bool,
+    /// The pairs, each with a shape on either mount.
     pub shape_pairs: Vec<ShapePair>,
 }
 
 impl Task {
     /// Least distance that the task's pairs must keep, mm.
     pub fn min_distance(&self) -> f64 {
-        if self.may_touch { -TOUCH } else { MIN_GAP_MM }
+        if self.may_touch {
+            -TOUCH_OVERLAP
+        } else {
+            MIN_GAP_MM
+        }
     }
 
     /// The servos on which the relative placement of the two mounts depends.
@@ -64,8 +70,8 @@ impl Task {
         servos
     }
 
-    /// The tasks of a robot: all pairs of bodies whose heights, and whose rectangles that they never leave, are less
-    /// than `max_gap_mm` apart. Bodies that are designed to touch are paired only if their heights overlap.
+    /// The tasks of a robot: all pairs of bodies that are less than `max_gap_mm` apart both in height and between the
+    /// rectangles that they never leave. Bodies that are designed to touch are paired only if their heights overlap.
     pub fn all(
         assembly: &Assembly,
         guard: &Guard,
@@ -88,9 +94,9 @@ impl Task {
                     continue;
                 }
                 let mounts = [a.mount, b.mount];
-                let is_same =
+                let has_same_mounts =
                     |task: &&mut Self| task.mounts == mounts && task.may_touch == may_touch;
-                match tasks.iter_mut().find(is_same) {
+                match tasks.iter_mut().find(has_same_mounts) {
                     Some(task) => task.shape_pairs.extend(shape_pairs),
                     None => tasks.push(Self {
                         mounts,
@@ -109,29 +115,29 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<S
     let mut shape_pairs = Vec::new();
     for p in &a.prisms {
         for q in &b.prisms {
-            let gap = (p.z[0] - q.z[1]).max(q.z[0] - p.z[1]);
-            if gap > max_gap_mm - SAME_HEIGHT_MM {
+            let height_gap = (p.z[0] - q.z[1]).max(q.z[0] - p.z[1]);
+            if height_gap > max_gap_mm - SAME_HEIGHT_MM {
                 continue;
             }
-            let gap = if gap < -SAME_HEIGHT_MM {
+            let clamped_height_gap = if height_gap < -SAME_HEIGHT_MM {
                 0.0
             } else {
-                gap.max(SAME_HEIGHT_MM)
+                height_gap.max(SAME_HEIGHT_MM)
             };
             for first in &p.filled_shapes {
                 for second in &q.filled_shapes {
                     shape_pairs.push(ShapePair {
                         bodies: [i, j],
-                        gap,
+                        height_gap: clamped_height_gap,
                         first: first.clone(),
                         second: second.clone(),
                         discs: [first, second].map(|shape| {
                             let middle = shape.middle();
-                            (middle, shape.farthest(middle))
+                            (middle, shape.max_distance_from(middle))
                         }),
-                        lever: second.farthest(Vector::default()) - second.radius,
-                        holes_for_first: holes(q, first),
-                        holes_for_second: holes(p, second),
+                        lever_arm: second.max_distance_from(Vector::default()) - second.radius,
+                        holes_for_first: large_enough_holes(q, first),
+                        holes_for_second: large_enough_holes(p, second),
                     });
                 }
             }
@@ -141,8 +147,8 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<S
 }
 
 /// The holes of a layer that are at least as wide as a shape.
-fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
-    let is_large_enough = |hole: &&Shape| hole.width() >= shape.width();
+fn large_enough_holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
+    let is_large_enough = |hole: &&Shape| hole.diameter() >= shape.diameter();
     prism
         .cut_shapes
         .iter()
@@ -159,7 +165,7 @@ impl ShapePair {
         let [(a, reach_a), (b, reach_b)] = self.discs;
         let gap = (placement.map(b) - a).length() - reach_a - reach_b;
         // When the frame turns, a point moves along both axes.
-        gap - shift_mm - 2.0 * turn * self.lever >= min_mm
+        gap - shift_mm - 2.0 * turn * self.lever_arm >= min_mm
     }
 
     /// The gap of a pinned pair, mm, which is constant: a pin in the centre of a round hole, or a disc whose centre
@@ -171,7 +177,7 @@ impl ShapePair {
             [centre] => Some(centre),
             _ => None,
         };
-        let stays = |first: Vector, second: Vector| {
+        let keeps_position = |first: Vector, second: Vector| {
             let error_at = |placement: &Placement| (placement.map(second) - first).length();
             placements
                 .iter()
@@ -195,27 +201,31 @@ impl ShapePair {
             placements.first()?,
             [&self.holes_for_first, &self.holes_for_second],
         );
-        gap_in_hole(first, holes[0], &stays)
-            .or_else(|| gap_in_hole(second, holes[1], &|second, first| stays(first, second)))
+        gap_in_hole(first, holes[0], &keeps_position)
+            .or_else(|| {
+                gap_in_hole(second, holes[1], &|second, first| {
+                    keeps_position(first, second)
+                })
+            })
             .or_else(|| {
                 let (own_centre, other_centre) =
                     (centre_of(first)?, placement.unmap(centre_of(first)?));
                 let gap = || gap_beside(other_centre, first.radius, second, holes[0]);
-                stays(own_centre, other_centre).then(gap)
+                keeps_position(own_centre, other_centre).then(gap)
             })
             .or_else(|| {
                 let (own_centre, other_centre) =
                     (centre_of(second)?, placement.map(centre_of(second)?));
                 let gap = || gap_beside(other_centre, second.radius, first, holes[1]);
-                stays(other_centre, own_centre).then(gap)
+                keeps_position(other_centre, own_centre).then(gap)
             })
-            .map(|gap| self.with_gap(gap))
+            .map(|gap| self.spatial_distance(gap))
     }
 
     /// The distance of two shapes, mm, from their distance in plan view.
-    fn with_gap(&self, plan_distance: f64) -> f64 {
-        match self.gap > 0.0 {
-            true => plan_distance.max(0.0).hypot(self.gap),
+    fn spatial_distance(&self, plan_distance: f64) -> f64 {
+        match self.height_gap > 0.0 {
+            true => plan_distance.max(0.0).hypot(self.height_gap),
             false => plan_distance,
         }
     }
@@ -231,7 +241,7 @@ impl ShapePair {
     pub fn distance_bound<const N: usize>(
         &self,
         placement: &Placement,
-        bounds: &Placement<Slope<N>>,
+        bounds: &Placement<IntervalDual<N>>,
         region: &Region<N>,
     ) -> f64 {
         const ANYWHERE: Vector = Vector::new(f64::INFINITY, f64::INFINITY);
@@ -239,8 +249,8 @@ impl ShapePair {
             let changes = shape.points.iter().map(|&point| {
                 let position = bounds.map(point);
                 Vector::new(
-                    position.x.largest_change(&region.half),
-                    position.y.largest_change(&region.half),
+                    position.x.largest_change(&region.half_widths),
+                    position.y.largest_change(&region.half_widths),
                 )
             });
             changes.fold(Vector::default(), |max, change| match change.is_finite() {
@@ -260,8 +270,8 @@ impl ShapePair {
         let second = self.second.placed(placement);
         let change = largest_change_of(&self.second);
         let mut distance = self.first.distance(&second) - change.length();
-        if self.gap > 0.0 {
-            return self.with_gap(distance);
+        if self.height_gap > 0.0 {
+            return self.spatial_distance(distance);
         }
         for hole in &self.holes_for_first {
             // A hole that moves has the same effect as a pin that moves.

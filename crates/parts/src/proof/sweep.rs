@@ -1,4 +1,4 @@
-//! The rectangle that a body never leaves at any accepted pose.
+//! Rectangles, seen from above, that the bodies never leave at any accepted pose.
 //!
 //! Most pairs of bodies are never near each other, such as the couplers of head and tail. If their rectangles are
 //! apart, no poses need to be checked.
@@ -64,13 +64,14 @@ impl Sweep<'_> {
             let Some((bounds, _)) = self.guard.cranks(&servos, &region) else {
                 continue;
             };
-            let widest_servo = (0..N).max_by(|a, b| region.half[*a].total_cmp(&region.half[*b]));
+            let widest_servo =
+                (0..N).max_by(|a, b| region.half_widths[*a].total_cmp(&region.half_widths[*b]));
             match widest_servo {
-                Some(widest_servo) if region.half[widest_servo] > MIN_HALF_WIDTH_DEG => {
+                Some(widest_servo) if region.half_widths[widest_servo] > MIN_HALF_WIDTH_DEG => {
                     regions.extend(region.halves(widest_servo));
                 }
                 _ => {
-                    let placement = self.assembly.place_on(self.mount, &bounds);
+                    let placement = self.assembly.place_for_cranks(self.mount, &bounds);
                     self.cover(|point| {
                         let position = placement.map(point);
                         [position.x.value, position.y.value]

@@ -36,7 +36,7 @@ fn a_servo_goes_into_the_plate_with_its_lead() {
         let plate = layers_of(&body(&assembly, "plate").prisms);
         for end in End::ALL {
             for i in end.servos() {
-                let middle = assembly.layout().plate.cases[i];
+                let middle = assembly.layout().plate.case_centres[i];
                 let edge = middle + vector(0.0, end.sign() * servo.length / 2.0);
                 // The lead's bundle is 4 x 1.2 mm, at the end where the shaft is.
                 let lead =
@@ -94,7 +94,7 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
             // Each hook, with the coil's inner diameter, goes around the far side of an M3 screw.
-            let inner_diameter = parts.spring.outer - 2.0 * parts.spring.wire;
+            let inner_diameter = parts.spring.outer_diameter - 2.0 * parts.spring.wire_diameter;
             let hung_length = assembly.layout().legs[i].strut_length + 3.0 - 2.0 * inner_diameter;
             assert!(
                 (length - hung_length).abs() < 1e-9,
@@ -107,7 +107,7 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
             let middle = shape.middle();
             // This also holds when the leg lags as far as the slot allows.
             for lag in [0.0, 2.5, 5.0] {
-                let size = vector(length + lag, parts.spring.outer);
+                let size = vector(length + lag, parts.spring.outer_diameter);
                 for (z, outline) in layers_of(&strut.prisms) {
                     if z[1] <= bottom || top <= z[0] {
                         continue;
@@ -125,13 +125,13 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
 
 #[test]
 fn a_coil_that_rides_on_its_strut_is_found() {
-    let altered = slotted("paper", "").altered(|bodies| {
+    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
             body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
         }
     });
     let has_spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
-    let proof = altered.prove_some(has_spring, |_, _| ());
+    let proof = altered.prove_chosen(has_spring, |_, _| ());
     let clash = proof.judge().expect_err("it is too near to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
@@ -158,7 +158,7 @@ fn every_shop_has_the_screws() {
 fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
-        let boss = assembly.stack().servo + assembly.robot().parts().servo.boss;
+        let boss = assembly.stack().servo_bottom + assembly.robot().parts().servo.boss;
         let bodies = assembly.bodies().iter();
         let screws = bodies.filter(|body| matches!(body.kind, Kind::HornScrew(_)));
         let tips = screws.map(|screw| screw.z()[0]);
@@ -267,7 +267,7 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
     for name in ["paper", "large", "unequal"] {
         let parts = assembly(name, "").parts();
         let noun_of = |part: &Part| {
-            let name = &part.bodies[0];
+            let name = &part.body_names[0];
             name.rsplit_once(' ')
                 .map_or(&**name, |(noun, _)| noun)
                 .to_owned()

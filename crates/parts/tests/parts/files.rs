@@ -115,7 +115,7 @@ fn the_foot_stands_where_the_contact_model_has_it() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name);
         let robot = assembly.robot();
-        for pose in assembly.poses(7) {
+        for pose in assembly.grid_poses(7) {
             let feet = robot
                 .ground()
                 .feet
@@ -125,19 +125,22 @@ fn the_foot_stands_where_the_contact_model_has_it() {
                 let leg = &assembly.layout().legs[servo];
                 // The points that the drawings show.
                 let angle = pose.legs[servo].direction.angle();
-                let drawn_leg = leg.at(angle, angle);
+                let drawn_leg = leg.place_at(angle, angle);
                 let point_on = |mount, point| assembly.place(mount, &pose).map(point);
                 let crank = Mount::Crank(servo);
                 for (drawn, built) in [
                     (foot, point_on(Mount::Foot(servo), leg.foot)),
                     (drawn_leg.foot, foot),
-                    (drawn_leg.joints[0], point_on(crank, leg.joint)),
+                    (drawn_leg.joints[0], point_on(crank, leg.crank_joint)),
                     (
                         drawn_leg.joints[1],
-                        point_on(Mount::Follower(servo), leg.joint),
+                        point_on(Mount::Follower(servo), leg.crank_joint),
                     ),
-                    (drawn_leg.strut[0], point_on(Mount::Link(servo), leg.anchor)),
-                    (drawn_leg.strut[1], point_on(crank, leg.anchor)),
+                    (
+                        drawn_leg.strut_anchors[0],
+                        point_on(Mount::Link(servo), leg.anchor),
+                    ),
+                    (drawn_leg.strut_anchors[1], point_on(crank, leg.anchor)),
                 ] {
                     assert!((drawn - built).length() < 1e-9, "{name} {servo}");
                 }

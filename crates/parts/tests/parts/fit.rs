@@ -8,15 +8,18 @@ use crate::{ROBOTS, assembly, body, slotted};
 /// The nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
 fn nearest_pair(parts: &str) -> Option<Clearance> {
     let assembly = slotted("paper", parts);
-    assembly.nearest(assembly.poses(9), 1.0).into_iter().next()
+    assembly
+        .close_pairs(assembly.grid_poses(9), 1.0)
+        .into_iter()
+        .next()
 }
 
 #[test]
 fn every_robot_has_gaps_between_its_parts() {
     for name in ROBOTS {
         let assembly = slotted(name, "");
-        assert!(assembly.poses(10).count() > 100, "{name}");
-        let near_pairs = assembly.nearest(assembly.poses(10), 0.2);
+        assert!(assembly.grid_poses(10).count() > 100, "{name}");
+        let near_pairs = assembly.close_pairs(assembly.grid_poses(10), 0.2);
         assert!(near_pairs.is_empty(), "{name}: {}", near_pairs[0]);
     }
 }
@@ -65,11 +68,11 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let mut met_count = 0;
-        for pose in assembly.poses(5) {
+        for pose in assembly.grid_poses(5) {
             let bodies = assembly.bodies().iter();
             for screw in bodies.filter(|body| body.name.starts_with("screw ")) {
                 let shapes = screw.prisms.iter().map(|prism| &prism.filled_shapes[0]);
-                let shank = shapes.min_by(|a, b| a.width().total_cmp(&b.width()));
+                let shank = shapes.min_by(|a, b| a.diameter().total_cmp(&b.diameter()));
                 let shank = shank.expect("a shank");
                 let centre = assembly.place(screw.mount, &pose).map(shank.points[0]);
                 for held_name in &screw.allowed_contacts {

@@ -1,7 +1,7 @@
 //! Tests of the fittings (supply, strips, plugs): each has a space on the robot, and products that fit into it.
 
-use lizard_parts::{Assembly, BATTERIES, Body, Fitting, Kind, Price, Shape, places};
-use lizard_robot::{FUSE, SWITCH};
+use lizard_parts::{Assembly, BATTERY_EXAMPLES, Body, Fitting, Kind, Price, Shape, places_table};
+use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
 use crate::{ROBOTS, assembly};
 
@@ -66,17 +66,17 @@ fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let room = assembly.robot().parts().battery;
-        for product in BATTERIES {
+        for product in BATTERY_EXAMPLES {
             let fits = product
                 .size
                 .iter()
                 .zip(room)
                 .all(|(length, limit)| *length <= limit);
             assert!(fits, "{name}: {product} in {room:?}");
-            assert!(places(room).contains(product.name));
+            assert!(places_table(room).contains(product.name));
         }
         // A space into which no known battery fits lists no battery.
-        assert!(!places([20.0, 30.0, 10.0]).contains(BATTERIES[0].name));
+        assert!(!places_table([20.0, 30.0, 10.0]).contains(BATTERY_EXAMPLES[0].name));
     }
 }
 
@@ -91,7 +91,7 @@ fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
 
 #[test]
 fn a_size_of_which_no_drawing_was_found_is_marked() {
-    let [by_data_sheet, usual] = Fitting::Radio.facts().examples;
+    let [by_data_sheet, usual] = Fitting::RadioSpace.facts().examples;
     assert_eq!(
         by_data_sheet.to_string(),
         "HM-10, bare board: 13 x 27 x 2.2"
@@ -102,7 +102,7 @@ fn a_size_of_which_no_drawing_was_found_is_marked() {
 #[test]
 fn a_radio_module_of_either_common_size_has_a_place() {
     let assembly = assembly("paper", "");
-    let [body] = bodies_of(&assembly, Fitting::Radio)[..] else {
+    let [body] = bodies_of(&assembly, Fitting::RadioSpace)[..] else {
         panic!("one place")
     };
     let xs = body.prisms[0].filled_shapes[0]
@@ -159,9 +159,16 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
 fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
     // The battery's current for 3 A at 5 V: two cells at 3.2 V, and a converter that loses 15 %.
     let max_amperes = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
-    assert!(max_amperes < f64::from(FUSE), "{max_amperes}");
-    for (fitting, rating) in [(Fitting::Fuse, FUSE), (Fitting::Switch, SWITCH)] {
-        assert!(fitting.what().contains(&format!(" {rating} A ")));
+    assert!(max_amperes < f64::from(FUSE_RATING_A), "{max_amperes}");
+    for (fitting, rating) in [
+        (Fitting::Fuse, FUSE_RATING_A),
+        (Fitting::Switch, MIN_SWITCH_RATING_A),
+    ] {
+        assert!(
+            fitting
+                .shopping_list_row()
+                .contains(&format!(" {rating} A "))
+        );
     }
 }
 
@@ -175,7 +182,7 @@ fn price_classes_follow_each_other_and_their_sum_is_that_of_their_ends() {
         Price::sum(classes.into_iter()),
         [3 + 3 + 15, 1 + 7 + 7 + 30]
     );
-    let text = Price::meaning();
+    let text = Price::explanation();
     for phrase in ["A up to 1", "E 15 to 30", "2026", "vary"] {
         assert!(text.contains(phrase), "{text}");
     }

@@ -49,7 +49,10 @@ fn slotted(name: &str, more_toml: &str) -> Assembly {
 /// The positions of the robot's joints at neutral.
 fn neutral(assembly: &Assembly) -> Solution {
     let robot = assembly.robot();
-    robot.lizard().solve(&robot.neutral()).expect("neutral")
+    robot
+        .lizard()
+        .solve(&robot.neutral_pose())
+        .expect("neutral")
 }
 
 /// The body with a given name.

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{End, Side, Vector};
-use lizard_parts::{Assembly, Block, Course, Mesh, Pads, Pull, Solid};
+use lizard_parts::{Assembly, Block, Course, Mesh, Pads, Solid, StrutSpring};
 use lizard_robot::Robot;
-use lizard_robot::servo::{LEGS, NAMES};
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 use roxmltree::{Document, Node};
 
 use crate::mjcf_masses::weighed;
@@ -21,8 +21,8 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
     for name in ROBOTS {
         let robot = robot(name);
         let solution = neutral(&robot);
-        let angles: [f64; 4] = robot.neutral().into();
-        let legs = [0, 1, 2, 3].map(|i| robot.legs()[i].at(angles[i], angles[i]));
+        let angles: [f64; 4] = robot.neutral_pose().into();
+        let legs = [0, 1, 2, 3].map(|i| robot.legs()[i].place_at(angles[i], angles[i]));
         let shafts = robot.lizard().shafts();
         let mut joints: BTreeMap<String, Vector> = BTreeMap::new();
         for end in End::ALL {
@@ -33,13 +33,19 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
             let tip = rear + solution.side(side).front_tip;
             joints.insert(format!("slider {}", side.name()), tip);
         }
-        for (leg, leg_points) in LEGS.iter().zip(&legs) {
+        for (leg, leg_points) in LEG_NAMES.iter().zip(&legs) {
             joints.insert(format!("follower joint {leg}"), leg_points.joints[1]);
-            joints.insert(format!("leg anchor {leg}"), leg_points.strut[1]);
+            joints.insert(format!("leg anchor {leg}"), leg_points.strut_anchors[1]);
         }
         let (force, rate) = (4.0, 0.4);
-        for pull in [None, Some(Pull { force, rate })] {
-            let text = mjcf_with(&robot, |scene| scene.pull = pull);
+        for pull in [
+            None,
+            Some(StrutSpring {
+                preload: force,
+                rate,
+            }),
+        ] {
+            let text = mjcf_with(&robot, |scene| scene.strut_spring = pull);
             let document = Document::parse(&text).expect("well formed");
             let bodies_by_name = bodies(&document);
             let loops = elements(&document, "equality");
@@ -66,7 +72,7 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
         let bodies_by_name = bodies(&document);
         let feet = robot.ground().feet.positions([0.0; 4]);
         for (servo, excess) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
-            let (placement, foot) = bodies_by_name[&format!("foot {}", LEGS[servo])];
+            let (placement, foot) = bodies_by_name[&format!("foot {}", LEG_NAMES[servo])];
             let mut geoms = foot.children();
             let pad = geoms.find(|geom| geom.attribute("type") == Some("sphere"));
             let pad = pad.expect("a pad");
@@ -148,7 +154,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
             rotation: rotation_deg,
         });
         scene.floor.slope = 30.0;
-        scene.floor.friction = [0.1, 0.2, 0.3, 0.4];
+        scene.floor.friction_coefficients = [0.1, 0.2, 0.3, 0.4];
     });
     let document = Document::parse(&text).expect("well formed");
     let mut nodes = document.descendants();
@@ -176,7 +182,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
         (half_size[0], half_size[1], position[2] + half_size[2]),
         (0.005, 0.02, 0.002)
     );
-    for (leg, friction) in LEGS.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
+    for (leg, friction) in LEG_NAMES.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
         let name = format!("pad {leg}");
         let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
         let pad = pad.expect("a pad");
@@ -198,7 +204,7 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
     let ball = nodes.find(|node| node.attribute("name") == Some("pad LF"));
     let radius = 1000.0 * numbers(ball.expect("a ball"), "size")[0];
     let parts = assembly.parts();
-    let part = parts.iter().find(|part| part.bodies[0] == pad.name);
+    let part = parts.iter().find(|part| part.body_names[0] == pad.name);
     let (layers, _) = part.expect("a pad to print").printed_layers();
     let mesh = Mesh::of(&Solid::of(&layers));
     // The printed pad lies on its back, centred on the origin; in the middle is the hole for the screw.
@@ -238,11 +244,14 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
 fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
     let (force, rate) = (4.0, 0.4);
     let text = mjcf_with(&robot("paper"), |scene| {
-        scene.pull = Some(Pull { force, rate })
+        scene.strut_spring = Some(StrutSpring {
+            preload: force,
+            rate,
+        })
     });
     let document = Document::parse(&text).expect("well formed");
     let bodies_by_name = bodies(&document);
-    for leg in LEGS {
+    for leg in LEG_NAMES {
         let slot = bodies_by_name[&format!("slot {leg}")].1;
         // A steel wire of 0.6 mm, about 0.7 m long, weighs about 1.6 g.
         let grams = 1000.0 * numbers(child(slot, "inertial"), "mass")[0];
@@ -260,7 +269,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
             );
         }
     }
-    let rigid_text = mjcf_with(&robot("paper"), |scene| scene.pull = None);
+    let rigid_text = mjcf_with(&robot("paper"), |scene| scene.strut_spring = None);
     assert!(!rigid_text.contains("slot"));
 }
 
@@ -272,7 +281,7 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
         let document = Document::parse(&text).expect("well formed");
         let motors = elements(&document, "actuator");
         for (servo, motor) in motors.iter().enumerate() {
-            assert_eq!(motor.attribute("name"), Some(NAMES[servo]));
+            assert_eq!(motor.attribute("name"), Some(SERVO_NAMES[servo]));
             let joint_name = motor.attribute("joint").expect("a joint");
             let mut nodes = document.descendants();
             let is_joint = |node: &Node| {
@@ -365,7 +374,7 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
         if time < start {
             continue;
         }
-        let expected = gait.angles(gait.phase(time - start));
+        let expected = gait.angles(gait.phase_at(time - start));
         for (servo, target) in numbers(key, "ctrl").into_iter().enumerate() {
             let error = expected[servo] - robot.servos()[servo].neutral - target.to_degrees();
             assert!(

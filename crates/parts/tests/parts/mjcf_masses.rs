@@ -2,7 +2,7 @@
 
 use lizard_parts::{Assembly, Bill};
 use lizard_robot::Robot;
-use lizard_robot::servo::LEGS;
+use lizard_robot::servo::LEG_NAMES;
 use roxmltree::Document;
 
 use crate::mjcf_reader::{bodies, child, mjcf_with, neutral, numbers};
@@ -43,7 +43,7 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
     for name in ROBOTS {
         let body = robot_with(name, "").ground().body;
         for (mass, centre) in [
-            (body.mass, body.centre),
+            (body.mass, body.mass_centre),
             (500.0, [20.0, -9.0]),
             (350.0, [-15.0, 0.0]),
         ] {
@@ -68,7 +68,7 @@ fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
         let text = mjcf_with(&robot, |_| {});
         let document = Document::parse(&text).expect("well formed");
         let ground = robot.ground();
-        for leg in LEGS {
+        for leg in LEG_NAMES {
             let mass_and_lever = |noun: &str| {
                 let name = format!("{noun} {leg}");
                 let mut nodes = document.descendants();

@@ -9,7 +9,7 @@ use roxmltree::{Document, Node};
 
 /// The positions of the robot's joints at neutral.
 pub fn neutral(robot: &Robot) -> Solution {
-    let solution = robot.lizard().solve(&robot.neutral());
+    let solution = robot.lizard().solve(&robot.neutral_pose());
     solution.expect("neutral closes")
 }
 

@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
-use lizard_parts::{Assembly, Pieces, Pull, Scene};
+use lizard_parts::{Assembly, Pieces, Scene, StrutSpring};
 use lizard_robot::Robot;
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use roxmltree::{Document, Node};
 
 use crate::mjcf_reader::{Placed, bodies, child, mjcf_with, neutral, numbers};
@@ -145,9 +145,18 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
 fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
     let (force, rate) = (4.0, 0.4);
     for name in ROBOTS {
-        for (pull, play) in [(None, 0.0), (Some(Pull { force, rate }), 0.5)] {
+        for (pull, play) in [
+            (None, 0.0),
+            (
+                Some(StrutSpring {
+                    preload: force,
+                    rate,
+                }),
+                0.5,
+            ),
+        ] {
             let robot = robot_with(name, "");
-            let change = |scene: &mut Scene| (scene.pull, scene.play) = (pull, play);
+            let change = |scene: &mut Scene| (scene.strut_spring, scene.play) = (pull, play);
             let text = mjcf_with(&robot, change);
             let document = Document::parse(&text).expect("well formed");
             let expected = bodies(&document);
@@ -223,7 +232,7 @@ fn servos_have_their_names_ranges_and_powers_in_both() {
     );
     let links = elements_by_name(model, "link");
     assert!(sdf_joints.keys().all(|joint| !links.contains_key(joint)));
-    for (servo, name) in NAMES.into_iter().enumerate() {
+    for (servo, name) in SERVO_NAMES.into_iter().enumerate() {
         let (min_deg, max_deg) = robot.servos()[servo].travel();
         // The SG-90: 1.8 kg cm and 500 deg/s.
         let expected = [

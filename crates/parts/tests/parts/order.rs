@@ -42,10 +42,10 @@ fn blocked_screws(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOper
     let assembly = slotted("paper", "");
     let mut steps = steps_of(&assembly);
     change(&mut steps);
-    let blocked_screws = assembly.blocked(&steps, &neutral(&assembly));
+    let blocked_screws = assembly.blocked_screws(&steps, &neutral(&assembly));
     let screws = blocked_screws
         .into_iter()
-        .map(|blocked| (blocked.screw, blocked.operation, blocked.by));
+        .map(|blocked| (blocked.screw, blocked.operation, blocked.obstacle));
     screws
         .filter(|(screw, ..)| !screw.starts_with("screw foot"))
         .collect()
@@ -61,7 +61,7 @@ fn a_wrong_order_is_found() {
         steps[8].stages.push(Stage {
             turning_place: TurningPlace::Robot,
             adds: |body: &Body| matches!(body.kind, Kind::HexScrew(_)),
-            turns: |_| false,
+            turns_again: |_| false,
         });
     });
     let pushed_screws = late_screws
@@ -72,7 +72,7 @@ fn a_wrong_order_is_found() {
 
 #[test]
 fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
-    let glued_assembly = slotted("paper", "").altered(|bodies| {
+    let glued_assembly = slotted("paper", "").with_changed_bodies(|bodies| {
         let is_pad = |body: &&mut Body| body.name == "pad LF";
         for body in bodies.iter_mut().filter(is_pad) {
             body.prisms[0].cut_shapes.clear();
@@ -85,16 +85,16 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
         (&*blocked_screw.screw, blocked_screw.operation),
         ("screw height LF", ScrewOperation::Turn)
     );
-    assert_eq!(blocked_screw.by, "pad LF");
+    assert_eq!(blocked_screw.obstacle, "pad LF");
     // The check finds the pad both in the step that mounts it and in the step that levels the feet.
     let steps = steps_of(&glued_assembly);
     let level_step = steps.iter().position(|step| step.title == "Level the feet");
     let level_step = 1 + level_step.expect("a step");
-    let blocked_screws = glued_assembly.blocked(&steps, &neutral(&glued_assembly));
+    let blocked_screws = glued_assembly.blocked_screws(&steps, &neutral(&glued_assembly));
     let is_pad_blocking = |step| {
         blocked_screws
             .iter()
-            .any(|blocked| blocked.step == step && blocked.by == "pad LF")
+            .any(|blocked| blocked.step == step && blocked.obstacle == "pad LF")
     };
     assert!(
         is_pad_blocking(7) && is_pad_blocking(level_step),
@@ -105,7 +105,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
 #[test]
 fn a_strut_under_a_head_is_found() {
     // Replaces hexagonal heads, which pockets hold, by heads that a key must hold from below.
-    let unequal = slotted("unequal", "").altered(|bodies| {
+    let unequal = slotted("unequal", "").with_changed_bodies(|bodies| {
         for body in bodies {
             if let Kind::HexScrew(length) = body.kind {
                 body.kind = Kind::Screw(length);
@@ -118,12 +118,12 @@ fn a_strut_under_a_head_is_found() {
         (&*blocked_screw.screw, blocked_screw.operation),
         ("screw tip A4", ScrewOperation::Turn)
     );
-    assert_eq!(blocked_screw.by, "strut LH");
+    assert_eq!(blocked_screw.obstacle, "strut LH");
 }
 
 #[test]
 fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
-    let covered_assembly = slotted("paper", "").altered(|bodies| {
+    let covered_assembly = slotted("paper", "").with_changed_bodies(|bodies| {
         // A board as large as the plate, above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
         let mut lid = plate.expect("a plate");
@@ -137,7 +137,7 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
     let blocked_screw = covered_assembly
         .access_poses(&steps_of(&covered_assembly))
         .expect_err("a lid");
-    assert_eq!(blocked_screw.by, "deck lid");
+    assert_eq!(blocked_screw.obstacle, "deck lid");
     let message = BuildProblem::from(blocked_screw).to_string();
     let expected = "at step 3 of the guide: deck lid is in the way, at every pose";
     assert!(message.contains(expected), "{message}");
@@ -146,10 +146,10 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
 #[test]
 fn parts_that_move_together_are_not_in_one_place() {
     for name in ROBOTS {
-        assert_eq!(slotted(name, "").check_measures(), Ok(()), "{name}");
+        assert_eq!(slotted(name, "").check_dimensions(), Ok(()), "{name}");
     }
     // The head of a standoff's screw is moved into the boss of the board's screw.
-    let altered = slotted("paper", "").altered(|bodies| {
+    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
         let is_screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(is_screw) {
             let heads = body
@@ -160,7 +160,7 @@ fn parts_that_move_together_are_not_in_one_place() {
         }
     });
     let message = altered
-        .check_measures()
+        .check_dimensions()
         .expect_err("they overlap")
         .to_string();
     let expected = "deck and screw standoff 1 above, which move together, overlap by 0.5";
@@ -174,7 +174,7 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
         let assembly = slotted(name, "");
         let pose = neutral(&assembly);
         let steps = steps_of(&assembly);
-        let blocked_screws = assembly.blocked(&steps, &pose);
+        let blocked_screws = assembly.blocked_screws(&steps, &pose);
         let step_of = |body: &Body| steps.iter().position(|step| step.adds(body));
         let outlines_of = |body: &Body| body.prisms.iter().map(Outline::of).collect();
         let bodies = assembly.bodies().iter();
@@ -186,7 +186,7 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
             let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };
-            if high.filled_shapes[0].width() <= low.filled_shapes[0].width()
+            if high.filled_shapes[0].diameter() <= low.filled_shapes[0].diameter()
                 || screw_step == Some(6)
             {
                 continue;

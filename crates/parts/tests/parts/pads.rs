@@ -1,8 +1,8 @@
 //! Tests of pads for a strip with a grain: the notch for the strip's end, and the direction that the notch marks.
 
 use lizard_kinematics::Vector;
-use lizard_parts::{Bill, Outline, Part, Shape, papers};
-use lizard_robot::servo::LEGS;
+use lizard_parts::{Bill, Outline, Part, Shape, documents};
+use lizard_robot::servo::LEG_NAMES;
 
 use crate::{GRAIN, assembly, body, neutral};
 
@@ -17,7 +17,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
     let assembly = assembly(GRAIN, "");
     let half_width = assembly.robot().parts().pad.width / 2.0;
     let parts = assembly.parts();
-    let is_pad = |part: &&Part| part.rubbery;
+    let is_pad = |part: &&Part| part.is_rubbery;
     let [pad] = parts.iter().filter(is_pad).collect::<Vec<_>>()[..] else {
         panic!("one kind of pad");
     };
@@ -27,11 +27,14 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
     let notch = notch_of(&layers).expect("a notch in the file");
     // A second pose is also checked, because a foot never turns.
     let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {
-        let angles: [f64; 4] = assembly.robot().neutral().into();
+        let angles: [f64; 4] = assembly.robot().neutral_pose().into();
         let angles = std::array::from_fn(|servo| angles[servo] + turns[servo]);
-        assembly.robot().accepted(angles).expect("a pose")
+        assembly.robot().solve_if_allowed(angles).expect("a pose")
     });
-    for (pose, leg) in poses.iter().flat_map(|pose| LEGS.map(|leg| (pose, leg))) {
+    for (pose, leg) in poses
+        .iter()
+        .flat_map(|pose| LEG_NAMES.map(|leg| (pose, leg)))
+    {
         let (pad_body, screw) = (
             body(&assembly, &format!("pad {leg}")),
             body(&assembly, &format!("screw height {leg}")),
@@ -39,7 +42,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
         let motion = pad.print_to_body(pad_body);
         let placement = assembly.place(pad_body.mount, pose);
         let to_robot = |point: &Vector| {
-            let y = if motion.flipped { -point.y } else { point.y };
+            let y = if motion.is_flipped { -point.y } else { point.y };
             placement.map(motion.frame.map(Vector::new(point.x, y)))
         };
         let axis = placement.map(screw.prisms[0].filled_shapes[0].middle());
@@ -58,7 +61,7 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
 #[test]
 fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
     let [plain, marked] = ["paper", GRAIN].map(|name| assembly(name, ""));
-    for leg in LEGS {
+    for leg in LEG_NAMES {
         let [plain, marked] =
             [&plain, &marked].map(|assembly| body(assembly, &format!("pad {leg}")));
         assert_eq!(plain.z(), marked.z());
@@ -94,7 +97,7 @@ fn a_strip_that_its_pad_cannot_carry_is_refused() {
     for (width, fits) in [(4.0, false), (5.0, true), (14.5, true), (15.5, false)] {
         let assembly = assembly("paper", &format!("[parts]\nstrip = {width:.1}"));
         let refusal = assembly
-            .check_measures()
+            .check_dimensions()
             .err()
             .map(|refused| refused.to_string());
         assert_eq!(refusal.is_none(), fits, "{width}");
@@ -116,7 +119,7 @@ fn the_guide_of_a_robot_with_strips_says_how_they_are_glued_and_turned() {
             strips.map(|item| item.count).sum::<usize>(),
             4 * usize::from(has_strip)
         );
-        let files = papers(&assembly, &bill, &pose).expect("a guide");
+        let files = documents(&assembly, &bill, &pose).expect("a guide");
         let text = files.iter().find(|file| file.path.ends_with("guide.md"));
         let text = String::from_utf8_lossy(&text.expect("the guide").bytes).into_owned();
         for phrase in [

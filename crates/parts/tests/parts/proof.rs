@@ -33,20 +33,20 @@ fn accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
             let (low, high) = servo.travel();
             servo.neutral + low + (high - low) * random.next()
         });
-        poses.extend(robot.accepted(far_angles));
+        poses.extend(robot.solve_if_allowed(far_angles));
         let (mut accepted_share, mut refused_share) = (0.0, 1.0);
         for _ in 0..30 {
             let share = (accepted_share + refused_share) / 2.0;
             let angle_of =
                 |servo: usize| neutral[servo] + share * (far_angles[servo] - neutral[servo]);
-            match robot.accepted([0, 1, 2, 3].map(angle_of)) {
+            match robot.solve_if_allowed([0, 1, 2, 3].map(angle_of)) {
                 Some(_) => accepted_share = share,
                 None => refused_share = share,
             }
         }
         let angle_of =
             |servo: usize| neutral[servo] + accepted_share * (far_angles[servo] - neutral[servo]);
-        poses.extend(robot.accepted([0, 1, 2, 3].map(angle_of)));
+        poses.extend(robot.solve_if_allowed([0, 1, 2, 3].map(angle_of)));
     }
     poses
 }
@@ -66,7 +66,7 @@ fn assert_bounds_hold(name: &str) {
             assert!((low..=high).contains(&angle), "{name}: {angle}");
         }
     }
-    for pair in assembly.nearest(poses, FAR_MM - 0.2) {
+    for pair in assembly.close_pairs(poses, FAR_MM - 0.2) {
         let mounts = mounts_of(&pair.first, &pair.second);
         let mut pairs = proof.separate_pairs.iter();
         let proved_pair =
@@ -79,7 +79,7 @@ fn assert_bounds_hold(name: &str) {
     }
     for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
         let Some(seen) = &pair.seen else { continue };
-        let accepted = assembly.robot().accepted(seen.pose);
+        let accepted = assembly.robot().solve_if_allowed(seen.pose);
         assert!(accepted.is_some(), "{name}: {pair}");
         assert!(pair.proved <= seen.mm, "{name}: {pair}");
         // The proven bound is not much below the least distance found, except near poses that the guard barely
@@ -109,9 +109,12 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
     let [sprung_gap, rigid_gap] = ["strut", "rigid"].map(|word| {
         let assembly = assembly("paper", &format!("[leg.drive]\nkind = \"{word}\""));
         let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
-        let proof = assembly.prove_some(|a, b| is_strut(a) || is_strut(b), |_, _| ());
+        let proof = assembly.prove_chosen(|a, b| is_strut(a) || is_strut(b), |_, _| ());
         assert_eq!(proof.judge(), Ok(()), "{word}");
-        proof.nearest().expect("something is near").proved
+        proof
+            .nearest_separate_pair()
+            .expect("something is near")
+            .proved
     });
     assert!(rigid_gap >= sprung_gap, "{rigid_gap} {sprung_gap}");
 }
@@ -120,7 +123,9 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
 fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
     let paper = slotted("paper", "");
     let without_pads = |assembly: Assembly| {
-        assembly.altered(|bodies| bodies.retain(|body| body.kind != lizard_parts::Kind::Pad))
+        assembly.with_changed_bodies(|bodies| {
+            bodies.retain(|body| body.kind != lizard_parts::Kind::Pad)
+        })
     };
     // The pads of `grain` are not compared: they lie within plain pads, as the tests in `pads.rs` show.
     for (assembly, paper) in [
@@ -152,7 +157,7 @@ fn every_file_of_robots_is_here() {
 
 /// The worst clash among the pairs that include a body for which `is_chosen` is true.
 fn find_clash(assembly: &Assembly, is_chosen: impl Fn(&Body) -> bool) -> Clash {
-    let proof = assembly.prove_some(|a, b| is_chosen(a) || is_chosen(b), |_, _| ());
+    let proof = assembly.prove_chosen(|a, b| is_chosen(a) || is_chosen(b), |_, _| ());
     proof.judge().expect_err("nothing is found")
 }
 
@@ -190,15 +195,15 @@ fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
         panic!("no overlap");
     };
     assert!(clearance.mm < -5.0, "{clearance}");
-    assert!(proof.regions < 10_000, "{}", proof.regions);
+    assert!(proof.region_count < 10_000, "{}", proof.region_count);
 }
 
 /// The paper's robot with one screw made longer by `extra_mm`.
 fn with_longer_screw(name: &str, extra_mm: f64, is_downwards: bool) -> Assembly {
-    slotted("paper", "").altered(|bodies| {
+    slotted("paper", "").with_changed_bodies(|bodies| {
         let mut bodies = bodies.iter_mut();
         let screw = bodies.find(|body| body.name == name).expect(name);
-        let width_of = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].width();
+        let width_of = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].diameter();
         let shank = usize::from(width_of(screw, 1) < width_of(screw, 0));
         let z = &mut screw.prisms[shank].z;
         if is_downwards {
@@ -226,7 +231,7 @@ fn a_screw_that_is_too_long_is_found() {
 #[test]
 fn swapped_layers_are_found() {
     // The layers of the head's upper and lower coupler are swapped.
-    let altered = slotted("paper", "").altered(|bodies| {
+    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
         let index_of = |name: &str| {
             bodies
                 .iter()
@@ -244,7 +249,7 @@ fn swapped_layers_are_found() {
 
 #[test]
 fn a_hole_beside_its_pin_is_found() {
-    let altered = slotted("paper", "").altered(|bodies| {
+    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut_shapes {
                 for point in &mut cut.points {
@@ -294,7 +299,7 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
             for step in 0..=100 {
                 let share = f64::from(step) / 100.0;
                 let stroke = limits.stroke_min + share * (limits.stroke_max - limits.stroke_min);
-                let [rear, front] = extent_along_x(rod, slider.nominal + stroke);
+                let [rear, front] = extent_along_x(rod, slider.nominal_length + stroke);
                 least_overlap = least_overlap.min(front.min(end) - rear.max(start));
             }
             // At the longest stroke, the rod still overlaps the sleeve by exactly the required length.
@@ -305,7 +310,7 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
         }
         let is_sleeve_and_rod =
             |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
-        let proof = assembly.prove_some(is_sleeve_and_rod, |_, _| ());
+        let proof = assembly.prove_chosen(is_sleeve_and_rod, |_, _| ());
         // In the bore, each side of the rod has a clearance of 0.2 mm.
         assert_eq!(proof.touching_pairs.len(), 2);
         for pair in &proof.touching_pairs {

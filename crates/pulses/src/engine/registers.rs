@@ -2,7 +2,7 @@
 
 use core::ptr::with_exposed_provenance_mut;
 
-use super::{Engine, LEAD};
+use super::{Engine, LEAD_CYCLES};
 use crate::pin::Pin;
 use crate::store::store_at;
 use crate::timing::slot_cycles;
@@ -19,13 +19,13 @@ const OCR1B: usize = 0x8a;
 const MATCH_B: u8 = 1 << 2;
 /// Compare match A: the bit OCF1A in TIFR1, and OCIE1A in TIMSK1.
 const MATCH_A: u8 = 1 << 1;
-/// The value of TCCR1B that starts the timer, WGM12 and CS10: it counts every cycle up to OCR1A (CTC mode).
+/// The value of TCCR1B that starts the timer (WGM12 and CS10): it counts every cycle up to OCR1A (CTC mode).
 const RUN: u8 = 1 << 3 | 1;
 
 /// A compare value that the timer never reaches.
 const NEVER: u16 = u16::MAX;
 
-/// The PORT register at a data address.
+/// Returns the PORT register at a data address.
 #[inline(always)]
 fn port_register(address: u8) -> *mut u8 {
     with_exposed_provenance_mut(usize::from(address))
@@ -43,14 +43,14 @@ unsafe fn write_register<T>(register: usize, value: T) {
 
 impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Sets the pins, in the order of the widths, drives them low and makes them outputs. Call it once, before the
-    /// first [`Engine::submit`]; with interrupts off if any handler changes other pins of these ports.
+    /// first [`Engine::submit`], and with interrupts off if any handler changes other pins of these ports.
     #[inline(always)]
     pub fn connect(&self, pins: [Pin; SERVOS]) {
         for (slot, pin) in self.pins.iter().zip(&pins) {
             slot[0].set(pin.port);
             slot[1].set(pin.mask);
         }
-        self.lower();
+        self.drive_pins_low();
     }
 
     /// Starts an engine whose pins are known at compile time: drives them low, makes them outputs, and calls
@@ -60,15 +60,15 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// See [`Engine::start`].
     #[doc(hidden)]
     #[inline(always)]
-    pub unsafe fn start_all(&self) {
-        self.lower();
+    pub unsafe fn start_with_fixed_pins(&self) {
+        self.drive_pins_low();
         // SAFETY: as the caller says.
         unsafe { self.start() }
     }
 
     /// Drives the pins low and makes them outputs.
     #[inline(always)]
-    fn lower(&self) {
+    fn drive_pins_low(&self) {
         for [address, mask] in &self.pins[..SERVOS] {
             let port = port_register(address.get());
             let mask = mask.get();
@@ -89,9 +89,9 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     #[inline(always)]
     pub unsafe fn start(&self) {
         self.slot.set(Self::TICK_SLOT);
-        self.fall.set(Self::NO_PULSE);
-        self.allowed.set(u8::MAX);
-        // SAFETY: these registers are Timer1's, which is ours.
+        self.fall_count.set(Self::NO_PULSE);
+        self.allowed_pins.set(u8::MAX);
+        // SAFETY: these registers are Timer1's, which only this engine uses.
         unsafe {
             // A boot loader leaves the timer running for its LED, so it is stopped first.
             write_register(TCCR1B, 0u8);
@@ -105,33 +105,33 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// The number of edges that were late because an interrupt was delayed for longer than [`LEAD`] allows. The count
-    /// saturates at 65535.
+    /// The number of edges that were late because an interrupt was delayed for longer than [`LEAD_CYCLES`] allows. The
+    /// count saturates at 65535.
     #[inline(always)]
-    pub fn late(&self) -> u16 {
-        self.late.read()
+    pub fn late_edges(&self) -> u16 {
+        self.late_edges.read()
     }
 
-    /// Opens a slot: raises its pin, or gives the tick.
+    /// Opens a slot: raises its pin or, in the slot without a pin, counts a tick.
     ///
     /// # Safety
     /// Only in the handler of Timer1's compare match A.
     #[doc(hidden)]
     #[inline(always)]
-    pub unsafe fn open(&self) {
-        let mask = self.mask.get() & self.allowed.get();
+    pub unsafe fn open_slot(&self) {
+        let mask = self.mask.get() & self.allowed_pins.get();
         if mask != 0 {
             let port = port_register(self.port.get());
-            // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
+            // SAFETY: the port of a servo pin, in a handler, LEAD_CYCLES after the match.
             unsafe {
                 let level_before = port.read_volatile();
                 // A pin that is still high has missed its falling edge, so it may only go low.
                 let change = mask & !level_before;
-                let on_time = store_at([LEAD, 0], port, level_before & !mask, change);
+                let on_time = store_at([LEAD_CYCLES, 0], port, level_before & !mask, change);
                 if on_time & change == 0 {
-                    self.late.count();
+                    self.late_edges.count();
                     self.mask.set(0);
-                    self.fall.set(Self::NO_PULSE);
+                    self.fall_count.set(Self::NO_PULSE);
                 }
             }
         } else if self.slot.get() == Self::TICK_SLOT {
@@ -140,7 +140,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         // SAFETY: after `start` only the two handlers use Timer1, and they cannot
         // interrupt each other.
         unsafe {
-            write_register(OCR1B, self.fall.get() - u16::from(LEAD));
+            write_register(OCR1B, self.fall_count.get() - u16::from(LEAD_CYCLES));
             // If interrupts were off for very long, a match B from the previous slot, or one in this slot with the
             // previous value of OCR1B, is pending here and would close this slot at once.
             write_register(TIFR1, MATCH_B);
@@ -153,17 +153,23 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Only in the handler of Timer1's compare match B.
     #[doc(hidden)]
     #[inline(always)]
-    pub unsafe fn close(&self) {
+    pub unsafe fn close_slot(&self) {
         let mask = self.mask.get();
         if mask != 0 {
             let port = port_register(self.port.get());
-            // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
-            let on_time =
-                unsafe { store_at(self.fall.bytes(), port, port.read_volatile() & !mask, 0) };
+            // SAFETY: the port of a servo pin, in a handler, LEAD_CYCLES after the match.
+            let on_time = unsafe {
+                store_at(
+                    self.fall_count.bytes(),
+                    port,
+                    port.read_volatile() & !mask,
+                    0,
+                )
+            };
             if on_time == 0 {
-                self.late.count();
+                self.late_edges.count();
             }
         }
-        self.plan();
+        self.plan_next_slot();
     }
 }

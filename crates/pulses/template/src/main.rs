@@ -21,8 +21,8 @@ mod servos {
     servo_pulses::engine!(super::PINS);
 }
 
-/// The width of a pulse in cycles: from 1000 to 2000 us and back in 100 frames.
-fn width(frame: u8) -> u16 {
+/// The width of a frame's pulse in cycles: it goes from 1000 to 2000 us and back in 100 frames.
+fn width_cycles(frame: u8) -> u16 {
     let step = if frame < 50 { frame } else { 100 - frame };
     (1000 + 20 * u16::from(step)) * CYCLES_PER_US
 }
@@ -36,14 +36,14 @@ fn main() -> ! {
     unsafe { servos::start() };
     // SAFETY: every interrupt that is enabled has its handler.
     unsafe { avr_device::interrupt::enable() };
-    let mut tick = servos::ticks();
+    let mut last_tick = servos::ticks();
     let mut frame = 0;
     loop {
-        // At a new tick there is one frame's time to submit the next widths, which are played together.
-        if servos::ticks() != tick {
-            tick = servos::ticks();
+        // After a new tick, there is the time of one frame to submit the next widths, which take effect together.
+        if servos::ticks() != last_tick {
+            last_tick = servos::ticks();
             frame = (frame + 1) % 100;
-            servos::submit([0, 25, 50, 75].map(|offset| width((frame + offset) % 100)));
+            servos::submit([0, 25, 50, 75].map(|offset| width_cycles((frame + offset) % 100)));
             if frame % 50 == 0 {
                 led.pinb.write(|w| w.pb5().set_bit()); // a one here toggles the pin
             }

@@ -1,6 +1,6 @@
 use super::*;
 
-fn calibration() -> Calibration {
+fn example_calibration() -> Calibration {
     let servo_with = |trim| ServoSettings {
         trim,
         limit: [48.59, 228.59],
@@ -15,14 +15,17 @@ fn calibration() -> Calibration {
 }
 
 #[test]
-fn a_calibration_is_the_same_after_the_way_through_a_file() {
-    let text = calibration().text();
-    assert_eq!(Calibration::parse(&text, "a.toml"), Ok(calibration()));
+fn a_calibration_written_as_a_file_is_read_back_unchanged() {
+    let text = example_calibration().to_toml();
+    assert_eq!(
+        Calibration::parse(&text, "a.toml"),
+        Ok(example_calibration())
+    );
 }
 
 #[test]
-fn the_file_reads_as_a_person_would_write_it() {
-    let text = calibration().text();
+fn the_file_has_one_readable_line_for_each_setting() {
+    let text = example_calibration().to_toml();
     for lines in [
         "boot = \"arc left\"\ndeadman = 1500\n",
         "[servo.A1]\ntrim = -3.25\nlimit = [48.59, 228.59]\ndir = \"-\"\nscale = 10.0\n",
@@ -33,16 +36,17 @@ fn the_file_reads_as_a_person_would_write_it() {
 
 #[test]
 fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
-    let valid_text = calibration().text();
+    let valid_text = example_calibration().to_toml();
     let error_text = |from: &str, to: &str| {
         assert!(valid_text.contains(from), "{from}");
         let wrong_text = valid_text.replacen(from, to, 1);
-        let error = Calibration::parse(&wrong_text, "a.toml").expect_err("it is wrong");
+        let error =
+            Calibration::parse(&wrong_text, "a.toml").expect_err("the changed text is invalid");
         error.to_string()
     };
-    let other_error =
-        Calibration::parse("[links]\nl0 = 20.0\n", "a.toml").expect_err("another file");
-    let sentence = "must be \"lizard calibration 1\": this is no calibration that can be read";
+    let other_error = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml")
+        .expect_err("a robot file is no calibration");
+    let sentence = "must be \"lizard calibration 1\": this is not a calibration that can be read";
     assert_eq!(
         other_error.to_string(),
         format!("a.toml: format {sentence}")
@@ -50,7 +54,7 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
     let line = 1 + valid_text
         .lines()
         .position(|line| line == "trim = -3.25")
-        .expect("A1");
+        .expect("servo A1 has this trim");
     let trim_prefix = format!("a.toml:{line}: servo.A1.trim ");
     for (from, to, message) in [
         (
@@ -133,35 +137,38 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
 }
 
 #[test]
-fn the_lines_of_a_robot_are_read_and_are_those_that_set_it() {
+fn every_setting_is_read_from_the_answer_to_cal_and_set_by_a_console_line() {
     let answer = "# boot arc left|# deadman 1500|# A1 trim -3.25 limit 48.59 228.59 dir - scale 10|# t=1 pose=1,2,3,4|\
         # A2 trim 0 limit 48.59 228.59 dir - scale 10|# A3 trim 0.1 limit 48.59 228.59 dir - scale 10|\
         # A4 trim 20 limit 48.59 228.59 dir - scale 10";
     let lines: Vec<String> = answer.split('|').map(str::to_owned).collect();
-    assert_eq!(Calibration::from_lines(&lines), Some(calibration()));
+    assert_eq!(
+        Calibration::from_cal_answer(&lines),
+        Some(example_calibration())
+    );
     for index in 0..lines.len() {
-        let mut rest = lines.clone();
-        let is_needed = !rest.remove(index).contains("pose");
+        let mut remaining_lines = lines.clone();
+        let is_needed = !remaining_lines.remove(index).contains("pose");
         assert_eq!(
-            Calibration::from_lines(&rest).is_none(),
+            Calibration::from_cal_answer(&remaining_lines).is_none(),
             is_needed,
-            "{rest:?}"
+            "{remaining_lines:?}"
         );
     }
-    let set_lines = calibration().lines();
-    assert_eq!(set_lines.len(), 18);
+    let console_lines = example_calibration().console_lines();
+    assert_eq!(console_lines.len(), 18);
     let first_lines = [
         "dir 1 -",
         "scale 1 10.00",
         "trim 1 -3.25",
         "limit 1 48.59 228.59",
     ];
-    assert_eq!(set_lines[..4], first_lines);
-    assert_eq!(set_lines[16..], ["boot arc left", "deadman 1500"]);
+    assert_eq!(console_lines[..4], first_lines);
+    assert_eq!(console_lines[16..], ["boot arc left", "deadman 1500"]);
 }
 
 #[test]
-fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
+fn another_scale_or_direction_keeps_the_neutral_pulse() {
     // Change of the neutral pulse by the trim, us.
     let pulse_shift_us = |servo: ServoSettings| {
         let sign = if servo.dir == '+' { 1.0 } else { -1.0 };
@@ -171,7 +178,7 @@ fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
         for scale in [8.5, 10.0, 11.11] {
             let servo = ServoSettings {
                 trim,
-                ..calibration().servos[0]
+                ..example_calibration().servos[0]
             };
             let scaled = servo.with_scale(scale);
             assert_eq!(scaled.scale, scale);
@@ -185,14 +192,14 @@ fn another_scale_or_sign_leaves_the_neutral_pulse_where_it_is() {
             assert_eq!(reversed.reversed(), servo);
             assert!(
                 reversed.trim.is_sign_positive() || reversed.trim < 0.0,
-                "no -0"
+                "the trim must not be -0"
             );
         }
     }
 }
 
 #[test]
-fn calibrations_that_differ_in_anything_are_not_the_same_but_a_turn_is_no_difference() {
+fn calibrations_are_equivalent_only_if_all_settings_agree_but_limits_may_differ_by_full_turns() {
     let changes: [fn(&mut Calibration); 6] = [
         |calibration| calibration.servos[0].trim = 0.01,
         |calibration| calibration.servos[1].limit[1] += 0.01,
@@ -202,58 +209,66 @@ fn calibrations_that_differ_in_anything_are_not_the_same_but_a_turn_is_no_differ
         |calibration| calibration.deadman = 1,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut changed = calibration();
+        let mut changed = example_calibration();
         change(&mut changed);
-        assert!(!changed.is_same(&calibration()), "change {index}");
+        assert!(
+            !changed.is_equivalent_to(&example_calibration()),
+            "change {index}"
+        );
     }
-    let mut turned = calibration();
+    let mut turned = example_calibration();
     turned.servos[2].limit = [48.59 - 360.0, 228.59 - 360.0];
-    assert!(turned.is_same(&calibration()));
+    assert!(turned.is_equivalent_to(&example_calibration()));
 }
 
-/// Sends the lines of a transfer to a robot that refuses some. Returns those sent, and true if all were accepted.
-fn send(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<String>, bool) {
-    let (mut transfer, mut sent, mut accepted) =
-        (Transfer::new(&calibration()), Vec::new(), Vec::new());
+/// Sends the lines of a transfer to a robot that refuses some of them. Returns the lines that were sent, and true if
+/// every setting was accepted in the end.
+fn simulate_transfer(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<String>, bool) {
+    let (mut transfer, mut sent_lines, mut accepted_lines) = (
+        Transfer::new(&example_calibration()),
+        Vec::new(),
+        Vec::new(),
+    );
     while let Some(line) = transfer.next_line() {
-        match is_refused(&line, &accepted) {
+        match is_refused(&line, &accepted_lines) {
             true => {
-                transfer.refuse();
+                transfer.record_refusal();
             }
-            false => accepted.push(line.clone()),
+            false => accepted_lines.push(line.clone()),
         }
-        sent.push(line);
-        assert!(sent.len() < 500, "it ends");
+        sent_lines.push(line);
+        assert!(sent_lines.len() < 500, "the transfer must end");
     }
-    (sent, transfer.is_done())
+    (sent_lines, transfer.is_done())
 }
 
 #[test]
-fn refused_lines_are_sent_again_after_the_others_and_once_more_from_robot_toml() {
-    let lines = calibration().lines();
-    assert_eq!(send(|_, _| false), (lines.clone(), true));
+fn refused_lines_are_sent_again_after_the_others_and_once_more_after_factory() {
+    let lines = example_calibration().console_lines();
+    assert_eq!(simulate_transfer(|_, _| false), (lines.clone(), true));
     // A trim that is accepted only after the limit.
-    let (sent, is_done) = send(|line, accepted| {
+    let (sent_lines, is_done) = simulate_transfer(|line, accepted| {
         line.starts_with("trim 1") && !accepted.iter().any(|other| other.starts_with("limit 1"))
     });
     assert!(is_done);
-    assert_eq!(sent[18..], ["trim 1 -3.25"]);
+    assert_eq!(sent_lines[18..], ["trim 1 -3.25"]);
     // A scale that is accepted only after `factory`, with robot.toml's settings.
     let needs_factory = |line: &str, accepted: &[String]| {
         line.starts_with("scale 2") && !accepted.iter().any(|other| other == "factory")
     };
-    let (sent, is_done) = send(needs_factory);
+    let (sent_lines, is_done) = simulate_transfer(needs_factory);
     assert!(is_done);
-    assert_eq!(sent[18..20], ["scale 2 10.00", "factory"]);
-    assert_eq!(sent[20..], lines);
+    assert_eq!(sent_lines[18..20], ["scale 2 10.00", "factory"]);
+    assert_eq!(sent_lines[20..], lines);
     // A line that is never accepted is given up after one more round from `factory`.
-    let (sent, is_done) = send(|line, _| line.starts_with("limit 4"));
+    let (sent_lines, is_done) = simulate_transfer(|line, _| line.starts_with("limit 4"));
     assert!(!is_done);
     assert_eq!(
-        sent.iter()
+        sent_lines
+            .iter()
             .filter(|line| line.as_str() == "factory")
             .count(),
         1
     );
-    assert!(!send(|_, _| true).1);
+    assert!(!simulate_transfer(|_, _| true).1);
 }

@@ -1,4 +1,4 @@
-//! The error of the tables, as the firmware reads them, compared with the gaits in floating point.
+//! The error of the firmware's tables, compared with the gaits in floating point.
 
 use lizard_core::numbers::units::CYCLE16;
 
@@ -18,12 +18,17 @@ pub struct TableError {
     pub phase: f64,
 }
 
-/// Number of phases that the firmware distinguishes.
-pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
+/// Number of phases in a cycle that the firmware distinguishes.
+pub(crate) const PHASE_COUNT: usize = CYCLE16 as usize;
 
-/// Computes the error of the tables of gait number `index` over `count` evenly spaced phases, where `count` divides
-/// [`ALL_PHASES`].
-pub(crate) fn table_error(gait: &Gait, index: usize, tables: &Tables, count: usize) -> TableError {
+/// Computes the error of the tables of gait number `index` over `phase_count` evenly spaced phases, where
+/// `phase_count` divides [`PHASE_COUNT`].
+pub(crate) fn table_error(
+    gait: &Gait,
+    index: usize,
+    tables: &Tables,
+    phase_count: usize,
+) -> TableError {
     let mut error = TableError {
         max: 0.0,
         rms: 0.0,
@@ -31,10 +36,10 @@ pub(crate) fn table_error(gait: &Gait, index: usize, tables: &Tables, count: usi
         phase: 0.0,
     };
     let mut sum_of_squares = 0.0;
-    for i in 0..count {
-        let step = (i * (ALL_PHASES / count)) as u16;
-        let phase = f64::from(step) / ALL_PHASES as f64;
-        let table_angles = gait.table_angles(tables.sweeps(index, step));
+    for i in 0..phase_count {
+        let table_phase = (i * (PHASE_COUNT / phase_count)) as u16;
+        let phase = f64::from(table_phase) / PHASE_COUNT as f64;
+        let table_angles = gait.table_angles(tables.sweeps(index, table_phase));
         let exact_angles = gait.angles(phase);
         for servo in 0..4 {
             let deviation = (table_angles[servo] - exact_angles[servo]).abs();
@@ -49,35 +54,35 @@ pub(crate) fn table_error(gait: &Gait, index: usize, tables: &Tables, count: usi
             }
         }
     }
-    error.rms = (sum_of_squares / (4 * count) as f64).sqrt();
+    error.rms = (sum_of_squares / (4 * phase_count) as f64).sqrt();
     error
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::all;
+    use crate::testing::all_robots;
 
     #[test]
-    fn the_error_is_the_largest_of_all_servos() {
-        const COUNT: usize = 1024;
-        for (name, robot) in all() {
+    fn the_maximum_error_is_the_largest_over_all_servos() {
+        const SAMPLE_COUNT: usize = 1024;
+        for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let mut errors = [0.0f64; 4];
-                for i in 0..COUNT {
+                for i in 0..SAMPLE_COUNT {
                     let table_angles = gait.table_angles((64 * i) as u16);
-                    let exact_angles = gait.angles(i as f64 / COUNT as f64);
+                    let exact_angles = gait.angles(i as f64 / SAMPLE_COUNT as f64);
                     for servo in 0..4 {
                         errors[servo] =
                             errors[servo].max((table_angles[servo] - exact_angles[servo]).abs());
                     }
                 }
-                let table_error = gait.error_over(COUNT);
+                let table_error = gait.table_error_over(SAMPLE_COUNT);
                 let largest_error = errors.into_iter().fold(0.0, f64::max);
                 assert_eq!(table_error.max, largest_error, "{name} {}", gait.name());
                 assert_eq!(errors[table_error.servo], largest_error);
                 assert!(
                     table_error.rms <= largest_error
-                        && 2.0 * table_error.rms >= largest_error / COUNT as f64
+                        && 2.0 * table_error.rms >= largest_error / SAMPLE_COUNT as f64
                 );
             }
         }

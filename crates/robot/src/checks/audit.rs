@@ -1,33 +1,33 @@
-//! The check of every sample of a gait, as the firmware will send it. Forward kinematics checks head, tail, sides
-//! and legs against all limits. Then the firmware's own guard is asked, which would stop a gait that is closer to a
-//! limit than its integers resolve.
+//! The check of every sample of a gait, as the firmware will send it. Forward kinematics gives the pose of head,
+//! tail, sides and legs, which is checked against all limits in floating point. The firmware's own guard then checks
+//! the same sample, because it would stop a gait that is closer to a limit than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
-use lizard_core::numbers::gaits::{Gait as TableGait, SAMPLES};
+use lizard_core::numbers::gaits::{Gait as TableGait, SAMPLES_PER_WAVE};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
-use crate::checks::accuracy::{self, ALL_PHASES};
+use crate::checks::accuracy::{self, PHASE_COUNT};
 use crate::gaits::Gait;
-use crate::measures::servo::NAMES;
-use crate::measures::{Measures, consequence, no_loop};
+use crate::measures::servo::SERVO_NAMES;
+use crate::measures::{Measures, consequence, open_loop_consequence};
 use crate::tables::Tables;
-use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
+use crate::units::{FRAMES_PER_SECOND, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
-/// Number of evenly spaced phases that are checked in addition to the tables' own samples.
+/// Number of evenly spaced phases in a cycle that are checked in addition to the tables' own samples.
 const CHECKED_PHASES: usize = 1024;
 /// Number of phases at which the speed over one frame is computed.
 const SPEED_PHASES: usize = 4096;
 /// The largest error allowed in a table, deg.
-const ERROR_LIMIT: f64 = 0.50;
+const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 
-/// The smallest margin of a kind over a cycle.
+/// The smallest margin of one kind (type-2, type-1 or leg) over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeastMargin {
     /// The condition that has this margin.
-    pub what: Check,
+    pub check: Check,
     /// The smallest value of the margin, as a sine.
     pub value: f64,
     /// Phase of the smallest value, 0 to 1.
@@ -36,7 +36,7 @@ pub struct LeastMargin {
 
 /// The highest speed of a servo between two frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Peak {
+pub struct PeakSpeed {
     /// Index of the servo, 0 to 3.
     pub servo: usize,
     /// Mean speed over the 20 ms from one frame to the next, deg/s.
@@ -45,7 +45,7 @@ pub struct Peak {
     pub phase: f64,
 }
 
-/// The smallest margins, the strokes and the fastest frame of a checked gait.
+/// The smallest margins, the range of the strokes and the highest speed in a checked gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Audit {
     /// Smallest type-2 margin, head and tail.
@@ -54,20 +54,20 @@ pub struct Audit {
     pub type1: LeastMargin,
     /// Smallest margin of the four legs.
     pub leg: LeastMargin,
-    /// Slider travel of both sides, smallest and largest, mm from nominal.
-    pub stroke: (f64, f64),
-    /// Fastest frame.
-    pub peak: Peak,
+    /// Smallest and largest slider travel over both sides, mm from nominal.
+    pub stroke_range: (f64, f64),
+    /// Highest speed of a servo over one frame.
+    pub peak_speed: PeakSpeed,
 }
 
 impl Audit {
     /// The audit before the first sample is added.
-    pub(crate) const NONE: Self = Self {
-        type2: LeastMargin::none(Check::TYPE2[0]),
-        type1: LeastMargin::none(Check::TYPE1[0]),
-        leg: LeastMargin::none(Check::LEG[0]),
-        stroke: (f64::INFINITY, f64::NEG_INFINITY),
-        peak: Peak {
+    pub(crate) const EMPTY: Self = Self {
+        type2: LeastMargin::unset(Check::TYPE2[0]),
+        type1: LeastMargin::unset(Check::TYPE1[0]),
+        leg: LeastMargin::unset(Check::LEG[0]),
+        stroke_range: (f64::INFINITY, f64::NEG_INFINITY),
+        peak_speed: PeakSpeed {
             servo: 0,
             speed: 0.0,
             phase: 0.0,
@@ -76,9 +76,9 @@ impl Audit {
 }
 
 impl LeastMargin {
-    const fn none(check: Check) -> Self {
+    const fn unset(check: Check) -> Self {
         Self {
-            what: check,
+            check,
             value: f64::INFINITY,
             phase: 0.0,
         }
@@ -96,40 +96,40 @@ pub(crate) struct LimitBreach {
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// Returns the first sample outside a servo's travel or whose loops do not close; else the worst violation of the
-/// limit that is broken first; else the first pose at which the firmware's guard would stop; else a servo speed
-/// that is too high, or a table that is too coarse.
-pub(crate) fn check(
+/// Returns the first sample that is outside a servo's travel or whose loops do not close; else the worst violation
+/// of the limit that is broken first; else the first pose at which the firmware's guard would stop the gait; else a
+/// servo speed that is too high, or a table that is too coarse.
+pub(crate) fn check_gait(
     gait: &Gait,
     index: usize,
     tables: &Tables,
     robot: &Measures,
-    firmware: &lizard_core::numbers::robot::Robot<'_>,
+    core_robot: &lizard_core::numbers::robot::Robot<'_>,
 ) -> Result<Audit, LimitBreach> {
     let mut audit = Audit {
-        peak: find_peak(gait),
-        ..Audit::NONE
+        peak_speed: find_peak_speed(gait),
+        ..Audit::EMPTY
     };
     let mut worst_violation: Option<(f64, Violation)> = None;
     let mut guard_stop: Option<(f64, Check)> = None;
     let at_phase = |phase: f64| format!("at phase {phase:.4}");
-    for phase in phases(&tables.gaits[index]) {
+    for phase in phases_to_check(&tables.gaits[index]) {
         let sweeps = tables.sweeps(index, phase);
         let angles = gait.table_angles(sweeps);
         let sweeps = Pose(sweeps.map(Sweep));
-        let phase = f64::from(phase) / PHASES;
+        let phase = f64::from(phase) / PHASES_PER_CYCLE;
         check_travels(robot, angles, phase)?;
-        if let Some(hazard) = Clearance::of(firmware, &sweeps).first_hazard(firmware) {
-            guard_stop.get_or_insert((phase, condition(&hazard)));
+        if let Some(hazard) = Clearance::of(core_robot, &sweeps).first_hazard(core_robot) {
+            guard_stop.get_or_insert((phase, corresponding_check(&hazard)));
         }
         let solution = robot.lizard.solve(&angles.into());
         let solution = solution.map_err(|fault| LimitBreach {
-            meaning: no_loop(fault.part),
+            meaning: open_loop_consequence(fault.part),
             problem: format!("{fault} {}", at_phase(phase)),
         })?;
         for violation in robot.limits.violations(&solution) {
             worst_violation = Some(match worst_violation {
-                Some(earlier) if !exceeds(violation, earlier.1) => earlier,
+                Some(earlier) if !is_worse_violation(violation, earlier.1) => earlier,
                 _ => (phase, violation),
             });
         }
@@ -150,15 +150,15 @@ pub(crate) fn check(
             ),
         });
     }
-    let Peak {
+    let PeakSpeed {
         servo,
         speed,
         phase,
-    } = audit.peak;
-    let limit = robot.pace.gait_slew;
+    } = audit.peak_speed;
+    let limit = robot.speed_limits.gait_slew;
     if speed > limit {
         return Err(LimitBreach {
-            meaning: format!("servo {} would have to turn too fast", NAMES[servo]),
+            meaning: format!("servo {} would have to turn too fast", SERVO_NAMES[servo]),
             problem: format!(
                 "{speed:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
                 at_phase(phase)
@@ -166,14 +166,14 @@ pub(crate) fn check(
         });
     }
     let error = accuracy::table_error(gait, index, tables, CHECKED_PHASES);
-    if error.max > ERROR_LIMIT {
+    if error.max > MAX_TABLE_ERROR_DEG {
         return Err(LimitBreach {
             meaning: format!(
                 "servo {} would have to turn too sharply",
-                NAMES[error.servo]
+                SERVO_NAMES[error.servo]
             ),
             problem: format!(
-                "the firmware's table of {SAMPLES} samples is {:.3} deg off {}; at most {ERROR_LIMIT:.2} deg is allowed",
+                "the firmware's table of {SAMPLES_PER_WAVE} samples is {:.3} deg off {}; at most {MAX_TABLE_ERROR_DEG:.2} deg is allowed",
                 error.max,
                 at_phase(error.phase)
             ),
@@ -182,8 +182,8 @@ pub(crate) fn check(
     Ok(audit)
 }
 
-/// Converts a hazard of the firmware's guard to the corresponding condition of the floating-point check.
-fn condition(hazard: &Hazard) -> Check {
+/// Returns the floating-point check of the same condition as a hazard of the firmware's guard.
+fn corresponding_check(hazard: &Hazard) -> Check {
     match *hazard {
         Hazard::Margin { margin, .. } => match margin {
             Margin::Type2(end) => Check::TYPE2[end as usize],
@@ -191,22 +191,24 @@ fn condition(hazard: &Hazard) -> Check {
             Margin::Leg(servo) => Check::LEG[servo.index()],
         },
         Hazard::Stroke { side, .. } => Check::STROKE[side as usize],
-        Hazard::Travel(_) => unreachable!("the guard knows no servo's travel"),
+        Hazard::Travel(_) => unreachable!("the clearance does not include the servos' travel"),
     }
 }
 
-/// True if a violation breaks the same limit as an earlier violation, and by more.
-fn exceeds(violation: Violation, earlier: Violation) -> bool {
+/// True if a violation breaks the same limit as an earlier violation, but by more.
+fn is_worse_violation(violation: Violation, earlier: Violation) -> bool {
     let excess_of = |v: Violation| (v.value - v.limit).abs();
     violation.check == earlier.check && excess_of(violation) > excess_of(earlier)
 }
 
-/// Lists the phases to check: evenly spaced ones, and every sample of every servo.
-fn phases(table: &TableGait) -> Vec<u16> {
-    let evenly_spaced = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
+/// Lists the phases to check, in 1/65536 cycle: evenly spaced ones, and every sample of every servo.
+fn phases_to_check(table: &TableGait) -> Vec<u16> {
+    let evenly_spaced = |count: usize| (0..count).map(move |i| (i * (PHASE_COUNT / count)) as u16);
     let mut phases: Vec<u16> = evenly_spaced(CHECKED_PHASES).collect();
     for channel in &table.channels {
-        phases.extend(evenly_spaced(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
+        phases.extend(
+            evenly_spaced(SAMPLES_PER_WAVE).map(|sample| sample.wrapping_sub(channel.offset)),
+        );
     }
     phases.sort_unstable();
     phases.dedup();
@@ -216,11 +218,11 @@ fn phases(table: &TableGait) -> Vec<u16> {
 /// Refuses servo angles outside a servo's travel.
 fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), LimitBreach> {
     // Both the limits of the travel and the sample are rounded to an angle step.
-    const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
-    for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(NAMES) {
+    const STEP_DEG: f64 = 1.0 / STEPS_PER_DEGREE;
+    for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(SERVO_NAMES) {
         let (min, max) = servo.travel();
         let sweep = angle - servo.neutral;
-        if sweep < min - STEP || sweep > max + STEP {
+        if sweep < min - STEP_DEG || sweep > max + STEP_DEG {
             let (min, max) = (servo.neutral + min, servo.neutral + max);
             return Err(LimitBreach {
                 meaning: format!("servo {name} would have to turn farther than it can"),
@@ -233,17 +235,17 @@ fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), L
     Ok(())
 }
 
-/// Finds the frame of a gait at full speed in which a servo turns fastest.
-fn find_peak(gait: &Gait) -> Peak {
-    let frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
-    let mut peak = Audit::NONE.peak;
+/// Finds the highest speed of a servo over one frame of a gait at full speed.
+fn find_peak_speed(gait: &Gait) -> PeakSpeed {
+    let phase_per_frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
+    let mut peak = Audit::EMPTY.peak_speed;
     for i in 0..SPEED_PHASES {
         let phase = i as f64 / SPEED_PHASES as f64;
-        let (from, to) = (gait.sweeps(phase), gait.sweeps(phase + frame));
+        let (from, to) = (gait.sweeps(phase), gait.sweeps(phase + phase_per_frame));
         for servo in 0..4 {
             let speed = (to[servo] - from[servo]).abs() * FRAMES_PER_SECOND;
             if speed > peak.speed {
-                peak = Peak {
+                peak = PeakSpeed {
                     servo,
                     speed,
                     phase,
@@ -263,18 +265,21 @@ impl Audit {
                 (&mut self.type1, &Check::TYPE1),
                 (&mut self.leg, &Check::LEG),
             ];
-            for (least, checks) in kinds {
-                if checks.contains(&check) && value < least.value {
-                    *least = LeastMargin {
-                        what: check,
+            for (least_margin, checks) in kinds {
+                if checks.contains(&check) && value < least_margin.value {
+                    *least_margin = LeastMargin {
+                        check,
                         value,
                         phase,
                     };
                 }
             }
         }
-        for s in [solution.left.s, solution.right.s] {
-            self.stroke = (self.stroke.0.min(s), self.stroke.1.max(s));
+        for slider_travel in [solution.left.s, solution.right.s] {
+            self.stroke_range = (
+                self.stroke_range.0.min(slider_travel),
+                self.stroke_range.1.max(slider_travel),
+            );
         }
     }
 }

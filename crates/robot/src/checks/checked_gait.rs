@@ -12,7 +12,7 @@ use crate::checks::audit::{self, Audit, LimitBreach};
 use crate::file::{Checked, Fault};
 use crate::gaits::{Bars, Gait, Stride};
 use crate::measures::Measures;
-use crate::measures::servo::FORWARD;
+use crate::measures::servo::FORWARD_TURN_SIGN;
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
@@ -20,7 +20,7 @@ use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedGait {
     gait: Gait,
-    /// Index of the gait in the file and in the tables.
+    /// Index of the gait in robot.toml and in the tables.
     index: usize,
     tables: Arc<Tables>,
     audit: Audit,
@@ -33,13 +33,13 @@ impl CheckedGait {
         index: usize,
         tables: &Arc<Tables>,
         measures: &Measures,
-        firmware: &lizard_core::numbers::robot::Robot,
+        core_robot: &lizard_core::numbers::robot::Robot,
     ) -> Checked<Self> {
-        let audit = audit::check(&gait, index, tables, measures, firmware);
+        let audit = audit::check_gait(&gait, index, tables, measures, core_robot);
         let audit = audit.map_err(|LimitBreach { meaning, problem }| {
             let name = &gait.name;
             Fault::clause(format!("gait.{name}"), problem)
-                .meaning(format!("in \"{name}\" {meaning}"))
+                .with_meaning(format!("in \"{name}\" {meaning}"))
         })?;
         Ok(Self {
             gait,
@@ -64,18 +64,18 @@ impl CheckedGait {
         self.index
     }
 
-    /// Time of one cycle at full speed, s.
+    /// Duration of one cycle at full speed, s.
     pub fn period(&self) -> f64 {
         self.gait.period
     }
 
     /// True if the phase runs backwards, from 1 to 0.
     pub fn is_reversed(&self) -> bool {
-        self.gait.reversed
+        self.gait.is_reversed
     }
 
     /// True if any servo moves in the course of a cycle.
-    pub fn moves(&self) -> bool {
+    pub fn has_movement(&self) -> bool {
         self.table().channels.iter().any(|channel| {
             let wave = &self.tables.waves[usize::from(channel.wave)];
             channel.gain != 0 && wave.iter().any(|sample| *sample != wave[0])
@@ -89,7 +89,7 @@ impl CheckedGait {
 
     /// The gait as bars; `None` if the gait does not move, or if a leg stands still or follows a path.
     pub fn bars(&self) -> Option<Bars> {
-        self.moves().then(|| Bars::of(&self.gait)).flatten()
+        self.has_movement().then(|| Bars::of(&self.gait)).flatten()
     }
 
     /// The neutral servo angles, deg, chassis frame, servo order.
@@ -97,9 +97,9 @@ impl CheckedGait {
         self.gait.neutral
     }
 
-    /// The phase, 0 to 1, at a time in s after a start at phase 0 at full speed.
-    pub fn phase(&self, seconds: f64) -> f64 {
-        self.gait.phase(seconds)
+    /// The phase, 0 to 1, a number of seconds after a start at phase 0, at full speed.
+    pub fn phase_at(&self, seconds: f64) -> f64 {
+        self.gait.phase_at(seconds)
     }
 
     /// The legs' sweeps from neutral at a phase of 0 to 1, deg, positive if the foot is forward, servo order.
@@ -128,69 +128,75 @@ impl CheckedGait {
         self.gait.table_angles(self.table_sweeps(phase))
     }
 
-    /// The frames of one cycle at full speed, beginning at phase 0: the time of each in s, and its phase in 1/65536
-    /// cycle. The last frame is the first at or after the end of the cycle.
+    /// The frames of one cycle at full speed, beginning at phase 0: each frame's time in s and its phase in 1/65536
+    /// cycle. The last frame is the first one at or after the end of the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
         let increment = self.table().increment;
         // 1.1 s are 55 frames, although 1.1 * 50.0 is slightly more in floating point.
         const SLACK: f64 = 1e-9;
-        let frames = (self.gait.period * FRAMES_PER_SECOND - SLACK).ceil() as i32;
-        (0..=frames).map(move |frame| {
+        let frame_count = (self.gait.period * FRAMES_PER_SECOND - SLACK).ceil() as i32;
+        (0..=frame_count).map(move |frame| {
             let phase = phase16((increment * frame) as u32);
             (f64::from(frame) / FRAMES_PER_SECOND, phase)
         })
     }
 
-    /// Margins, strokes and speeds found by the check of every sample.
+    /// The margins, strokes and speeds that the check of every sample found.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
 
     /// The error of the tables over all phases.
     pub fn table_error(&self) -> TableError {
-        self.error_over(accuracy::ALL_PHASES)
+        self.table_error_over(accuracy::PHASE_COUNT)
     }
 
     /// The error of the tables over `count` evenly spaced phases.
-    pub(crate) fn error_over(&self, count: usize) -> TableError {
+    pub(crate) fn table_error_over(&self, count: usize) -> TableError {
         accuracy::table_error(&self.gait, self.index, &self.tables, count)
     }
 
     /// Predicts one cycle on this ground, from phase 0, with the contact model. If legs lag, the result is the
     /// second cycle, which all later cycles repeat.
     ///
-    /// A part of the movement is unknown if it depends on a tie: two feet that pull against the other two, equally
-    /// strongly. Ties are found with rigid legs, because they depend on the pads alone.
+    /// A component of the movement is unknown if it depends on a tie: two feet pull against the other two with equal
+    /// force. Ties are found with rigid legs, because they depend on the pads alone.
     pub fn predict(&self, ground: &Ground) -> Prediction {
-        let prediction = ground.rigid().predict(self.cycle(TIE_STEPS));
-        prediction.keep_known(self.simulate_cycle(ground).travel)
+        let prediction = ground
+            .with_rigid_drive()
+            .predict(self.sweeps_over_cycle(TIE_STEPS_PER_CYCLE));
+        prediction.known_components_of(self.simulate_cycle(ground).travel)
     }
 
     /// Simulates one cycle on this ground, even if the result depends on ties. If legs lag, the result is the second
     /// cycle.
     pub fn simulate_cycle(&self, ground: &Ground) -> SimulatedCycle {
-        let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
-        let mut steps = RIGID_STEPS;
+        let mut walker = Walker::new(*ground, self.sweeps(self.phase_at(0.0)));
+        let mut step_count = RIGID_STEPS_PER_CYCLE;
         if ground.drive.can_lag() {
-            steps = LAGGING_STEPS;
-            self.cycle(steps).for_each(|sweeps| {
-                walker.step(sweeps);
+            step_count = LAGGING_STEPS_PER_CYCLE;
+            self.sweeps_over_cycle(step_count).for_each(|sweeps| {
+                walker.move_to(sweeps);
             });
         }
         let start_place = walker.place();
-        let mut lag = 0.0;
-        for sweeps in self.cycle(steps) {
-            walker.step(sweeps);
-            lag = walker.lag().into_iter().map(f64::abs).fold(lag, f64::max);
+        let mut max_lag = 0.0;
+        for sweeps in self.sweeps_over_cycle(step_count) {
+            walker.move_to(sweeps);
+            max_lag = walker
+                .lags()
+                .into_iter()
+                .map(f64::abs)
+                .fold(max_lag, f64::max);
         }
         SimulatedCycle {
-            travel: walker.place().seen_from(start_place),
-            lag,
+            travel: walker.place().travel_from(start_place),
+            max_lag,
         }
     }
 
-    /// Simulates two cycles on this ground frame by frame, as the firmware sends them, with servos that have these
-    /// motors, and returns the movement in the second. `pace` is 1 for the gait's own speed.
+    /// Simulates two cycles on this ground, frame by frame as the firmware sends them, with servos that have these
+    /// motors. Returns the movement in the second cycle. `pace` is 1 for the gait's own speed.
     pub fn simulate_driven_cycle(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
         self.simulate_scaled_cycle(ground, motors, pace, 1.0)
     }
@@ -204,38 +210,41 @@ impl CheckedGait {
         pace: f64,
         scale: f64,
     ) -> Travel {
-        let frames = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
+        let frame_count = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
         let sweeps_at = |frame: usize| -> [f64; 4] {
             let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
-            let phase = (self.phase(seconds) * 65536.0).round() as i64;
-            let steps = self.table_sweeps(phase.rem_euclid(65536) as u16);
-            std::array::from_fn(|i| scale * FORWARD[i] * f64::from(steps[i]) / STEPS_PER_DEGREE)
+            let phase = (self.phase_at(seconds) * 65536.0).round() as i64;
+            let table_sweeps = self.table_sweeps(phase.rem_euclid(65536) as u16);
+            std::array::from_fn(|i| {
+                scale * FORWARD_TURN_SIGN[i] * f64::from(table_sweeps[i]) / STEPS_PER_DEGREE
+            })
         };
         let mut walker = Walker::new(*ground, sweeps_at(0));
         let mut walk_cycle = || {
             let start_place = walker.place();
-            for frame in 1..=frames {
+            for frame in 1..=frame_count {
                 walker.drive(sweeps_at(frame).map(Some), 1.0 / FRAMES_PER_SECOND, motors);
             }
-            walker.place().seen_from(start_place)
+            walker.place().travel_from(start_place)
         };
         walk_cycle();
         walk_cycle()
     }
 
-    /// The legs' sweeps over one cycle in equal steps of time, at its start, its end and between.
-    fn cycle(&self, steps: usize) -> impl Iterator<Item = [f64; 4]> {
-        (0..=steps).map(move |i| self.sweeps(self.phase(self.period() * i as f64 / steps as f64)))
+    /// The legs' sweeps, deg, at the start of one cycle and after each of `step_count` equal steps of time.
+    fn sweeps_over_cycle(&self, step_count: usize) -> impl Iterator<Item = [f64; 4]> {
+        (0..=step_count)
+            .map(move |i| self.sweeps(self.phase_at(self.period() * i as f64 / step_count as f64)))
     }
 }
 
 /// Steps in a cycle with rigid legs; twice as many change no result by 0.01 mm.
-const RIGID_STEPS: usize = 1000;
+const RIGID_STEPS_PER_CYCLE: usize = 1000;
 /// Steps in a cycle with legs that lag, which takes longer to compute; four times as many change no result by 0.05
 /// mm.
-const LAGGING_STEPS: usize = 250;
-/// Steps in a cycle for detecting ties. A step of this search takes longer to compute.
-const TIE_STEPS: usize = 250;
+const LAGGING_STEPS_PER_CYCLE: usize = 250;
+/// Steps in a cycle for detecting ties. Such a step takes longer to compute than one of a simulation.
+const TIE_STEPS_PER_CYCLE: usize = 250;
 
 /// The result of a cycle simulated step by step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -243,16 +252,16 @@ pub struct SimulatedCycle {
     /// The movement of the body over the cycle.
     pub travel: Travel,
     /// Largest lag of a leg behind its servo, deg; 0 if legs are rigid.
-    pub lag: f64,
+    pub max_lag: f64,
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{all, robot};
+    use crate::testing::{all_robots, robot};
 
     #[test]
     fn frames_are_20_ms_apart_and_the_last_completes_the_cycle() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let frames: Vec<(f64, u16)> = gait.frames().collect();
                 assert_eq!(frames[0], (0.0, 0));
@@ -264,8 +273,9 @@ mod tests {
                     gait.name()
                 );
                 for (seconds, phase) in frames {
-                    // A complete cycle is phase 0 again.
-                    let error = (f64::from(phase) / 65536.0 - gait.phase(seconds)).rem_euclid(1.0);
+                    // After a complete cycle, the phase is 0 again.
+                    let error =
+                        (f64::from(phase) / 65536.0 - gait.phase_at(seconds)).rem_euclid(1.0);
                     assert!(
                         error.min(1.0 - error) < 1e-4,
                         "{name} {} {seconds}",
@@ -277,12 +287,12 @@ mod tests {
     }
 
     #[test]
-    fn a_gait_moves_if_a_leg_does() {
+    fn only_the_gait_stand_has_no_movement() {
         let robot = robot("own-gaits");
         let still_gaits: Vec<&str> = robot
             .gaits()
             .iter()
-            .filter(|gait| !gait.moves())
+            .filter(|gait| !gait.has_movement())
             .map(|gait| gait.name())
             .collect();
         assert_eq!(still_gaits, ["stand"]);

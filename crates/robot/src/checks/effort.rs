@@ -1,4 +1,4 @@
-//! The effort of the servos in a gait: torque and speed compared with the torque-speed lines of their motors.
+//! The effort of the servos in a gait: their torque and speed compared with the torque-speed lines of their motors.
 //!
 //! A motor's line runs from its stall torque to its no-load speed. A servo that needs a torque at a speed uses the
 //! share torque / stall + speed / no-load speed of its line; this is also the share of the supply voltage that its
@@ -10,29 +10,30 @@ use lizard_contact::{Ground, Motor, Motors, Walker};
 use crate::checks::checked_gait::CheckedGait;
 
 /// Duration of a simulation step, s.
-const STEP: f64 = 0.0025;
-/// Share of the line from which a servo has little reserve: play, cold gears or a thin wire may use it up.
+const STEP_SECONDS: f64 = 0.0025;
+/// Share of the torque-speed line above which a servo has little reserve: play, cold gears or a thin wire may use
+/// it up.
 pub const HIGH_LINE_SHARE: f64 = 0.9;
-/// Factor on a motor's torque and speed that makes it follow every gait exactly.
+/// Factor on a motor's torque and speed with which it follows every gait exactly.
 const STRONG_FACTOR: f64 = 1e6;
-/// Iterations of the search for a pace.
-const ROUNDS: usize = 20;
+/// Bisection steps of the search for the highest pace.
+const BISECTION_STEPS: usize = 20;
 
 /// The torques and the speed of a servo at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
     /// Torque for pads, joints and body, N mm.
-    load: f64,
+    load_torque: f64,
     /// Torque that accelerates the rotor, N mm.
-    rotor: f64,
+    rotor_torque: f64,
     /// Speed, deg/s.
-    rate: f64,
+    speed: f64,
 }
 
 /// The effort of the servos over a cycle of a gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effort {
-    /// Each servo's motor as given to [`Effort::of`], and the servo's samples at the gait's own pace.
+    /// For each servo, its motor as given to [`Effort::of`] and its samples at the gait's own pace.
     servos: [(Motor, Vec<Sample>); 4],
 }
 
@@ -40,74 +41,75 @@ impl Effort {
     /// Measures a gait on this ground, with servos that follow it exactly.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground, motors: &Motors) -> Self {
-        let mut servos = motors.each.map(|motor| (motor, Vec::new()));
-        if !gait.moves() {
+        let mut servos = motors.per_servo.map(|motor| (motor, Vec::new()));
+        if !gait.has_movement() {
             return Self { servos };
         }
         // The motors keep their gain and damping, but have no limits; the rotor is added afterwards.
         let strong_motors = Motors {
-            each: motors.each.map(|motor| Motor {
-                stall: motor.stall * STRONG_FACTOR,
+            per_servo: motors.per_servo.map(|motor| Motor {
+                stall_torque: motor.stall_torque * STRONG_FACTOR,
                 no_load_speed: motor.no_load_speed * STRONG_FACTOR,
                 full_torque_error: motor.full_torque_error * STRONG_FACTOR,
-                spin_up: 0.0,
+                spin_up_time: 0.0,
                 half_dead_band: 0.0,
             }),
             ..*motors
         };
-        let steps = (gait.period() / STEP).round();
-        let seconds = gait.period() / steps;
-        let sweeps_at = |step: f64| gait.sweeps(gait.phase(step * seconds));
+        let step_count = (gait.period() / STEP_SECONDS).round();
+        let step_seconds = gait.period() / step_count;
+        let sweeps_at = |step: f64| gait.sweeps(gait.phase_at(step * step_seconds));
         let mut walker = Walker::new(*ground, sweeps_at(0.0));
-        let steps = steps as usize;
-        for step in 1..=2 * steps {
-            let (angles_before, target) = (walker.servos(), sweeps_at(step as f64));
-            walker.drive(target.map(Some), seconds, &strong_motors);
-            if step <= steps {
+        let step_count = step_count as usize;
+        for step in 1..=2 * step_count {
+            let (angles_before, target) = (walker.servo_sweeps(), sweeps_at(step as f64));
+            walker.drive(target.map(Some), step_seconds, &strong_motors);
+            if step <= step_count {
                 continue;
             }
             let (last_target, next_target) =
                 (sweeps_at(step as f64 - 1.0), sweeps_at(step as f64 + 1.0));
-            let angles = walker.servos();
+            let angles = walker.servo_sweeps();
             for (i, (motor, samples)) in servos.iter_mut().enumerate() {
-                let rate = (angles[i] - angles_before[i]) / seconds;
-                let torque = motor.stall / motor.full_torque_error * (target[i] - angles[i]);
+                let speed = (angles[i] - angles_before[i]) / step_seconds;
+                let torque = motor.stall_torque / motor.full_torque_error * (target[i] - angles[i]);
                 let second_difference =
                     (next_target[i] - 2.0 * target[i] + last_target[i]).to_radians();
                 samples.push(Sample {
-                    load: torque - motor.damping() * rate.to_radians(),
-                    rotor: motor.inertia() * second_difference / (seconds * seconds),
-                    rate,
+                    load_torque: torque - motor.damping() * speed.to_radians(),
+                    rotor_torque: motor.inertia() * second_difference
+                        / (step_seconds * step_seconds),
+                    speed,
                 });
             }
         }
         Self { servos }
     }
 
-    /// The largest share of a servo's torque-speed line that the gait uses at a pace (1 is the gait's own), on a
-    /// supply that is given as a share of the supply in [`Effort::of`].
+    /// Returns the largest share of a servo's torque-speed line that the gait uses at a pace (1 is the gait's own).
+    /// `supply` is the supply voltage as a share of the one for which the motors in [`Effort::of`] are given.
     #[must_use]
     pub fn line_share(&self, pace: f64, supply: f64) -> f64 {
         let share_of = |(motor, samples): &(Motor, Vec<Sample>)| {
             let motor = motor.at_supply(supply);
             let shares = samples.iter().map(|sample| {
-                let torque = sample.load + sample.rotor * pace * pace;
-                motor.line_share(torque, sample.rate * pace).abs()
+                let torque = sample.load_torque + sample.rotor_torque * pace * pace;
+                motor.line_share(torque, sample.speed * pace).abs()
             });
             shares.fold(0.0, f64::max)
         };
         self.servos.iter().map(share_of).fold(0.0, f64::max)
     }
 
-    /// The highest pace, up to 1, at which no servo exceeds its torque-speed line on a supply; 0 if a servo exceeds
-    /// its line at every pace.
+    /// Returns the highest pace, up to 1, at which no servo exceeds its torque-speed line; 0 if a servo exceeds its
+    /// line at every pace. `supply` is as in [`Effort::line_share`].
     #[must_use]
-    pub fn max_pace(&self, supply: f64) -> f64 {
+    pub fn max_sustainable_pace(&self, supply: f64) -> f64 {
         if self.line_share(1.0, supply) <= 1.0 {
             return 1.0;
         }
         let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..ROUNDS {
+        for _ in 0..BISECTION_STEPS {
             let middle = f64::midpoint(low, high);
             match self.line_share(middle, supply) <= 1.0 {
                 true => low = middle,
@@ -117,10 +119,12 @@ impl Effort {
         low
     }
 
-    /// The largest torque that a servo needs for pads, joints and body, N mm.
+    /// Returns the largest torque that a servo needs for pads, joints and body, N mm.
     #[must_use]
-    pub fn max_load(&self) -> f64 {
+    pub fn max_load_torque(&self) -> f64 {
         let samples = self.servos.iter().flat_map(|(_, samples)| samples);
-        samples.map(|sample| sample.load.abs()).fold(0.0, f64::max)
+        samples
+            .map(|sample| sample.load_torque.abs())
+            .fold(0.0, f64::max)
     }
 }

@@ -3,14 +3,14 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The keys of the hips' distances ahead and to the side. If the keys are left out, the distances follow from the
+/// The keys of the hips' distances ahead and to the side. Without these keys, the distances are computed from the
 /// legs.
-pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
+pub const HIP_KEYS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
-/// Optional keys of a robot.toml, which are added when they get a value.
-const OPTIONAL: [&str; 16] = [
-    HIPS[0],
-    HIPS[1],
+/// Optional keys of robot.toml that are added to the text when they are set.
+const OPTIONAL_KEYS: [&str; 16] = [
+    HIP_KEYS[0],
+    HIP_KEYS[1],
     "leg.drive.kind",
     "leg.drive.force",
     "leg.drive.rate",
@@ -40,8 +40,8 @@ impl std::fmt::Display for NoSuchKey {
     }
 }
 
-/// Sets the number of a key, such as `links.l1`. An optional key that is missing is added after the last line of
-/// its table, and a missing table at the end of the text.
+/// Sets the number of a key, such as `links.l1`. A missing optional key is added after the last line of its table.
+/// If the table is missing, too, it is added at the end of the text.
 ///
 /// # Errors
 /// Fails if the text is not TOML, has no number at this key, or writes the table of a missing key on one line.
@@ -68,7 +68,7 @@ pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoS
 pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<String, NoSuchKey> {
     let key_error = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| key_error())?;
-    let value = find(document.get_ref(), key).ok_or_else(key_error)?;
+    let value = find_value(document.get_ref(), key).ok_or_else(key_error)?;
     let start = value.span().end;
     let line = &text[start..line_end(text, start)];
     let comment = format!(" # {word} ");
@@ -86,13 +86,13 @@ pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<Str
 ///
 /// # Errors
 /// Fails if the text is not TOML, has no string at this key, or writes the table of a missing key on one line.
-pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchKey> {
-    with_value(text, key, &format!("\"{word}\""), |value| {
+pub fn with_string(text: &str, key: &str, string: &str) -> Result<String, NoSuchKey> {
+    with_value(text, key, &format!("\"{string}\""), |value| {
         matches!(value, DeValue::String(_))
     })
 }
 
-/// Sets the value of a key, given as TOML. An old value for which `has_type` is false is an error.
+/// Sets the value of a key; `value` is TOML. It is an error if `has_type` is false for the old value.
 fn with_value(
     text: &str,
     key: &str,
@@ -102,7 +102,7 @@ fn with_value(
     let key_error = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| key_error())?;
     let (table, name) = key.rsplit_once('.').ok_or_else(key_error)?;
-    if let Some(old_value) = find(document.get_ref(), key) {
+    if let Some(old_value) = find_value(document.get_ref(), key) {
         if !has_type(old_value.get_ref()) {
             return Err(key_error());
         }
@@ -110,17 +110,17 @@ fn with_value(
         changed.replace_range(old_value.span(), value);
         return Ok(changed);
     }
-    if !OPTIONAL.contains(&key) {
+    if !OPTIONAL_KEYS.contains(&key) {
         return Err(key_error());
     }
     let line = format!("{name} = {value}");
-    let entries = match find(document.get_ref(), table) {
+    let entries = match find_value(document.get_ref(), table) {
         Some(entries) => entries.get_ref().as_table().ok_or_else(key_error)?,
         None => &DeTable::new(),
     };
     // A subtable such as [servo.A1] has its lines elsewhere.
-    let own_values = entries.values().filter(|value| !value.get_ref().is_table());
-    let Some(last_end) = own_values.map(|value| value.span().end).max() else {
+    let direct_values = entries.values().filter(|value| !value.get_ref().is_table());
+    let Some(last_end) = direct_values.map(|value| value.span().end).max() else {
         let line_break = if text.ends_with('\n') { "" } else { "\n" };
         let new_text = format!("{text}{line_break}\n[{table}]\n{line}\n");
         let is_toml = DeTable::parse(&new_text).is_ok();
@@ -131,8 +131,8 @@ fn with_value(
     new_text.insert_str(end, &format!("\n{line}"));
     // If the table is written on one line, the new line would belong to another table.
     let document = DeTable::parse(&new_text).map_err(|_| key_error())?;
-    match find(document.get_ref(), key) {
-        Some(added) if added.span().start > end => Ok(new_text.clone()),
+    match find_value(document.get_ref(), key) {
+        Some(added_value) if added_value.span().start > end => Ok(new_text.clone()),
         _ => Err(key_error()),
     }
 }
@@ -145,7 +145,7 @@ pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     let key_error = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| key_error())?;
     let (_, name) = key.rsplit_once('.').ok_or_else(key_error)?;
-    let Some(value) = find(document.get_ref(), key) else {
+    let Some(value) = find_value(document.get_ref(), key) else {
         return Ok(text.to_string());
     };
     let start = text[..value.span().start]
@@ -173,15 +173,16 @@ pub fn without_gait(text: &str, name: &str) -> String {
     replace_gait(text, name, "").0
 }
 
-/// Replaces a gait's tables by `table`. Returns the text, and true if the gait existed.
+/// Replaces the tables of a gait with `table`. Returns the new text, and true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     let (header, subtable_start) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let (mut result, mut is_own, mut is_replaced) = (String::new(), false, false);
+    let (mut result, mut is_in_gait, mut is_replaced) = (String::new(), false, false);
     for line in text.lines() {
         let trimmed_line = line.trim_start();
         if trimmed_line.starts_with('[') {
-            is_own = trimmed_line.starts_with(&header) || trimmed_line.starts_with(&subtable_start);
-            if is_own && !is_replaced {
+            is_in_gait =
+                trimmed_line.starts_with(&header) || trimmed_line.starts_with(&subtable_start);
+            if is_in_gait && !is_replaced {
                 is_replaced = true;
                 for line in table.lines() {
                     result += line;
@@ -190,7 +191,7 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
             }
         }
         // A comment after the last key may belong to the next table.
-        if !is_own || trimmed_line.starts_with('#') {
+        if !is_in_gait || trimmed_line.starts_with('#') {
             result += line;
             result.push('\n');
         }
@@ -204,12 +205,12 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
 pub struct WrittenRoutine {
     /// Name of the routine.
     pub name: String,
-    /// Texts of its steps.
+    /// The texts of its steps.
     pub steps: Vec<String>,
 }
 
-/// The routines of a text in their order. They are not checked, so that a routine with a mistake can be shown and
-/// corrected. Routines whose steps are not strings are left out.
+/// Returns the routines of a text in their order. They are not checked, so that a routine with a mistake can be shown
+/// and corrected. Routines whose steps are not strings are left out.
 pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
@@ -239,7 +240,7 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));
     if let Ok(document) = DeTable::parse(text)
-        && let Some(old_value) = find(document.get_ref(), &format!("routine.{name}.steps"))
+        && let Some(old_value) = find_value(document.get_ref(), &format!("routine.{name}.steps"))
     {
         let mut changed = text.to_string();
         changed.replace_range(old_value.span(), &steps);
@@ -256,14 +257,14 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
 }
 
 /// Finds the value of a dotted key.
-fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+fn find_value<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     match key.split_once('.') {
-        Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
+        Some((first, rest)) => find_value(table.get(first)?.get_ref().as_table()?, rest),
         None => table.get(key),
     }
 }
 
-/// The position of the end of the line that contains the position `start`.
+/// The byte offset of the end of the line that contains the offset `start`.
 fn line_end(text: &str, start: usize) -> usize {
     text[start..]
         .find('\n')
@@ -279,22 +280,24 @@ mod tests {
 
     #[test]
     fn only_the_number_changes() {
-        let changed = with_number(TEXT, "links.l0", 21.5).expect("there");
+        let changed = with_number(TEXT, "links.l0", 21.5).expect("the key can be set");
         assert_eq!(changed, TEXT.replace("20.0", "21.5"));
-        let changed = with_number(TEXT, "servo.A1.neutral", 2.0).expect("there");
+        let changed = with_number(TEXT, "servo.A1.neutral", 2.0).expect("the key can be set");
         assert_eq!(changed, TEXT.replace("1.5", "2.0"));
     }
 
     #[test]
-    fn a_number_that_was_left_out_is_written_below_its_table() {
+    fn a_missing_optional_number_is_added_at_the_end_of_its_table() {
         const LEG: &str = "[leg] # legs\nground = 50.0 # lg10\n# hip_side = 35.0\n\n[servo]\n";
-        let changed = with_number(LEG, "leg.hip_side", 36.0).expect("it may be set");
+        let changed =
+            with_number(LEG, "leg.hip_side", 36.0).expect("the optional key can be added");
         let expected = LEG.replace("# lg10\n", "# lg10\nhip_side = 36.0\n");
         assert_eq!(changed, expected);
-        let changed_again = with_number(&changed, "leg.hip_side", 37.5).expect("there");
+        let changed_again =
+            with_number(&changed, "leg.hip_side", 37.5).expect("the key can be set");
         assert_eq!(changed_again, expected.replace("36.0", "37.5"));
         // The lines of [servo.A1] do not belong to [servo].
-        let servo = with_number(TEXT, "servo.volts", 4.5).expect("it may be set");
+        let servo = with_number(TEXT, "servo.volts", 4.5).expect("the optional key can be added");
         assert_eq!(servo, format!("{TEXT}\n[servo]\nvolts = 4.5\n"));
         for text in [
             "leg = { ground = 50.0 }\n",
@@ -306,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_changes_as_a_whole_or_is_added() {
+    fn a_list_is_replaced_as_a_whole_or_added() {
         let changed = with_numbers("[body]\ncentre = [0, 0] # mm\n", "body.centre", &[1.5, 0.0]);
         assert_eq!(changed, Ok("[body]\ncentre = [1.5, 0.0] # mm\n".to_owned()));
         let added = with_numbers("[body]\nmass = 250.0\n", "body.centre", &[1.5, -2.0]);
@@ -319,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comment_is_appended_and_replaces_an_earlier_one_of_its_kind() {
+    fn a_comment_is_appended_and_replaces_an_earlier_one_with_the_same_first_word() {
         for (before, after) in [
             ("[links]\nl0 = 1.0", "[links]\nl0 = 1.0 # was: 2"),
             (
@@ -346,38 +349,43 @@ mod tests {
     }
 
     #[test]
-    fn a_table_that_was_left_out_is_written_below_all() {
+    fn a_missing_table_is_added_at_the_end_of_the_text() {
         for text in ["[leg]\nground = 50.0\n", "[leg]\nground = 50.0"] {
-            let changed = with_number(text, "body.mass", 250.0).expect("it may be set");
+            let changed =
+                with_number(text, "body.mass", 250.0).expect("the optional key can be added");
             assert_eq!(changed, "[leg]\nground = 50.0\n\n[body]\nmass = 250.0\n");
         }
     }
 
     #[test]
-    fn a_number_is_removed_with_its_line() {
+    fn a_key_is_removed_with_its_line() {
         const DRIVE: &str = "[leg.drive]\nkind = \"strut\"\nforce = 3.0 # N\nplay = 0.5\n";
-        let rest = without_key(DRIVE, "leg.drive.force").expect("it may be left out");
-        assert_eq!(rest, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
-        assert_eq!(without_key(&rest, "leg.drive.force"), Ok(rest.clone()));
+        let shorter_text = without_key(DRIVE, "leg.drive.force").expect("the key can be removed");
+        assert_eq!(shorter_text, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
+        assert_eq!(
+            without_key(&shorter_text, "leg.drive.force"),
+            Ok(shorter_text.clone())
+        );
         let inline_table = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
         assert!(without_key(inline_table, "leg.drive.force").is_err());
     }
 
     #[test]
-    fn a_word_replaces_another() {
+    fn a_string_is_replaced_or_added() {
         const DRIVE: &str = "[leg.drive] # bars\nkind = \"rigid\" # or not\n";
-        let changed = with_word(DRIVE, "leg.drive.kind", "strut").expect("there");
+        let changed = with_string(DRIVE, "leg.drive.kind", "strut").expect("the key can be set");
         assert_eq!(changed, DRIVE.replace("rigid", "strut"));
-        let added = with_word("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut").expect("new");
+        let added = with_string("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut")
+            .expect("the optional key can be added");
         assert_eq!(
             added,
             "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n"
         );
-        assert!(with_word("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
+        assert!(with_string("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
     }
 
     #[test]
-    fn a_gait_is_removed_with_its_tables_and_no_other() {
+    fn a_gait_is_removed_or_replaced_with_all_its_tables_and_no_other() {
         const GAITS: &str = "[gait.look]\nperiod = 4.0\n[gait.look.head]\nx = [[1.0, 0.0]]\n# the next\n[gait.look-up]\nlike = \"walk\"\n";
         let rest = "# the next\n[gait.look-up]\nlike = \"walk\"\n";
         assert_eq!(without_gait(GAITS, "look"), rest);
@@ -420,17 +428,21 @@ mod tests {
     }
 
     #[test]
-    fn steps_replace_others_and_all_else_stays() {
+    fn the_steps_of_a_routine_are_replaced_and_all_other_text_stays() {
         let steps = to_strings(&["walk until \"nose\"", "wait\\", "rest"]);
         let changed = with_steps(ROUTINES, "patrol", &steps);
         assert_eq!(names_and_steps(&changed)[0].1, steps);
-        let start = ROUTINES.find("[\n").expect("there");
+        let start = ROUTINES.find("[\n").expect("a list of steps begins here");
         assert!(changed.starts_with(&ROUTINES[..start]));
-        assert!(changed.ends_with(&ROUTINES[ROUTINES.find("\nrepeat").expect("there")..]));
+        assert!(
+            changed.ends_with(
+                &ROUTINES[ROUTINES.find("\nrepeat").expect("the routine is repeated")..]
+            )
+        );
     }
 
     #[test]
-    fn a_new_routine_is_written_below_all() {
+    fn a_new_routine_is_added_at_the_end_of_the_text() {
         for text in [ROUTINES, ROUTINES.trim_end()] {
             let added = with_steps(text, "new-one", &to_strings(&["walk 1"]));
             let expected = format!("{ROUTINES}\n[routine.new-one]\nsteps = [\"walk 1\"]\n");
@@ -443,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_a_number_is_not_changed() {
+    fn an_unknown_key_or_a_value_that_is_not_a_number_is_refused() {
         for key in ["links.l2", "links.name", "wings.l0", "links", "servo.A1"] {
             assert!(with_number(TEXT, key, 1.0).is_err(), "{key}");
         }

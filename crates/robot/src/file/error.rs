@@ -46,6 +46,7 @@ impl std::error::Error for Error {}
 /// A mistake at a key, before its file and line are known.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Fault {
+    /// Full name of the key; empty if the mistake concerns the whole file.
     pub key: String,
     meaning: Option<String>,
     problem: String,
@@ -75,7 +76,7 @@ impl Fault {
     }
 
     /// Adds the consequence for the robot to the mistake: "in "walk" the left front leg would lock".
-    pub fn meaning(self, meaning: impl Into<String>) -> Self {
+    pub fn with_meaning(self, meaning: impl Into<String>) -> Self {
         Self {
             meaning: Some(meaning.into()),
             ..self
@@ -83,7 +84,7 @@ impl Fault {
     }
 
     /// A mistake in a number outside its range.
-    pub fn range(key: String, value: f64, (min, max): (f64, f64), unit: &str) -> Self {
+    pub fn out_of_range(key: String, value: f64, (min, max): (f64, f64), unit: &str) -> Self {
         let value = format_number(value);
         Self::new(
             key,
@@ -113,17 +114,17 @@ pub(crate) fn format_number(value: f64) -> String {
     }
 }
 
-/// A hint for a word that is not allowed: the most similar allowed word, or all of them.
+/// Returns a hint for a word that is not allowed: the most similar allowed word, or else all of them.
 pub(crate) fn hint(word: &str, allowed: &[&str]) -> String {
     let nearest = allowed
         .iter()
-        .map(|candidate| (distance(word, candidate), candidate))
+        .map(|candidate| (levenshtein_distance(word, candidate), candidate))
         .min();
     match nearest {
-        // Up to two letters of a word may be wrong; in a word of two letters, only the case may be.
-        Some((changes, candidate))
-            if changes == 0
-                || (changes <= 2 && candidate.len() > 2 && changes < candidate.len()) =>
+        // A similar word has at most two wrong letters; a word of two letters may differ only in its case.
+        Some((edit_count, candidate))
+            if edit_count == 0
+                || (edit_count <= 2 && candidate.len() > 2 && edit_count < candidate.len()) =>
         {
             format!("did you mean \"{candidate}\"?")
         }
@@ -131,8 +132,8 @@ pub(crate) fn hint(word: &str, allowed: &[&str]) -> String {
     }
 }
 
-/// The Levenshtein distance of two words, ignoring case: the number of letters to change, add or remove.
-fn distance(a: &str, b: &str) -> usize {
+/// The Levenshtein distance between two words, ignoring case: the number of letters to change, add or remove.
+fn levenshtein_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.to_lowercase().chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, letter) in a.to_lowercase().chars().enumerate() {

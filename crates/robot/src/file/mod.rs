@@ -1,8 +1,8 @@
 //! robot.toml as a file: its text, its tables, and the message for every mistake in them.
 //!
-//! People write robot.toml by hand, so most files have mistakes at first. A mistake should be quick to find: the
-//! error names the file, the line, the key, the mistake and its correction. This module does not know the meaning
-//! of any value.
+//! People write robot.toml by hand, so most files have mistakes at first. To make a mistake quick to find, the error
+//! names the file, the line, the key, the mistake and its correction. This module does not know the meaning of any
+//! value.
 
 pub mod edit;
 mod error;
@@ -13,8 +13,8 @@ mod text;
 pub use error::Error;
 pub(crate) use error::{Checked, Fault, format_number, hint};
 #[cfg(test)]
-pub(crate) use reader::{KeyRead, READS};
+pub(crate) use reader::{KEY_READS, KeyRead};
 pub(crate) use reader::{Section, parse};
 pub use syntax::explain_mistake;
 pub use text::MAX_FILE_BYTES;
-pub(crate) use text::read;
+pub(crate) use text::read_text;

@@ -22,24 +22,24 @@ pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Res
     })?;
     let table = document.get_ref();
     read(table).map_err(|fault| {
-        let line = position(table, &fault.key).map(line_of);
+        let line = key_position(table, &fault.key).map(line_of);
         fault.in_file(file, line)
     })
 }
 
 /// The position in the text of a key, or of the innermost existing table in its name; `None` if no table of the name
 /// exists.
-fn position(mut table: &DeTable, key: &str) -> Option<usize> {
+fn key_position(mut table: &DeTable, key: &str) -> Option<usize> {
     let (mut rest, mut innermost_start) = (key, None);
     loop {
         // A quoted key may contain a dot, so the longest matching key counts.
-        let rest_after = |known: &str| {
+        let suffix_after = |known: &str| {
             let suffix = rest.strip_prefix(known)?;
             (suffix.is_empty() || suffix.starts_with(['.', '['])).then_some(suffix)
         };
         let entries = table.iter().filter_map(|(known, value)| {
             let name = known.get_ref().as_ref();
-            Some((name.len(), known.span().start, rest_after(name)?, value))
+            Some((name.len(), known.span().start, suffix_after(name)?, value))
         });
         let Some((_, start, suffix, value)) = entries.max_by_key(|(length, ..)| *length) else {
             return innermost_start;
@@ -54,7 +54,7 @@ fn position(mut table: &DeTable, key: &str) -> Option<usize> {
     }
 }
 
-/// A record of one read of a key. The reference of all keys is generated from these.
+/// A record of one read of a key. The reference of all keys is generated from these records.
 #[cfg(test)]
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum KeyRead {
@@ -73,7 +73,7 @@ pub(crate) enum KeyRead {
 #[cfg(test)]
 thread_local! {
     /// The reads of this thread, in order, each with the full name of its key.
-    pub(crate) static READS: std::cell::RefCell<Vec<(String, KeyRead)>> = const { std::cell::RefCell::new(Vec::new()) };
+    pub(crate) static KEY_READS: std::cell::RefCell<Vec<(String, KeyRead)>> = const { std::cell::RefCell::new(Vec::new()) };
 }
 
 /// One table of the file.
@@ -101,13 +101,13 @@ impl<'a> Section<'a> {
     /// Opens the table `name`, which may have any keys.
     pub fn open(&self, name: &str) -> Checked<Self> {
         #[cfg(test)]
-        self.note(name, KeyRead::Table);
-        match self.value(name, "a table")? {
+        self.record_read(name, KeyRead::Table);
+        match self.required_value(name, "a table")? {
             DeValue::Table(table) => Ok(Self {
-                key: self.path(name),
+                key: self.full_key(name),
                 table,
             }),
-            value => Err(self.wrong_type(name, value, "a table")),
+            value => Err(self.wrong_type_fault(name, value, "a table")),
         }
     }
 
@@ -115,10 +115,10 @@ impl<'a> Section<'a> {
     pub fn require_known_keys(self, allowed: &[&str]) -> Checked<Self> {
         #[cfg(test)]
         for name in allowed {
-            self.note(name, KeyRead::Allowed);
+            self.record_read(name, KeyRead::Allowed);
         }
         let is_unknown = |name: &&str| !allowed.contains(name);
-        match self.names().into_iter().find(is_unknown) {
+        match self.key_names().into_iter().find(is_unknown) {
             Some(name) => {
                 let hint = hint(name, allowed);
                 Err(self.fault(name, format!("is not a known key; {hint}")))
@@ -129,7 +129,7 @@ impl<'a> Section<'a> {
 
     /// Refuses the keys `names`, which belong to an earlier version of the file; `instead` says what to write.
     pub fn refuse_moved_keys(&self, names: &[&str], instead: &str) -> Checked<()> {
-        match names.iter().find(|name| self.has(name)) {
+        match names.iter().find(|name| self.has_key(name)) {
             Some(name) => {
                 let message = format!("is not read any more; write {instead}");
                 Err(self.fault(name, message))
@@ -139,19 +139,19 @@ impl<'a> Section<'a> {
     }
 
     /// The table's keys in the order of the file.
-    pub fn names(&self) -> Vec<&'a str> {
+    pub fn key_names(&self) -> Vec<&'a str> {
         let mut keys: Vec<_> = self.table.keys().collect();
         keys.sort_by_key(|key| key.span().start);
         keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
     }
 
     /// True if the table has this key.
-    pub fn has(&self, name: &str) -> bool {
+    pub fn has_key(&self, name: &str) -> bool {
         self.table.contains_key(name)
     }
 
     /// The full name of a key of this table.
-    pub fn path(&self, name: &str) -> String {
+    pub fn full_key(&self, name: &str) -> String {
         if self.key.is_empty() {
             name.to_string()
         } else {
@@ -159,18 +159,19 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A mistake at a key of this table.
+    /// Makes a mistake at a key of this table.
     pub fn fault(&self, name: &str, problem: impl Into<String>) -> Fault {
-        Fault::new(self.path(name), problem)
+        Fault::new(self.full_key(name), problem)
     }
 
     /// Reads a number from `min` to `max`, both included.
     pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> Checked<f64> {
         #[cfg(test)]
-        self.note_number(name, (min, max), unit, None);
-        const EXPECTED: &str = "a number";
-        let value = self.value(name, EXPECTED)?;
-        let value = number_of(value).ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
+        self.record_number_read(name, (min, max), unit, None);
+        const EXPECTED_TYPE: &str = "a number";
+        let value = self.required_value(name, EXPECTED_TYPE)?;
+        let value = to_decimal_number(value)
+            .ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))?;
         self.require_in_range(name, value, (min, max), unit)
     }
 
@@ -184,15 +185,15 @@ impl<'a> Section<'a> {
         unit: &str,
     ) -> Checked<f64> {
         #[cfg(test)]
-        self.note_number(name, (min, max), unit, Some(default));
-        if self.has(name) {
+        self.record_number_read(name, (min, max), unit, Some(default));
+        if self.has_key(name) {
             self.number(name, min, max, unit)
         } else {
             Ok(default)
         }
     }
 
-    /// Refuses the `value` of a key that is not less than `limit`, the value of the key `other` of this table.
+    /// Refuses the `value` of a key unless it is less than `limit`, the value of the key `other` in the same table.
     pub fn require_less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
         if value < limit {
             return Ok(());
@@ -203,10 +204,10 @@ impl<'a> Section<'a> {
 
     /// Reads a string.
     pub fn text(&self, name: &str) -> Checked<&'a str> {
-        const EXPECTED: &str = "a string";
-        let value = self.value(name, EXPECTED)?;
+        const EXPECTED_TYPE: &str = "a string";
+        let value = self.required_value(name, EXPECTED_TYPE)?;
         let text = value.as_str();
-        text.ok_or_else(|| self.wrong_type(name, value, EXPECTED))
+        text.ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))
     }
 
     /// Reads an array of exactly `N` numbers from `min` to `max`.
@@ -218,19 +219,21 @@ impl<'a> Section<'a> {
         unit: &str,
     ) -> Checked<[f64; N]> {
         #[cfg(test)]
-        self.note_number(name, (min, max), unit, None);
-        let expected = match N {
+        self.record_number_read(name, (min, max), unit, None);
+        let expected_type = match N {
             2 => "an array of two numbers",
             _ => "an array of three numbers",
         };
-        let value = self.value(name, expected)?;
+        let value = self.required_value(name, expected_type)?;
         let DeValue::Array(array) = value else {
-            return Err(self.wrong_type(name, value, expected));
+            return Err(self.wrong_type_fault(name, value, expected_type));
         };
-        let numbers: Option<Vec<f64>> =
-            array.iter().map(|item| number_of(item.get_ref())).collect();
+        let numbers: Option<Vec<f64>> = array
+            .iter()
+            .map(|item| to_decimal_number(item.get_ref()))
+            .collect();
         let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
-            let message = format!("is an array of {}; it must be {expected}", array.len());
+            let message = format!("is an array of {}; it must be {expected_type}", array.len());
             return Err(self.fault(name, message));
         };
         for value in numbers {
@@ -240,59 +243,59 @@ impl<'a> Section<'a> {
     }
 
     /// Reads an array of strings.
-    pub fn words(&self, name: &str) -> Checked<Vec<&'a str>> {
-        const EXPECTED: &str = "an array of strings";
-        let value = self.value(name, EXPECTED)?;
-        let words = value
+    pub fn strings(&self, name: &str) -> Checked<Vec<&'a str>> {
+        const EXPECTED_TYPE: &str = "an array of strings";
+        let value = self.required_value(name, EXPECTED_TYPE)?;
+        let strings = value
             .as_array()
             .and_then(|array| array.iter().map(|item| item.get_ref().as_str()).collect());
-        words.ok_or_else(|| self.wrong_type(name, value, EXPECTED))
+        strings.ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))
     }
 
     /// Reads an array of tables that may have only the keys `allowed`; empty if the key is left out.
-    pub fn list(&self, name: &str, allowed: &[&str]) -> Checked<Vec<Section<'a>>> {
+    pub fn sections(&self, name: &str, allowed: &[&str]) -> Checked<Vec<Section<'a>>> {
         #[cfg(test)]
-        self.note(name, KeyRead::Table);
-        const EXPECTED: &str = "an array of tables";
-        if !self.has(name) {
+        self.record_read(name, KeyRead::Table);
+        const EXPECTED_TYPE: &str = "an array of tables";
+        if !self.has_key(name) {
             return Ok(Vec::new());
         }
-        let value = self.value(name, EXPECTED)?;
+        let value = self.required_value(name, EXPECTED_TYPE)?;
         let items = value.as_array();
-        let items = items.ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
+        let items = items.ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))?;
         let read_section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
             let name = format!("{name}[{i}]");
             match item.get_ref() {
                 DeValue::Table(table) => Section {
-                    key: self.path(&name),
+                    key: self.full_key(&name),
                     table,
                 }
                 .require_known_keys(allowed),
-                value => Err(self.wrong_type(&name, value, "a table")),
+                value => Err(self.wrong_type_fault(&name, value, "a table")),
             }
         };
         items.iter().enumerate().map(read_section).collect()
     }
 
     #[cfg(test)]
-    fn note(&self, name: &str, read: KeyRead) {
-        READS.with_borrow_mut(|reads| reads.push((self.path(name), read)));
+    fn record_read(&self, name: &str, read: KeyRead) {
+        KEY_READS.with_borrow_mut(|reads| reads.push((self.full_key(name), read)));
     }
 
     #[cfg(test)]
-    fn note_number(&self, name: &str, range: (f64, f64), unit: &str, default: Option<f64>) {
+    fn record_number_read(&self, name: &str, range: (f64, f64), unit: &str, default: Option<f64>) {
         let unit = unit.to_owned();
         let read = KeyRead::Number {
             range,
             unit,
             default,
         };
-        self.note(name, read);
+        self.record_read(name, read);
     }
 
     /// Returns the value of a key; a missing key is a mistake.
-    fn value(&self, name: &str, expected: &str) -> Checked<&'a DeValue<'a>> {
-        let missing_fault = || self.fault(name, format!("is missing; it must be {expected}"));
+    fn required_value(&self, name: &str, expected_type: &str) -> Checked<&'a DeValue<'a>> {
+        let missing_fault = || self.fault(name, format!("is missing; it must be {expected_type}"));
         let value = self.table.get(name).map(Spanned::get_ref);
         value.ok_or_else(missing_fault)
     }
@@ -307,12 +310,12 @@ impl<'a> Section<'a> {
     ) -> Checked<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
-            false => Err(Fault::range(self.path(name), value, range, unit)),
+            false => Err(Fault::out_of_range(self.full_key(name), value, range, unit)),
         }
     }
 
-    /// The mistake of a value that has another type than expected.
-    fn wrong_type(&self, name: &str, value: &DeValue, expected: &str) -> Fault {
+    /// Returns the mistake for a value of a type other than expected.
+    fn wrong_type_fault(&self, name: &str, value: &DeValue, expected_type: &str) -> Fault {
         let found_type = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
             DeValue::Integer(number) => number.to_string(),
@@ -322,12 +325,12 @@ impl<'a> Section<'a> {
             DeValue::Array(_) => "an array".to_string(),
             DeValue::Table(_) => "a table".to_string(),
         };
-        self.fault(name, format!("is {found_type}; it must be {expected}"))
+        self.fault(name, format!("is {found_type}; it must be {expected_type}"))
     }
 }
 
 /// The value of a decimal integer or a finite float; `None` for anything else, such as TOML's nan, inf or 0x1f.
-fn number_of(value: &DeValue) -> Option<f64> {
+fn to_decimal_number(value: &DeValue) -> Option<f64> {
     let text = match value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
         DeValue::Float(float) => float.as_str(),

@@ -1,25 +1,26 @@
 //! The likely mistake in a line that is not TOML.
 //!
-//! A parser names the token that it expected, in the terms of its grammar. The author needs to
+//! A parser's message names the token that it expected, in the terms of its grammar. The author needs to
 //! read the mistake itself: a missing value, a decimal comma, or a unit after a number. So this
-//! module checks the line for such mistakes. If it finds no such mistake, the parser's message is kept.
+//! module checks the line for such mistakes. If it finds none, the parser's message is kept.
 
 /// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own.
 pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
     let line_index = text
         .get(..offset)
         .map_or(0, |text| text.matches('\n').count());
-    let lines: Vec<&str> = text.lines().map(without_comment).collect();
+    let lines: Vec<&str> = text.lines().map(strip_comment).collect();
     let line = lines.get(line_index).copied().unwrap_or_default();
-    let duplicate = (message == "duplicate key").then(|| find_duplicate(&lines, line_index));
-    duplicate
+    let duplicate_message =
+        (message == "duplicate key").then(|| explain_duplicate(&lines, line_index));
+    duplicate_message
         .flatten()
-        .or_else(|| find_mistake_in_line(line))
+        .or_else(|| explain_mistake_in_line(line))
         .unwrap_or_else(|| format!("this is not TOML: {message}"))
 }
 
 /// Removes a line's comment, and the white space at both ends.
-fn without_comment(line: &str) -> &str {
+fn strip_comment(line: &str) -> &str {
     let mut open_quote = None;
     let mut is_escaped = false;
     for (index, letter) in line.char_indices() {
@@ -35,20 +36,20 @@ fn without_comment(line: &str) -> &str {
     line.trim()
 }
 
-/// The name of a table if this line is its heading; `None` for any other line.
-fn heading_of(line: &str) -> Option<&str> {
+/// Returns the name of a table if this line is its header; `None` for any other line.
+fn table_header_name(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
 
-/// The message for a table or a key that line `line_index`, counted from 0, repeats; `None` if the first occurrence is
-/// not found.
-fn find_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
+/// Returns the message for a table or a key that is repeated in line `line_index`, counted from 0; `None` if its first
+/// occurrence is not found.
+fn explain_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
     let lines_before = lines.get(..line_index)?;
     let line = lines.get(line_index)?;
-    if let Some(table) = heading_of(line) {
+    if let Some(table) = table_header_name(line) {
         let first_line = lines_before
             .iter()
-            .position(|line| heading_of(line) == Some(table))?
+            .position(|line| table_header_name(line) == Some(table))?
             + 1;
         return Some(format!(
             "the table [{table}] is there twice, first in line {first_line}; put all its keys under one of them"
@@ -57,7 +58,7 @@ fn find_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
     let key = line.split_once('=')?.0.trim();
     let table_start = lines_before
         .iter()
-        .rposition(|line| heading_of(line).is_some())
+        .rposition(|line| table_header_name(line).is_some())
         .map_or(0, |index| index + 1);
     let is_key = |line: &&str| {
         line.split_once('=')
@@ -70,9 +71,9 @@ fn find_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
 }
 
 /// The message for a mistake within one line; `None` if no known mistake is found.
-fn find_mistake_in_line(line: &str) -> Option<String> {
+fn explain_mistake_in_line(line: &str) -> Option<String> {
     if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
-        return Some(format!("`{line}` lacks the ] behind the table's name"));
+        return Some(format!("`{line}` lacks the ] after the table's name"));
     }
     let Some((key, value)) = line.split_once('=') else {
         let key = line.split_whitespace().next()?;
@@ -83,9 +84,9 @@ fn find_mistake_in_line(line: &str) -> Option<String> {
     };
     let (key, value) = (key.trim(), value.trim());
     if value.is_empty() {
-        return Some(format!("`{key}` has no value behind the ="));
+        return Some(format!("`{key}` has no value after the ="));
     }
-    explain_number(value).or_else(|| explain_bare_word(value))
+    explain_number(value).or_else(|| explain_unquoted_string(value))
 }
 
 /// The message for a number in a form that TOML does not allow; `None` for anything else.
@@ -98,39 +99,39 @@ fn explain_number(value: &str) -> Option<String> {
         && are_digits(fraction)
     {
         return Some(format!(
-            "`{value}` is no number; the decimal mark is a point: {integer}.{fraction}"
+            "`{value}` is not a number; the decimal mark is a point: {integer}.{fraction}"
         ));
     }
-    let unsigned = value.trim_start_matches(['-', '+']);
-    if let Some(fraction) = unsigned.strip_prefix('.')
+    let unsigned_value = value.trim_start_matches(['-', '+']);
+    if let Some(fraction) = unsigned_value.strip_prefix('.')
         && are_digits(fraction)
     {
         let sign = if value.starts_with('-') { "-" } else { "" };
         return Some(format!(
-            "`{value}` is no number in TOML; write {sign}0.{fraction}"
+            "`{value}` is not a number in TOML; write {sign}0.{fraction}"
         ));
     }
-    if let Some(integer) = unsigned.strip_suffix('.')
+    if let Some(integer) = unsigned_value.strip_suffix('.')
         && are_digits(integer)
     {
-        return Some(format!("`{value}` is no number in TOML; write {value}0"));
+        return Some(format!("`{value}` is not a number in TOML; write {value}0"));
     }
     let split_index = value.find(|c: char| c.is_alphabetic() || c.is_whitespace() || c == '%')?;
     let (amount, unit) = (value[..split_index].trim(), value[split_index..].trim());
     let is_unit = unit.starts_with(|c: char| c.is_alphabetic() || c == '%');
     (is_number(amount) && is_unit).then(|| {
         format!(
-            "`{value}`: a number stands alone; write {amount}, and `{unit}` behind a # if at all"
+            "`{value}`: a number stands alone; write {amount}, with `{unit}` only in a comment after #"
         )
     })
 }
 
 /// The message for a string without quotation marks; `None` for anything else.
-fn explain_bare_word(value: &str) -> Option<String> {
+fn explain_unquoted_string(value: &str) -> Option<String> {
     let is_plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
     let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(is_plain);
-    let is_known = ["true", "false", "inf", "nan"].contains(&value);
-    (is_word && !is_known)
+    let is_toml_word = ["true", "false", "inf", "nan"].contains(&value);
+    (is_word && !is_toml_word)
         .then(|| format!("`{value}` lacks its quotation marks; write \"{value}\""))
 }
 
@@ -147,30 +148,30 @@ mod tests {
     #[test]
     fn a_mistake_is_named_with_its_correction() {
         for (line, expected) in [
-            ("l1 = ", "`l1` has no value behind the ="),
-            ("l1 = # mm", "`l1` has no value behind the ="),
+            ("l1 = ", "`l1` has no value after the ="),
+            ("l1 = # mm", "`l1` has no value after the ="),
             (
                 "l1 = 30,0",
-                "`30,0` is no number; the decimal mark is a point: 30.0",
+                "`30,0` is not a number; the decimal mark is a point: 30.0",
             ),
             (
                 "l1 = -0,5 # mm",
-                "`-0,5` is no number; the decimal mark is a point: -0.5",
+                "`-0,5` is not a number; the decimal mark is a point: -0.5",
             ),
-            ("l1 = .5", "`.5` is no number in TOML; write 0.5"),
-            ("l1 = -.5", "`-.5` is no number in TOML; write -0.5"),
-            ("l1 = 30.", "`30.` is no number in TOML; write 30.0"),
+            ("l1 = .5", "`.5` is not a number in TOML; write 0.5"),
+            ("l1 = -.5", "`-.5` is not a number in TOML; write -0.5"),
+            ("l1 = 30.", "`30.` is not a number in TOML; write 30.0"),
             (
                 "l1 = 30 mm",
-                "`30 mm`: a number stands alone; write 30, and `mm` behind a # if at all",
+                "`30 mm`: a number stands alone; write 30, with `mm` only in a comment after #",
             ),
             (
                 "l1 = 30mm",
-                "`30mm`: a number stands alone; write 30, and `mm` behind a # if at all",
+                "`30mm`: a number stands alone; write 30, with `mm` only in a comment after #",
             ),
             ("l1 30", "`l1 30` lacks the = between `l1` and its value"),
             ("pin = D9", "`D9` lacks its quotation marks; write \"D9\""),
-            ("[links", "`[links` lacks the ] behind the table's name"),
+            ("[links", "`[links` lacks the ] after the table's name"),
         ] {
             assert_eq!(message_for(line), expected);
             assert_eq!(
@@ -183,13 +184,17 @@ mod tests {
     #[test]
     fn a_second_occurrence_is_named_with_the_line_of_the_first() {
         let text = "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n";
-        let offset = text.rfind("x = 4").expect("there");
+        let offset = text
+            .rfind("x = 4")
+            .expect("the text has the second occurrence");
         assert_eq!(
             explain_mistake(text, offset, "duplicate key"),
             "`x` is there twice, first in line 4; keep one of them"
         );
         let text = "[servo.A1]\npin = \"D9\"\n[servo.A2]\n[servo.A1] # again\n";
-        let offset = text.rfind("[servo.A1]").expect("there");
+        let offset = text
+            .rfind("[servo.A1]")
+            .expect("the text has the second occurrence");
         assert_eq!(
             explain_mistake(text, offset, "duplicate key"),
             "the table [servo.A1] is there twice, first in line 1; put all its keys under one of them"

@@ -3,7 +3,7 @@
 
 use crate::gaits::gait::Gait;
 use crate::gaits::waveform::Waveform;
-use crate::measures::servo::LEGS;
+use crate::measures::servo::LEG_NAMES;
 
 /// A gait whose legs have one waveform, each with its own start and gain.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,17 +11,17 @@ use crate::measures::servo::LEGS;
 pub struct Bars {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// True if the legs have a common stance, then swing one after the other and hold between;
+    /// True if the legs have a common stance, then swing one after the other and hold in between;
     /// false if all legs always move.
     pub held: bool,
-    /// Time of a cycle at full speed, s.
+    /// Duration of a cycle at full speed, s.
     pub period: f64,
     /// The stance's share of the cycle; unused if legs hold.
     pub duty: f64,
     /// Largest sweep of a leg, deg.
     pub amplitude: f64,
     /// Phase at which each stance begins, 0 to 1, in servo order: LF, RF, RH, LH. If legs hold,
-    /// only the order of the phases counts: it is the order of the swings.
+    /// only the order of the phases matters: it is the order of the swings.
     pub start: [f64; 4],
     /// Each leg's amplitude as a share of `amplitude`; negative if the leg moves opposite to the others.
     pub gain: [f64; 4],
@@ -49,20 +49,20 @@ impl Bars {
                     bars.duty = duty;
                     *start = stride.start;
                 }
-                Waveform::Held { turn } => {
+                Waveform::Held { swing_index } => {
                     bars.held = true;
-                    *start = turn as f64 / 4.0;
+                    *start = swing_index as f64 / 4.0;
                 }
                 _ => return None,
             }
         }
-        Some(match gait.reversed {
+        Some(match gait.is_reversed {
             true => bars.reversed(),
             false => bars,
         })
     }
 
-    /// Reverses the gait in time: a gait that walks ahead becomes one that walks back.
+    /// Returns the gait reversed in time: a gait that walks ahead becomes one that walks back.
     ///
     /// A wave's stance and swing are each point-symmetric about their middle. So a wave played
     /// backwards is the negated wave, whose stance begins where the original one ends. A held gait
@@ -79,7 +79,7 @@ impl Bars {
             ..self.clone()
         };
         if self.held {
-            // Shift the starts so that the first leg in the order has 0.
+            // The first leg in the order starts at 0.
             let first_start = reversed.start.into_iter().fold(f64::MAX, f64::min);
             reversed.start = reversed.start.map(|start| start - first_start);
         }
@@ -87,9 +87,9 @@ impl Bars {
     }
 
     /// Writes the gait as a table of robot.toml, rounded to thousandths.
-    pub fn table(&self) -> String {
+    pub fn to_toml(&self) -> String {
         let format_legs = |values: [f64; 4]| {
-            let entries = LEGS.iter().zip(values);
+            let entries = LEG_NAMES.iter().zip(values);
             let entries =
                 entries.map(|(leg, value)| format!("{leg} = {:?}", round_to_thousandths(value)));
             format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
@@ -101,7 +101,9 @@ impl Bars {
         let waveform = if self.held {
             let mut order = [0, 1, 2, 3];
             order.sort_by(|a, b| self.start[*a].total_cmp(&self.start[*b]));
-            let order = order.map(|leg| format!("\"{}\"", LEGS[leg])).join(", ");
+            let order = order
+                .map(|leg| format!("\"{}\"", LEG_NAMES[leg]))
+                .join(", ");
             format!("waveform = \"held\"\namplitude = {amplitude:?}\norder = [{order}]\n")
         } else {
             let duty = round_to_thousandths(self.duty);

@@ -1,9 +1,9 @@
-//! Gait definitions in robot.toml: each has a waveform, a path, or another gait from which it is derived.
+//! Gait definitions in robot.toml: each gives a waveform, a path, or another gait from which the gait is derived.
 
 use std::collections::HashMap;
 
 use lizard_core::console::word::Word;
-use lizard_core::memory::settings::key;
+use lizard_core::memory::settings::gait_key;
 use lizard_core::numbers::gaits::{MAX_GAITS, MAX_NAME_BYTES};
 use lizard_kinematics::End;
 
@@ -13,9 +13,9 @@ use crate::gaits::path::{Harmonic, Path};
 use crate::gaits::path_leg::PathLeg;
 use crate::gaits::waveform::Waveform;
 use crate::measures::Measures;
-use crate::measures::servo::LEGS;
+use crate::measures::servo::LEG_NAMES;
 
-const KEYS: [&str; 12] = [
+const GAIT_KEYS: [&str; 12] = [
     "period",
     "waveform",
     "duty",
@@ -29,13 +29,13 @@ const KEYS: [&str; 12] = [
     "head",
     "tail",
 ];
-const WAVEFORMS: [&str; 3] = ["still", "wave", "held"];
-const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
+const WAVEFORM_NAMES: [&str; 3] = ["still", "wave", "held"];
+const REFERENCE_KEYS: [&str; 3] = ["reverse", "mirror", "like"];
 
 /// Reads the gaits in the order of the file and resolves their references.
-pub(crate) fn read_gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
+pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gait>> {
     let section = root.open("gait")?;
-    let names = section.names();
+    let names = section.key_names();
     for name in &names {
         check_name(name, "gait").map_err(|problem| section.fault(name, problem))?;
     }
@@ -55,9 +55,9 @@ pub(crate) fn read_gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> 
     let mut resolver = Resolver {
         section,
         names,
-        body,
-        known: HashMap::new(),
-        chain: Vec::new(),
+        measures,
+        resolved_gaits: HashMap::new(),
+        reference_chain: Vec::new(),
     };
     let gaits = resolver
         .names
@@ -82,7 +82,7 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> 
         let console_name = name
             .bytes()
             .map(|byte| if byte == b'-' { b' ' } else { byte });
-        if let Some(other_name) = names_by_key.insert(key(console_name), *name) {
+        if let Some(other_name) = names_by_key.insert(gait_key(console_name), *name) {
             let message = format!(
                 "is not a gait name: the memory would take it for {other_name} when `boot` begins it, so one of them needs another name"
             );
@@ -92,8 +92,8 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> 
     Ok(())
 }
 
-/// Refuses a name that the console cannot accept as a command, or that it could not print. `noun` is "gait" or
-/// "routine", for the message.
+/// Refuses a name that the console cannot accept as a command or cannot print. `noun` is "gait" or "routine", for the
+/// message.
 pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let refuse = |reason: String| Err(format!("is not a {noun} name: {reason}"));
@@ -118,30 +118,30 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// A reader of gaits by name. It reads each gait after the gaits to which that gait refers.
+/// A reader of gaits by name. It reads a gait only after the gait to which it refers.
 struct Resolver<'a> {
     section: Section<'a>,
     names: Vec<&'a str>,
-    body: &'a Measures,
-    known: HashMap<&'a str, Gait>,
-    /// Names of the gaits that are being read: each refers to the next.
-    chain: Vec<&'a str>,
+    measures: &'a Measures,
+    resolved_gaits: HashMap<&'a str, Gait>,
+    /// Names of the gaits that are being read, each of which refers to the next.
+    reference_chain: Vec<&'a str>,
 }
 
 impl<'a> Resolver<'a> {
     fn resolve(&mut self, name: &'a str) -> Checked<Gait> {
-        if let Some(gait) = self.known.get(name) {
+        if let Some(gait) = self.resolved_gaits.get(name) {
             return Ok(gait.clone());
         }
-        self.chain.push(name);
-        let table = self.section.section(name, &KEYS)?;
+        self.reference_chain.push(name);
+        let table = self.section.section(name, &GAIT_KEYS)?;
         let gait = match definition_key(&table)? {
-            "waveform" => read_waveform(name, &table, self.body)?,
-            "head or tail" => read_path(name, &table, self.body)?,
+            "waveform" => read_waveform(name, &table, self.measures)?,
+            "head or tail" => read_path(name, &table, self.measures)?,
             reference => self.read_derived(name, &table, reference)?,
         };
-        self.chain.pop();
-        self.known.insert(name, gait.clone());
+        self.reference_chain.pop();
+        self.resolved_gaits.insert(name, gait.clone());
         Ok(gait)
     }
 
@@ -159,14 +159,16 @@ impl<'a> Resolver<'a> {
             let message = format!("names the gait \"{base}\", which does not exist; {hint}");
             return Err(table.fault(reference, message));
         }
-        if self.chain.contains(&base) {
-            let circle = [self.chain.as_slice(), &[base]].concat().join(" -> ");
+        if self.reference_chain.contains(&base) {
+            let circle = [self.reference_chain.as_slice(), &[base]]
+                .concat()
+                .join(" -> ");
             let message = format!("the gaits refer to each other in a circle: {circle}");
-            return Err(Fault::clause(table.path(reference), message));
+            return Err(Fault::clause(table.full_key(reference), message));
         }
         let mut gait = self.resolve(base)?;
         match reference {
-            "reverse" => gait.reversed = !gait.reversed,
+            "reverse" => gait.is_reversed = !gait.is_reversed,
             "mirror" => gait = gait.mirrored(),
             _ => {}
         }
@@ -176,14 +178,14 @@ impl<'a> Resolver<'a> {
     }
 }
 
-/// Finds the single key that defines this gait.
+/// Returns the only key that defines this gait; the keys `head` and `tail` of a path count as one.
 fn definition_key(table: &Section) -> Checked<&'static str> {
-    let has_path = table.has("head") || table.has("tail");
-    let mut definitions: Vec<&'static str> = REFERENCES
+    let has_path = table.has_key("head") || table.has_key("tail");
+    let mut definitions: Vec<&'static str> = REFERENCE_KEYS
         .into_iter()
-        .filter(|key| table.has(key))
+        .filter(|key| table.has_key(key))
         .collect();
-    definitions.extend(table.has("waveform").then_some("waveform"));
+    definitions.extend(table.has_key("waveform").then_some("waveform"));
     definitions.extend(has_path.then_some("head or tail"));
     match definitions.as_slice() {
         [definition] => Ok(definition),
@@ -198,7 +200,7 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
 /// Refuses keys outside `allowed`: they are meaningless together with `partner`.
 fn allow_only(table: &Section, allowed: &[&str], partner: &str) -> Checked<()> {
     match table
-        .names()
+        .key_names()
         .into_iter()
         .find(|name| !allowed.contains(name))
     {
@@ -207,10 +209,10 @@ fn allow_only(table: &Section, allowed: &[&str], partner: &str) -> Checked<()> {
     }
 }
 
-fn read_waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
-    let word = table.text("waveform")?;
-    let partner = format!("waveform = \"{word}\"");
-    let strides = match word {
+fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> {
+    let waveform_name = table.text("waveform")?;
+    let partner = format!("waveform = \"{waveform_name}\"");
+    let strides = match waveform_name {
         "still" => {
             allow_only(table, &["waveform", "period"], &partner)?;
             [Stride::STILL; 4]
@@ -226,7 +228,7 @@ fn read_waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> 
             };
             let amplitude = read_amplitude(table)?;
             let starts = read_legs(
-                &table.section("start", &LEGS)?,
+                &table.section("start", &LEG_NAMES)?,
                 None,
                 0.0,
                 1.0,
@@ -245,25 +247,25 @@ fn read_waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> 
                 &partner,
             )?;
             let amplitude = read_amplitude(table)?;
-            read_order(table)?.map(|turn| Stride {
-                waveform: Waveform::Held { turn },
+            read_order(table)?.map(|swing_index| Stride {
+                waveform: Waveform::Held { swing_index },
                 start: 0.0,
                 amplitude,
             })
         }
         word => {
-            let hint = hint(word, &WAVEFORMS);
+            let hint = hint(word, &WAVEFORM_NAMES);
             return Err(table.fault("waveform", format!("is \"{word}\"; {hint}")));
         }
     };
-    finish(name, table, body, strides)
+    build_gait(name, table, measures, strides)
 }
 
-fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
+fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> {
     allow_only(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
-        if !table.has(end.name()) {
+        if !table.has_key(end.name()) {
             continue;
         }
         let section = table.section(end.name(), &["centre", "x", "y"])?;
@@ -272,10 +274,10 @@ fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
             x: read_harmonics(&section, "x")?,
             y: read_harmonics(&section, "y")?,
         };
-        let legs =
-            PathLeg::both_servos(body.lizard, body.neutral(), end, &path).map_err(|problem| {
+        let legs = PathLeg::for_both_servos(measures.lizard, measures.neutral_angles(), end, &path)
+            .map_err(|problem| {
                 let meaning = format!("in \"{name}\" the {end} would not reach its line");
-                Fault::clause(section.key.clone(), problem).meaning(meaning)
+                Fault::clause(section.key.clone(), problem).with_meaning(meaning)
             })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
@@ -285,17 +287,22 @@ fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
             };
         }
     }
-    finish(name, table, body, strides)
+    build_gait(name, table, measures, strides)
 }
 
-/// Makes a gait of its strides, with the period and the gains of its table.
-fn finish(name: &str, table: &Section, body: &Measures, strides: [Stride; 4]) -> Checked<Gait> {
+/// Makes a gait from its strides, with the period and the gains of its table.
+fn build_gait(
+    name: &str,
+    table: &Section,
+    measures: &Measures,
+    strides: [Stride; 4],
+) -> Checked<Gait> {
     let gait = Gait {
         name: name.to_string(),
         period: read_period(table, None)?,
-        reversed: false,
+        is_reversed: false,
         strides,
-        neutral: body.neutral(),
+        neutral: measures.neutral_angles(),
     };
     Ok(gait.scaled(read_gains(table)?))
 }
@@ -312,11 +319,11 @@ fn read_amplitude(table: &Section) -> Checked<f64> {
 }
 
 fn read_gains(table: &Section) -> Checked<[f64; 4]> {
-    if !table.has("gain") {
+    if !table.has_key("gain") {
         return Ok([1.0; 4]);
     }
     read_legs(
-        &table.section("gain", &LEGS)?,
+        &table.section("gain", &LEG_NAMES)?,
         Some(1.0),
         -4.0,
         4.0,
@@ -333,7 +340,7 @@ fn read_legs(
     unit: &'static str,
 ) -> Checked<[f64; 4]> {
     let mut values = [0.0; 4];
-    for (value, leg) in values.iter_mut().zip(LEGS) {
+    for (value, leg) in values.iter_mut().zip(LEG_NAMES) {
         *value = match default {
             Some(default) => section.number_or(leg, default, min, max, unit)?,
             None => section.number(leg, min, max, unit)?,
@@ -342,25 +349,25 @@ fn read_legs(
     Ok(values)
 }
 
-/// Reads the order of swings: for each leg, in servo order, its position in the order.
+/// Reads the order of the swings. Returns each leg's position in it, 0 to 3, in servo order.
 fn read_order(table: &Section) -> Checked<[usize; 4]> {
-    let words = table.words("order")?;
+    let words = table.strings("order")?;
     let order_fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");
-    if words.len() != LEGS.len() {
+    if words.len() != LEG_NAMES.len() {
         return Err(order_fault());
     }
-    let mut turns = [0; 4];
-    for (turn, leg) in turns.iter_mut().zip(LEGS) {
-        *turn = words
+    let mut swing_indices = [0; 4];
+    for (swing_index, leg) in swing_indices.iter_mut().zip(LEG_NAMES) {
+        *swing_index = words
             .iter()
             .position(|word| *word == leg)
             .ok_or_else(order_fault)?;
     }
-    Ok(turns)
+    Ok(swing_indices)
 }
 
 fn read_harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
-    let terms = section.list(name, &["k", "amplitude", "shift"])?;
+    let terms = section.sections(name, &["k", "amplitude", "shift"])?;
     let read_term = |term: Section| {
         let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
         if k.fract() != 0.0 {

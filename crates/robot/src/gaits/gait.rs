@@ -1,7 +1,7 @@
 //! A gait in floating point: the reference for tables, pulses and predictions.
 
 use crate::gaits::waveform::Waveform;
-use crate::measures::servo::{FORWARD, OPPOSITE};
+use crate::measures::servo::{FORWARD_TURN_SIGN, OPPOSITE_SERVO};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The movement of one leg over a cycle: `amplitude * waveform(phase - start)`.
@@ -11,7 +11,7 @@ pub struct Stride {
     pub waveform: Waveform,
     /// Phase at which the waveform begins, 0 to 1.
     pub start: f64,
-    /// Sweep where the waveform is 1, deg; negative if the leg moves opposite to the others.
+    /// Sweep at which the waveform is 1, deg; negative if the leg moves opposite to the others.
     pub amplitude: f64,
 }
 
@@ -25,7 +25,7 @@ impl Stride {
 
     /// The leg's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
-        self.amplitude * self.waveform.at(phase - self.start)
+        self.amplitude * self.waveform.value_at(phase - self.start)
     }
 }
 
@@ -34,10 +34,10 @@ impl Stride {
 pub(crate) struct Gait {
     /// Name of the gait; with its dashes replaced by blanks, it is also the console command.
     pub name: String,
-    /// Time of one cycle at full speed, s.
+    /// Duration of one cycle at full speed, s.
     pub period: f64,
     /// True if the phase runs backwards, from 1 to 0.
-    pub reversed: bool,
+    pub is_reversed: bool,
     /// The legs in servo order: LF, RF, RH, LH.
     pub strides: [Stride; 4],
     /// The neutral servo angles, deg, chassis frame.
@@ -45,10 +45,10 @@ pub(crate) struct Gait {
 }
 
 impl Gait {
-    /// The phase at a time in s after a start at phase 0 at full speed.
-    pub fn phase(&self, seconds: f64) -> f64 {
+    /// The phase, 0 to 1, a number of seconds after a start at phase 0, at full speed.
+    pub fn phase_at(&self, seconds: f64) -> f64 {
         let cycles = seconds / self.period;
-        (if self.reversed { -cycles } else { cycles }).rem_euclid(1.0)
+        (if self.is_reversed { -cycles } else { cycles }).rem_euclid(1.0)
     }
 
     /// The legs' sweeps from neutral at a phase, deg, positive if the foot is forward, servo order.
@@ -59,7 +59,7 @@ impl Gait {
     /// The servo angles at a phase, deg, chassis frame, servo order.
     pub fn angles(&self, phase: f64) -> [f64; 4] {
         let sweeps = self.sweeps(phase);
-        std::array::from_fn(|i| self.neutral[i] + FORWARD[i] * sweeps[i])
+        std::array::from_fn(|i| self.neutral[i] + FORWARD_TURN_SIGN[i] * sweeps[i])
     }
 
     /// Converts sweeps from neutral in the firmware's angle steps to servo angles: deg, chassis frame, servo order.
@@ -67,13 +67,13 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
     }
 
-    /// Exchanges left and right.
+    /// Returns the gait with left and right exchanged.
     pub fn mirrored(mut self) -> Self {
-        self.strides = OPPOSITE.map(|i| self.strides[i].clone());
+        self.strides = OPPOSITE_SERVO.map(|i| self.strides[i].clone());
         self
     }
 
-    /// Multiplies each leg's sweep by its gain.
+    /// Returns the gait with each leg's sweep multiplied by its gain.
     pub fn scaled(mut self, gains: [f64; 4]) -> Self {
         for (stride, gain) in self.strides.iter_mut().zip(gains) {
             stride.amplitude *= gain;

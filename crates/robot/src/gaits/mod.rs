@@ -1,8 +1,8 @@
 //! Gaits in floating point, as robot.toml defines them.
 //!
 //! A gait is a movement that four legs repeat, each with its own phase. An author defines it by a waveform, by the
-//! path of the head or the tail, or by another gait with changes. Here each definition becomes the sweep of a leg
-//! at any phase, the reference for tables, pulses and predictions.
+//! path of the head or the tail, or by another gait with changes. Here each definition becomes the sweep of each
+//! leg at any phase, the reference for tables, pulses and predictions.
 
 mod bars;
 pub(crate) mod define;

@@ -1,4 +1,4 @@
-//! The closed curve along which a gait moves the point of head or tail.
+//! The closed curve along which a gait moves the end point of the head or the tail.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,7 @@ use lizard_kinematics::Vector;
 /// One harmonic of a path's coordinate: `amplitude * sin(2 pi (k phase + shift))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
-    /// Number of periods in a cycle, a whole number so that the path closes.
+    /// Order of the harmonic: its number of periods in a cycle, a whole number so that the path closes.
     pub k: f64,
     /// Amplitude, mm.
     pub amplitude: f64,
@@ -15,8 +15,8 @@ pub struct Harmonic {
     pub shift: f64,
 }
 
-/// A closed curve: a centre plus a sum of harmonics in each coordinate, mm from the middle of the base; y is
-/// positive outward.
+/// A closed curve: a centre plus a sum of harmonics in each coordinate. The coordinates are in mm from the middle of
+/// the base; y is positive outward.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// The mean point, mm.
@@ -29,7 +29,7 @@ pub struct Path {
 
 impl Path {
     /// The point at a phase of 0 to 1, mm.
-    pub fn at(&self, phase: f64) -> Vector {
+    pub fn point_at(&self, phase: f64) -> Vector {
         let sum_of = |terms: &[Harmonic]| {
             let value_of =
                 |term: &Harmonic| term.amplitude * (TAU * (term.k * phase + term.shift)).sin();

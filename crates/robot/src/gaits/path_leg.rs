@@ -4,9 +4,9 @@
 use lizard_kinematics::{End, Lizard, Vector, wrap};
 
 use crate::gaits::path::Path;
-use crate::measures::servo::FORWARD;
+use crate::measures::servo::FORWARD_TURN_SIGN;
 
-/// The motion of one of the two servos that move the end point of head or tail along a path.
+/// The motion of one of the two servos that move the end point of the head or the tail along a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathLeg {
     lizard: Lizard,
@@ -19,23 +19,23 @@ pub struct PathLeg {
 }
 
 /// Number of points per cycle at which a path is checked to be within reach.
-const CHECKED_POINTS: usize = 4096;
+const CHECKED_POINTS_PER_CYCLE: usize = 4096;
 
 impl PathLeg {
-    /// Makes the motions of the two servos of head or tail, each with its servo's index.
-    /// `neutral` has all four neutral angles, deg.
+    /// Makes the motions of the two servos of the head or the tail, each with its servo's index.
+    /// `neutral` has the neutral angles of all four servos, deg.
     ///
     /// # Errors
     /// Returns the message for a point of the path that is out of reach.
-    pub(crate) fn both_servos(
+    pub(crate) fn for_both_servos(
         lizard: Lizard,
         neutral: [f64; 4],
         end: End,
         path: &Path,
     ) -> Result<[(usize, Self); 2], String> {
-        for i in 0..CHECKED_POINTS {
-            let phase = i as f64 / CHECKED_POINTS as f64;
-            let point = path.at(phase);
+        for i in 0..CHECKED_POINTS_PER_CYCLE {
+            let phase = i as f64 / CHECKED_POINTS_PER_CYCLE as f64;
+            let point = path.point_at(phase);
             if lizard.point_angles(end, point).is_err() {
                 let (Vector { x, y }, end) = (point, end.name());
                 return Err(format!(
@@ -57,14 +57,14 @@ impl PathLeg {
 
     /// The servo's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // `both_servos` has checked only some points of the path. But none between them is out of reach
-        // either: type-1 margins are zero at the edge of reach, and the check of every sample
-        // keeps the path's margins far from zero.
+        // `for_both_servos` has checked only some points of the path, but the points between them are within
+        // reach, too: type-1 margins are zero at the edge of the reach, and the check of every
+        // sample keeps the path's margins far from zero.
         let angles = self
             .lizard
-            .point_angles(self.end, self.path.at(phase))
-            .expect("a path within reach");
+            .point_angles(self.end, self.path.point_at(phase))
+            .expect("the path is within reach");
         let angle = angles[self.servo % 2];
-        FORWARD[self.servo] * wrap(angle - self.neutral)
+        FORWARD_TURN_SIGN[self.servo] * wrap(angle - self.neutral)
     }
 }

@@ -6,26 +6,27 @@ use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
 
 use crate::file::{Checked, Fault, Section, hint};
 use crate::gaits::define::{check_boot_keys, check_name};
-use crate::measures::{INPUTS, Inputs};
+use crate::measures::{INPUT_NAMES, Inputs};
 use crate::units::FRAMES_PER_SECOND;
 
 /// The largest number of steps of a routine.
 const MAX_STEPS: usize = 99;
 
 /// The longest time of a step, s.
-const MAX_SECONDS: f64 = 999.0;
+const MAX_STEP_SECONDS: f64 = 999.0;
 
-/// The value of `repeat` for a routine without end.
+/// The value of `repeat` for a routine that never ends.
 const FOR_EVER: &str = "for ever";
 
 /// A routine whose every step has been checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Routine {
     name: String,
-    steps: Vec<Step>,
+    step_records: Vec<Step>,
+    /// The number of rounds; 0 if the routine repeats for ever.
     rounds: u16,
-    /// The index of the record at which each round except the first begins.
-    repeat_from: u16,
+    /// The index of the step record at which each round except the first begins.
+    repeat_record_index: u16,
 }
 
 impl Routine {
@@ -34,21 +35,21 @@ impl Routine {
         &self.name
     }
 
-    /// The routine's records in the section: one for each step. If an input ends the step, a record of that input
+    /// The routine's step records in the section: one for each step. If an input ends a step, a record of that input
     /// precedes it.
-    pub fn steps(&self) -> &[Step] {
-        &self.steps
+    pub fn step_records(&self) -> &[Step] {
+        &self.step_records
     }
 
     /// The number of steps.
-    pub fn count(&self) -> usize {
+    pub fn step_count(&self) -> usize {
         let is_step = |record: &&Step| record.kind != Step::UNTIL;
-        self.steps.iter().filter(is_step).count()
+        self.step_records.iter().filter(is_step).count()
     }
 
     /// True if an input may end one of the routine's steps.
     pub fn has_inputs(&self) -> bool {
-        self.count() < self.steps.len()
+        self.step_count() < self.step_records.len()
     }
 
     /// The number of rounds; `None` if the routine repeats for ever.
@@ -56,30 +57,34 @@ impl Routine {
         (self.rounds > 0).then_some(self.rounds)
     }
 
-    /// The routine's record in the section; `first` is the index of its first step record among the step records of
-    /// all routines.
-    pub(crate) fn record(&self, first: usize, name_start: usize) -> Record {
+    /// The routine's record in the section. `first_record_index` is the index of its first step record among the step
+    /// records of all routines; `name_start` is the index at which its name starts in the table of names.
+    pub(crate) fn record(&self, first_record_index: usize, name_start: usize) -> Record {
         let mut record = Record {
             name_start: name_start as u16,
             name_length: self.name.len() as u16,
-            ..Record::routine(first as u16, self.steps.len() as u16, self.rounds)
+            ..Record::routine(
+                first_record_index as u16,
+                self.step_records.len() as u16,
+                self.rounds,
+            )
         };
-        record.channels[3].offset = self.repeat_from;
+        record.channels[3].offset = self.repeat_record_index;
         record
     }
 }
 
-/// Reads the routines in the order of the file, for a robot with these gaits.
+/// Reads the routines, in the order of the file, of a robot with these gaits and inputs.
 pub(crate) fn read_routines(
     root: &Section,
     gaits: &[&str],
     inputs: &Inputs,
 ) -> Checked<Vec<Routine>> {
-    if !root.has("routine") {
+    if !root.has_key("routine") {
         return Ok(Vec::new());
     }
     let section = root.open("routine")?;
-    let names = section.names();
+    let names = section.key_names();
     for name in &names {
         check_name(name, "routine").map_err(|problem| section.fault(name, problem))?;
         if gaits.contains(name) {
@@ -95,8 +100,8 @@ pub(crate) fn read_routines(
         );
         return Err(Fault::new("routine", message));
     }
-    let read_one = |name: &&str| read_routine(&section, name, gaits, &names, inputs);
-    names.iter().map(read_one).collect()
+    let read_named_routine = |name: &&str| read_routine(&section, name, gaits, &names, inputs);
+    names.iter().map(read_named_routine).collect()
 }
 
 fn read_routine(
@@ -107,7 +112,7 @@ fn read_routine(
     inputs: &Inputs,
 ) -> Checked<Routine> {
     let table = section.section(name, &["steps", "repeat", "repeat_from"])?;
-    let texts = table.words("steps")?;
+    let texts = table.strings("steps")?;
     if texts.is_empty() || texts.len() > MAX_STEPS {
         let count = texts.len();
         let message = format!("has {count} steps; it must have 1 to {MAX_STEPS}");
@@ -116,22 +121,22 @@ fn read_routine(
     let parse_text = |(index, text): (usize, &&str)| {
         let fault_of = |problem| {
             let message = format!("step {}, \"{text}\", {problem}", index + 1);
-            Fault::clause(table.path("steps"), message)
+            Fault::clause(table.full_key("steps"), message)
         };
         parse_records(text, name, gaits, routines, inputs).map_err(fault_of)
     };
     let steps = texts.iter().enumerate().map(parse_text);
     let steps = steps.collect::<Checked<Vec<_>>>()?;
     let unit = "(a step)";
-    let first_repeated = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
-    if first_repeated.fract() != 0.0 {
-        let message = format!("is {first_repeated}; it must be the number of a step");
+    let first_repeated_step = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
+    if first_repeated_step.fract() != 0.0 {
+        let message = format!("is {first_repeated_step}; it must be the number of a step");
         return Err(table.fault("repeat_from", message));
     }
     Ok(Routine {
         name: name.to_string(),
-        repeat_from: steps[..first_repeated as usize - 1].concat().len() as u16,
-        steps: steps.concat(),
+        repeat_record_index: steps[..first_repeated_step as usize - 1].concat().len() as u16,
+        step_records: steps.concat(),
         rounds: read_rounds(&table)?,
     })
 }
@@ -150,7 +155,7 @@ fn read_rounds(table: &Section) -> Checked<u16> {
     Ok(rounds as u16)
 }
 
-/// Reads a step and its input, such as `wait button` or `walk 10 until nose`.
+/// Reads a step with its input, such as `wait button` or `walk 10 until nose`, as one or two records.
 fn parse_records(
     text: &str,
     own_name: &str,
@@ -190,12 +195,12 @@ fn parse_records(
 
 /// The message about a step with an input that robot.toml does not have.
 fn missing_input_message(name: &str) -> String {
-    if INPUTS.contains(&name) {
+    if INPUT_NAMES.contains(&name) {
         return format!(
             "names the input \"{name}\", which has no pin; [input.{name}] must have one, as pin = \"A1\""
         );
     }
-    let hint = hint(name, &INPUTS);
+    let hint = hint(name, &INPUT_NAMES);
     format!("names the input \"{name}\", which does not exist; {hint}")
 }
 
@@ -213,11 +218,11 @@ fn parse_step(
         words => (words, None),
     };
     if words == ["rest"] {
-        let unlimited = if has_input { Step::ENDLESS } else { 1 };
+        let default_count = if has_input { Step::ENDLESS } else { 1 };
         return Ok(Step {
             kind: Step::REST,
             gait: 0,
-            count: frames.unwrap_or(unlimited),
+            count: frames.unwrap_or(default_count),
         });
     }
     let (words, count) = match (words, frames) {
@@ -254,11 +259,11 @@ fn parse_step(
 fn parse_frames(time: &str) -> Result<u16, String> {
     let seconds: f64 = time.parse().unwrap_or(f64::NAN);
     let min = 1.0 / FRAMES_PER_SECOND;
-    if (min..=MAX_SECONDS).contains(&seconds) {
+    if (min..=MAX_STEP_SECONDS).contains(&seconds) {
         Ok((seconds * FRAMES_PER_SECOND).round() as u16)
     } else {
         Err(format!(
-            "has a time that is not within {min} to {MAX_SECONDS} s"
+            "has a time that is not within {min} to {MAX_STEP_SECONDS} s"
         ))
     }
 }

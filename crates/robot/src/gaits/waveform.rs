@@ -1,13 +1,13 @@
-//! The shape of one leg's sweep over a cycle. Feet are never lifted: a pad drags, and the robot walks because three
-//! feet hold while one returns. So a waveform is a slow stance, in which the foot moves back, and a fast swing
+//! The shape of one leg's sweep over a cycle. Feet are never lifted: their pads drag, and the robot walks because
+//! three feet hold while one returns. So a waveform is a slow stance, in which the foot moves back, and a fast swing
 //! forward. If the swing is long enough, stance and swing join without a jump in speed.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
 use crate::gaits::path_leg::PathLeg;
 
-/// Share of the cycle of each of the five moves in a held gait.
-const MOVE: f64 = 0.2;
+/// The share of the cycle that each of the five moves of a held gait takes.
+const MOVE_SHARE: f64 = 0.2;
 
 /// A function of the phase with values from -1 to 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,11 +20,11 @@ pub enum Waveform {
         /// The duty factor: the stance's share of the cycle, 0 to 1.
         duty: f64,
     },
-    /// A smoothstep back in the first fifth of the cycle, the stance common to all legs. Then a smoothstep forward,
-    /// the swing, in fifth number `turn + 1`, counted from 0. In the other fifths the leg holds.
+    /// A smoothstep back in the first fifth of the cycle, the stance common to all legs. The swing is a smoothstep
+    /// forward in fifth number `swing_index + 1`, counted from 0. In the other fifths the leg holds.
     Held {
         /// Index of this leg's swing among the four, 0 to 3.
-        turn: usize,
+        swing_index: usize,
     },
     /// A leg whose servo follows a path of the head or tail point. The value is the sweep itself in degrees, so the
     /// amplitude is 1.
@@ -33,21 +33,21 @@ pub enum Waveform {
 
 impl Waveform {
     /// The value at any `phase`, taken modulo 1.
-    pub fn at(&self, phase: f64) -> f64 {
+    pub fn value_at(&self, phase: f64) -> f64 {
         let u = phase.rem_euclid(1.0);
         match self {
             Self::Still => 0.0,
             Self::Wave { duty } => wave_value(u, *duty),
-            Self::Held { turn } => held_value(u, *turn),
+            Self::Held { swing_index } => held_value(u, *swing_index),
             Self::Path(leg) => leg.sweep(u),
         }
     }
 }
 
-/// The value of a wave with duty factor beta at phase u. The stance is 1 - 2u/beta; then, with
-/// t = (u - beta)/(1 - beta) and the slope m = -2 (1 - beta)/beta at both of its ends, the swing is the Hermite
-/// cubic from -1 to 1; all is divided by the cubic's peak. To keep its speed, the foot overshoots a little before it
-/// reverses (by 1.4 % at beta = 0.75), and the amplitude includes the overshoot.
+/// The value at phase u of a wave with duty factor beta. The stance is 1 - 2u/beta. The swing is the Hermite cubic in
+/// t = (u - beta)/(1 - beta) from -1 to 1, with the stance's slope m = -2 (1 - beta)/beta at both ends. Since the foot
+/// keeps its speed there, it overshoots a little before it reverses (by 1.4 % at beta = 0.75). So both parts are
+/// divided by the cubic's peak, and the amplitude includes the overshoot.
 fn wave_value(u: f64, duty: f64) -> f64 {
     let m = -2.0 * (1.0 - duty) / duty;
     let shape = if u < duty {
@@ -67,26 +67,29 @@ fn hermite(t: f64, m: f64) -> f64 {
 }
 
 /// The value of a held waveform at phase u.
-fn held_value(u: f64, turn: usize) -> f64 {
-    let start = MOVE * (turn + 1) as f64;
-    1.0 - 2.0 * smoothstep(u / MOVE) + 2.0 * smoothstep((u - start) / MOVE)
+fn held_value(u: f64, swing_index: usize) -> f64 {
+    let start = MOVE_SHARE * (swing_index + 1) as f64;
+    1.0 - 2.0 * smoothstep(u / MOVE_SHARE) + 2.0 * smoothstep((u - start) / MOVE_SHARE)
 }
 
-/// t^2 (3 - 2t) for t from 0 to 1; 0 before, 1 after.
+/// The smoothstep t^2 (3 - 2t) for t from 0 to 1; 0 before, 1 after.
 fn smoothstep(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Reduces a waveform to one that has a table: `at(u) = sign * base.at(u - shift)`. Returns base, shift and sign.
+/// Reduces a waveform to one that has a table: `value_at(u) = sign * base.value_at(u - shift)`. Returns base, shift
+/// and sign.
 ///
-/// Of the held waveforms, those of the first and the last swing are each other's negative, shifted, and so are those
-/// of the second and the third swing. So two tables are enough for all four.
+/// The held waveforms of the first and the last swing are each other's negative with a shift in phase, and so are
+/// those of the second and the third swing. So two tables are enough for all four.
 pub(crate) fn canonicalize(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
-        Waveform::Held { turn } if *turn >= 2 => (
-            Waveform::Held { turn: 3 - turn },
-            MOVE * (turn + 1) as f64,
+        Waveform::Held { swing_index } if *swing_index >= 2 => (
+            Waveform::Held {
+                swing_index: 3 - swing_index,
+            },
+            MOVE_SHARE * (swing_index + 1) as f64,
             -1.0,
         ),
         canonical => (canonical.clone(), 0.0, 1.0),
@@ -99,7 +102,9 @@ mod tests {
 
     /// All held waveforms, and waves of several duty factors.
     fn all_waveforms() -> Vec<Waveform> {
-        let mut waveforms: Vec<_> = (0..4).map(|turn| Waveform::Held { turn }).collect();
+        let mut waveforms: Vec<_> = (0..4)
+            .map(|swing_index| Waveform::Held { swing_index })
+            .collect();
         waveforms.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));
         waveforms
     }
@@ -107,7 +112,9 @@ mod tests {
     #[test]
     fn every_waveform_reaches_1_and_minus_1_and_is_continuous_over_the_wrap() {
         for waveform in all_waveforms() {
-            let samples: Vec<f64> = (0..=10_000).map(|i| waveform.at(i as f64 / 1e4)).collect();
+            let samples: Vec<f64> = (0..=10_000)
+                .map(|i| waveform.value_at(i as f64 / 1e4))
+                .collect();
             assert!(
                 samples
                     .windows(2)
@@ -128,10 +135,12 @@ mod tests {
         let step = 1e-6;
         for duty in [0.5, 0.75, 0.875] {
             let waveform = Waveform::Wave { duty };
-            let stance_speed = (waveform.at(duty) - waveform.at(0.0)) / duty;
+            let stance_speed = (waveform.value_at(duty) - waveform.value_at(0.0)) / duty;
             for corner in [0.0, duty] {
-                let speed_before = (waveform.at(corner) - waveform.at(corner - step)) / step;
-                let speed_after = (waveform.at(corner + step) - waveform.at(corner)) / step;
+                let speed_before =
+                    (waveform.value_at(corner) - waveform.value_at(corner - step)) / step;
+                let speed_after =
+                    (waveform.value_at(corner + step) - waveform.value_at(corner)) / step;
                 assert!(
                     (speed_before - stance_speed).abs() < 1e-3
                         && (speed_after - stance_speed).abs() < 1e-3,
@@ -143,15 +152,15 @@ mod tests {
 
     #[test]
     fn a_wave_begins_its_stance_just_short_of_its_peak() {
-        // For duty 3/4 a numerical search finds the turning point at t = .0435645, with the value -1.0143010.
-        assert!((Waveform::Wave { duty: 0.75 }.at(0.0) - 1.0 / 1.014_301_03).abs() < 1e-7);
+        // For duty factor 3/4, a numerical search finds the turning point at t = 0.0435645, with the value -1.0143010.
+        assert!((Waveform::Wave { duty: 0.75 }.value_at(0.0) - 1.0 / 1.014_301_03).abs() < 1e-7);
     }
 
     #[test]
     fn a_held_leg_returns_in_its_own_fifth_alone() {
-        for turn in 0..4 {
-            let waveform = Waveform::Held { turn };
-            let start = 0.2 * (turn + 1) as f64;
+        for swing_index in 0..4 {
+            let waveform = Waveform::Held { swing_index };
+            let start = 0.2 * (swing_index + 1) as f64;
             for i in 0..=1000 {
                 let u = i as f64 / 1e3 * 0.999_999;
                 let expected = if u < 0.2 {
@@ -164,11 +173,14 @@ mod tests {
                     continue;
                 };
                 assert!(
-                    (waveform.at(u) - expected).abs() < 1e-12,
-                    "turn {turn}, phase {u}"
+                    (waveform.value_at(u) - expected).abs() < 1e-12,
+                    "turn {swing_index}, phase {u}"
                 );
             }
-            assert!(waveform.at(0.1).abs() < 1e-12 && waveform.at(start + 0.1).abs() < 1e-12);
+            assert!(
+                waveform.value_at(0.1).abs() < 1e-12
+                    && waveform.value_at(start + 0.1).abs() < 1e-12
+            );
         }
     }
 
@@ -179,7 +191,7 @@ mod tests {
             for i in 0..1000 {
                 let u = i as f64 / 1e3;
                 assert!(
-                    (waveform.at(u) - sign * base.at(u - shift)).abs() < 1e-12,
+                    (waveform.value_at(u) - sign * base.value_at(u - shift)).abs() < 1e-12,
                     "{waveform:?} at {u}"
                 );
             }

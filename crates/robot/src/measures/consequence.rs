@@ -1,9 +1,9 @@
-//! The consequences of a broken condition for the robot, in plain words: no names of robot.toml keys and no numbers.
+//! The consequences of a broken condition for the robot, in plain words, without keys of robot.toml and without numbers.
 
 use lizard_kinematics::{Check, End, Part, Side};
 
 /// Names of the legs in servo order.
-const LEGS: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
+const LEG_NAMES: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
 
 /// Returns the consequence for the robot of a pose that breaks a condition.
 pub(crate) fn consequence(check: Check) -> String {
@@ -13,25 +13,25 @@ pub(crate) fn consequence(check: Check) -> String {
     }
     if let Some(servo) = index_in(&Check::TYPE1) {
         let end = End::of_servo(servo);
-        let hand = if end.servos()[0] == servo {
+        let side_name = if end.servos()[0] == servo {
             "left"
         } else {
             "right"
         };
-        return format!("the {hand} elbow of the {end} could flip over");
+        return format!("the {side_name} elbow of the {end} could flip over");
     }
     if let Some(leg) = index_in(&Check::LEG) {
-        return format!("the {} leg would lock", LEGS[leg]);
+        return format!("the {} leg would lock", LEG_NAMES[leg]);
     }
     if let Some(side) = index_in(&Check::STROKE) {
         return format!("the {} slider would run into its end", Side::ALL[side]);
     }
-    let end = index_in(&Check::UNCROSSED).map_or("end", |end| End::ALL[end].name());
-    format!("the cranks of the {end} would cross")
+    let end_name = index_in(&Check::UNCROSSED).map_or("end", |end| End::ALL[end].name());
+    format!("the cranks of the {end_name} would cross")
 }
 
 /// Returns the consequence for the robot of a pose in which the loop of a part of the linkage does not close.
-pub(crate) fn no_loop(part: Part) -> String {
+pub(crate) fn open_loop_consequence(part: Part) -> String {
     match part {
         Part::End(end) => format!("the links of the {end} would not reach each other"),
         Part::Side(side) => format!("the {side} slider would have no length"),
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_condition_names_what_the_robot_calls_it() {
+    fn the_consequence_of_a_broken_condition_names_the_affected_part() {
         for (check, expected) in [
             (Check::Type2Tail, "nothing would hold the tail"),
             (Check::Type1A1, "the left elbow of the head could flip over"),

@@ -9,47 +9,52 @@ use crate::measures::strut;
 
 const TABLE: &str = "drive";
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
-/// The kinds of drive, with the keys that each has in addition to `kind` and `play`.
+/// The kinds of drive, each with the keys that it has in addition to `kind` and `play`.
 const KINDS: [(&str, &[&str]); 2] = [
-    (DriveKind::WORDS[0], &[]),
-    (DriveKind::WORDS[1], &["force", "rate"]),
+    (DriveKind::NAMES[0], &[]),
+    (DriveKind::NAMES[1], &["force", "rate"]),
 ];
 
-/// Reads `[leg.drive]`. If it is left out, the legs are rigid.
+/// Reads `[leg.drive]`. If this table is left out, the legs are rigid. The neutral angles of the servos are in deg,
+/// chassis frame.
 pub(crate) fn read(
-    leg: &Section,
+    leg_section: &Section,
     legs: &[LegPlan; 4],
-    neutral: [f64; 4],
+    neutral_angles: [f64; 4],
     parts: &Parts,
 ) -> Checked<Drive> {
-    if !leg.has(TABLE) {
+    if !leg_section.has_key(TABLE) {
         return Ok(Drive::RIGID);
     }
-    let section = leg.open(TABLE)?;
-    let word = match section.has("kind") {
+    let section = leg_section.open(TABLE)?;
+    let kind_name = match section.has_key("kind") {
         true => section.text("kind")?,
         false => KINDS[0].0,
     };
-    if word == "spring" {
+    if kind_name == "spring" {
         let message = "is \"spring\", which no part is; write \"strut\" with the force and rate of its spring, or \"rigid\"";
         return Err(section.fault("kind", message));
     }
     let section = section.require_known_keys(&KEYS)?;
-    let Some((_, own_keys)) = KINDS.into_iter().find(|(name, _)| *name == word) else {
-        let hint = hint(word, &KINDS.map(|(name, _)| name));
-        return Err(section.fault("kind", format!("is \"{word}\"; {hint}")));
+    let Some((_, own_keys)) = KINDS.into_iter().find(|(name, _)| *name == kind_name) else {
+        let hint = hint(kind_name, &KINDS.map(|(name, _)| name));
+        return Err(section.fault("kind", format!("is \"{kind_name}\"; {hint}")));
     };
     let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
-    if let Some(foreign_key) = all_keys.find(|key| !own_keys.contains(key) && section.has(key)) {
-        return Err(section.fault(foreign_key, format!("does not go with kind = \"{word}\"")));
+    if let Some(foreign_key) = all_keys.find(|key| !own_keys.contains(key) && section.has_key(key))
+    {
+        return Err(section.fault(
+            foreign_key,
+            format!("does not go with kind = \"{kind_name}\""),
+        ));
     }
-    let kind = match word {
+    let kind = match kind_name {
         "strut" => {
-            let coil = strut::strut_with_coil(legs, neutral, parts, &parts.spring);
+            let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
             DriveKind::Strut(Strut {
-                force: section.number_or("force", coil.force, 0.01, 100.0, "N")?,
-                rate: section.number_or("rate", coil.rate, 0.0, 100.0, "N/mm")?,
-                ..coil
+                force: section.number_or("force", coil_strut.force, 0.01, 100.0, "N")?,
+                rate: section.number_or("rate", coil_strut.rate, 0.0, 100.0, "N/mm")?,
+                ..coil_strut
             })
         }
         _ => DriveKind::Rigid,

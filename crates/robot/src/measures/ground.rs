@@ -3,39 +3,48 @@
 use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
 
 use crate::file::{Checked, Section};
-use crate::measures::servo::LEGS;
+use crate::measures::servo::LEG_NAMES;
 
-/// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` are given by other tables.
+/// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` come from other tables.
 pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> {
-    const RATIO: &str = "friction_back_over_forward";
-    let section = root.section("ground", &[RATIO, "friction"])?;
+    const RATIO_KEY: &str = "friction_back_over_forward";
+    let section = root.section("ground", &[RATIO_KEY, "friction"])?;
     Ok(Ground {
         feet,
         body: read_body(root, &feet)?,
         stance: read_stance(root)?,
-        friction: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, "(a coefficient)")?,
-        ratio: section.number(RATIO, 0.1, 10.0, "(a ratio)")?,
+        friction_coefficient: section.number_or(
+            "friction",
+            DEFAULT_FRICTION,
+            0.05,
+            5.0,
+            "(a coefficient)",
+        )?,
+        friction_ratio: section.number(RATIO_KEY, 0.1, 10.0, "(a ratio)")?,
         drive,
     })
 }
 
-/// Reads the mass and the mass centre; keys that are left out have the default values. Refuses a mass centre with
-/// which a foot is in the air at neutral.
+/// Reads the mass and the mass centre; a key that is left out has its default value. Refuses a mass centre that lifts
+/// a foot off the floor at neutral.
 fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
-    if !root.has("body") {
+    if !root.has_key("body") {
         return Ok(Body::DEFAULT);
     }
     let section = root.section("body", &["mass", "centre"])?;
     let mass = section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?;
-    let centre = match section.has("centre") {
+    let centre = match section.has_key("centre") {
         true => section.numbers("centre", -500.0, 500.0, "mm")?,
-        false => Body::DEFAULT.centre,
+        false => Body::DEFAULT.mass_centre,
     };
-    let body = Body { mass, centre };
-    let loads = Stance::LEVEL.loads(&body, feet.positions([0.0; 4]));
-    match loads.iter().position(|load| *load <= 0.0) {
+    let body = Body {
+        mass,
+        mass_centre: centre,
+    };
+    let load_shares = Stance::LEVEL.load_shares(&body, feet.positions([0.0; 4]));
+    match load_shares.iter().position(|share| *share <= 0.0) {
         Some(foot) => {
-            let foot = LEGS[foot];
+            let foot = LEG_NAMES[foot];
             let message = format!(
                 "is so far from the middle that foot {foot} is in the air at neutral; all four must carry"
             );
@@ -48,13 +57,13 @@ fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
 /// Reads `[feet]`; every key is optional.
 fn read_stance(root: &Section) -> Checked<Stance> {
     let default = Stance::DEFAULT;
-    if !root.has("feet") {
+    if !root.has_key("feet") {
         return Ok(default);
     }
     let section = root.section("feet", &["stiffness", "twist", "level"])?;
     Ok(Stance {
         stiffness: section.number_or("stiffness", default.stiffness, 0.01, 1000.0, "N/mm")?,
         twist: section.number_or("twist", default.twist, -20.0, 20.0, "mm")?,
-        level: section.number_or("level", default.level, 0.0, 20.0, "mm")?,
+        twist_error: section.number_or("level", default.twist_error, 0.0, 20.0, "mm")?,
     })
 }

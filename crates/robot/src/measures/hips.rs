@@ -2,63 +2,68 @@
 //!
 //! A foot is fixed to its coupler, which moves without turning. So the foot's circle is
 //! the circle of the crank's joint, shifted: the offset from the driven pivot to the hip
-//! equals the offset from that joint to the foot. In each direction, two of pivot, foot and
-//! hip determine the third. robot.toml may state the third only if it agrees.
+//! equals the offset from that joint to the foot. In each direction, any two of pivot, foot and
+//! hip determine the third. robot.toml may state the third only if it agrees with the other two.
 
 use lizard_contact::Feet;
 use lizard_kinematics::{End, Lizard, Vector};
 
 use crate::file::{Checked, Fault, Section};
-use crate::measures::legs::outward;
+use crate::measures::legs::chassis_offset;
 use crate::measures::parts::Parts;
 
 /// The default position of the foot on its coupler, mm, as in [`Parts::foot`]: with the pivots of
 /// the paper's robot, the hips are 55 mm ahead and 35 mm to the side.
-const FOOT: [f64; 2] = [-3.5, 2.5];
-/// Range of the hips' distance ahead, mm.
+const DEFAULT_FOOT: [f64; 2] = [-3.5, 2.5];
+/// Range of the hips' distance ahead of the chassis centre, mm.
 const HIP_FORWARD_RANGE: (f64, f64) = (1.0, 500.0);
-/// Range of the hips' distance to the side, mm.
+/// Range of the hips' distance to the side of the chassis centre, mm.
 const HIP_SIDE_RANGE: (f64, f64) = (0.0, 500.0);
 /// Largest difference of two lengths that count as equal, mm.
-const SAME_LENGTH_MM: f64 = 0.005;
+const LENGTH_TOLERANCE_MM: f64 = 0.005;
 
-const AHEAD_KEY: &str = "hip_forward";
+const FORWARD_KEY: &str = "hip_forward";
 const SIDE_KEY: &str = "hip_side";
 
-/// The distances of the hips as `[leg]` gives them, mm; `None` if a distance follows from pivot and foot.
+/// The hips' distances from the chassis centre as `[leg]` gives them, mm; `None` for a distance that follows from pivot
+/// and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hips {
-    ahead: Option<f64>,
+    forward: Option<f64>,
     side: Option<f64>,
 }
 
 impl Hips {
     /// Reads the hips from `[leg]`.
     pub fn read(leg: &Section) -> Checked<Self> {
-        let read_mm = |name, (min, max)| match leg.has(name) {
+        let read_mm = |name, (min, max)| match leg.has_key(name) {
             true => leg.number(name, min, max, "mm").map(Some),
             false => Ok(None),
         };
         Ok(Self {
-            ahead: read_mm(AHEAD_KEY, HIP_FORWARD_RANGE)?,
+            forward: read_mm(FORWARD_KEY, HIP_FORWARD_RANGE)?,
             side: read_mm(SIDE_KEY, HIP_SIDE_RANGE)?,
         })
     }
 
-    /// Places the feet. Refuses hips that contradict pivot and foot, or that are out of range.
-    pub fn place_feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
+    /// Places the feet; `mount_angle` is the sweep of the legs at neutral, deg. Refuses hips that contradict pivot and
+    /// foot, or that are out of range.
+    pub fn place_feet(&self, lizard: &Lizard, parts: &Parts, mount_angle: f64) -> Checked<Feet> {
         // Left and right are mirror images; head and tail may have different widths.
         let shafts = lizard.shafts();
-        let [head, tail] = End::ALL.map(|end| {
-            let [_, right] = end.servos();
-            let foot = parts.foot.unwrap_or(FOOT);
-            let hip = shafts[right] + outward(right, parts.pivot) + outward(right, foot);
+        let [head_hip, tail_hip] = End::ALL.map(|end| {
+            let [_, right_servo] = end.servos();
+            let foot = parts.foot.unwrap_or(DEFAULT_FOOT);
+            let hip = shafts[right_servo]
+                + chassis_offset(right_servo, parts.pivot)
+                + chassis_offset(right_servo, foot);
             end.mirror(hip)
         });
-        let check_distance = |value: Option<f64>, computed_mm: f64, key: &str, (min, max)| {
+        let resolve_distance = |value: Option<f64>, computed_mm: f64, key: &str, (min, max)| {
             let problem = match value {
                 Some(value)
-                    if parts.foot.is_none() || (value - computed_mm).abs() < SAME_LENGTH_MM =>
+                    if parts.foot.is_none()
+                        || (value - computed_mm).abs() < LENGTH_TOLERANCE_MM =>
                 {
                     return Ok(value);
                 }
@@ -72,11 +77,17 @@ impl Hips {
             };
             Err(Fault::new(format!("leg.{key}"), problem))
         };
-        let side_of = |end: Vector| check_distance(self.side, end.x, SIDE_KEY, HIP_SIDE_RANGE);
+        let hip_side_of =
+            |hip: Vector| resolve_distance(self.side, hip.x, SIDE_KEY, HIP_SIDE_RANGE);
         Ok(Feet {
-            hip_forward: check_distance(self.ahead, head.y, AHEAD_KEY, HIP_FORWARD_RANGE)?,
-            hip_side: [side_of(head)?, side_of(tail)?],
-            mount,
+            hip_forward: resolve_distance(
+                self.forward,
+                head_hip.y,
+                FORWARD_KEY,
+                HIP_FORWARD_RANGE,
+            )?,
+            hip_side: [hip_side_of(head_hip)?, hip_side_of(tail_hip)?],
+            mount_angle,
             reach: lizard.leg.crank,
         })
     }
@@ -86,31 +97,35 @@ impl Hips {
 mod tests {
     use super::*;
     use crate::Robot;
-    use crate::testing::with;
+    use crate::testing::robot_with;
 
     const LEG: &str = "[leg] ";
 
-    /// The paper's robot with these lines in `[leg]` and in `[parts]`.
+    /// Reads the paper's robot with these lines in `[leg]` and in `[parts]`.
     fn robot(hip_lines: &str, part_lines: &str) -> Result<Robot, String> {
         let leg = format!("[parts]\n{part_lines}\n[leg]\n{hip_lines}\n#");
-        with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
+        robot_with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
     }
 
-    /// The distances of the paper's hips with these lines: ahead, and to the side at head and tail.
+    /// Returns the distances of the paper's hips with these lines, mm: ahead, and to the side at head and tail.
     fn hips_of(hip_lines: &str, part_lines: &str) -> (f64, [f64; 2]) {
-        let feet = robot(hip_lines, part_lines).expect("a robot").ground().feet;
+        let feet = robot(hip_lines, part_lines)
+            .expect("the robot is valid")
+            .ground()
+            .feet;
         (feet.hip_forward, feet.hip_side)
     }
 
     #[test]
-    fn hips_follow_from_the_pivots_and_the_foot() {
+    fn the_hips_follow_from_the_pivots_and_the_foot() {
         // Compared exactly: no result of the paper's robot may depend on the last digit.
         assert_eq!(hips_of("", ""), (55.0, [35.0; 2]));
         assert_eq!(hips_of("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
         assert_eq!(hips_of("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));
         let hip_lines = "hip_forward = 55.0\nhip_side = 35.0";
         assert_eq!(hips_of(hip_lines, "foot = [-3.5, 2.5]"), (55.0, [35.0; 2]));
-        let wide_robot = with("paper", &[("l0 = 20.0", "l0 = 24.0")]).expect("a robot");
+        let wide_robot =
+            robot_with("paper", &[("l0 = 20.0", "l0 = 24.0")]).expect("the robot is valid");
         assert_eq!(wide_robot.ground().feet.hip_side, [37.0, 35.0]);
         assert_eq!(wide_robot.ground().feet.hips()[3], [-55.0, 35.0]);
     }
@@ -122,13 +137,15 @@ mod tests {
             let leg = robot.legs()[1];
             leg.coupler_direction * leg.foot.x + leg.coupler_direction.rotated_left() * leg.foot.y
         };
-        let moved_robot = robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("a robot");
+        let moved_robot =
+            robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("the robot is valid");
         let error = foot_offset(&moved_robot) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
         assert!(error.length() < 1e-9, "{error:?}");
-        let same_robot = robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("a robot");
+        let same_robot =
+            robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("the robot is valid");
         assert_eq!(
             foot_offset(&same_robot),
-            foot_offset(&robot("", "").expect("a robot"))
+            foot_offset(&robot("", "").expect("the robot is valid"))
         );
     }
 }

@@ -1,4 +1,4 @@
-//! The inputs: contacts between a pin and ground that end steps of routines.
+//! The inputs: contacts between a pin and ground, which can end a step of a routine.
 
 use lizard_core::numbers::gaits::Input;
 
@@ -7,27 +7,27 @@ use crate::measures::servo::{self, Servo, read_pin};
 use crate::measures::supply::Supplies;
 
 /// The names of the inputs.
-pub const NAMES: [&str; 2] = ["button", "nose"];
+pub const INPUT_NAMES: [&str; 2] = ["button", "nose"];
 
-/// Arduino pin numbers of the inputs that a robot has.
+/// The Arduino pin numbers of a robot's inputs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
     /// The pin of a push button; `None` if the robot has no button.
     pub button: Option<u8>,
-    /// The pin of a switch that closes in front of an obstacle; `None` if the robot has no such switch.
+    /// The pin of a switch that an obstacle in front of the robot closes; `None` if the robot has no such switch.
     pub nose: Option<u8>,
 }
 
 impl Inputs {
     /// Reads `[input]`; every input is optional.
     pub(crate) fn read(root: &Section, servos: &[Servo; 4], supplies: &Supplies) -> Checked<Self> {
-        if !root.has("input") {
+        if !root.has_key("input") {
             return Ok(Self::default());
         }
-        let section = root.section("input", &NAMES)?;
+        let section = root.section("input", &INPUT_NAMES)?;
         let pins = servos.map(|servo| servo.pin);
-        let owners = pins.into_iter().zip(servo::NAMES);
-        let mut used_pins: Vec<(u8, String)> = owners
+        let named_pins = pins.into_iter().zip(servo::SERVO_NAMES);
+        let mut used_pins: Vec<(u8, String)> = named_pins
             .map(|(pin, name)| (pin, format!("servo.{name}")))
             .collect();
         used_pins.extend(
@@ -36,7 +36,7 @@ impl Inputs {
                 .map(|rail| (rail.pin, "supply.rail".to_string())),
         );
         let mut read_input = |name: &str| -> Checked<Option<u8>> {
-            if !section.has(name) {
+            if !section.has_key(name) {
                 return Ok(None);
             }
             let table = section.section(name, &["pin"])?;
@@ -48,20 +48,20 @@ impl Inputs {
             used_pins.push((pin, format!("input.{name}")));
             Ok(Some(pin))
         };
-        let [button, nose] = NAMES;
+        let [button, nose] = INPUT_NAMES;
         Ok(Self {
             button: read_input(button)?,
             nose: read_input(nose)?,
         })
     }
 
-    /// The inputs that the robot has: name and Arduino pin number.
-    pub fn each(&self) -> impl Iterator<Item = (&'static str, u8)> {
-        let pins = NAMES.into_iter().zip([self.button, self.nose]);
+    /// The name and the Arduino pin number of each input that the robot has.
+    pub fn named_pins(&self) -> impl Iterator<Item = (&'static str, u8)> {
+        let pins = INPUT_NAMES.into_iter().zip([self.button, self.nose]);
         pins.filter_map(|(name, pin)| Some((name, pin?)))
     }
 
-    /// The input of this name in the core's representation; `None` if the robot does not have it.
+    /// Finds the input of this name, in the core's representation; `None` if the robot does not have it.
     pub(crate) fn find_input(&self, name: &str) -> Option<Input> {
         match name {
             "button" => self.button.map(Input::button),

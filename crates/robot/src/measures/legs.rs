@@ -2,16 +2,17 @@
 //! which the servo drives the leg.
 //!
 //! The paper's figures do not show the legs' pivots. Only the circle of the foot matters for
-//! walking. A parallelogram moves its coupler without turning it. So the two pivots may be
+//! walking, and a parallelogram moves its coupler without turning it. So both pivots may be
 //! moved together to a place with room, if the foot is moved on the coupler by the same
-//! distance in the opposite direction. The driven pivot lies outside the area that the
-//! servo's link sweeps. The strut joins the servo's link to the leg; it is the coupler
-//! of a second parallelogram: shaft, driven pivot and two equal anchor arms.
+//! distance in the opposite direction. The pivot of the driven crank lies outside the area that
+//! the servo's link sweeps. The strut joins the servo's link to the leg. It is the coupler of a
+//! second parallelogram, whose ground link goes from the servo's shaft to the crank's pivot, and
+//! whose cranks are two equal arms that carry the strut's anchors.
 //!
-//! A hip is the centre of a foot's circle. At neutral the foot is straight beside it,
-//! turned by the leg's sweep angle `mount`.
+//! A hip is the centre of a foot's circle. At neutral the foot is straight beside its hip if the
+//! mount angle is zero; otherwise the leg is swept by this angle.
 
-use lizard_contact::{FRONT, Feet, LEFT, Point};
+use lizard_contact::{FRONT_SIGN, Feet, LEFT_SIGN, Point};
 use lizard_kinematics::{Lizard, Vector};
 
 use crate::measures::parts::Parts;
@@ -26,18 +27,18 @@ pub struct LegPlan {
     pub crank_pivot: Vector,
     /// The follower's pivot, mm, chassis frame.
     pub follower_pivot: Vector,
-    /// Unit vector from the driven to the follower's pivot: the coupler's direction in every pose.
+    /// Unit vector from the crank's pivot to the follower's: the coupler's direction in every pose.
     pub coupler_direction: Vector,
     /// Angle from the servo's crank to the leg's crank while the leg does not lag, deg.
     pub crank_offset: f64,
     /// The crank's joint with the coupler, in the crank's frame, mm: x points as the
     /// servo's crank does while the leg does not lag.
-    pub joint: Vector,
-    /// The foot in the coupler's frame, mm: from the crank's joint along the coupler,
-    /// and across it counter-clockwise.
+    pub crank_joint: Vector,
+    /// The foot in the coupler's frame, mm: x along the coupler from the crank's joint, y at a
+    /// right angle to it, counter-clockwise.
     pub foot: Vector,
-    /// Unit vector from the shaft to the driven pivot, the direction of the strut.
-    pub strut: Vector,
+    /// Unit vector from the shaft to the crank's pivot: the direction of the strut.
+    pub strut_direction: Vector,
     /// Length of the strut from anchor to anchor while the leg does not lag, mm.
     pub strut_length: f64,
     /// The strut's anchor, mm. It has the same coordinates in the frame of the servo's link and in the leg's.
@@ -54,11 +55,11 @@ pub struct LegPlace {
     /// The foot on its coupler.
     pub foot: Vector,
     /// The strut's anchors: on the servo's link, and on the leg's crank.
-    pub strut: [Vector; 2],
+    pub strut_anchors: [Vector; 2],
 }
 
 impl LegPlan {
-    /// Computes the leg of a servo (0 to 3) with this neutral angle (deg, chassis frame).
+    /// Computes the leg of a servo (0 to 3) that has this neutral angle (deg, chassis frame).
     pub(crate) fn new(
         servo: usize,
         neutral: f64,
@@ -68,36 +69,38 @@ impl LegPlan {
     ) -> Self {
         let to_vector = |[forward, left]: Point| Vector::new(-left, forward);
         let hip = to_vector(feet.hips()[servo]);
-        let reach = to_vector(feet.positions([0.0; 4])[servo]) - hip;
+        let hip_to_foot = to_vector(feet.positions([0.0; 4])[servo]) - hip;
         let shaft = lizard.shafts()[servo];
-        let driven_pivot = shaft + driven_pivot_offset(servo, parts);
-        let crank_offset = reach.angle() - neutral;
+        let crank_pivot = shaft + crank_pivot_offset(servo, parts);
+        let crank_offset = hip_to_foot.angle() - neutral;
         // The angle between ground link and crank equals the servo's angle. The follower's pivot
         // may be at either end of the ground link; the end that is farther from the servo is used.
         let ground_link = Vector::direction(crank_offset) * lizard.leg.ground;
-        let [idle_pivot, other_pivot] = [driven_pivot + ground_link, driven_pivot - ground_link];
-        let idle_pivot =
-            match (idle_pivot - shaft).length_squared() > (other_pivot - shaft).length_squared() {
-                true => idle_pivot,
-                false => other_pivot,
-            };
+        let [first_candidate, second_candidate] =
+            [crank_pivot + ground_link, crank_pivot - ground_link];
+        let follower_pivot = match (first_candidate - shaft).length_squared()
+            > (second_candidate - shaft).length_squared()
+        {
+            true => first_candidate,
+            false => second_candidate,
+        };
         let coupler_direction =
-            (idle_pivot - driven_pivot) * (1.0 / (idle_pivot - driven_pivot).length());
-        let foot_offset = hip - driven_pivot;
-        let strut_vector = driven_pivot - shaft;
+            (follower_pivot - crank_pivot) * (1.0 / (follower_pivot - crank_pivot).length());
+        let foot_offset = hip - crank_pivot;
+        let strut_vector = crank_pivot - shaft;
         let [radius, angle] = parts.anchor;
         Self {
             shaft,
-            crank_pivot: driven_pivot,
-            follower_pivot: idle_pivot,
+            crank_pivot,
+            follower_pivot,
             coupler_direction,
             crank_offset,
-            joint: Vector::direction(crank_offset) * lizard.leg.crank,
+            crank_joint: Vector::direction(crank_offset) * lizard.leg.crank,
             foot: Vector::new(
                 foot_offset.dot(coupler_direction),
                 coupler_direction.cross(foot_offset),
             ),
-            strut: strut_vector * (1.0 / strut_vector.length()),
+            strut_direction: strut_vector * (1.0 / strut_vector.length()),
             strut_length: strut_vector.length(),
             anchor: Vector::direction(-ARM_SIDE[servo] * angle) * radius,
         }
@@ -105,20 +108,20 @@ impl LegPlan {
 
     /// Places the leg for the servo's angle and the angle that the leg follows, both
     /// in deg, chassis frame. The angles differ by the leg's lag.
-    pub fn at(&self, servo_angle: f64, leg_angle: f64) -> LegPlace {
+    pub fn place_at(&self, servo_angle: f64, leg_angle: f64) -> LegPlace {
         let rotate = |angle: f64, vector: Vector| {
             let x = Vector::direction(angle);
             x * vector.x + x.rotated_left() * vector.y
         };
         let pivots = [self.crank_pivot, self.follower_pivot];
-        let joints = pivots.map(|pivot| pivot + rotate(leg_angle, self.joint));
+        let joints = pivots.map(|pivot| pivot + rotate(leg_angle, self.crank_joint));
         LegPlace {
             pivots,
             joints,
             foot: joints[0]
                 + self.coupler_direction * self.foot.x
                 + self.coupler_direction.rotated_left() * self.foot.y,
-            strut: [
+            strut_anchors: [
                 self.shaft + rotate(servo_angle, self.anchor),
                 self.crank_pivot + rotate(leg_angle, self.anchor),
             ],
@@ -126,26 +129,26 @@ impl LegPlan {
     }
 }
 
-/// The vector from a servo's shaft to the driven pivot of its leg, mm, chassis frame.
-fn driven_pivot_offset(servo: usize, parts: &Parts) -> Vector {
-    outward(servo, parts.pivot)
+/// The vector from a servo's shaft to the pivot of its leg's crank, mm, chassis frame.
+fn crank_pivot_offset(servo: usize, parts: &Parts) -> Vector {
+    chassis_offset(servo, parts.pivot)
 }
 
-/// Converts an offset from a servo, given as distances outward and towards the robot's middle, to the chassis frame.
-pub(crate) fn outward(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
-    Vector::new(-LEFT[servo] * outward, -FRONT[servo] * inward)
+/// Converts an offset from a servo, given as the distances outward and towards the robot's middle, to the chassis frame.
+pub(crate) fn chassis_offset(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
+    Vector::new(-LEFT_SIGN[servo] * outward, -FRONT_SIGN[servo] * inward)
 }
 
 #[cfg(test)]
 mod tests {
     use lizard_kinematics::{Vector, wrap};
 
-    use crate::measures::servo::FORWARD;
-    use crate::testing::{all, robot};
+    use crate::measures::servo::FORWARD_TURN_SIGN;
+    use crate::testing::{all_robots, robot};
 
     #[test]
     fn a_crank_has_its_length_and_its_servos_angle_to_the_ground_link() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             let bars = robot.lizard().leg;
             for (servo, settings) in robot.servos().iter().enumerate() {
                 for angle in [
@@ -153,16 +156,16 @@ mod tests {
                     settings.neutral,
                     settings.neutral + 12.5,
                 ] {
-                    let leg = robot.legs()[servo].at(angle, angle);
-                    let [ground, coupler] =
-                        [leg.pivots, leg.joints].map(|[driven, idle]| idle - driven);
+                    let leg = robot.legs()[servo].place_at(angle, angle);
+                    let [ground, coupler] = [leg.pivots, leg.joints]
+                        .map(|[crank_point, follower_point]| follower_point - crank_point);
                     let crank = leg.joints[0] - leg.pivots[0];
                     // A ground link may have either of two opposite directions.
                     let angle_error = wrap(2.0 * (crank.angle() - ground.angle() - angle));
                     assert!(angle_error.abs() < 1e-9, "{name} {servo} {angle_error}");
                     assert!((crank.length() - bars.crank).abs() < 1e-9, "{name} {servo}");
                     assert!((ground.length() - bars.ground).abs() < 1e-9);
-                    assert!((coupler - ground).length() < 1e-9, "it is not turned");
+                    assert!((coupler - ground).length() < 1e-9, "the coupler is turned");
                 }
             }
         }
@@ -170,13 +173,13 @@ mod tests {
 
     #[test]
     fn a_foot_is_where_the_contact_model_has_it() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             for sweep in [-25.0, 0.0, 17.0] {
                 let feet = robot.ground().feet.positions([sweep; 4]);
                 for (servo, leg) in robot.legs().iter().enumerate() {
-                    let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
+                    let angle = robot.servos()[servo].neutral + FORWARD_TURN_SIGN[servo] * sweep;
                     let [forward, left] = feet[servo];
-                    let error = leg.at(angle, angle).foot - Vector::new(-left, forward);
+                    let error = leg.place_at(angle, angle).foot - Vector::new(-left, forward);
                     assert!(error.length() < 1e-9, "{name} {servo} {error:?}");
                 }
             }
@@ -206,10 +209,10 @@ mod tests {
 
     #[test]
     fn a_strut_keeps_its_length_while_its_leg_does_not_lag() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             for (servo, leg) in robot.legs().iter().enumerate() {
                 let length_at = |angle: f64, lag: f64| {
-                    let [from, to] = leg.at(angle, angle - lag).strut;
+                    let [from, to] = leg.place_at(angle, angle - lag).strut_anchors;
                     (to - from).length()
                 };
                 let neutral = robot.servos()[servo].neutral;

@@ -6,7 +6,7 @@ use crate::file::{Checked, Section};
 use crate::measures::scale::LONGEST_BAR;
 use crate::measures::servo::SpeedLimits;
 
-/// The smallest speed limit, deg/s: a slower move would overflow the firmware's count of frames.
+/// The lowest speed limit allowed, deg/s: a slower move would overflow the firmware's count of frames.
 const MIN_SPEED: f64 = 10.0;
 
 /// Reads `[limits]`: margins, the sliders' stroke, and servo speeds.

@@ -1,7 +1,7 @@
 //! The robot's dimensions and parameters in robot.toml, each with its range.
 //!
-//! A wrong number would break the robot: links whose loop does not close, a servo driven against its stop, a
-//! chassis that falls over. So every number has its range, the lengths must fit the core's integers, and the
+//! A wrong number could break the robot: the loop of its links would not close, a servo would press against its stop,
+//! or the chassis would fall over. So every number has its range, the lengths must fit the core's integers, and the
 //! neutral pose must be safe. [`Measures`] holds the checked values: linkage, servos, legs, parts, supplies and the
 //! ground of the contact model.
 
@@ -24,18 +24,18 @@ mod supply;
 mod tests;
 
 pub use coil::Coil;
-pub(crate) use consequence::{consequence, no_loop};
-pub use input::{Inputs, NAMES as INPUTS};
+pub(crate) use consequence::{consequence, open_loop_consequence};
+pub use input::{INPUT_NAMES, Inputs};
 pub use legs::{LegPlace, LegPlan};
 pub use motor::ServoType;
 pub use parts::{Horn, Pad, Parts, Screw, ServoBody};
 pub use plate::Plate;
 pub use servo::{Servo, SpeedLimits};
 pub(crate) use strut::{mounted_spring_length, strut_with_coil};
-pub use supply::{FUSE, Rail, SWITCH, Supplies, healthy_rail_mv};
+pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_mv};
 
 use lizard_contact::{Ground, Joints};
-use lizard_core::numbers::bars::MIN_COUPLER;
+use lizard_core::numbers::bars::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::file::{Checked, Fault, Section};
@@ -43,12 +43,14 @@ use hips::Hips;
 use scale::LONGEST_BAR;
 
 /// Range of a link's length, mm.
-const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
+const LENGTH_RANGE_MM: (f64, f64) = (1.0, LONGEST_BAR);
 
-/// The table that replaces the old keys `[leg] spring` and `preload`.
-const SPRING: &str = "[leg.drive] with kind = \"strut\" and the force and rate of its spring";
+/// The table that replaces the former keys `spring` and `preload` of `[leg]`, for the message about these keys.
+const SPRING_REPLACEMENT: &str =
+    "[leg.drive] with kind = \"strut\" and the force and rate of its spring";
 
-const LINKS: [&str; 20] = [
+/// The keys of `[links]`.
+const LINK_NAMES: [&str; 20] = [
     "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",
     "l15", "l16", "l17", "l18", "l19",
 ];
@@ -60,9 +62,11 @@ pub(crate) struct Measures {
     /// The servos A1, A2, A3, A4.
     pub servos: [Servo; 4],
     pub servo_type: ServoType,
+    /// Friction of the joints.
     pub joints: Joints,
+    /// Limits of margins and strokes.
     pub limits: Limits,
-    pub pace: SpeedLimits,
+    pub speed_limits: SpeedLimits,
     pub ground: Ground,
     pub supplies: Supplies,
     pub inputs: Inputs,
@@ -75,25 +79,25 @@ impl Measures {
     /// Reads and checks all values and the neutral pose.
     pub fn read(root: &Section) -> Checked<Self> {
         let links = read_links(root)?;
-        let (leg, hips, mount) = read_leg(root)?;
+        let (leg, hips, mount_angle) = read_leg(root)?;
         let servos = servo::read(root)?;
-        let (limits, pace) = limits::read(root)?;
+        let (limits, speed_limits) = limits::read(root)?;
         let parts = Parts::read(root)?;
         let lizard = Lizard { links, leg };
-        let feet = hips.place_feet(&lizard, &parts, mount)?;
-        let neutral = servos.map(|servo| servo.neutral);
+        let feet = hips.place_feet(&lizard, &parts, mount_angle)?;
+        let neutral_angles = servos.map(|servo| servo.neutral);
         let legs = std::array::from_fn(|servo| {
-            LegPlan::new(servo, neutral[servo], &lizard, &parts, &feet)
+            LegPlan::new(servo, neutral_angles[servo], &lizard, &parts, &feet)
         });
-        let drive = drive::read(&root.open("leg")?, &legs, neutral, &parts)?;
+        let drive = drive::read(&root.open("leg")?, &legs, neutral_angles, &parts)?;
         let supplies = Supplies::read(root, &servos)?;
         let measures = Self {
             inputs: Inputs::read(root, &servos, &supplies)?,
             servos,
             servo_type: ServoType::read(root)?,
-            joints: motor::joints(root, &lizard, &servos)?,
+            joints: motor::read_joints(root, &lizard, &servos)?,
             limits,
-            pace,
+            speed_limits,
             ground: ground::read(root, feet, drive)?,
             supplies,
             legs,
@@ -106,12 +110,12 @@ impl Measures {
     }
 
     /// The servos' neutral angles, deg, chassis frame, servo order.
-    pub fn neutral(&self) -> [f64; 4] {
+    pub fn neutral_angles(&self) -> [f64; 4] {
         self.servos.map(|servo| servo.neutral)
     }
 
-    /// Refuses couplers that are too short, compared with the rest of their loop, for the firmware's 16-bit integers,
-    /// and strokes at which a slider would have no length.
+    /// Refuses couplers that the firmware's 16-bit integers cannot resolve because the rest of their loop is much longer,
+    /// and strokes that leave a slider no length.
     fn check_lengths(&self) -> Checked<()> {
         for (end, names) in [
             (End::Head, ["links.l2", "links.l3"]),
@@ -119,10 +123,10 @@ impl Measures {
         ] {
             let bars = self.lizard.end(end);
             let per_mm = scale::steps_per_mm(scale::five_bar_scale(&bars));
-            let min_mm = f64::from(MIN_COUPLER) / per_mm;
+            let min_mm = f64::from(MIN_COUPLER_STEPS) / per_mm;
             for (key, value) in names
                 .into_iter()
-                .zip([bars.coupler_left, bars.coupler_right])
+                .zip([bars.left_coupler_length, bars.right_coupler_length])
             {
                 if value < min_mm {
                     // Rounded up, so that the length in the message is sufficient.
@@ -134,16 +138,21 @@ impl Measures {
                 }
             }
         }
-        let nominal = Side::ALL.map(|side| self.lizard.side(side).nominal);
-        let least_nominal = nominal[0].min(nominal[1]);
+        let nominal_lengths = Side::ALL.map(|side| self.lizard.side(side).nominal_length);
+        let min_nominal_length = nominal_lengths[0].min(nominal_lengths[1]);
         for (key, value) in [
             ("limits.stroke_min", self.limits.stroke_min),
             ("limits.stroke_max", self.limits.stroke_max),
         ] {
-            let (min, max) = (-least_nominal, LONGEST_BAR);
+            let (min, max) = (-min_nominal_length, LONGEST_BAR);
             if !(min..=max).contains(&value) {
                 let unit = "mm, so that the slider keeps a length";
-                return Err(Fault::range(key.to_string(), value, (min, max), unit));
+                return Err(Fault::out_of_range(
+                    key.to_string(),
+                    value,
+                    (min, max),
+                    unit,
+                ));
             }
         }
         Ok(())
@@ -153,10 +162,13 @@ impl Measures {
     fn check_neutral(&self) -> Checked<()> {
         let refuse = |consequence: String, problem: String| {
             let meaning = format!("in the neutral pose {consequence}");
-            Err(Fault::clause("servo", problem).meaning(meaning))
+            Err(Fault::clause("servo", problem).with_meaning(meaning))
         };
-        match self.lizard.solve(&self.neutral().into()) {
-            Err(infeasible) => refuse(no_loop(infeasible.part), infeasible.to_string()),
+        match self.lizard.solve(&self.neutral_angles().into()) {
+            Err(infeasible) => refuse(
+                open_loop_consequence(infeasible.part),
+                infeasible.to_string(),
+            ),
             Ok(solution) => match self.limits.violations(&solution).next() {
                 Some(violation) => refuse(consequence(violation.check), violation.to_string()),
                 None => Ok(()),
@@ -167,10 +179,10 @@ impl Measures {
 
 /// Reads the links of the body.
 fn read_links(root: &Section) -> Checked<Links> {
-    let section = root.section("links", &LINKS)?;
+    let section = root.section("links", &LINK_NAMES)?;
     let mut lengths = [0.0; 20];
-    for (length, name) in lengths.iter_mut().zip(LINKS) {
-        *length = section.number(name, LENGTHS.0, LENGTHS.1, "mm")?;
+    for (length, name) in lengths.iter_mut().zip(LINK_NAMES) {
+        *length = section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm")?;
     }
     let links = Links::from(lengths);
     require_equal(
@@ -183,7 +195,7 @@ fn read_links(root: &Section) -> Checked<Links> {
     Ok(links)
 }
 
-/// Reads the legs: their links, their hips, and the sweep angle `mount` of the feet at neutral, deg.
+/// Reads the legs: their links, their hips, and the mount angle, which is the sweep of the legs at neutral, deg.
 fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let keys = [
         "ground",
@@ -196,36 +208,36 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
         "drive",
     ];
     let section = root.open("leg")?;
-    section.refuse_moved_keys(&["spring", "preload"], SPRING)?;
+    section.refuse_moved_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
     let section = section.require_known_keys(&keys)?;
-    let read_bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
+    let read_bar = |name| section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm");
     let leg = Leg {
         ground: read_bar("ground")?,
         crank: read_bar("crank")?,
         coupler: read_bar("coupler")?,
         follower: read_bar("follower")?,
     };
-    let parallelogram = "a leg is a parallelogram, so its opposite links are equally long";
+    let parallelogram_reason = "a leg is a parallelogram, so its opposite links are equally long";
     require_equal(
         "leg.coupler",
         leg.coupler,
         "leg.ground",
         leg.ground,
-        parallelogram,
+        parallelogram_reason,
     )?;
     require_equal(
         "leg.follower",
         leg.follower,
         "leg.crank",
         leg.crank,
-        parallelogram,
+        parallelogram_reason,
     )?;
     let hips = Hips::read(&section)?;
-    let mount = section.number("mount", -90.0, 90.0, "deg")?;
-    Ok((leg, hips, mount))
+    let mount_angle = section.number("mount", -90.0, 90.0, "deg")?;
+    Ok((leg, hips, mount_angle))
 }
 
-/// Refuses the `value` of a key that differs from the value of the key `other_key`.
+/// Refuses a key whose value differs from the value of another key; `reason` says why they must be equal.
 fn require_equal(
     key: &str,
     value: f64,

@@ -16,7 +16,7 @@ const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
 /// A type of servo, in the units of its data sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServoType {
-    /// Name of the type on which robot.toml is based.
+    /// Name of the type from which the figures that robot.toml leaves out are taken.
     pub model: &'static str,
     /// Source of the type's figures.
     pub source: &'static str,
@@ -52,7 +52,7 @@ const SG90: ServoType = ServoType {
 
 impl ServoType {
     /// The lowest and the highest supply voltage of servos, V.
-    pub const SUPPLIES: (f64, f64) = (2.0, 9.0);
+    pub const VOLTS_RANGE: (f64, f64) = (2.0, 9.0);
 
     /// A servo of an SG-90's size with a digital controller: Hitec's HS-5065MG.
     pub(crate) const DIGITAL: Self = Self {
@@ -88,18 +88,18 @@ impl ServoType {
     /// Reads the keys of `[servo]` other than its four tables; all are optional.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
         let section = root.open("servo")?;
-        let base = match section.has("model") {
+        let base = match section.has_key("model") {
             true => read_model(&section)?,
             false => SG90,
         };
         let read_number =
             |name, default, (min, max), unit| section.number_or(name, default, min, max, unit);
-        let at_volts = read_number("at_volts", base.at_volts, Self::SUPPLIES, "V")?;
+        let at_volts = read_number("at_volts", base.at_volts, Self::VOLTS_RANGE, "V")?;
         Ok(Self {
             stall_kg_cm: read_number("stall_kg_cm", base.stall_kg_cm, (0.1, 100.0), "kg cm")?,
             s_per_60_deg: read_number("s_per_60_deg", base.s_per_60_deg, (0.02, 2.0), "s")?,
             at_volts,
-            volts: read_number("volts", at_volts, Self::SUPPLIES, "V")?,
+            volts: read_number("volts", at_volts, Self::VOLTS_RANGE, "V")?,
             dead_band_us: read_number("dead_band_us", base.dead_band_us, (0.0, 100.0), "us")?,
             spin_up_ms: read_number("spin_up_ms", base.spin_up_ms, (0.5, 200.0), "ms")?,
             full_torque_deg: read_number(
@@ -112,12 +112,12 @@ impl ServoType {
         })
     }
 
-    /// The servo's motor at a supply voltage in V, if `us_per_degree` of the pulse turn the servo by one degree.
+    /// The servo's motor at a supply voltage (V), for a servo with this gain (us per degree).
     pub fn motor(&self, volts: f64, us_per_degree: f64) -> Motor {
         let motor = Motor {
-            stall: self.stall_kg_cm * N_MM_PER_KG_CM,
+            stall_torque: self.stall_kg_cm * N_MM_PER_KG_CM,
             no_load_speed: 60.0 / self.s_per_60_deg,
-            spin_up: self.spin_up_ms / 1000.0,
+            spin_up_time: self.spin_up_ms / 1000.0,
             full_torque_error: self.full_torque_deg,
             half_dead_band: self.dead_band_us / 2.0 / us_per_degree.abs(),
         };
@@ -125,30 +125,30 @@ impl ServoType {
     }
 }
 
-/// The servo type that `[servo] model` names; ignores case, dashes and blanks.
+/// Finds the servo type that the key `model` names; ignores case, dashes and blanks.
 fn read_model(section: &Section) -> Checked<ServoType> {
     let simplify = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
-    let word = section.text("model")?;
+    let model_name = section.text("model")?;
     let model = ServoType::ALL
         .iter()
-        .find(|known| simplify(known.model) == simplify(word));
+        .find(|known| simplify(known.model) == simplify(model_name));
     model.copied().ok_or_else(|| {
-        let hint = hint(word, &ServoType::ALL.map(|known| known.model));
+        let hint = hint(model_name, &ServoType::ALL.map(|known| known.model));
         let message = format!(
-            "is \"{word}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
+            "is \"{model_name}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
         );
         section.fault("model", message)
     })
 }
 
-/// Reads `[joints]`; every key is optional. The arms of the sliders come from the links and the servos.
-pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Checked<Joints> {
+/// Reads `[joints]`; every key is optional. The positions of the sliders' arms come from the links and the servos.
+pub(crate) fn read_joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Checked<Joints> {
     let links = &lizard.links;
     let lengths = [links.l14, links.l19, links.l16, links.l11];
     let frictionless = Joints {
-        drag: 0.0,
-        slider: 0.0,
-        arms: std::array::from_fn(|i| {
+        pin_torque: 0.0,
+        slider_force: 0.0,
+        slider_arms: std::array::from_fn(|i| {
             let (sin, cos) = (servos[i].neutral + ARM_SIDE[i] * 90.0)
                 .to_radians()
                 .sin_cos();
@@ -157,13 +157,13 @@ pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Ch
         }),
         base: links.l10,
     };
-    if !root.has("joints") {
+    if !root.has_key("joints") {
         return Ok(frictionless);
     }
     let section = root.section("joints", &["drag", "slider"])?;
     Ok(Joints {
-        drag: section.number_or("drag", 0.0, 0.0, 1000.0, "N mm")?,
-        slider: section.number_or("slider", 0.0, 0.0, 20.0, "N")?,
+        pin_torque: section.number_or("drag", 0.0, 0.0, 1000.0, "N mm")?,
+        slider_force: section.number_or("slider", 0.0, 0.0, 20.0, "N")?,
         ..frictionless
     })
 }
@@ -171,48 +171,62 @@ pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Ch
 #[cfg(test)]
 mod tests {
     use crate::Robot;
-    use crate::testing::with;
+    use crate::testing::robot_with;
 
     const NEXT_TABLE: &str = "[servo.A1]";
 
     fn robot(keys: &str) -> Result<Robot, crate::Error> {
-        with("paper", &[(NEXT_TABLE, &format!("{keys}\n{NEXT_TABLE}"))])
+        robot_with("paper", &[(NEXT_TABLE, &format!("{keys}\n{NEXT_TABLE}"))])
     }
 
     #[test]
     fn without_a_table_the_servos_are_sg90_by_their_data_sheet() {
-        let motors = robot("").expect("right").motors();
-        for motor in motors.each {
+        let motors = robot("").expect("the robot is valid").motors();
+        for motor in motors.per_servo {
             // 1.8 kg cm; 60 deg in 0.12 s; half of a dead band of 10 us, at 10 us per deg.
-            assert!((motor.stall - 176.5197).abs() < 1e-9 && motor.no_load_speed == 500.0);
+            assert!((motor.stall_torque - 176.5197).abs() < 1e-9 && motor.no_load_speed == 500.0);
             assert_eq!(
-                (motor.half_dead_band, motor.full_torque_error, motor.spin_up),
+                (
+                    motor.half_dead_band,
+                    motor.full_torque_error,
+                    motor.spin_up_time
+                ),
                 (0.5, 3.0, 0.02)
             );
         }
-        assert_eq!((motors.joints.drag, motors.joints.slider), (0.0, 0.0));
+        assert_eq!(
+            (motors.joints.pin_torque, motors.joints.slider_force),
+            (0.0, 0.0)
+        );
     }
 
     #[test]
     fn every_key_overrides_its_model() {
         let keys = "[servo]\nmodel = \"mg90s\"\ns_per_60_deg = 0.2\nvolts = 6.0\nspin_up_ms = 5\n\
                     full_torque_deg = 1.5\ndead_band_us = 2\n[joints]\nslider = 0.3";
-        let motors = robot(keys).expect("right").motors();
-        let motor = motors.each[3];
+        let motors = robot(keys).expect("the robot is valid").motors();
+        let motor = motors.per_servo[3];
         assert!((motor.no_load_speed - 300.0 * 6.0 / 4.8).abs() < 1e-9);
         assert!(
-            (motor.stall - 176.5197 * 6.0 / 4.8).abs() < 1e-9,
-            "of the model"
+            (motor.stall_torque - 176.5197 * 6.0 / 4.8).abs() < 1e-9,
+            "the stall torque is that of the model"
         );
         assert_eq!(
-            (motor.half_dead_band, motor.full_torque_error, motor.spin_up),
+            (
+                motor.half_dead_band,
+                motor.full_torque_error,
+                motor.spin_up_time
+            ),
             (0.1, 1.5, 0.005)
         );
-        assert_eq!((motors.joints.drag, motors.joints.slider), (0.0, 0.3));
+        assert_eq!(
+            (motors.joints.pin_torque, motors.joints.slider_force),
+            (0.0, 0.3)
+        );
     }
 
     #[test]
-    fn a_servo_that_no_one_knows_or_that_cannot_be_is_refused_with_what_to_write() {
+    fn an_unknown_or_impossible_servo_is_refused_with_a_hint() {
         for (keys, phrase) in [
             ("model = \"SG-91\"", "did you mean \"SG-90\""),
             (
@@ -235,10 +249,13 @@ mod tests {
     }
 
     #[test]
-    fn the_arms_of_the_sliders_are_where_the_linkage_has_them() {
-        let robot = robot("").expect("right");
-        let solution = robot.lizard().solve(&robot.neutral()).expect("closes");
-        let arms = robot.motors().joints.arms;
+    fn the_slider_arms_end_at_the_tips_that_the_linkage_has() {
+        let robot = robot("").expect("the robot is valid");
+        let solution = robot
+            .lizard()
+            .solve(&robot.neutral_pose())
+            .expect("the neutral pose closes");
+        let arms = robot.motors().joints.slider_arms;
         for side in lizard_kinematics::Side::ALL {
             let [front, hind] = side.servos();
             let slider = solution.side(side);

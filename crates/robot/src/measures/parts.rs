@@ -1,14 +1,14 @@
-//! The measures of the parts to print and to buy: `[parts]` in robot.toml.
+//! The dimensions of the parts to print and to buy: `[parts]` in robot.toml.
 //!
 //! The links' lengths place the joints. This table has the width and the thickness of the
-//! parts that hold the joints, and the measures of parts from a shop: servos, screws, springs, a
-//! board, a battery. No value of this table moves a joint, so the firmware does not depend on
+//! parts that hold the joints, and the dimensions of parts from a shop: servos, screws, springs and
+//! a battery. No value of this table moves a joint, so the firmware does not depend on
 //! it. The positions of the feet depend on it (`hips.rs`). Every key is optional.
 
 use crate::file::{Checked, Section};
 use crate::measures::coil::Coil;
 
-/// Measures of the parts, mm.
+/// Dimensions of the parts, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
     /// Clearance on each side of a part that is pushed into another one or slides in it.
@@ -25,15 +25,15 @@ pub struct Parts {
     pub gap: f64,
     /// Width of the cut that a laser or another cutter makes.
     pub kerf: f64,
-    /// The leg's driven pivot on the chassis, from its servo's shaft: outward and towards the
-    /// middle. The follower's pivot is a ground link further out.
+    /// The pivot of the leg's driven crank on the chassis, from the servo's shaft: outward and towards
+    /// the middle. The follower's pivot is farther out by the length of the ground link.
     pub pivot: [f64; 2],
     /// The foot's position on its coupler, from the crank's joint: outward and towards the middle.
-    /// The hip, the centre of the foot's circle, has the same offset from the driven pivot. `None`
+    /// The hip, the centre of the foot's circle, has the same offset from the crank's pivot. `None`
     /// if the key is left out; [`crate::LegPlan`] then has the computed position.
     pub foot: Option<[f64; 2]>,
-    /// The strut's anchor on the servo's link and, in parallel, on the leg: distance from the
-    /// shaft, and angle (deg) from the crank, away from the arm.
+    /// The strut's anchor on the servo's link, in polar coordinates: distance from the shaft, and
+    /// angle (deg) from the crank, away from the slider's arm. The anchor on the leg is parallel to it.
     pub anchor: [f64; 2],
     /// Height of the top of the chassis plate above the floor.
     pub height: f64,
@@ -59,8 +59,8 @@ pub struct Parts {
     pub head: f64,
 }
 
-/// Defines the measures of a part: lengths of 0.1 to 200 mm with their defaults, and the reader of
-/// their table, in which any key may be left out.
+/// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its
+/// table. Each length must be 0.1 to 200 mm, and any key may be left out.
 macro_rules! measures {
     ($($(#[$doc:meta])* $type:ident in $table:literal {
         $($(#[$of_key:meta])* $key:ident: $default:literal,)*
@@ -76,7 +76,7 @@ macro_rules! measures {
 
             fn read(parts: &Section) -> Checked<Self> {
                 let default = Self::DEFAULT;
-                if !parts.has($table) {
+                if !parts.has_key($table) {
                     return Ok(default);
                 }
                 let section = parts.section($table, &[$(stringify!($key)),*])?;
@@ -152,9 +152,9 @@ measures! {
 }
 
 impl Pad {
-    /// Height of the dome, mm, which is also the height of the highest edge that the pad can slide
-    /// up; `None` for a pad that is wider than the sphere.
-    pub fn dome(&self) -> Option<f64> {
+    /// Height of the dome, mm. It is also the height of the highest edge that the pad can slide up.
+    /// `None` for a pad that is wider than the sphere.
+    pub fn dome_height(&self) -> Option<f64> {
         let half_width = self.width / 2.0;
         (half_width <= self.radius)
             .then(|| self.radius - (self.radius * self.radius - half_width * half_width).sqrt())
@@ -180,7 +180,7 @@ impl Default for Parts {
             screw: Screw::DEFAULT,
             pad: Pad::DEFAULT,
             strip: 0.0,
-            spring: Coil::paper(0.6),
+            spring: Coil::with_papers_size(0.6),
             battery: [31.0, 56.0, 16.0],
             tail: 85.0,
             head: 42.0,
@@ -211,43 +211,43 @@ const KEYS: [&str; 20] = [
     "head",
 ];
 
-/// Reads the spring of the struts; its lengths have the range of other parts: 0.1 to 200 mm.
+/// Reads the spring of the struts. Its lengths have the same range as those of the other parts: 0.1 to 200 mm.
 fn read_coil(parts: &Section, default: Coil) -> Checked<Coil> {
-    if !parts.has("spring") {
+    if !parts.has_key("spring") {
         return Ok(default);
     }
     let section = parts.section("spring", &["wire", "outer", "length"])?;
     let read_mm = |name, default| section.number_or(name, default, 0.1, 200.0, "mm");
     Ok(Coil {
-        wire: read_mm("wire", default.wire)?,
-        outer: read_mm("outer", default.outer)?,
-        length: read_mm("length", default.length)?,
+        wire_diameter: read_mm("wire", default.wire_diameter)?,
+        outer_diameter: read_mm("outer", default.outer_diameter)?,
+        free_length: read_mm("length", default.free_length)?,
     })
 }
 
-/// The table that replaces the former key `[parts] strut`, for the message about that key.
-const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
+/// The table that replaces the former key `strut` of `[parts]`, for the message about this key.
+const STRUT_REPLACEMENT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
 
 impl Parts {
     /// Reads `[parts]`; every key may be left out.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
         let defaults = Self::default();
-        if !root.has("parts") {
+        if !root.has_key("parts") {
             return Ok(defaults);
         }
         let section = root.open("parts")?;
-        section.refuse_moved_keys(&["strut"], STRUT)?;
+        section.refuse_moved_keys(&["strut"], STRUT_REPLACEMENT)?;
         let section = section.require_known_keys(&KEYS)?;
         let read_mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
-        let read_pair = |name, default: [f64; 2], min, max| match section.has(name) {
+        let read_pair = |name, default: [f64; 2], min, max| match section.has_key(name) {
             true => section.numbers(name, min, max, "(mm; an angle in deg)"),
             false => Ok(default),
         };
-        let foot = match section.has("foot") {
+        let foot = match section.has_key("foot") {
             true => Some(read_pair("foot", [0.0; 2], -500.0, 500.0)?),
             false => None,
         };
-        let battery = match section.has("battery") {
+        let battery = match section.has_key("battery") {
             true => section.numbers("battery", 1.0, 500.0, "mm")?,
             false => defaults.battery,
         };
@@ -279,11 +279,11 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::with;
+    use crate::testing::robot_with;
 
     fn parts_with(table: &str) -> Result<Parts, String> {
         const NEXT_TABLE: &str = "[ground]";
-        with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
+        robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
             .map(|robot| *robot.parts())
             .map_err(|error| error.to_string())
     }

@@ -6,66 +6,72 @@ use crate::measures::legs::LegPlan;
 use crate::measures::parts::Parts;
 
 /// Width of the plate beside a servo's case, mm.
-const BESIDE_SERVO: f64 = 5.0;
+const SERVO_MARGIN: f64 = 5.0;
 /// Length of the plate beyond a servo's flange, mm.
-const BEYOND_FLANGE: f64 = 2.0;
+const FLANGE_MARGIN: f64 = 2.0;
 
 /// The chassis plate, mm, chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plate {
-    /// Half the width and half the length, without the arms.
-    pub half: Vector,
+    /// Half the width (x) and half the length (y), without the arms.
+    pub half_size: Vector,
     /// Radius of the corners.
-    pub corner: f64,
+    pub corner_radius: f64,
     /// End points of each leg's arms: one between the pivots, and one from each pivot to the plate.
     pub arms: [[[Vector; 2]; 3]; 4],
     /// Half the width of an arm; both ends of an arm are round.
-    pub arm: f64,
+    pub arm_half_width: f64,
     /// The centres of the servos' cases.
-    pub cases: [Vector; 4],
-    /// Width and length of a case.
-    pub case: Vector,
+    pub case_centres: [Vector; 4],
+    /// Width (x) and length (y) of a case.
+    pub case_size: Vector,
 }
 
 impl Plate {
     /// Half the width of an arm, mm.
-    const ARM: f64 = 7.0;
+    const ARM_HALF_WIDTH: f64 = 7.0;
     /// Radius of a corner, mm.
-    const CORNER: f64 = 4.0;
+    const CORNER_RADIUS: f64 = 4.0;
 
+    /// Computes the plate that carries these legs and these servos.
     pub(crate) fn new(legs: &[LegPlan; 4], parts: &Parts) -> Self {
-        let body = &parts.servo;
+        let servo_body = &parts.servo;
         // A case extends from its shaft toward the middle of the robot.
-        let cases: [Vector; 4] = std::array::from_fn(|servo| {
+        let case_centres: [Vector; 4] = std::array::from_fn(|servo| {
             let inward = -End::of_servo(servo).sign();
-            legs[servo].shaft + Vector::new(0.0, inward * (body.length / 2.0 - body.shaft))
+            legs[servo].shaft
+                + Vector::new(0.0, inward * (servo_body.length / 2.0 - servo_body.shaft))
         });
         // Wide enough for the servos of both ends, and long enough for their flanges.
-        let largest_of =
-            |coordinate: fn(Vector) -> f64| cases.map(coordinate).into_iter().fold(0.0, f64::max);
-        let half = Vector::new(
-            largest_of(|case| case.x.abs()) + body.width / 2.0 + BESIDE_SERVO,
-            largest_of(|case| case.y.abs()) + body.flange / 2.0 + BEYOND_FLANGE,
+        let largest_of = |coordinate: fn(Vector) -> f64| {
+            case_centres.map(coordinate).into_iter().fold(0.0, f64::max)
+        };
+        let half_size = Vector::new(
+            largest_of(|case| case.x.abs()) + servo_body.width / 2.0 + SERVO_MARGIN,
+            largest_of(|case| case.y.abs()) + servo_body.flange / 2.0 + FLANGE_MARGIN,
         );
         let arms = legs.map(|leg| {
             let inner_end_of = |pivot: Vector| {
-                let y = (half.y - Self::ARM).max(0.0);
-                Vector::new((half.x - Self::ARM).copysign(pivot.x), pivot.y.clamp(-y, y))
+                let max_y = (half_size.y - Self::ARM_HALF_WIDTH).max(0.0);
+                Vector::new(
+                    (half_size.x - Self::ARM_HALF_WIDTH).copysign(pivot.x),
+                    pivot.y.clamp(-max_y, max_y),
+                )
             };
-            let [driven, idle] = [leg.crank_pivot, leg.follower_pivot];
+            let [crank, follower] = [leg.crank_pivot, leg.follower_pivot];
             [
-                [driven, idle],
-                [driven, inner_end_of(driven)],
-                [idle, inner_end_of(idle)],
+                [crank, follower],
+                [crank, inner_end_of(crank)],
+                [follower, inner_end_of(follower)],
             ]
         });
         Self {
-            half,
-            corner: Self::CORNER,
+            half_size,
+            corner_radius: Self::CORNER_RADIUS,
             arms,
-            arm: Self::ARM,
-            cases,
-            case: Vector::new(body.width, body.length),
+            arm_half_width: Self::ARM_HALF_WIDTH,
+            case_centres,
+            case_size: Vector::new(servo_body.width, servo_body.length),
         }
     }
 }
@@ -75,12 +81,12 @@ mod tests {
     use crate::testing::robot;
 
     #[test]
-    fn the_papers_plate_holds_its_servos() {
+    fn the_papers_plate_extends_beyond_the_cases_and_the_flanges() {
         let plate = robot("paper").plate();
-        // 10 mm to a shaft, half a case, 5 mm. The shaft is 6.1 mm from the case's end.
+        // Width: 10 mm to a shaft, half a case, and 5 mm. Length: the shaft is 6.1 mm from the case's end.
         let half_width = 10.0 + 6.2 + 5.0;
         let half_length = 67.5 - (11.4 - 6.1) + 16.2 + 2.0;
-        assert!((plate.half.x - half_width).abs() < 1e-9, "{plate:?}");
-        assert!((plate.half.y - half_length).abs() < 1e-9, "{plate:?}");
+        assert!((plate.half_size.x - half_width).abs() < 1e-9, "{plate:?}");
+        assert!((plate.half_size.y - half_length).abs() < 1e-9, "{plate:?}");
     }
 }

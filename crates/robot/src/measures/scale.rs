@@ -1,4 +1,5 @@
-//! The finest step of a mechanism's lengths with which its longest bars still fit into the core's 16-bit integers.
+//! The scale of a mechanism's lengths: the finest step with which its longest bars still fit into the core's 16-bit
+//! integers.
 
 use lizard_core::numbers::units::Scale;
 use lizard_core::numbers::{bars, slider};
@@ -8,7 +9,7 @@ use lizard_kinematics::{FiveBar, Slider};
 pub(crate) const LONGEST_BAR: f64 = 1000.0;
 
 // Every mechanism that robot.toml may describe fits at some scale.
-const _: () = assert!(3.0 * LONGEST_BAR < bars::MAX_STEPS);
+const _: () = assert!(3.0 * LONGEST_BAR < bars::MAX_LENGTH_STEPS);
 const _: () = assert!(4.0 * LONGEST_BAR < slider::MAX_ARM_STEPS);
 
 /// The number of steps per millimetre at a scale.
@@ -18,25 +19,28 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 
 /// Finds the finest scale for the five-bar of head or tail.
 pub(crate) fn five_bar_scale(bars: &FiveBar) -> Scale {
-    let base_and_cranks = bars.base + bars.crank_left + bars.crank_right;
+    let base_and_cranks = bars.base + bars.left_crank_length + bars.right_crank_length;
     find_finest_scale(&[
-        (base_and_cranks, bars::MAX_STEPS),
-        (bars.coupler_left, bars::MAX_STEPS),
-        (bars.coupler_right, bars::MAX_STEPS),
+        (base_and_cranks, bars::MAX_LENGTH_STEPS),
+        (bars.left_coupler_length, bars::MAX_LENGTH_STEPS),
+        (bars.right_coupler_length, bars::MAX_LENGTH_STEPS),
     ])
 }
 
 /// Finds the finest scale for a side whose slider may extend by `stroke_max` mm from nominal.
 pub(crate) fn side_scale(side: &Slider, stroke_max: f64) -> Scale {
-    let arms = side.front + side.rear + side.offset.abs();
+    let arms = side.front_arm + side.rear_arm + side.front_offset.abs();
     find_finest_scale(&[
-        (side.base + arms, slider::MAX_STEPS),
+        (side.base + arms, slider::MAX_LENGTH_STEPS),
         (arms, slider::MAX_ARM_STEPS),
-        (side.nominal + stroke_max.max(0.0), slider::MAX_STEPS),
+        (
+            side.nominal_length + stroke_max.max(0.0),
+            slider::MAX_LENGTH_STEPS,
+        ),
     ])
 }
 
-/// Finds the finest scale at which every length (mm) has fewer steps than its bound.
+/// Finds the finest scale at which each length (mm) has fewer steps than the bound beside it.
 fn find_finest_scale(lengths: &[(f64, f64)]) -> Scale {
     let is_in_range = |scale: &Scale| {
         let per_mm = steps_per_mm(*scale);
@@ -57,31 +61,36 @@ mod tests {
     /// True if the bars fit at this number of bits, by the core's bound of 127 times 256 steps.
     fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
         let steps_of = |mm: f64| mm * f64::from(1u32 << bits);
-        let base_and_cranks = bars.base + bars.crank_left + bars.crank_right;
-        [base_and_cranks, bars.coupler_left, bars.coupler_right]
-            .into_iter()
-            .all(|mm| steps_of(mm) < 127.0 * 256.0)
+        let base_and_cranks = bars.base + bars.left_crank_length + bars.right_crank_length;
+        [
+            base_and_cranks,
+            bars.left_coupler_length,
+            bars.right_coupler_length,
+        ]
+        .into_iter()
+        .all(|mm| steps_of(mm) < 127.0 * 256.0)
     }
 
     /// True if a side fits at this number of bits, by the core's bounds of 127 and 255 times 256 steps.
     fn side_fits(side: &Slider, stroke_max: f64, bits: u16) -> bool {
         let steps_of = |mm: f64| mm * f64::from(1u32 << bits);
-        let arms = side.front + side.rear + side.offset.abs();
+        let arms = side.front_arm + side.rear_arm + side.front_offset.abs();
         steps_of(arms) < 127.0 * 256.0
             && steps_of(side.base + arms) < 255.0 * 256.0
-            && steps_of(side.nominal + stroke_max) < 255.0 * 256.0
+            && steps_of(side.nominal_length + stroke_max) < 255.0 * 256.0
     }
 
-    fn length() -> impl Strategy<Value = f64> {
-        (0.0..3.0f64).prop_map(|decade| 10f64.powf(decade))
+    /// Makes a strategy of lengths of 1 to 1000 mm, short ones as likely as long ones.
+    fn any_length() -> impl Strategy<Value = f64> {
+        (0.0..3.0f64).prop_map(|exponent| 10f64.powf(exponent))
     }
 
     proptest! {
         #[test]
         fn a_loops_scale_is_the_finest_that_fits(
-            [base, crank_left, coupler_left, coupler_right, crank_right] in prop::array::uniform5(length()),
+            lengths in prop::array::uniform5(any_length()),
         ) {
-            let bars = FiveBar { base, crank_left, coupler_left, coupler_right, crank_right };
+            let bars = FiveBar::new(lengths);
             let bits = five_bar_scale(&bars).bits;
             prop_assert!(loop_fits(&bars, bits));
             prop_assert!(bits == 14 || !loop_fits(&bars, bits + 1), "{bits}");
@@ -89,10 +98,10 @@ mod tests {
 
         #[test]
         fn a_sides_scale_is_the_finest_that_fits(
-            [base, front, rear, nominal, stroke] in prop::array::uniform5(length()),
-            offset in -500.0..500.0f64,
+            [base, front_arm, rear_arm, nominal_length, stroke] in prop::array::uniform5(any_length()),
+            front_offset in -500.0..500.0f64,
         ) {
-            let side = Slider { offset, base, front, rear, nominal };
+            let side = Slider { front_offset, base, front_arm, rear_arm, nominal_length };
             let bits = side_scale(&side, stroke).bits;
             prop_assert!(side_fits(&side, stroke, bits));
             prop_assert!(bits == 14 || !side_fits(&side, stroke, bits + 1), "{bits}");
@@ -100,15 +109,15 @@ mod tests {
     }
 
     #[test]
-    fn a_length_that_just_does_not_fit_halves_the_step_less() {
-        // With a base of 47 mm the sum is 127 mm: exactly the bound at 256 steps per mm, so a coarser scale is
-        // needed.
+    fn a_sum_of_lengths_at_the_bound_halves_the_steps_per_mm() {
+        // With a base of 47 mm, base and cranks add up to 127 mm. This is exactly the bound at 256 steps per mm, so a
+        // coarser scale is needed.
         let bars_with_base = |base| FiveBar {
             base,
-            crank_left: 40.0,
-            coupler_left: 60.0,
-            coupler_right: 60.0,
-            crank_right: 40.0,
+            left_crank_length: 40.0,
+            left_coupler_length: 60.0,
+            right_coupler_length: 60.0,
+            right_crank_length: 40.0,
         };
         assert_eq!(five_bar_scale(&bars_with_base(46.99)).bits, 8);
         assert_eq!(five_bar_scale(&bars_with_base(47.0)).bits, 7);
@@ -118,10 +127,10 @@ mod tests {
     fn the_smallest_and_the_largest_robot_have_a_scale() {
         let equal_bars = |mm| FiveBar {
             base: mm,
-            crank_left: mm,
-            coupler_left: mm,
-            coupler_right: mm,
-            crank_right: mm,
+            left_crank_length: mm,
+            left_coupler_length: mm,
+            right_coupler_length: mm,
+            right_crank_length: mm,
         };
         assert_eq!(five_bar_scale(&equal_bars(1.0)).bits, 13);
         assert_eq!(five_bar_scale(&equal_bars(LONGEST_BAR)).bits, 3);

@@ -1,30 +1,31 @@
 //! The four servos, in the order of every array of this project: A1, A2, A3, A4.
 
-pub use lizard_contact::FORWARD;
+pub use lizard_contact::FORWARD_TURN_SIGN;
 use lizard_kinematics::{Side, wrap};
 
 use crate::file::{Checked, Section, format_number};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The servos' names.
-pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
+pub const SERVO_NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 
-/// The leg that each servo carries: left or right, front (F) or hind (H).
-pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
+/// The names of the legs that the servos drive: left (L) or right (R), front (F) or hind (H).
+pub const LEG_NAMES: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// The direction from a servo's crank to its link's arm for the slider: 1 for counter-clockwise, -1 for clockwise.
+/// The direction in which the slider's arm is turned from the crank of the same link, for each servo: 1 for
+/// counter-clockwise, -1 for clockwise.
 pub const ARM_SIDE: [f64; 4] = {
     let (left, right) = (Side::Left.sign(), Side::Right.sign());
     [left, right, -right, -left]
 };
 
-/// Pulse widths that a hobby servo tolerates, us; they fit into a slot of 4 ms.
-const WIDTHS: (f64, f64) = (500.0, 2500.0);
-/// Range of a servo's gain without its sign, us per degree; the firmware's i16 cannot hold a larger gain.
-const GAINS: (f64, f64) = (1.0, 22.0);
+/// Range of the pulse widths that a hobby servo tolerates, us. Each fits into a slot of 4 ms.
+const PULSE_RANGE_US: (f64, f64) = (500.0, 2500.0);
+/// Range of the magnitude of a servo's gain, us per degree; the firmware's i16 cannot hold a larger gain.
+const GAIN_RANGE: (f64, f64) = (1.0, 22.0);
 
-/// The servo on the other side of the robot, for each servo.
-pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
+/// For each servo, the index of its mirror image on the other side of the robot.
+pub const OPPOSITE_SERVO: [usize; 4] = [1, 0, 3, 2];
 
 /// One servo, as robot.toml defines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,18 +45,21 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// The travel as sweeps from neutral, deg: smallest and largest. It is limited to half a turn, even if the
-    /// pulses allow more.
+    /// The travel: the smallest and the largest sweep from neutral, deg. Neither exceeds half a turn, even if the pulses
+    /// allow more.
     pub fn travel(&self) -> (f64, f64) {
-        let a = (self.min_us - self.neutral_us) / self.us_per_degree;
-        let b = (self.max_us - self.neutral_us) / self.us_per_degree;
-        (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
+        let sweep_at_min = (self.min_us - self.neutral_us) / self.us_per_degree;
+        let sweep_at_max = (self.max_us - self.neutral_us) / self.us_per_degree;
+        (
+            sweep_at_min.min(sweep_at_max).max(-HALF_TURN),
+            sweep_at_min.max(sweep_at_max).min(HALF_TURN),
+        )
     }
 
     /// True if the servo can turn to this angle in the chassis frame, deg.
     pub fn reaches(&self, angle: f64) -> bool {
         let (min, max) = self.travel();
-        (min - ROUNDING..=max + ROUNDING).contains(&wrap(angle - self.neutral))
+        (min - ROUNDING_ALLOWANCE..=max + ROUNDING_ALLOWANCE).contains(&wrap(angle - self.neutral))
     }
 
     /// Converts a pulse width (us) to the sweep from neutral, deg, positive counter-clockwise.
@@ -70,14 +74,14 @@ impl Servo {
 }
 
 /// Rounding error allowed at the limits of a travel, deg.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING_ALLOWANCE: f64 = 1e-9;
 /// The largest sweep that the core can represent, deg.
 const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
 
-/// Limits of the servos' speed.
+/// The highest speeds at which the servos may turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedLimits {
-    /// Highest speed in a point-to-point move, deg/s.
+    /// Highest speed in a move from one pose to another, deg/s.
     pub slew: f64,
     /// Highest speed in a gait, deg/s.
     pub gait_slew: f64,
@@ -99,7 +103,7 @@ pub(crate) fn parse_pin(name: &str) -> Option<u8> {
     }
 }
 
-/// Reads the key `pin`, whose value must be a name that the function [`parse_pin`] accepts.
+/// Reads the key `pin`. Its value must be a name that [`parse_pin`] accepts.
 pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
     parse_pin(text).ok_or_else(|| {
@@ -111,7 +115,7 @@ pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
 }
 
 /// The keys of `[servo]` that describe the motors of all four servos.
-const MOTOR: [&str; 8] = [
+const MOTOR_KEYS: [&str; 8] = [
     "model",
     "stall_kg_cm",
     "s_per_60_deg",
@@ -124,10 +128,10 @@ const MOTOR: [&str; 8] = [
 
 /// Reads `[servo.A1]` to `[servo.A4]`.
 pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
-    let keys: Vec<&str> = NAMES.into_iter().chain(MOTOR).collect();
+    let keys: Vec<&str> = SERVO_NAMES.into_iter().chain(MOTOR_KEYS).collect();
     let section = root.section("servo", &keys)?;
     let mut servos = Vec::with_capacity(4);
-    for name in NAMES {
+    for name in SERVO_NAMES {
         let table = section.section(
             name,
             &[
@@ -144,7 +148,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
             .iter()
             .position(|earlier: &Servo| earlier.pin == servo.pin)
         {
-            let (pin, owner) = (table.text("pin")?, NAMES[owner]);
+            let (pin, owner) = (table.text("pin")?, SERVO_NAMES[owner]);
             return Err(table.fault(
                 "pin",
                 format!("is \"{pin}\", which servo.{owner} already has"),
@@ -156,10 +160,10 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
 }
 
 fn read_servo(section: &Section) -> Checked<Servo> {
-    let read_width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
+    let read_width = |name| section.number(name, PULSE_RANGE_US.0, PULSE_RANGE_US.1, "us");
     let pin = read_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
-    if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
+    if !(GAIN_RANGE.0..=GAIN_RANGE.1).contains(&us_per_degree.abs()) {
         let message = format!(
             "is {}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
             format_number(us_per_degree)
@@ -198,7 +202,11 @@ mod tests {
         assert_eq!((min, max), (-885.0 / 11.0, 975.0 / 11.0));
         assert_eq!(SERVO.pulse(57.0), 1425.0);
         assert_eq!(SERVO.sweep(1425.0), 10.0);
-        assert_eq!(SERVO.pulse(47.0 - 350.0), 1425.0, "the short way round");
+        assert_eq!(
+            SERVO.pulse(47.0 - 350.0),
+            1425.0,
+            "a turn is taken the short way round"
+        );
     }
 
     #[test]
@@ -212,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sliders_arm_stands_on_the_hand_that_the_kinematics_gives_it() {
+    fn slider_arms_are_on_the_side_that_the_kinematics_gives_them() {
         use lizard_kinematics::Vector;
         let crank = Vector::new(1.0, 0.0);
         for side in Side::ALL {

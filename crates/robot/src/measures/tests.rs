@@ -1,10 +1,12 @@
 //! Tests of the dimensions that a robot must have.
 
-use crate::testing::with;
+use crate::testing::robot_with;
 
-/// The message with which the unequal robot is refused after changes of its robot.toml.
+/// Returns the message with which the unequal robot is refused after changes of its file.
 fn refusal_of(changes: &[(&str, &str)]) -> String {
-    with("unequal", changes).expect_err("refused").to_string()
+    robot_with("unequal", changes)
+        .expect_err("the robot is refused")
+        .to_string()
 }
 
 #[test]
@@ -17,7 +19,10 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
         ("l8 = 48.0", "l8 = 15.9"),
     ] {
         let message = refusal_of(&[(from, to)]);
-        let key = from.split(' ').next().expect("a key");
+        let key = from
+            .split(' ')
+            .next()
+            .expect("the change begins with a key");
         assert!(
             message.contains(&format!("links.{key} is 15.9 mm, which is short"))
                 && message.contains("at least 16.1 mm"),
@@ -33,19 +38,19 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
 }
 
 #[test]
-fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
+fn a_neutral_pulse_outside_its_servos_range_is_refused() {
     for name in ["A1", "A2", "A3", "A4"] {
-        let text = crate::testing::text("unequal");
+        let text = crate::testing::robot_text("unequal");
         let start = text.find(&format!("[servo.{name}]")).expect(name);
         let line_range = |key: &str| {
             let from = start + text[start..].find(key).expect(key);
-            let to = from + text[from..].find('\n').expect("a line's end");
+            let to = from + text[from..].find('\n').expect("the line ends");
             from..to
         };
         let us_of = |key: &str| -> f64 {
             let line = &text[line_range(key)];
-            let value = line.split(" = ").nth(1).expect("a value");
-            value.parse().expect("a number")
+            let value = line.split(" = ").nth(1).expect("the line has a value");
+            value.parse().expect("the value is a number")
         };
         for (neutral_us, refused_key) in [
             (us_of("min_us") - 0.1, "min_us"),
@@ -59,7 +64,7 @@ fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
                 &format!("neutral_us = {neutral_us}"),
             );
             let error = crate::Robot::parse(&changed)
-                .expect_err("outside")
+                .expect_err("the neutral pulse is out of range")
                 .to_string();
             assert!(
                 error.contains(&format!("servo.{name}.{refused_key}")),
@@ -70,7 +75,7 @@ fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
 }
 
 #[test]
-fn a_stroke_leaves_the_shorter_slider_a_length() {
+fn a_stroke_that_leaves_the_shorter_slider_no_length_is_refused() {
     for slider in [["l12 = 53.0", "l13 = 51.0"], ["l17 = 54.0", "l18 = 57.0"]] {
         let changes = [
             (slider[0], &*slider[0].replace(" 5", " 4")),
@@ -85,7 +90,7 @@ fn a_stroke_leaves_the_shorter_slider_a_length() {
 }
 
 #[test]
-fn each_leg_must_stand_on_the_side_where_it_was_assembled() {
+fn a_leg_in_its_other_assembly_mode_is_refused() {
     for (from, to, name, leg) in [
         ("neutral = 135.0", "neutral = 200.0", "left front", "leg_lf"),
         ("neutral = 47.0", "neutral = 350.0", "right front", "leg_rf"),

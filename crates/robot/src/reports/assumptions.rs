@@ -9,78 +9,87 @@ use crate::checks::CheckedGait;
 use crate::measures::ServoType;
 use crate::robot::Robot;
 
-/// Smallest change of a movement that is listed, percent.
+/// Smallest change of a movement that gets a row in the table, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
 /// Smallest noticeable movement in a cycle: mm ahead, deg of turn.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
-/// Tolerance within which the movements of a gait and of its mirror image or reverse count as equal: mm, deg.
+/// Largest difference (mm or deg) at which two movements count as those of a gait and of its mirror image or reverse.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
 /// The note about assumptions for which the model has no input.
-const BEYOND_THE_MODEL: &str = "\
+const UNMODELLED_NOTE: &str = "\
 The model cannot vary the floor's edges and slopes, a lost pad, servos that drive in bursts, a mass centre farther off, \
 or the mass of the limbs.\n\
 docs/limits.md has a table of them by MuJoCo, for the paper's robot.";
 
-/// The inputs that an assumption varies.
+/// The inputs of the model that an assumption can vary.
 #[derive(Clone, Copy)]
-struct Inputs {
+struct ModelInputs {
     ground: Ground,
     servo: ServoType,
     /// Friction of the pins, N mm, and of a slider, N.
     joints: [f64; 2],
     /// Angle that a servo turns, divided by the angle that the firmware sends.
-    scale: f64,
+    angle_scale: f64,
 }
 
-impl Inputs {
+impl ModelInputs {
     /// The inputs of a robot's prediction.
     fn of(robot: &Robot) -> Self {
         let joints = robot.motors().joints;
         Self {
             ground: *robot.ground(),
             servo: *robot.servo_type(),
-            joints: [joints.drag, joints.slider],
-            scale: 1.0,
+            joints: [joints.pin_torque, joints.slider_force],
+            angle_scale: 1.0,
         }
     }
 
-    /// The movement of a cycle at a pace; 1 is the gait's own.
-    fn walk(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
-        let Motors { each, mut joints } = robot.motors_of(&self.servo, self.servo.volts);
-        [joints.drag, joints.slider] = self.joints;
-        gait.simulate_scaled_cycle(&self.ground, &Motors { each, joints }, pace, self.scale)
+    /// Simulates a cycle of a gait at a pace, as a share of the gait's own, and returns its movement.
+    fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
+        let Motors {
+            per_servo,
+            mut joints,
+        } = robot.motors_of_type(&self.servo, self.servo.volts);
+        [joints.pin_torque, joints.slider_force] = self.joints;
+        gait.simulate_scaled_cycle(
+            &self.ground,
+            &Motors { per_servo, joints },
+            pace,
+            self.angle_scale,
+        )
     }
 }
 
 /// An assumption: its description, its unit, its range, and the inputs that it varies.
 struct Assumption {
-    words: &'static str,
+    description: &'static str,
     unit: &'static str,
     range: [f64; 2],
     variation: Variation,
 }
 
-/// The change of the inputs by which an assumption is varied.
+/// The way in which an assumption changes the inputs.
 enum Variation {
     /// One input is set to each value.
-    Value(fn(&mut Inputs) -> &mut f64),
-    /// A change that is not made for the value 0, as in the prediction, and made for 1.
-    Switch(fn(&mut Inputs)),
+    Value(fn(&mut ModelInputs) -> &mut f64),
+    /// A change that is made for the value 1 and not for 0, which is the value in the prediction.
+    Switch(fn(&mut ModelInputs)),
     /// One input is set to each value after another change, without which the input has no effect.
-    ValueAfterChange(fn(&mut Inputs), fn(&mut Inputs) -> &mut f64),
+    ValueAfterChange(fn(&mut ModelInputs), fn(&mut ModelInputs) -> &mut f64),
 }
 
 impl Variation {
     /// The value that the prediction uses.
-    fn value(&self, mut inputs: Inputs) -> f64 {
+    fn nominal_value(&self, mut inputs: ModelInputs) -> f64 {
         match self {
             Self::Value(field_of) | Self::ValueAfterChange(_, field_of) => *field_of(&mut inputs),
             Self::Switch(_) => 0.0,
         }
     }
 
-    fn set(&self, inputs: &mut Inputs, value: f64) {
+    /// Changes the inputs so that the assumption has this value.
+    fn set(&self, inputs: &mut ModelInputs, value: f64) {
         match self {
             Self::Value(field_of) => *field_of(inputs) = value,
             Self::Switch(change) if value > 0.0 => change(inputs),
@@ -93,11 +102,13 @@ impl Variation {
     }
 }
 
-/// Makes the table of assumptions.
+/// Makes the table of assumptions. A row has the description, the unit, the range, and the way in which the assumption
+/// changes the inputs: `number` for [`Variation::Value`], `case` for [`Variation::Switch`], and `after` for
+/// [`Variation::ValueAfterChange`].
 macro_rules! assumptions {
-    ($($words:literal, $unit:literal, $from:literal to $to:literal, $kind:ident($($of:tt)+);)+) => {
+    ($($description:literal, $unit:literal, $from:literal to $to:literal, $kind:ident($($of:tt)+);)+) => {
         [$(Assumption {
-            words: $words,
+            description: $description,
             unit: $unit,
             range: [$from, $to],
             variation: assumptions!(@$kind $($of)+),
@@ -111,7 +122,7 @@ macro_rules! assumptions {
 }
 
 /// The assumptions in the order of robot.toml.
-const ALL: [Assumption; 21] = assumptions! {
+const ASSUMPTIONS: [Assumption; 21] = assumptions! {
     "stall torque of a servo", "kg cm", 1.2 to 2.2, number(servo.stall_kg_cm);
     "time of a servo for 60 deg", "s", 0.1 to 0.15, number(servo.s_per_60_deg);
     "supply of the servos", "V", 4.0 to 5.2, number(servo.volts);
@@ -119,7 +130,7 @@ const ALL: [Assumption; 21] = assumptions! {
     "error at the full torque", "deg", 1.0 to 6.0, number(servo.full_torque_deg);
     "dead band of a servo", "us", 2.0 to 20.0, number(servo.dead_band_us);
     // The range of servos that trial 3 of docs/measure.md accepts: 11 or 9 us per deg instead of 10.
-    "angle of the servos over the one sent", "", 0.91 to 1.11, number(scale);
+    "angle of the servos over the one sent", "", 0.91 to 1.11, number(angle_scale);
     "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo = ServoType {
             volts: inputs.servo.volts,
@@ -133,11 +144,11 @@ const ALL: [Assumption; 21] = assumptions! {
     "friction of pins", "N mm", 0.0 to 20.0, number(joints[0]);
     "friction of a slider", "N", 0.0 to 1.0, number(joints[1]);
     "mass", "g", 350.0 to 500.0, number(ground.body.mass);
-    "mass centre ahead", "mm", -15.0 to 15.0, number(ground.body.centre[0]);
-    "friction of a pad", "", 0.4 to 1.2, number(ground.friction);
-    "friction backward over forward", "", 0.67 to 1.5, number(ground.ratio);
+    "mass centre ahead", "mm", -15.0 to 15.0, number(ground.body.mass_centre[0]);
+    "friction of a pad", "", 0.4 to 1.2, number(ground.friction_coefficient);
+    "friction backward over forward", "", 0.67 to 1.5, number(ground.friction_ratio);
     "hips ahead of the middle", "mm", 50.0 to 60.0, number(ground.feet.hip_forward);
-    "mounting of the legs", "deg", -10.0 to 41.4, number(ground.feet.mount);
+    "mounting of the legs", "deg", -10.0 to 41.4, number(ground.feet.mount_angle);
     "play of a leg", "deg", 0.0 to 2.0, number(ground.drive.play);
     "front left foot too long", "mm", -1.0 to 1.0, number(ground.stance.twist);
     "stiffness of feet, that foot 0.5 mm too long", "N/mm", 0.3 to 3.3, after(
@@ -148,22 +159,25 @@ const ALL: [Assumption; 21] = assumptions! {
         inputs.servo.stall_kg_cm = 1.2;
         inputs.servo.s_per_60_deg = 0.15;
         inputs.joints = [17.0, 0.5];
-        inputs.ground.friction = 1.0;
+        inputs.ground.friction_coefficient = 1.0;
         inputs.ground.body.mass += 50.0;
     });
 };
 
 /// The plausible range of the assumption with this description; `None` if no assumption has it.
-pub fn plausible_range(words: &str) -> Option<[f64; 2]> {
-    let assumption = ALL.iter().find(|assumption| assumption.words == words);
+pub fn plausible_range(description: &str) -> Option<[f64; 2]> {
+    let assumption = ASSUMPTIONS
+        .iter()
+        .find(|assumption| assumption.description == description);
     assumption.map(|assumption| assumption.range)
 }
 
-/// An assumption's effect on each gait.
+/// The effect of an assumption on each gait.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
-    words: &'static str,
+    description: &'static str,
     unit: &'static str,
+    /// The value in the prediction.
     nominal: f64,
     range: [f64; 2],
     /// Change of each gait's movement at the lowest and at the highest value of the range, percent.
@@ -179,17 +193,19 @@ pub struct Assumptions {
 }
 
 impl Assumptions {
-    /// Simulates a robot's gaits, with its servos, at the lowest and the highest value of every range. Takes some
+    /// Simulates a robot's gaits, with its servos, at the lowest and the highest value of each assumption. Takes some
     /// seconds.
     pub fn of(robot: &Robot) -> Self {
-        let nominal = Inputs::of(robot);
-        let gaits = distinct_gaits(robot, |gait| nominal.walk(robot, gait, 1.0));
+        let nominal = ModelInputs::of(robot);
+        let gaits = distinct_gaits(robot, |gait| nominal.simulate_cycle(robot, gait, 1.0));
         let row_of = |assumption: &Assumption| {
             let change_of = |gait: &CheckedGait, movement: &Travel, value: f64| {
                 let mut inputs = nominal;
                 assumption.variation.set(&mut inputs, value);
                 let component = principal_component(movement);
-                100.0 * (component(&inputs.walk(robot, gait, 1.0)) / component(movement) - 1.0)
+                100.0
+                    * (component(&inputs.simulate_cycle(robot, gait, 1.0)) / component(movement)
+                        - 1.0)
             };
             let changes_of = |(gait, movement): &(&CheckedGait, Travel)| {
                 assumption
@@ -197,14 +213,14 @@ impl Assumptions {
                     .map(|value| change_of(gait, movement, value))
             };
             Row {
-                words: assumption.words,
+                description: assumption.description,
                 unit: assumption.unit,
-                nominal: assumption.variation.value(nominal),
+                nominal: assumption.variation.nominal_value(nominal),
                 range: assumption.range,
                 changes: gaits.iter().map(changes_of).collect(),
             }
         };
-        let mut rows: Vec<Row> = ALL.iter().map(row_of).collect();
+        let mut rows: Vec<Row> = ASSUMPTIONS.iter().map(row_of).collect();
         rows.sort_by(|a, b| b.max_change().total_cmp(&a.max_change()));
         Self {
             gaits: gaits
@@ -216,10 +232,10 @@ impl Assumptions {
     }
 }
 
-/// A movement in a cycle, mm ahead or deg of turn, and the assumption that causes it.
+/// The movement of a cycle if one assumption is changed, and that assumption.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
-    /// The movement.
+    /// The movement: mm ahead, or deg of turn.
     pub movement: f64,
     /// The description of the assumption; `None` if all assumptions have the values of robot.toml.
     pub assumption: Option<&'static str>,
@@ -233,43 +249,43 @@ pub struct MovementRange {
     /// ahead.
     pub is_turn: bool,
     /// The smallest movement, with its sign.
-    pub least: Extreme,
+    pub smallest: Extreme,
     /// The largest movement, with its sign.
-    pub most: Extreme,
+    pub largest: Extreme,
 }
 
 impl MovementRange {
     /// Simulates a gait, with the robot's servos, at the lowest and the highest value of every range; `pace` is 1 for
     /// the gait's own pace.
     pub fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
-        let nominal = Inputs::of(robot);
-        let travel = nominal.walk(robot, gait, pace);
+        let nominal = ModelInputs::of(robot);
+        let travel = nominal.simulate_cycle(robot, gait, pace);
         let component = principal_component(&travel);
         let nominal_extreme = Extreme {
             movement: component(&travel),
             assumption: None,
         };
-        let extremes = ALL.iter().flat_map(|assumption| {
+        let extremes = ASSUMPTIONS.iter().flat_map(|assumption| {
             assumption.range.map(|value| {
                 let mut inputs = nominal;
                 assumption.variation.set(&mut inputs, value);
                 Extreme {
-                    movement: component(&inputs.walk(robot, gait, pace)),
-                    assumption: Some(assumption.words),
+                    movement: component(&inputs.simulate_cycle(robot, gait, pace)),
+                    assumption: Some(assumption.description),
                 }
             })
         });
         let mut range = Self {
             is_turn: is_turn(&travel),
-            least: nominal_extreme,
-            most: nominal_extreme,
+            smallest: nominal_extreme,
+            largest: nominal_extreme,
         };
         for extreme in extremes {
-            if extreme.movement < range.least.movement {
-                range.least = extreme;
+            if extreme.movement < range.smallest.movement {
+                range.smallest = extreme;
             }
-            if extreme.movement > range.most.movement {
-                range.most = extreme;
+            if extreme.movement > range.largest.movement {
+                range.largest = extreme;
             }
         }
         range
@@ -282,19 +298,19 @@ fn distinct_gaits(
     simulate: impl Fn(&CheckedGait) -> Travel,
 ) -> Vec<(&CheckedGait, Travel)> {
     let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
-    let rigid_ground = robot.ground().rigid();
-    for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
+    let rigid_ground = robot.ground().with_rigid_drive();
+    for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
         if !gait.predict(&rigid_ground).is_decided() {
             continue;
         }
         let movement = simulate(gait);
-        let is_alike = |(_, other): &(_, Travel)| {
+        let is_mirror_or_reverse = |(_, other): &(_, Travel)| {
             let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
             is_close(movement.forward, other.forward) && is_close(movement.turn, other.turn)
         };
         let moves_noticeably =
             movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
-        if moves_noticeably && !gaits.iter().any(is_alike) {
+        if moves_noticeably && !gaits.iter().any(is_mirror_or_reverse) {
             gaits.push((gait, movement));
         }
     }
@@ -332,7 +348,7 @@ impl fmt::Display for Assumptions {
         let width = self
             .rows
             .iter()
-            .map(|row| row.words.len())
+            .map(|row| row.description.len())
             .fold(0, usize::max);
         write!(f, "{:width$}  assumed        from to         ", "")?;
         for gait in &self.gaits {
@@ -346,7 +362,11 @@ impl fmt::Display for Assumptions {
         for row in listed_rows {
             let [min, max] = row.range;
             let range = format!("{min} to {max} {}", row.unit);
-            write!(f, "{:<width$} {:>8} {range:>19}", row.words, row.nominal)?;
+            write!(
+                f,
+                "{:<width$} {:>8} {range:>19}",
+                row.description, row.nominal
+            )?;
             for [low, high] in &row.changes {
                 // Adding +0.0 turns -0.0 into 0.0.
                 let [low, high] = [low, high].map(|change| change.round() + 0.0);
@@ -356,7 +376,7 @@ impl fmt::Display for Assumptions {
         }
         let line_of = |row: &Row| {
             let [min, max] = row.range;
-            format!("  {}, {min} to {max} {}", row.words, row.unit)
+            format!("  {}, {min} to {max} {}", row.description, row.unit)
                 .trim_end()
                 .to_string()
         };
@@ -368,6 +388,6 @@ impl fmt::Display for Assumptions {
                 other_lines.join("\n")
             )?;
         }
-        writeln!(f, "\n{BEYOND_THE_MODEL}")
+        writeln!(f, "\n{UNMODELLED_NOTE}")
     }
 }

@@ -1,7 +1,7 @@
-//! Tables of a robot's gaits for people, and the reasons why a pose is refused.
+//! Tables about a robot's gaits for people, and the reasons why a pose is refused.
 //!
-//! The author of a gait needs three things: its distance from the limits, its movement, and the effect of another
-//! floor, other feet or softer legs. Each is a table.
+//! The author of a gait needs to know three things: how far the gait is from the limits, how it moves the robot, and
+//! how another floor, other feet or softer legs change this movement. Each has its table.
 
 mod assumptions;
 mod report;
@@ -12,8 +12,8 @@ mod spring_cost;
 pub mod verdict;
 
 pub use assumptions::{Assumptions, Extreme, MovementRange, plausible_range};
-pub use report::{Report, Row, UNDECIDED, WITHOUT_CONTACTS};
+pub use report::{Report, Row, UNDECIDED_NOTE, WITHOUT_CONTACTS_NOTE};
 pub use round::Round;
 pub use sensitivity::Sensitivity;
-pub use servos::{PACES, ServoTable};
+pub use servos::{PACES_PERCENT, ServoTable};
 pub use spring_cost::SpringCost;

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use lizard_contact::Prediction;
-use lizard_core::numbers::section::SPACE;
+use lizard_core::numbers::section::SPACE_BYTES;
 
 use crate::checks::{Audit, CheckedGait, Effort, HIGH_LINE_SHARE, TableError};
-use crate::measures::servo::NAMES;
+use crate::measures::servo::SERVO_NAMES;
 use crate::reports::round::Round;
 use crate::reports::spring_cost::SpringCost;
 use crate::robot::Robot;
@@ -21,27 +21,27 @@ pub struct Row {
     /// Margins, strokes and the fastest frame.
     pub audit: Audit,
     /// Error of the gait's tables over all 65 536 phases.
-    pub error: TableError,
+    pub table_error: TableError,
     /// Movement in one cycle with ideal servos, by the contact model.
     pub movement: Prediction,
-    /// Effect of the legs' drive; `None` if legs are rigid without play.
+    /// Effect of the legs' drive; `None` if the legs are rigid without play.
     pub spring_cost: Option<SpringCost>,
     /// Largest share of its torque-speed line that any servo uses, at the servos' own supply.
-    pub line: f64,
+    pub line_share: f64,
     /// Movement in one cycle with the servos' limited torque and speed.
-    pub driven: Prediction,
+    pub driven_movement: Prediction,
 }
 
 impl Row {
-    /// True for a gait that travels, but whose fastest servo stays below [`SLOW_SPEED`].
+    /// True if the gait moves the robot, but its fastest servo stays below [`SLOW_SPEED`].
     fn is_slow(&self) -> bool {
-        /// Smallest speed at which a gait counts as travelling: mm/s ahead, deg/s of turn.
+        /// Smallest speed at which a gait counts as moving the robot: mm/s ahead, deg/s of turn.
         const MIN_SPEEDS: (f64, f64) = (5.0, 2.0);
         let speed_of = |component: Option<f64>| component.unwrap_or_default().abs() / self.period;
         let movement = &self.movement;
         let is_walking =
             speed_of(movement.forward) >= MIN_SPEEDS.0 || speed_of(movement.turn) >= MIN_SPEEDS.1;
-        is_walking && self.audit.peak.speed < SLOW_SPEED
+        is_walking && self.audit.peak_speed.speed < SLOW_SPEED
     }
 }
 
@@ -55,36 +55,37 @@ pub struct Report {
     /// Hash of the tables.
     pub hash: u32,
     /// Number of waveforms that the gaits share.
-    pub waves: usize,
-    /// Bytes of the robot's section in flash; at most [`SPACE`].
-    pub flash: usize,
-    /// True if the search for a gait's name may make a frame late.
-    pub searches_long: bool,
+    pub wave_count: usize,
+    /// Bytes of the robot's section in flash; at most [`SPACE_BYTES`].
+    pub section_bytes: usize,
+    /// True if the console's search for a gait's name may make a frame late.
+    pub has_long_search: bool,
     /// Name of the robot.
     pub name: String,
 }
 
-/// CPU cycles that the main loop may spend on a console line without making a frame late: docs/firmware.md.
+/// Number of CPU cycles that the main loop may spend on a console line without making a frame late
+/// (docs/firmware.md).
 const MAX_SEARCH_CYCLES: usize = 34_000;
 
-/// The note for a robot whose console takes longer to find a gait's name.
+/// The note for a robot whose console may need more than [`MAX_SEARCH_CYCLES`] to find a gait's name.
 const LONG_SEARCH_NOTE: &str = "many gaits: `cal`, or a line that names one, may make a frame 20 ms late; \
      fewer gaits or shorter names avoid it\n";
 
 /// The note that explains a dash in place of a prediction.
-pub const UNDECIDED: &str =
+pub const UNDECIDED_NOTE: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
 
-/// Speed of the fastest servo, deg/s, below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
-/// similar gaits keep nine tenths of their distance; slow gaits lose up to a third.
+/// Speed of the fastest servo below which a gait counts as slow, deg/s. At an edge of 2 mm in MuJoCo, `walk` and
+/// similar gaits keep nine tenths of their distance, while slow gaits lose up to a third.
 const SLOW_SPEED: f64 = 200.0;
 
-/// The note about the assumptions behind the figures of routines with inputs.
-pub const WITHOUT_CONTACTS: &str =
+/// The note about what is assumed for the figures of routines with inputs.
+pub const WITHOUT_CONTACTS_NOTE: &str =
     "inputs: no contact closes; a wait takes one frame, a gait without an end one cycle\n";
 
 impl Report {
-    /// Measures the tables and predicts the gaits of a robot; takes a moment.
+    /// Computes the errors of a robot's tables and predicts its gaits and routines. Takes a moment.
     pub fn of(robot: &Robot) -> Self {
         let (ground, motors) = (robot.ground(), robot.motors());
         let row_of = |gait: &CheckedGait| {
@@ -93,14 +94,15 @@ impl Report {
                 name: gait.name().to_string(),
                 period: gait.period(),
                 audit: *gait.audit(),
-                error: gait.table_error(),
+                table_error: gait.table_error(),
                 movement,
                 spring_cost: SpringCost::of(gait, ground),
-                line: Effort::of(gait, ground, &motors).line_share(1.0, 1.0),
-                driven: movement.keep_known(gait.simulate_driven_cycle(ground, &motors, 1.0)),
+                line_share: Effort::of(gait, ground, &motors).line_share(1.0, 1.0),
+                driven_movement: movement
+                    .known_components_of(gait.simulate_driven_cycle(ground, &motors, 1.0)),
             }
         };
-        let firmware = robot.core();
+        let core = robot.core();
         Self {
             rows: robot.gaits().iter().map(row_of).collect(),
             rounds: robot
@@ -108,21 +110,22 @@ impl Report {
                 .iter()
                 .map(|routine| Round::of(robot, routine))
                 .collect(),
-            hash: firmware.hash(),
-            waves: firmware.waves().len(),
-            flash: robot.section().len(),
-            searches_long: robot.longest_search() > MAX_SEARCH_CYCLES,
+            hash: core.hash(),
+            wave_count: core.waves().len(),
+            section_bytes: robot.section().len(),
+            has_long_search: robot.max_search_cycles() > MAX_SEARCH_CYCLES,
             name: robot.name().to_string(),
         }
     }
 }
 
 impl Report {
+    /// Writes the table of routines, if there are any.
     fn write_rounds(&self, f: &mut fmt::Formatter) -> fmt::Result {
         if self.rounds.is_empty() {
             return Ok(());
         }
-        let width = widest(self.rounds.iter().map(|round| round.name.as_str()));
+        let width = column_width(self.rounds.iter().map(|round| round.name.as_str()));
         writeln!(
             f,
             "\n{:width$}                  ideal servos, mm and deg   by its servos",
@@ -136,22 +139,21 @@ impl Report {
         for round in &self.rounds {
             let Round {
                 name,
-                steps,
-                rounds,
+                step_count,
+                round_count,
                 seconds,
                 movement,
-                driven,
+                driven_movement,
                 ..
             } = round;
-            let rounds = rounds.map_or("for ever".to_string(), |rounds| rounds.to_string());
-            write!(f, "{name:<width$} {steps:>5} {rounds:>6} {seconds:>6.1}")?;
-            for movement_or_driven in [movement, driven] {
-                let [forward, left, turn] = [
-                    movement_or_driven.forward,
-                    movement_or_driven.left,
-                    movement_or_driven.turn,
-                ]
-                .map(|part| format_part(part, 1));
+            let repeat = round_count.map_or("for ever".to_string(), |count| count.to_string());
+            write!(
+                f,
+                "{name:<width$} {step_count:>5} {repeat:>6} {seconds:>6.1}"
+            )?;
+            for prediction in [movement, driven_movement] {
+                let [forward, left, turn] = [prediction.forward, prediction.left, prediction.turn]
+                    .map(|component| format_component(component, 1));
                 write!(f, " {forward:>7} {left:>6} {turn:>7}")?;
             }
             writeln!(f)?;
@@ -166,14 +168,14 @@ impl fmt::Display for Report {
             f,
             "{} gaits in {} waveforms, {} bytes of flash of {}, robot {} {:08x}\n",
             self.rows.len(),
-            self.waves,
-            self.flash,
-            SPACE,
+            self.wave_count,
+            self.section_bytes,
+            SPACE_BYTES,
             self.name,
             self.hash
         )?;
         let has_lag = self.rows.iter().any(|row| row.spring_cost.is_some());
-        let width = widest(self.rows.iter().map(|row| row.name.as_str()));
+        let width = column_width(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
             "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm ideal servos, mm and deg   by its servos{}",
@@ -191,48 +193,54 @@ impl fmt::Display for Report {
                 name,
                 period,
                 audit,
-                error,
+                table_error,
                 movement,
                 spring_cost,
-                line,
-                driven,
+                line_share,
+                driven_movement,
             } = row;
             write!(
                 f,
                 "{name:<width$} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
-                audit.peak.speed,
-                NAMES[audit.peak.servo],
-                error.max,
-                error.rms,
+                audit.peak_speed.speed,
+                SERVO_NAMES[audit.peak_speed.servo],
+                table_error.max,
+                table_error.rms,
                 audit.type2.value,
                 audit.type1.value,
                 audit.leg.value,
-                tidy(audit.stroke.0, 1),
-                tidy(audit.stroke.1, 1),
+                round_to(audit.stroke_range.0, 1),
+                round_to(audit.stroke_range.1, 1),
             )?;
             write!(
                 f,
-                "{:>7} {:>6} {:>7}  {line:>5.2} {:>6} {:>6}",
-                format_part(movement.forward, 2),
-                format_part(movement.left, 2),
-                format_part(movement.turn, 2),
-                format_part(driven.forward, 1),
-                format_part(driven.turn, 1)
+                "{:>7} {:>6} {:>7}  {line_share:>5.2} {:>6} {:>6}",
+                format_component(movement.forward, 2),
+                format_component(movement.left, 2),
+                format_component(movement.turn, 2),
+                format_component(driven_movement.forward, 1),
+                format_component(driven_movement.turn, 1)
             )?;
-            if let Some(SpringCost { lag, share, .. }) = spring_cost {
-                let share = share.map_or("-".to_string(), |share| format!("{:.0}", 100.0 * share));
-                write!(f, "   {lag:>6.2} {share:>9}")?;
+            if let Some(SpringCost {
+                max_lag,
+                share_of_rigid,
+                ..
+            }) = spring_cost
+            {
+                let share =
+                    share_of_rigid.map_or("-".to_string(), |share| format!("{:.0}", 100.0 * share));
+                write!(f, "   {max_lag:>6.2} {share:>9}")?;
             }
             writeln!(f)?;
         }
         self.write_rounds(f)?;
         if self.rounds.iter().any(|round| round.has_inputs) {
-            write!(f, "\n{WITHOUT_CONTACTS}")?;
+            write!(f, "\n{WITHOUT_CONTACTS_NOTE}")?;
         }
         let movements = self.rows.iter().map(|row| &row.movement);
         let mut movements = movements.chain(self.rounds.iter().map(|round| &round.movement));
         if movements.any(|movement| !movement.is_decided()) {
-            write!(f, "\n{UNDECIDED}")?;
+            write!(f, "\n{UNDECIDED_NOTE}")?;
         }
         let slow_names = self.rows.iter().filter(|row| row.is_slow());
         let slow_names: Vec<_> = slow_names.map(|row| row.name.as_str()).collect();
@@ -244,10 +252,14 @@ impl fmt::Display for Report {
                 slow_names.join(", ")
             )?;
         }
-        for row in self.rows.iter().filter(|row| row.line >= HIGH_LINE_SHARE) {
-            write!(f, "\n{}", reserve_warning(&row.name, row.line))?;
+        for row in self
+            .rows
+            .iter()
+            .filter(|row| row.line_share >= HIGH_LINE_SHARE)
+        {
+            write!(f, "\n{}", reserve_warning(&row.name, row.line_share))?;
         }
-        if self.searches_long {
+        if self.has_long_search {
             write!(f, "\n{LONG_SEARCH_NOTE}")?;
         }
         Ok(())
@@ -265,21 +277,21 @@ fn reserve_warning(name: &str, line_share: f64) -> String {
     )
 }
 
-/// The width of a column for these names, at least 12.
-pub(crate) fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+/// The width of a column that holds these names, at least 12 characters.
+pub(crate) fn column_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(str::len).fold(12, usize::max)
 }
 
-/// Formats a part of a prediction with its sign; a dash if it is undecided.
-pub(crate) fn format_part(part: Option<f64>, decimals: usize) -> String {
-    match part {
-        Some(value) => format!("{:+.decimals$}", tidy(value, decimals as i32)),
+/// Formats a component of a prediction with its sign, or as a dash if it is undecided.
+pub(crate) fn format_component(component: Option<f64>, decimals: usize) -> String {
+    match component {
+        Some(value) => format!("{:+.decimals$}", round_to(value, decimals as i32)),
         None => "-".to_string(),
     }
 }
 
-/// Rounds a value; a zero loses its sign.
-fn tidy(value: f64, decimals: i32) -> f64 {
+/// Rounds a value to this number of decimals. A zero loses its sign.
+fn round_to(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding positive zero turns a negative one positive.
     (value * scale).round() / scale + 0.0
@@ -288,7 +300,7 @@ fn tidy(value: f64, decimals: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{robot, with};
+    use crate::testing::{robot, robot_with};
 
     #[test]
     fn columns_are_aligned_for_names_of_any_length() {
@@ -329,7 +341,7 @@ mod tests {
         ];
         assert_eq!(slow_gaits_of(robot("own-gaits")), turns);
         // Such gaits lose 16 to 34 % of their distance.
-        let slower_robot = with(
+        let slower_robot = robot_with(
             "own-gaits",
             &[
                 ("period = 1.2\n", "period = 1.6\n"),
@@ -339,7 +351,7 @@ mod tests {
                 ),
             ],
         );
-        let names = slow_gaits_of(slower_robot.expect("a slower stroll"));
+        let names = slow_gaits_of(slower_robot.expect("the robot is valid"));
         for gait in ["stroll", "veer-left"].into_iter().chain(turns) {
             assert!(names.iter().any(|name| name == gait), "{gait} of {names:?}");
         }
@@ -355,9 +367,9 @@ mod tests {
     fn nothing_is_shown_as_minus_zero() {
         assert_eq!(
             [
-                format_part(Some(-0.004), 2),
-                format_part(Some(-0.006), 2),
-                format_part(None, 2)
+                format_component(Some(-0.004), 2),
+                format_component(Some(-0.006), 2),
+                format_component(None, 2)
             ],
             ["+0.00", "-0.01", "-"]
         );

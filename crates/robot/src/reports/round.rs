@@ -1,13 +1,13 @@
 //! A round of a routine: its duration and its movement.
 //!
-//! Changes from one gait to the next also take time and move the robot. So the firmware's core runs the routine
-//! here, frame by frame, and the contact model follows its poses.
+//! The changes from one gait to the next also take time and move the robot. So the firmware's core runs the routine
+//! here, frame by frame, and the contact model computes the movement from the poses.
 
 use lizard_contact::{Prediction, Travel, Walker};
 use lizard_core::virtual_board::RunningRobot;
 
 use crate::gaits::Routine;
-use crate::measures::servo::FORWARD;
+use crate::measures::servo::FORWARD_TURN_SIGN;
 use crate::robot::Robot;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
@@ -17,9 +17,9 @@ pub struct Round {
     /// Name of the routine.
     pub name: String,
     /// The number of steps.
-    pub steps: usize,
+    pub step_count: usize,
     /// The number of rounds; `None` if the routine repeats for ever.
-    pub rounds: Option<u16>,
+    pub round_count: Option<u16>,
     /// True if a contact may end one of its steps.
     pub has_inputs: bool,
     /// Time of one round from standing, at full speed, s.
@@ -27,8 +27,8 @@ pub struct Round {
     /// Movement in one round with ideal servos, by the contact model. `None` for a component that depends on
     /// unmeasurable differences between the pads.
     pub movement: Prediction,
-    /// Movement in one round with the robot's real servos. `None` for the same components as in `movement`.
-    pub driven: Prediction,
+    /// Movement in one round with servos of limited torque and speed. `None` for the same components as in `movement`.
+    pub driven_movement: Prediction,
 }
 
 impl Round {
@@ -36,26 +36,29 @@ impl Round {
     /// grows with the routine's length.
     pub fn of(robot: &Robot, routine: &Routine) -> Self {
         let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
-        sweeps.extend(Self::sweeps(robot, routine));
+        sweeps.extend(Self::simulate_sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
         // Which components are undecided depends on the pads alone, so rigid legs suffice to find them.
-        let prediction = robot.ground().rigid().predict(sweeps.iter().copied());
-        let driven = prediction.keep_known(drive_servos(robot, &sweeps));
-        let movement = prediction.keep_known(robot.ground().travel(sweeps));
+        let prediction = robot
+            .ground()
+            .with_rigid_drive()
+            .predict(sweeps.iter().copied());
+        let driven_movement = prediction.known_components_of(drive_servos(robot, &sweeps));
+        let movement = prediction.known_components_of(robot.ground().travel(sweeps));
         Self {
             name: routine.name().to_string(),
-            steps: routine.count(),
-            rounds: routine.rounds(),
+            step_count: routine.step_count(),
+            round_count: routine.rounds(),
             has_inputs: routine.has_inputs(),
             seconds,
             movement,
-            driven,
+            driven_movement,
         }
     }
 
     /// Returns the sweeps of the legs in each frame of one round that starts from standing, deg, positive if the
     /// foot is forward.
-    pub fn sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
+    pub fn simulate_sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
         let mut running = RunningRobot::power_on(*robot.without_contacts().firmware());
         running.run_frames(STANDING_FRAMES);
         running.send_line(&format!("{} 1", routine.name().replace('-', " ")));
@@ -67,13 +70,13 @@ impl Round {
             is_done = running.run_frames(1).iter().any(|line| line == "# done");
             let pose = running.motion().pose().0;
             Some(std::array::from_fn(|servo| {
-                FORWARD[servo] * f64::from(pose[servo].0) / STEPS_PER_DEGREE
+                FORWARD_TURN_SIGN[servo] * f64::from(pose[servo].0) / STEPS_PER_DEGREE
             }))
         })
     }
 }
 
-/// Simulates the robot's servos as they follow one set of sweeps per frame, until they are at rest.
+/// Simulates the robot's servos as they follow one set of sweeps (deg) per frame, until they are at rest.
 fn drive_servos(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     let (motors, start_sweeps) = (robot.motors(), sweeps[0]);
     let end_sweeps = sweeps.last().copied().unwrap_or(start_sweeps);
@@ -84,7 +87,7 @@ fn drive_servos(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     walker.place().travel()
 }
 
-/// Frames after which a servo that lags behind its last pulse is at rest.
+/// Number of frames after the last one in which every servo comes to rest.
 const SETTLING_FRAMES: usize = 25;
-/// Frames after power-on until the robot stands.
+/// Number of frames after power-on in which the robot stands up.
 const STANDING_FRAMES: u32 = 60;

@@ -6,16 +6,16 @@ use lizard_contact::Prediction;
 
 use crate::checks::{CheckedGait, Effort};
 use crate::measures::ServoType;
-use crate::reports::report::{UNDECIDED, format_part, widest};
+use crate::reports::report::{UNDECIDED_NOTE, column_width, format_component};
 use crate::robot::Robot;
 
-/// Paces of the servo tables, as the command `speed` takes them: percent of a gait's own pace.
-pub const PACES: [f64; 2] = [100.0, 50.0];
+/// Paces in the table, as the command `speed` takes them: percent of a gait's own pace.
+pub const PACES_PERCENT: [f64; 2] = [100.0, 50.0];
 
 /// The figures of a gait at one supply and pace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
-    line: f64,
+    line_share: f64,
     movement: Prediction,
 }
 
@@ -23,18 +23,18 @@ struct Cell {
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     name: String,
-    /// The figures at each pace, and within a pace at each supply.
-    cells: [[Cell; 3]; PACES.len()],
+    /// The figures, first by pace and then by supply.
+    cells: [[Cell; 3]; PACES_PERCENT.len()],
     /// For each supply, the highest pace at which no servo exceeds its torque-speed line, percent.
-    paces: [f64; 3],
+    max_paces: [f64; 3],
 }
 
-/// The table of the gaits that move: at the servos' own supply, at the supply at which the robot slows down, and
-/// at the supply at which it stops.
+/// The table of the gaits that move, at three supplies: the servos' own, the one at which the robot slows down, and the
+/// one at which it stops.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoTable {
     servo: ServoType,
-    volts: [f64; 3],
+    supply_volts: [f64; 3],
     /// Pace to which gaits are limited at a low supply, percent of their own pace.
     slow_pace: u8,
     rows: Vec<Row>,
@@ -47,10 +47,10 @@ impl ServoTable {
         let ground = robot.ground();
         let row_of = |gait: &CheckedGait| {
             let effort = Effort::of(gait, ground, &robot.motors());
-            let prediction = gait.predict(&ground.rigid());
+            let prediction = gait.predict(&ground.with_rigid_drive());
             let cell_of = |pace: f64, volts: f64| Cell {
-                line: effort.line_share(pace / 100.0, volts / servo.volts),
-                movement: prediction.keep_known(gait.simulate_driven_cycle(
+                line_share: effort.line_share(pace / 100.0, volts / servo.volts),
+                movement: prediction.known_components_of(gait.simulate_driven_cycle(
                     ground,
                     &robot.motors_at(volts),
                     pace / 100.0,
@@ -58,29 +58,30 @@ impl ServoTable {
             };
             Row {
                 name: gait.name().to_string(),
-                cells: PACES.map(|pace| volts.map(|volts| cell_of(pace, volts))),
-                paces: volts.map(|volts| 100.0 * effort.max_pace(volts / servo.volts)),
+                cells: PACES_PERCENT.map(|pace| volts.map(|volts| cell_of(pace, volts))),
+                max_paces: volts
+                    .map(|volts| 100.0 * effort.max_sustainable_pace(volts / servo.volts)),
             }
         };
-        let moving_gaits = robot.gaits().iter().filter(|gait| gait.moves());
+        let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
         Self {
             servo,
-            volts,
+            supply_volts: volts,
             slow_pace: robot.supplies().slow_pace,
             rows: moving_gaits.map(row_of).collect(),
         }
     }
 
-    fn write_head(
+    fn write_header(
         &self,
         f: &mut fmt::Formatter,
-        title: &str,
+        heading: &str,
         width: usize,
-        column: usize,
+        cell_width: usize,
     ) -> fmt::Result {
-        write!(f, "\n{title:<width$}")?;
-        for volts in self.volts {
-            write!(f, "{:>column$}", format!("{volts:.2} V"))?;
+        write!(f, "\n{heading:<width$}")?;
+        for volts in self.supply_volts {
+            write!(f, "{:>cell_width$}", format!("{volts:.2} V"))?;
         }
         writeln!(f)
     }
@@ -104,35 +105,46 @@ impl fmt::Display for ServoTable {
              falls behind its pulses. The second and the third supply are those at which the robot slows down, to\n\
              speed {slow_pace} at most, and stops."
         )?;
-        let width = widest(self.rows.iter().map(|row| row.name.as_str()));
-        for (i, pace) in PACES.into_iter().enumerate() {
-            self.write_head(f, &format!("speed {pace:.0}"), width, 22)?;
+        let width = column_width(self.rows.iter().map(|row| row.name.as_str()));
+        for (i, pace) in PACES_PERCENT.into_iter().enumerate() {
+            self.write_header(f, &format!("speed {pace:.0}"), width, 22)?;
             for row in &self.rows {
                 let cells: String = row.cells[i].iter().map(format_cell).collect();
                 writeln!(f, "{}", format!("{:<width$}{cells}", row.name).trim_end())?;
             }
         }
-        self.write_head(f, "fastest", width, 10)?;
-        for Row { name, paces, .. } in &self.rows {
-            let paces: String = paces.iter().map(|pace| format!("{pace:>10.0}")).collect();
+        self.write_header(f, "fastest", width, 10)?;
+        for Row {
+            name, max_paces, ..
+        } in &self.rows
+        {
+            let paces: String = max_paces
+                .iter()
+                .map(|pace| format!("{pace:>10.0}"))
+                .collect();
             writeln!(f, "{name:<width$}{paces}")?;
         }
         let all_cells = self.rows.iter().flat_map(|row| row.cells.as_flattened());
         match all_cells.into_iter().all(|cell| cell.movement.is_decided()) {
             true => Ok(()),
-            false => write!(f, "\n{UNDECIDED}"),
+            false => write!(f, "\n{UNDECIDED_NOTE}"),
         }
     }
 }
 
 /// Formats a cell. A turn that rounds to zero is left out.
-fn format_cell(Cell { line, movement }: &Cell) -> String {
+fn format_cell(
+    Cell {
+        line_share,
+        movement,
+    }: &Cell,
+) -> String {
     let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
-        turn => format_part(turn, 1),
+        turn => format_component(turn, 1),
     };
     format!(
-        "{line:>9.2}{:>7}{turn:>6}",
-        format_part(movement.forward, 1)
+        "{line_share:>9.2}{:>7}{turn:>6}",
+        format_component(movement.forward, 1)
     )
 }

@@ -1,10 +1,9 @@
 //! The core's view of a robot on a host.
 //!
-//! The core reads a robot from a section of flash. On a host that section is in memory, and the core's motion borrows
-//! the section for as long as it runs. So the section of a robot that the core simulates
-//! ([`crate::Robot::firmware`]) is kept until the program ends. A section is at most 4 KiB, and equal sections are
-//! stored once. The section of a robot that is only checked ([`crate::Robot::core`]) is not kept, so a search may try
-//! thousands of robots.
+//! The core reads a robot from a section of flash. On a host this section is in memory, and a simulation of the core
+//! borrows it for as long as it runs. So the section of a robot that is simulated ([`crate::Robot::firmware`]) is kept
+//! until the program ends. A section is at most 4 KiB, and equal sections are stored once. The section of a robot that
+//! is only checked ([`crate::Robot::core`]) is not kept, so a search may try thousands of robots.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
@@ -14,6 +13,7 @@ use lizard_avr::Region;
 /// The core's view of a robot.
 pub type CoreRobot = lizard_core::numbers::robot::Robot<'static>;
 
+/// The sections that are kept until the program ends.
 static KEPT_SECTIONS: Mutex<Option<HashSet<&'static [u8]>>> = Mutex::new(None);
 
 /// Keeps a section until the program ends, and returns it as a region of flash.

@@ -1,19 +1,19 @@
 //! The robot's numbers as integers, in the types of the core.
 //!
 //! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each five-bar and each slider
-//! has its own scale. Limits are rounded to the safe side: those of margins up, strokes and travels inward, the slew
-//! limit down. All other numbers are rounded to the nearest integer.
+//! has its own scale. Limits are rounded to the safe side: the limits of margins up, strokes and travels inward, and the
+//! slew limit down. All other numbers are rounded to the nearest integer.
 
 use lizard_avr::Flash;
 use lizard_core::numbers::calibration::Calibration;
-use lizard_core::numbers::calibration::Reach;
+use lizard_core::numbers::calibration::NeededTravel;
 use lizard_core::numbers::couplers::Couplers;
-use lizard_core::numbers::gaits::SAMPLES;
+use lizard_core::numbers::gaits::SAMPLES_PER_WAVE;
 use lizard_core::numbers::limits::Limits;
-use lizard_core::numbers::section::{Content, Loop, Map};
+use lizard_core::numbers::section::{Content, FiveBarLengths, Map};
 use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::slider::Slider;
-use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep, Width};
+use lizard_core::numbers::units::{Angle, PulseWidth, Scale, Sine, Sweep};
 use lizard_kinematics as kinematics;
 
 use crate::gaits::Routine;
@@ -22,11 +22,11 @@ use crate::measures::{Measures, scale};
 use crate::tables::table::Tables;
 use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER_DEGREE};
 
-/// Largest floating-point error of a number that would be an integer if computed exactly.
-const SLACK: f64 = 1e-6;
+/// Allowance for the floating-point error of a number that would be an integer if computed exactly.
+const ROUNDING_ALLOWANCE: f64 = 1e-6;
 
-/// Computes the numbers of a robot, without its maps of certified cells.
-pub(crate) fn content(
+/// Computes the content of a robot's section, without the maps of certified cells.
+pub(crate) fn section_content(
     name: &str,
     measures: &Measures,
     tables: &Tables,
@@ -36,7 +36,7 @@ pub(crate) fn content(
         lizard,
         servos,
         limits,
-        pace,
+        speed_limits,
         supplies,
         ..
     } = measures;
@@ -44,33 +44,34 @@ pub(crate) fn content(
     let neutral =
         servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
     let calibrations = servos.map(|servo| calibration_of(&servo));
-    let reach = reach_of(tables, &calibrations);
+    let needed_travels = needed_travels_of(tables, &calibrations);
     let (mut gaits, mut names) = (tables.gaits.clone(), tables.names.clone());
     let mut steps = Vec::new();
     for routine in routines {
         gaits.push(routine.record(steps.len(), names.len()));
-        steps.extend_from_slice(routine.steps());
+        steps.extend_from_slice(routine.step_records());
         names.extend(routine.name().replace('-', " ").bytes());
     }
     Content {
         name: name.to_string(),
         servo_hash: servo_hash(&pins, &neutral, &calibrations),
         pins,
-        rail: supplies.rail.map(|rail| rail.pin),
+        rail_pin: supplies.rail.map(|rail| rail.pin),
         slow_pace: supplies.slow_pace,
-        neutral,
+        neutral_angles: neutral,
         calibration: calibrations,
-        reach,
+        needed_travel: needed_travels,
         limits: Limits {
             type2: to_sine(limits.type2),
             type1: to_sine(limits.type1),
             leg: to_sine(limits.leg),
         },
-        slew: Slew::new(floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16),
-        supplies: supplies.numbers(),
+        slew: Slew::new(floor_with_allowance(
+            speed_limits.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND,
+        ) as u16),
+        supplies: supplies.core_supplies(),
         ends: kinematics::End::ALL.map(|end| convert_five_bar(&lizard.end(end))),
-        sides: kinematics::Side::ALL
-            .map(|name_of_side| convert_side(&lizard.side(name_of_side), limits)),
+        sliders: kinematics::Side::ALL.map(|side| convert_side(&lizard.side(side), limits)),
         gaits,
         steps,
         names,
@@ -79,25 +80,41 @@ pub(crate) fn content(
     }
 }
 
-/// Computes the hash of the servos' numbers. A saved calibration carries this hash, so it is used only with the
-/// servos for which it was made. Gaits, bars and limits do not change the hash.
+/// Computes the hash of the servos' numbers. A saved calibration contains this hash, so that the firmware uses it only
+/// with the servos for which it was made. Gaits, bars and limits do not change the hash.
 fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
-    crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
+    // Boards keep this hash, so the text must stay the same whatever the fields are called.
+    let angles = neutral
+        .map(|angle| format!("Angle({})", angle.0))
+        .join(", ");
+    let servos = calibration.each_ref().map(|servo| {
+        let (neutral, [min, max]) = (servo.neutral_width.0, [servo.travel_min.0, servo.travel_max.0]);
+        let gain = servo.gain;
+        format!("Calibration {{ neutral: Width({neutral}), gain: {gain}, min: Sweep({min}), max: Sweep({max}) }}")
+    });
+    crc32fast::hash(format!("{pins:?} [{angles}] [{}]", servos.join(", ")).as_bytes())
 }
 
-fn convert_five_bar(bars: &kinematics::FiveBar) -> Loop {
+fn convert_five_bar(bars: &kinematics::FiveBar) -> FiveBarLengths {
     let scale = scale::five_bar_scale(bars);
     let length_of = |mm: f64| to_steps(mm, scale) as i16;
-    // The crank tips are farthest apart if both cranks point outward.
-    let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length_of);
-    let furthest = (base as u32 + left as u32 + right as u32) / 2 + 2;
-    let [a, b] = [bars.coupler_left, bars.coupler_right].map(length_of);
-    Loop {
+    // The crank tips are farthest apart if both cranks point outward. The core takes their squared distance in units of
+    // four squared steps, so half the distance is squared.
+    let [base, left, right] =
+        [bars.base, bars.left_crank_length, bars.right_crank_length].map(length_of);
+    let half_tip_distance = (base as u32 + left as u32 + right as u32) / 2 + 2;
+    let [left_coupler, right_coupler] =
+        [bars.left_coupler_length, bars.right_coupler_length].map(length_of);
+    FiveBarLengths {
         scale,
         base,
         cranks: [left, right],
-        couplers: [a, b],
-        is_near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
+        couplers: [left_coupler, right_coupler],
+        can_nearly_stretch: Couplers::is_near_stretched(
+            left_coupler,
+            right_coupler,
+            half_tip_distance * half_tip_distance,
+        ),
     }
 }
 
@@ -105,35 +122,35 @@ fn calibration_of(servo: &Servo) -> Calibration {
     let (min, max) = servo.travel();
     let gain = servo.us_per_degree * CYCLES_PER_US / STEPS_PER_DEGREE * ONE_Q14;
     Calibration {
-        neutral: Width((servo.neutral_us * CYCLES_PER_US).round() as u16),
+        neutral_width: PulseWidth((servo.neutral_us * CYCLES_PER_US).round() as u16),
         gain: gain.round() as i16,
-        min: Sweep(ceil(min * STEPS_PER_DEGREE) as i16),
-        max: Sweep(floor(max * STEPS_PER_DEGREE) as i16),
+        travel_min: Sweep(ceil_with_allowance(min * STEPS_PER_DEGREE) as i16),
+        travel_max: Sweep(floor_with_allowance(max * STEPS_PER_DEGREE) as i16),
     }
 }
 
 /// Computes the range of each servo's sweep over all gaits, neutral included. Between two samples a gait is
-/// interpolated linearly, so no phase exceeds the samples. The travel is rounded inward, so the rounded sweep of a
-/// gait that uses the whole travel may exceed the travel by a step; so the range is limited to the travel.
-fn reach_of(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
-    let mut reach = [Reach::default(); 4];
+/// interpolated linearly, so no phase exceeds the samples. The travel is rounded inward, so a gait that uses the whole
+/// travel may exceed it by a step of rounding; therefore the range is limited to the travel.
+fn needed_travels_of(tables: &Tables, calibrations: &[Calibration; 4]) -> [NeededTravel; 4] {
+    let mut needed_travels = [NeededTravel::default(); 4];
     for gait in &tables.gaits {
-        for (reach, channel) in reach.iter_mut().zip(&gait.channels) {
+        for (needed, channel) in needed_travels.iter_mut().zip(&gait.channels) {
             let wave = Flash::from(&tables.waves[usize::from(channel.wave)]);
-            for sample in 0..SAMPLES as u16 {
+            for sample in 0..SAMPLES_PER_WAVE as u16 {
                 // The phase at which the channel reads exactly this sample.
                 let phase = (sample << 10).wrapping_sub(channel.offset);
                 let sweep = channel.sweep(wave, phase);
-                reach.min = reach.min.min(sweep);
-                reach.max = reach.max.max(sweep);
+                needed.min = needed.min.min(sweep);
+                needed.max = needed.max.max(sweep);
             }
         }
     }
-    for (reach, travel) in reach.iter_mut().zip(travel) {
-        reach.min = reach.min.max(travel.min);
-        reach.max = reach.max.min(travel.max);
+    for (needed, calibration) in needed_travels.iter_mut().zip(calibrations) {
+        needed.min = needed.min.max(calibration.travel_min);
+        needed.max = needed.max.min(calibration.travel_max);
     }
-    reach
+    needed_travels
 }
 
 /// Converts the slider of a side to integers; its stroke is rounded inward.
@@ -143,46 +160,49 @@ fn convert_side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Sli
     let per_mm = scale::steps_per_mm(scale);
     Slider {
         scale,
-        offset: length_of(slider.offset) as i16,
+        offset: length_of(slider.front_offset) as i16,
         base: length_of(slider.base) as u16,
-        front: length_of(slider.front) as i16,
-        rear: length_of(slider.rear) as i16,
-        nominal: length_of(slider.nominal) as u16,
-        min: ceil((slider.nominal + limits.stroke_min) * per_mm) as u16,
-        max: floor((slider.nominal + limits.stroke_max) * per_mm) as u16,
+        front_arm: length_of(slider.front_arm) as i16,
+        rear_arm: length_of(slider.rear_arm) as i16,
+        nominal_length: length_of(slider.nominal_length) as u16,
+        stroke_min: ceil_with_allowance((slider.nominal_length + limits.stroke_min) * per_mm)
+            as u16,
+        stroke_max: floor_with_allowance((slider.nominal_length + limits.stroke_max) * per_mm)
+            as u16,
     }
 }
 
+/// Converts a length to steps, rounded to the nearest.
 fn to_steps(mm: f64, scale: Scale) -> i32 {
     (mm * scale::steps_per_mm(scale)).round() as i32
 }
 
 /// Converts the limit of a margin to an integer, rounded up.
 fn to_sine(margin: f64) -> Sine {
-    Sine(ceil(margin * ONE_Q15) as i16)
+    Sine(ceil_with_allowance(margin * ONE_Q15) as i16)
 }
 
-fn ceil(value: f64) -> i64 {
-    (value - SLACK).ceil() as i64
+fn ceil_with_allowance(value: f64) -> i64 {
+    (value - ROUNDING_ALLOWANCE).ceil() as i64
 }
 
-fn floor(value: f64) -> i64 {
-    (value + SLACK).floor() as i64
+fn floor_with_allowance(value: f64) -> i64 {
+    (value + ROUNDING_ALLOWANCE).floor() as i64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{all, robot, with};
+    use crate::testing::{all_robots, robot, robot_with};
     use lizard_core::numbers::gaits::GaitId;
     use lizard_core::numbers::part::{End, Side};
     use lizard_core::numbers::section::{Header, Numbers};
 
     /// 256 steps per millimetre: the scale of every mechanism of the unequal robot.
-    const PER_MM: f64 = 256.0;
+    const STEPS_PER_MM: f64 = 256.0;
 
     #[test]
-    fn every_link_goes_where_it_belongs() {
+    fn every_length_is_converted_to_its_own_field() {
         let robot = robot("unequal");
         let links = robot.lizard().links;
         let content = robot.content();
@@ -193,7 +213,7 @@ mod tests {
         for (bars, mm) in content.ends.iter().zip(loops) {
             let ([left, right], [a, b]) = (bars.cranks, bars.couplers);
             let steps = [bars.base, left, right, a, b];
-            assert_eq!(steps.map(f64::from), mm.map(|mm| mm * PER_MM));
+            assert_eq!(steps.map(f64::from), mm.map(|mm| mm * STEPS_PER_MM));
             assert_eq!(bars.scale.bits, 8);
         }
         let offset = (links.l5 - links.l0) / 2.0;
@@ -213,29 +233,30 @@ mod tests {
                 links.l17 + links.l18,
             ],
         ];
-        for (side, mm) in content.sides.iter().zip(sides) {
+        for (side, mm) in content.sliders.iter().zip(sides) {
             let steps = [
                 f64::from(side.offset),
                 f64::from(side.base),
-                f64::from(side.front),
-                f64::from(side.rear),
-                f64::from(side.nominal),
+                f64::from(side.front_arm),
+                f64::from(side.rear_arm),
+                f64::from(side.nominal_length),
             ];
-            assert_eq!(steps, mm.map(|mm| mm * PER_MM));
+            assert_eq!(steps, mm.map(|mm| mm * STEPS_PER_MM));
             assert_eq!(side.scale.bits, 8);
         }
         assert_eq!(content.pins, [6, 14, 19, 12]);
     }
 
     #[test]
-    fn least_margins_are_rounded_up_each_its_own() {
+    fn each_margin_limit_is_rounded_up() {
         let limits = robot("unequal").firmware().limits();
         assert_eq!(
             [limits.type2, limits.type1, limits.leg],
             [10_486, 8_848, 12_452].map(Sine)
         );
         // An exact limit stays as it is.
-        let exact_robot = with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]).expect("0.25");
+        let exact_robot = robot_with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")])
+            .expect("the robot is valid");
         assert_eq!(exact_robot.firmware().limits().type2, Sine(8192));
     }
 
@@ -245,18 +266,18 @@ mod tests {
             ("stroke_min = -19.0", "stroke_min = -19.001"),
             ("stroke_max = 41.0", "stroke_max = 41.001"),
         ];
-        let changed_robot = with("unequal", &changes).expect("a stroke");
+        let changed_robot = robot_with("unequal", &changes).expect("the robot is valid");
         for side in [Side::Left, Side::Right] {
-            let slider = changed_robot.firmware().side(side);
-            let nominal = slider.nominal;
-            assert_eq!(slider.min, nominal - 19 * 256, "{side:?}");
-            assert_eq!(slider.max, nominal + 41 * 256, "{side:?}");
+            let slider = changed_robot.firmware().slider(side);
+            let nominal = slider.nominal_length;
+            assert_eq!(slider.stroke_min, nominal - 19 * 256, "{side:?}");
+            assert_eq!(slider.stroke_max, nominal + 41 * 256, "{side:?}");
         }
     }
 
     #[test]
     fn a_travel_ends_at_the_last_step_within_the_servos_pulses() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             let calibrations = robot.firmware().calibration();
             for (servo, calibration) in robot.servos().iter().zip(calibrations) {
                 let pulse_at = |sweep: i32| {
@@ -265,7 +286,10 @@ mod tests {
                 let is_within = |sweep: i32| {
                     (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_at(sweep))
                 };
-                let (min, max) = (i32::from(calibration.min.0), i32::from(calibration.max.0));
+                let (min, max) = (
+                    i32::from(calibration.travel_min.0),
+                    i32::from(calibration.travel_max.0),
+                );
                 assert!(
                     is_within(min) && !is_within(min - 1),
                     "{name} {servo:?} {min}"
@@ -279,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_travel_of_whole_steps_keeps_its_last_one() {
+    fn a_travel_of_whole_steps_keeps_its_last_step() {
         // 9.2 and 10.4 us are not exact in binary, so the quotient may be slightly too small.
         for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
             for k in 1..=13 {
@@ -294,13 +318,16 @@ mod tests {
                 };
                 let calibration = calibration_of(&servo);
                 let steps = 1024 * k as i16;
-                assert_eq!([calibration.min.0, calibration.max.0], [-steps, steps]);
+                assert_eq!(
+                    [calibration.travel_min.0, calibration.travel_max.0],
+                    [-steps, steps]
+                );
             }
         }
     }
 
     #[test]
-    fn a_loop_is_near_stretched_beyond_three_quarters_of_its_reach() {
+    fn a_loop_can_nearly_stretch_beyond_three_quarters_of_its_squared_reach() {
         // The threshold is three quarters of the squared reach of the couplers, so base plus cranks must exceed 0.866
         // of the sum of both couplers.
         for (bars, is_near) in [
@@ -313,13 +340,13 @@ mod tests {
             let [base, crank_left, crank_right] = bars;
             let bars = kinematics::FiveBar {
                 base,
-                crank_left,
-                coupler_left: 50.0,
-                coupler_right: 50.0,
-                crank_right,
+                left_crank_length: crank_left,
+                left_coupler_length: 50.0,
+                right_coupler_length: 50.0,
+                right_crank_length: crank_right,
             };
             assert_eq!(
-                convert_five_bar(&bars).is_near_stretched,
+                convert_five_bar(&bars).can_nearly_stretch,
                 is_near,
                 "{bars:?}"
             );
@@ -328,12 +355,13 @@ mod tests {
 
     #[test]
     fn every_servo_has_its_own_gain_and_neutral() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             let firmware = robot.firmware();
             for (i, servo) in robot.servos().iter().enumerate() {
                 let calibration = firmware.calibration()[i];
-                for sweep in
-                    (i32::from(calibration.min.0)..i32::from(calibration.max.0)).step_by(97)
+                for sweep in (i32::from(calibration.travel_min.0)
+                    ..i32::from(calibration.travel_max.0))
+                    .step_by(97)
                 {
                     let cycles = 16.0
                         * (servo.neutral_us
@@ -343,15 +371,15 @@ mod tests {
                     let error = (f64::from(width.0) - cycles).abs();
                     assert!(error <= 1.5, "{name} A{}: {error} cycles at {sweep}", i + 1);
                 }
-                let neutral = f64::from(firmware.neutral()[i].0) * 360.0 / 65536.0;
+                let neutral = f64::from(firmware.neutral_angles()[i].0) * 360.0 / 65536.0;
                 assert!((neutral - servo.neutral).abs() <= 0.5 * 360.0 / 65536.0);
             }
         }
     }
 
     #[test]
-    fn the_reach_holds_every_phase_of_every_gait_and_is_reached() {
-        for (name, robot) in all() {
+    fn the_needed_travel_is_the_range_of_the_sweeps_of_all_gaits() {
+        for (name, robot) in all_robots() {
             let firmware = robot.firmware();
             let mut widest_sweeps = [(0, 0); 4];
             for gait in GaitId::all(firmware.gait_count()) {
@@ -364,7 +392,7 @@ mod tests {
                 }
             }
             let reach = lizard_core::numbers::part::Servo::ALL.map(|servo| {
-                let reach = firmware.reach(servo);
+                let reach = firmware.needed_travel(servo);
                 (reach.min.0, reach.max.0)
             });
             assert_eq!(reach, widest_sweeps, "{name}");
@@ -380,8 +408,9 @@ mod tests {
 
     #[test]
     fn the_slowest_robot_is_one_that_the_core_can_move() {
-        let slow_robot = with("paper", &[("\nslew = 300.0", "\nslew = 10.0")]).expect("slow");
-        assert!(slow_robot.firmware().slew().per_frame >= Slew::SLOWEST);
+        let slow_robot = robot_with("paper", &[("\nslew = 300.0", "\nslew = 10.0")])
+            .expect("the robot is valid");
+        assert!(slow_robot.firmware().slew().per_frame >= Slew::MIN_PER_FRAME);
     }
 
     /// Reads the numbers of a robot's section.
@@ -391,10 +420,10 @@ mod tests {
     }
 
     #[test]
-    fn only_unequal_couplers_and_wide_cranks_have_further_tables() {
-        for (name, robot) in all() {
-            // The offset of each curve in the section; 0 if the section lacks the curve. Head and tail have equal
-            // couplers and share their curves.
+    fn only_unequal_couplers_and_wide_cranks_have_further_curves() {
+        for (name, robot) in all_robots() {
+            // The offset of each curve in the section; 0 if the section lacks the curve. Head and tail share the
+            // curves that depend on the couplers alone, because their couplers are equal.
             let [head, tail] = numbers_of(&robot).curves;
             let [rise, stretched, folded, skew] = head;
             assert_ne!(rise, 0, "{name}");
@@ -415,16 +444,16 @@ mod tests {
     fn a_larger_robot_has_a_coarser_step_where_its_lengths_need_one() {
         let (paper, large) = (robot("paper"), robot("large"));
         for end in [End::Head, End::Tail] {
-            assert_eq!(paper.firmware().end(end).bars().scale().bits, 8);
-            assert_eq!(large.firmware().end(end).bars().scale().bits, 8);
+            assert_eq!(paper.firmware().five_bar(end).bars().scale().bits, 8);
+            assert_eq!(large.firmware().five_bar(end).bars().scale().bits, 8);
         }
         for side in [Side::Left, Side::Right] {
             let (paper_side, large_side) =
-                (paper.firmware().side(side), large.firmware().side(side));
+                (paper.firmware().slider(side), large.firmware().slider(side));
             assert_eq!(large_side.scale.bits, 7);
             assert_eq!(
-                4 * u32::from(large_side.nominal),
-                3 * u32::from(paper_side.nominal)
+                4 * u32::from(large_side.nominal_length),
+                3 * u32::from(paper_side.nominal_length)
             );
         }
     }

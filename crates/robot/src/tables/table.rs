@@ -5,16 +5,16 @@
 //! [`lizard_core::numbers::gaits`].
 
 use lizard_avr::Flash;
-use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES, Wave};
+use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES_PER_WAVE, Wave};
 use lizard_core::numbers::units::CYCLE;
 
 use crate::file::{Checked, Fault};
 use crate::gaits::{Gait, Stride, Waveform, canonicalize};
-use crate::measures::servo::{FORWARD, NAMES};
-use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
+use crate::measures::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
+use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
-/// Largest difference between two waveforms that share a table, deg: about a third of an angle step.
-const SAME_DEG: f64 = 0.002;
+/// Largest difference between two waveforms that share one table, deg: about a third of an angle step.
+const SHARED_WAVE_TOLERANCE_DEG: f64 = 0.002;
 
 /// The tables of waveforms and gaits that the firmware reads.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,19 +35,21 @@ impl Tables {
     /// waveforms.
     pub fn new(gaits: &[Gait]) -> Checked<Self> {
         let mut bank = WaveformBank::default();
-        let mut parts = Vec::new();
+        let mut stored_strides = Vec::new();
         for gait in gaits {
             let key = format!("gait.{}", gait.name);
-            for ((stride, forward), name) in gait.strides.iter().zip(FORWARD).zip(NAMES) {
-                let Some(part) = bank.find(stride, forward) else {
+            for ((stride, forward), name) in
+                gait.strides.iter().zip(FORWARD_TURN_SIGN).zip(SERVO_NAMES)
+            {
+                let Some(stored_stride) = bank.find_or_add(stride, forward) else {
                     let meaning = format!(
                         "in \"{}\" servo {name} would have to turn farther than it can",
                         gait.name
                     );
                     let message = "its sweep is half a turn or more";
-                    return Err(Fault::clause(key, message).meaning(meaning));
+                    return Err(Fault::clause(key, message).with_meaning(meaning));
                 };
-                parts.push(part);
+                stored_strides.push(stored_stride);
             }
             if bank.samples.len() > MAX_WAVES {
                 let message = format!(
@@ -56,35 +58,41 @@ impl Tables {
                 return Err(Fault::new(key, message));
             }
         }
-        let peaks = bank.peak_amplitudes(&parts);
+        let peak_amplitudes = bank.peak_amplitudes(&stored_strides);
         if bank.samples.is_empty() {
             // A robot that only stands still reads a single table, of zeros.
-            bank.samples.push([0.0; SAMPLES]);
+            bank.samples.push([0.0; SAMPLES_PER_WAVE]);
         }
         let waves = bank
             .samples
             .iter()
-            .zip(peaks.iter().chain([&1.0]))
+            .zip(peak_amplitudes.iter().chain([&1.0]))
             .map(|(samples, peak)| {
                 samples.map(|value| (value * peak * STEPS_PER_DEGREE).round() as i16)
             });
-        let channel_of = |part: &Part| {
-            let gain = part.amplitude / peaks.get(part.wave).copied().unwrap_or(1.0);
+        let channel_of = |stride: &StoredStride| {
+            let gain = stride.amplitude / peak_amplitudes.get(stride.wave).copied().unwrap_or(1.0);
             Channel {
-                wave: part.wave as u16,
+                wave: stride.wave as u16,
                 // A shift of one full cycle wraps to 0.
-                offset: (part.lead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
+                offset: (stride.lead.rem_euclid(1.0) * PHASES_PER_CYCLE).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
             }
         };
         let mut names = Vec::new();
         let mut table_gaits = Vec::new();
-        for (gait, parts) in gaits.iter().zip(parts.chunks(4)) {
+        for (gait, gait_strides) in gaits.iter().zip(stored_strides.chunks(4)) {
             table_gaits.push(TableGait {
                 name_start: names.len() as u16,
                 name_length: gait.name.len() as u16,
                 increment: increment_of(gait),
-                channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel_of),
+                channels: [
+                    &gait_strides[0],
+                    &gait_strides[1],
+                    &gait_strides[2],
+                    &gait_strides[3],
+                ]
+                .map(channel_of),
             });
             names.extend(gait.name.replace('-', " ").bytes());
         }
@@ -110,11 +118,11 @@ impl Tables {
 /// Computes a gait's phase increment per frame, in 1/2^24 cycle; negative if the gait is reversed.
 fn increment_of(gait: &Gait) -> i32 {
     let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
-    if gait.reversed { -step } else { step }
+    if gait.is_reversed { -step } else { step }
 }
 
 /// A stride as the firmware stores it: a waveform of the bank times an amplitude, with a lead.
-struct Part {
+struct StoredStride {
     wave: usize,
     /// Lead of the stride over the stored waveform, cycles.
     lead: f64,
@@ -125,19 +133,19 @@ struct Part {
 /// The waveforms found so far, each scaled to a peak of 1.
 #[derive(Default)]
 struct WaveformBank {
-    samples: Vec<[f64; SAMPLES]>,
+    samples: Vec<[f64; SAMPLES_PER_WAVE]>,
 }
 
 impl WaveformBank {
-    /// Finds or adds the waveform of a stride; `forward` is 1 or -1, the direction in which the servo moves its
-    /// foot forward. `None` if the stride sweeps half a turn or more.
-    fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
+    /// Finds the waveform of a stride, or adds it. `forward_sign` is the direction in which the servo moves its foot
+    /// forward: 1 for counter-clockwise, -1 for clockwise. `None` if the stride sweeps half a turn or more.
+    fn find_or_add(&mut self, stride: &Stride, forward_sign: f64) -> Option<StoredStride> {
         let (waveform, shift, sign) = canonicalize(&stride.waveform);
         let samples = sample_waveform(&waveform);
         let peak = peak_of(&samples);
-        let amplitude = stride.amplitude * peak * sign * forward;
+        let amplitude = stride.amplitude * peak * sign * forward_sign;
         if amplitude == 0.0 || waveform == Waveform::Still {
-            return Some(Part {
+            return Some(StoredStride {
                 wave: 0,
                 lead: 0.0,
                 amplitude: 0.0,
@@ -148,21 +156,25 @@ impl WaveformBank {
         }
         let offset = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
-        let shared_part = self
+        let shared_stride = self
             .samples
             .iter()
             .enumerate()
             .find_map(|(wave, existing)| {
-                let rotation = find_rotation(existing, &samples, SAME_DEG / amplitude.abs())?;
-                Some(Part {
+                let rotation = find_rotation(
+                    existing,
+                    &samples,
+                    SHARED_WAVE_TOLERANCE_DEG / amplitude.abs(),
+                )?;
+                Some(StoredStride {
                     wave,
-                    lead: offset + rotation as f64 / SAMPLES as f64,
+                    lead: offset + rotation as f64 / SAMPLES_PER_WAVE as f64,
                     amplitude,
                 })
             });
-        Some(shared_part.unwrap_or_else(|| {
+        Some(shared_stride.unwrap_or_else(|| {
             self.samples.push(samples);
-            Part {
+            StoredStride {
                 wave: self.samples.len() - 1,
                 lead: offset,
                 amplitude,
@@ -170,11 +182,11 @@ impl WaveformBank {
         }))
     }
 
-    /// Computes the largest amplitude with which each waveform is used, deg. Tables are stored at that amplitude,
-    /// so that no gain exceeds 1.
-    fn peak_amplitudes(&self, parts: &[Part]) -> Vec<f64> {
+    /// Computes the largest amplitude with which each waveform is used, deg. A waveform is stored at this amplitude, so
+    /// that no gain exceeds 1.
+    fn peak_amplitudes(&self, stored_strides: &[StoredStride]) -> Vec<f64> {
         let peak_amplitude_of = |wave| {
-            parts
+            stored_strides
                 .iter()
                 .filter(|part| part.wave == wave)
                 .fold(0.0f64, |max, part| max.max(part.amplitude.abs()))
@@ -189,44 +201,48 @@ impl WaveformBank {
 /// every stride too short (the paper's walk by 1 %). Each sample is moved outward by the mean distance between line
 /// and curve, a twelfth of the second difference, but not beyond the waveform's peak, because a servo's travel may
 /// end at the peak.
-fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES] {
-    let curve: [f64; SAMPLES] = std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
+fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES_PER_WAVE] {
+    let curve: [f64; SAMPLES_PER_WAVE] =
+        std::array::from_fn(|i| waveform.value_at(i as f64 / SAMPLES_PER_WAVE as f64));
     let peak = peak_of(&curve);
     std::array::from_fn(|i| {
-        let (previous, next) = (curve[(i + SAMPLES - 1) % SAMPLES], curve[(i + 1) % SAMPLES]);
+        let (previous, next) = (
+            curve[(i + SAMPLES_PER_WAVE - 1) % SAMPLES_PER_WAVE],
+            curve[(i + 1) % SAMPLES_PER_WAVE],
+        );
         let outward_shift = -(previous - 2.0 * curve[i] + next) / 12.0;
         (curve[i] + outward_shift).clamp(-peak, peak)
     })
 }
 
-fn peak_of(samples: &[f64; SAMPLES]) -> f64 {
+fn peak_of(samples: &[f64; SAMPLES_PER_WAVE]) -> f64 {
     let larger_magnitude = |peak: f64, value: &f64| peak.max(value.abs());
     samples.iter().fold(0.0, larger_magnitude)
 }
 
 /// Finds the number of samples by which to rotate `existing` so that it equals `samples` within `tolerance`.
 fn find_rotation(
-    existing: &[f64; SAMPLES],
-    samples: &[f64; SAMPLES],
+    existing: &[f64; SAMPLES_PER_WAVE],
+    samples: &[f64; SAMPLES_PER_WAVE],
     tolerance: f64,
 ) -> Option<usize> {
-    (0..SAMPLES).find(|rotation| {
-        (0..SAMPLES).all(|i| (samples[i] - existing[(i + rotation) % SAMPLES]).abs() <= tolerance)
+    (0..SAMPLES_PER_WAVE).find(|rotation| {
+        (0..SAMPLES_PER_WAVE)
+            .all(|i| (samples[i] - existing[(i + rotation) % SAMPLES_PER_WAVE]).abs() <= tolerance)
     })
 }
 
 #[cfg(test)]
 mod tests {
-
     use crate::Robot;
-    use crate::testing::{all, robot, text_before_gaits, with};
+    use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
 
     fn wave_count(robot: &Robot) -> usize {
         robot.firmware().waves().len()
     }
 
     #[test]
-    fn a_reversed_gait_is_its_table_with_the_phase_turned_round() {
+    fn a_reversed_gait_has_the_same_channels_and_a_negative_increment() {
         let robot = robot("own-gaits");
         let table_gait = |name: &str| {
             let index = robot.gait(name).expect(name).index();
@@ -246,7 +262,7 @@ mod tests {
 
     #[test]
     fn increments_add_up_to_the_period() {
-        for (name, robot) in all() {
+        for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let increment = robot
                     .firmware()
@@ -263,17 +279,18 @@ mod tests {
     fn gait_id(robot: &Robot, index: usize) -> lizard_core::numbers::gaits::GaitId {
         lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
             .nth(index)
-            .expect("a gait")
+            .expect("the gait exists")
     }
 
     #[test]
-    fn names_are_words_one_after_the_other() {
-        for (name, robot) in all() {
+    fn a_gaits_name_in_the_core_has_blanks_for_dashes() {
+        for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let firmware = robot.firmware();
-                let console_name: Vec<u8> = firmware.name(gait_id(&robot, gait.index())).collect();
+                let console_name: Vec<u8> =
+                    firmware.gait_name(gait_id(&robot, gait.index())).collect();
                 assert_eq!(
-                    String::from_utf8(console_name).expect("ASCII"),
+                    String::from_utf8(console_name).expect("the name is ASCII"),
                     gait.name().replace('-', " "),
                     "{name}"
                 );
@@ -284,7 +301,7 @@ mod tests {
     #[test]
     fn a_leg_that_starts_later_reads_its_table_later() {
         let robot = robot("paper");
-        let walk = robot.gait("walk").expect("walk");
+        let walk = robot.gait("walk").expect("the robot has the gait walk");
         for phase in 0..=u16::MAX {
             let [a1, a2, a3, a4] = walk.table_sweeps(phase);
             // LH starts at 0, LF a quarter of a cycle later, RH half a cycle, RF three quarters.
@@ -307,11 +324,11 @@ mod tests {
             let (a, b) = (robot.gait(a).expect(a), robot.gait(b).expect(b));
             for phase in 0..=u16::MAX {
                 let [a1, a2, a3, a4] = a.table_sweeps(phase);
-                let expected = [-a2, -a1, -a4, -a3];
+                let mirrored = [-a2, -a1, -a4, -a3];
                 let actual = b.table_sweeps(phase);
                 // The core rounds halves up on both sides of zero, so mirrored values may differ by a step.
                 assert!(
-                    expected.iter().zip(actual).all(|(m, o)| m.abs_diff(o) <= 1),
+                    mirrored.iter().zip(actual).all(|(m, o)| m.abs_diff(o) <= 1),
                     "{name} {} at {phase}",
                     a.name()
                 );
@@ -324,24 +341,25 @@ mod tests {
         // Two waves, two waveforms with holds that four turning gaits share, and one path for two servos that mirror
         // each other.
         assert_eq!(wave_count(&robot("paper")), 5);
-        let other_robot =
-            with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
+        let other_robot = robot_with("paper", &[("amplitude = 15.0", "amplitude = 14.0")])
+            .expect("the robot is valid");
         assert_eq!(wave_count(&other_robot), 5);
-        let duty_robot = with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("a trot");
+        let duty_robot =
+            robot_with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("the robot is valid");
         assert_eq!(wave_count(&duty_robot), 5);
-        let robot_with_step = with(
+        let robot_with_step = robot_with(
             "paper",
             &[(
                 "[gait.trot]",
                 "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]",
             )],
         );
-        assert_eq!(wave_count(&robot_with_step.expect("a step")), 6);
+        assert_eq!(wave_count(&robot_with_step.expect("the robot is valid")), 6);
     }
 
     #[test]
-    fn a_waveform_is_kept_at_its_largest_so_no_gain_exceeds_1() {
-        for (name, robot) in all() {
+    fn the_largest_gain_of_every_waveform_is_1() {
+        for (name, robot) in all_robots() {
             let firmware = robot.firmware();
             let mut max_gains = vec![0; wave_count(&robot)];
             for gait in robot.gaits() {
@@ -360,19 +378,19 @@ mod tests {
     #[test]
     fn a_robot_that_only_stands_has_a_table_of_zeros() {
         let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-        let robot =
-            Robot::parse(&format!("{}{stand}", text_before_gaits("unequal"))).expect("it stands");
+        let robot = Robot::parse(&format!("{}{stand}", text_before_gaits("unequal")))
+            .expect("the robot is valid");
         assert_eq!(wave_count(&robot), 1);
         let stand = &robot.gaits()[0];
-        assert!(!stand.moves());
+        assert!(!stand.has_movement());
         assert_eq!(stand.table_sweeps(12_345), [0; 4]);
     }
 
     #[test]
     fn a_leg_may_not_sweep_half_a_turn() {
         let gait = "[gait.whirl]\nperiod = 9.0\nwaveform = \"wave\"\nduty = 0.5\namplitude = 90.0\nstart = { LF = 0, RF = 0, RH = 0, LH = 0 }\ngain = { RH = -2.5 }\n[gait.walk]";
-        let message = with("unequal", &[("[gait.walk]", gait)])
-            .expect_err("half a turn")
+        let message = robot_with("unequal", &[("[gait.walk]", gait)])
+            .expect_err("a sweep of half a turn is refused")
             .to_string();
         assert!(
             message.starts_with("in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more ("),

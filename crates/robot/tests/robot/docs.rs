@@ -7,11 +7,12 @@ use lizard_robot::{
 
 use crate::{gait, paper};
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/gaits.md");
-const TWIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/twin.md");
-const LIMITS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
-const END: &str = "<!-- end -->";
+const GAITS_PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/gaits.md");
+const TWIN_PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/twin.md");
+const LIMITS_PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
+const END_MARKER: &str = "<!-- end -->";
 
+/// Encloses a text in the lines that mark a code block.
 fn fence(text: String) -> String {
     format!("```text\n{text}```\n")
 }
@@ -20,14 +21,14 @@ fn fence(text: String) -> String {
 fn fill_block(page: &str, marker: &str, text: &str) -> String {
     let marker = format!("<!-- {marker} -->\n");
     let start = page.find(&marker).expect(&marker) + marker.len();
-    let end = start + page[start..].find(END).expect(END);
+    let end = start + page[start..].find(END_MARKER).expect(END_MARKER);
     format!("{}{text}{}", &page[..start], &page[end..])
 }
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_gaits_shows_the_output_of_the_commands() {
-    let page = std::fs::read_to_string(PAGE).expect(PAGE);
+    let page = std::fs::read_to_string(GAITS_PAGE).expect(GAITS_PAGE);
     let mut new_page = fill_block(
         &page,
         "lizard gaits",
@@ -43,21 +44,23 @@ fn the_page_on_gaits_shows_the_output_of_the_commands() {
         "lizard gaits --servos",
         &fence(ServoTable::of(paper()).to_string()),
     );
-    check(PAGE, &page, &new_page);
+    assert_up_to_date(GAITS_PAGE, &page, &new_page);
 }
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_limits_lists_the_assumptions_that_matter() {
-    let page = std::fs::read_to_string(LIMITS).expect(LIMITS);
+    let page = std::fs::read_to_string(LIMITS_PAGE).expect(LIMITS_PAGE);
     let text = fence(Assumptions::of(paper()).to_string());
     let new_page = fill_block(&page, "lizard gaits --assumptions", &text);
-    check(LIMITS, &page, &new_page);
+    assert_up_to_date(LIMITS_PAGE, &page, &new_page);
 }
 
 /// Asserts that a page is up to date. With the environment variable `BLESS_GAITS`, writes the page instead.
-fn check(path: &str, page: &str, new_page: &str) {
-    let (_, name) = path.split_once("/../../").expect("a page");
+fn assert_up_to_date(path: &str, page: &str, new_page: &str) {
+    let (_, name) = path
+        .split_once("/../../")
+        .expect("the path leads out of the crate");
     if std::env::var_os("BLESS_GAITS").is_some() {
         std::fs::write(path, new_page).expect(path);
     } else if let Some((old_line, new_line)) = page
@@ -77,13 +80,13 @@ fn check(path: &str, page: &str, new_page: &str) {
 }
 
 /// Spring forces in the table of slotted struts, N; `None` stands for a rigid strut.
-const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
+const PULLS_N: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
 
 /// Makes the cells of a row of the table of slotted struts: one figure of a gait for each spring force. The springs
 /// have the rate of the paper's coil.
-fn strut_cells(name: &str, figure_of: fn(SimulatedCycle) -> f64) -> String {
+fn strut_row_cells(name: &str, figure_of: fn(SimulatedCycle) -> f64) -> String {
     let rate = paper().parts().spring.rate();
-    let cells = PULLS.map(|force| {
+    let cells = PULLS_N.map(|force| {
         let kind = force.map_or(DriveKind::Rigid, |force| {
             DriveKind::Strut(paper().strut_with(force, rate))
         });
@@ -102,26 +105,26 @@ fn strut_cells(name: &str, figure_of: fn(SimulatedCycle) -> f64) -> String {
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_the_twin_shows_the_cost_of_springs() {
-    let page = std::fs::read_to_string(TWIN).expect(TWIN);
+    let page = std::fs::read_to_string(TWIN_PAGE).expect(TWIN_PAGE);
     let ground = paper().ground();
-    let (grip, leg) = (ground.grip(), ground.feet.reach);
+    let (grip, leg) = (ground.mean_pad_friction(), ground.feet.reach);
     let text = format!(
         "The parts weigh {} g. With a friction of {} that gives {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm. The servos are ideal.\n\n\
          | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\
          | lag in `walk`, deg |{}\n| `walk`, mm in a cycle |{}\n| `trot`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n",
         ground.body.mass,
-        ground.friction,
+        ground.friction_coefficient,
         grip * leg,
-        strut_cells("walk", |cycle| cycle.lag),
-        strut_cells("walk", |cycle| cycle.travel.forward),
-        strut_cells("trot", |cycle| cycle.travel.forward),
-        strut_cells("left", |cycle| cycle.travel.turn),
+        strut_row_cells("walk", |cycle| cycle.max_lag),
+        strut_row_cells("walk", |cycle| cycle.travel.forward),
+        strut_row_cells("trot", |cycle| cycle.travel.forward),
+        strut_row_cells("left", |cycle| cycle.travel.turn),
     );
     let new_page = fill_block(&page, "springs of robots/paper.toml", &text);
-    check(TWIN, &page, &new_page);
+    assert_up_to_date(TWIN_PAGE, &page, &new_page);
     assert!(
         page.contains(&format!("| mass | {} g, what", ground.body.mass)),
-        "{TWIN}"
+        "{TWIN_PAGE}"
     );
 }
 
@@ -143,14 +146,17 @@ fn slow_pace_row(file: &str) -> String {
     let (name, hardest_effort) = efforts
         .iter()
         .max_by(|(_, a), (_, b)| share_at(a, 1.0).total_cmp(&share_at(b, 1.0)))
-        .expect("a gait");
+        .expect("the robot has gaits");
     let is_within = |percent: &u8| {
         let pace = f64::from(*percent) / 100.0;
         efforts
             .iter()
             .all(|(_, effort)| share_at(effort, pace) <= HIGH_LINE_SHARE)
     };
-    let percent = (10..=100).rev().find(is_within).expect("a pace");
+    let percent = (10..=100)
+        .rev()
+        .find(is_within)
+        .expect("some pace is slow enough");
     if robot.supplies().rail.is_some() {
         assert_eq!(robot.supplies().slow_pace, percent, "{file}");
     }
@@ -164,11 +170,11 @@ fn slow_pace_row(file: &str) -> String {
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_the_twin_shows_the_paces_of_a_low_supply() {
-    let page = std::fs::read_to_string(TWIN).expect(TWIN);
+    let page = std::fs::read_to_string(TWIN_PAGE).expect(TWIN_PAGE);
     let rows = ["paper", "own-gaits", "unequal", "large", "grain"].map(slow_pace_row);
     let text = format!(
         "| file | hardest gait | `stop`, V | its line at full pace | pace, % | its line then |\n|---|---|---|---|---|---|\n{}",
         rows.concat()
     );
-    check(TWIN, &page, &fill_block(&page, "paces", &text));
+    assert_up_to_date(TWIN_PAGE, &page, &fill_block(&page, "paces", &text));
 }

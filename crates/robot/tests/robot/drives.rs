@@ -3,12 +3,13 @@
 
 use lizard_robot::{Body, Drive, DriveKind, Ground, Report, SpringCost, Walker};
 
-use crate::{STUDIED, cycle_movement, gait, paper, paper_with};
+use crate::{STUDIED_BODY, cycle_movement, gait, paper, paper_with};
 
+/// Returns the paper's ground with this drive and the studied body.
 fn ground_with(drive: Drive) -> Ground {
     Ground {
         drive,
-        body: STUDIED,
+        body: STUDIED_BODY,
         ..*paper().ground()
     }
 }
@@ -42,7 +43,7 @@ fn gaits_go_as_far_on_weak_struts_as_another_solver_found() {
 }
 
 #[test]
-fn from_two_newton_on_a_strut_walks_as_a_bar() {
+fn a_strut_of_two_newton_or_more_moves_the_robot_as_a_rigid_link_does() {
     for name in ["walk", "trot", "crawl", "left", "arc-left"] {
         let gait = gait(paper(), name);
         let rigid_movement = cycle_movement(gait, paper().ground());
@@ -57,7 +58,7 @@ fn from_two_newton_on_a_strut_walks_as_a_bar() {
         // with 1.5 times the friction.
         for (force, friction) in [(3.0, 0.7), (5.0, 1.05)] {
             let heavy_ground = Ground {
-                friction,
+                friction_coefficient: friction,
                 body: Body {
                     mass: 400.0,
                     ..Body::DEFAULT
@@ -83,36 +84,39 @@ fn gaits_lose_to_play_what_another_solver_found() {
                 (movement - expected).abs() < 0.25,
                 "{play_deg} deg {name} {movement}"
             );
-            assert!((cycle.lag - play_deg).abs() < 1e-3, "{cycle:?}");
+            assert!((cycle.max_lag - play_deg).abs() < 1e-3, "{cycle:?}");
         }
     }
 }
 
 #[test]
-fn a_leg_leaves_its_servo_only_where_its_strut_grows_longer() {
+fn a_leg_lags_only_in_the_direction_that_lengthens_its_strut() {
     // The spring is so weak that the front legs lag while their servos turn forward, and the hind legs lag while
     // their servos turn backward.
     let ground = ground_with_strut(0.5);
     let mut walker = Walker::new(ground, [0.0; 4]);
     for i in 1..=300 {
         let sweep = 20.0 * f64::sin(f64::from(i) / 20.0);
-        walker.step([sweep, -sweep, sweep, -sweep]);
-        let lag = walker.lag();
+        walker.move_to([sweep, -sweep, sweep, -sweep]);
+        let lag = walker.lags();
         assert!(lag[0] > -1e-6 && lag[1] > -1e-6, "{lag:?}");
         assert!(lag[2] < 1e-6 && lag[3] < 1e-6, "{lag:?}");
     }
 }
 
 #[test]
-fn a_lever_is_the_arms_part_square_to_the_strut() {
+fn a_struts_lever_is_the_derivative_of_its_length() {
     let robot = paper();
     let strut = robot.strut_with(4.0, 0.0);
     for (leg, plan) in robot.legs().iter().enumerate() {
         for sweep in [-20.0, 0.0, 13.0] {
-            let angle = robot.servos()[leg].neutral + lizard_robot::servo::FORWARD[leg] * sweep;
+            let angle =
+                robot.servos()[leg].neutral + lizard_robot::servo::FORWARD_TURN_SIGN[leg] * sweep;
             let length_at = |lag: f64| {
-                let forward = lizard_robot::servo::FORWARD[leg];
-                let [from, to] = plan.at(angle, angle - forward * lag).strut;
+                let forward_sign = lizard_robot::servo::FORWARD_TURN_SIGN[leg];
+                let [from, to] = plan
+                    .place_at(angle, angle - forward_sign * lag)
+                    .strut_anchors;
                 (to - from).length()
             };
             let slope = (length_at(0.001) - length_at(-0.001)) / 0.002f64.to_radians();
@@ -123,7 +127,7 @@ fn a_lever_is_the_arms_part_square_to_the_strut() {
             let (lag, torque) = strut.slot_end(leg, sweep);
             let lag = lag.copysign(slope);
             assert!(
-                (length_at(lag) - length_at(0.0) - strut.slot).abs() < 1e-6,
+                (length_at(lag) - length_at(0.0) - strut.slot_length).abs() < 1e-6,
                 "{lag}"
             );
             let slope = (length_at(lag + 0.001) - length_at(lag - 0.001)) / 0.002f64.to_radians();
@@ -136,7 +140,7 @@ fn a_lever_is_the_arms_part_square_to_the_strut() {
 }
 
 #[test]
-fn the_table_of_a_drive_makes_the_ground() {
+fn the_drive_is_read_from_its_table() {
     let read_drive = |table: &str| {
         let replacement = format!("mount = 0.0\ndrive = {{ {table} }}");
         *paper_with("mount = 0.0", &replacement)
@@ -147,39 +151,39 @@ fn the_table_of_a_drive_makes_the_ground() {
     assert_eq!(read_drive("kind = \"rigid\", play = 0.5").play, 0.5);
     let strut = *read_drive("kind = \"strut\", force = 4, rate = 0.4")
         .strut()
-        .expect("a strut");
+        .expect("the drive has a strut");
     assert_eq!(strut, paper().strut_with(4.0, 0.4));
     // Without the keys `force` and `rate`, both follow from the coil spring as it is mounted between its screws.
     let coil_drive = read_drive("kind = \"strut\"");
     assert_eq!(
         coil_drive.strut(),
-        Some(&paper().strut_of(&paper().parts().spring))
+        Some(&paper().strut_with_coil(&paper().parts().spring))
     );
     assert!((paper().mounted_spring_length() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
 }
 
 #[test]
-fn a_drive_that_is_changed_takes_its_legs_along() {
+fn a_stiffer_drive_reduces_the_lag_of_its_legs() {
     let mut walker = Walker::new(ground_with_strut(0.2), [0.0; 4]);
     (1..=40).for_each(|i| {
-        walker.step([0.5 * f64::from(i), 0.0, 0.0, 0.0]);
+        walker.move_to([0.5 * f64::from(i), 0.0, 0.0, 0.0]);
     });
-    assert!(walker.lag()[0] > 5.0, "{:?}", walker.lag());
+    assert!(walker.lags()[0] > 5.0, "{:?}", walker.lags());
     walker.set_ground(ground_with_play(1.5));
-    assert!((walker.lag()[0] - 1.5).abs() < 1e-9, "{:?}", walker.lag());
+    assert!((walker.lags()[0] - 1.5).abs() < 1e-9, "{:?}", walker.lags());
     walker.set_ground(ground_with_play(0.0));
-    assert_eq!(walker.lag(), [0.0; 4]);
+    assert_eq!(walker.lags(), [0.0; 4]);
 }
 
 #[test]
-fn the_pull_that_is_needed_grows_with_mass_and_friction() {
+fn a_walk_depends_on_the_pull_divided_by_mass_and_friction() {
     let walk_cycle = |mass: f64, friction: f64, pull: f64| {
         let ground = Ground {
             body: Body {
                 mass,
                 ..Body::DEFAULT
             },
-            friction,
+            friction_coefficient: friction,
             drive: Drive {
                 kind: DriveKind::Strut(paper().strut_with(pull, 0.4 * pull)),
                 play: 0.0,
@@ -189,73 +193,81 @@ fn the_pull_that_is_needed_grows_with_mass_and_friction() {
         gait(paper(), "walk").simulate_cycle(&ground)
     };
     let (light_cycle, heavy_cycle) = (walk_cycle(280.0, 0.7, 0.5), walk_cycle(420.0, 1.4, 1.5));
-    assert!(light_cycle.lag > 3.0 && (light_cycle.lag - heavy_cycle.lag).abs() < 1e-6);
+    assert!(light_cycle.max_lag > 3.0 && (light_cycle.max_lag - heavy_cycle.max_lag).abs() < 1e-6);
     assert!((light_cycle.travel.forward - heavy_cycle.travel.forward).abs() < 1e-6);
 }
 
 #[test]
-fn pads_that_hold_less_let_a_leg_go_and_a_still_one_stays() {
+fn a_lag_stays_while_no_servo_turns_and_falls_with_the_friction() {
     let walk = gait(paper(), "walk");
     let mut walker = Walker::new(ground_with_strut(0.5), walk.sweeps(0.0));
     for i in 1..=90 {
-        walker.step(walk.sweeps(f64::from(i) / 100.0));
+        walker.move_to(walk.sweeps(f64::from(i) / 100.0));
     }
-    let (lag, legs) = (walker.lag(), walk.sweeps(0.9));
+    let (lag, legs) = (walker.lags(), walk.sweeps(0.9));
     assert!(lag.iter().any(|lag| lag.abs() > 2.0), "{lag:?}");
-    walker.step(legs);
-    for (new_lag, old_lag) in walker.lag().into_iter().zip(lag) {
+    walker.move_to(legs);
+    for (new_lag, old_lag) in walker.lags().into_iter().zip(lag) {
         assert!(
             (new_lag - old_lag).abs() < 1e-6,
             "no servo turns, so no lag changes"
         );
     }
     walker.set_ground(Ground {
-        friction: 0.07,
+        friction_coefficient: 0.07,
         ..ground_with_strut(0.5)
     });
-    walker.step(legs);
-    for lag in walker.lag() {
+    walker.move_to(legs);
+    for lag in walker.lags() {
         assert!(lag.abs() < 0.5, "{lag}");
     }
     walker.set_ground(*paper().ground());
-    assert_eq!(walker.lag(), [0.0; 4]);
+    assert_eq!(walker.lags(), [0.0; 4]);
 }
 
 #[test]
-fn a_report_has_the_lag_of_the_legs_and_the_share_of_rigid_ones() {
+fn a_report_shows_the_share_of_the_movement_with_rigid_legs() {
     assert_eq!(
         SpringCost::of(gait(paper(), "walk"), paper().ground()),
         None
     );
     let cost_of =
-        |name| SpringCost::of(gait(paper(), name), &ground_with_strut(0.5)).expect("it lags");
-    let share_of = |name| cost_of(name).share.expect(name);
+        |name| SpringCost::of(gait(paper(), name), &ground_with_strut(0.5)).expect("the legs lag");
+    let share_of = |name| cost_of(name).share_of_rigid.expect(name);
     assert!((share_of("trot") - 24.6 / 26.7).abs() < 0.01);
     assert!((share_of("left") - 14.3 / 15.3).abs() < 0.01);
     assert_eq!(
-        (cost_of("stand").share, cost_of("look").share),
+        (
+            cost_of("stand").share_of_rigid,
+            cost_of("look").share_of_rigid
+        ),
         (None, None)
     );
 
     let drive = "mount = 0.0\ndrive = { kind = \"strut\", force = 0.5, rate = 0.395 }";
-    let robot = paper_with("mount = 0.0", drive).expect("a strut");
+    let robot = paper_with("mount = 0.0", drive).expect("the robot is valid");
     let report = Report::of(&robot).to_string();
     let trot = report.lines().find(|line| line.starts_with("trot"));
-    let cost = SpringCost::of(gait(&robot, "trot"), robot.ground()).expect("it lags");
-    let share_text = format!("{:.0}", 100.0 * cost.share.expect("trot"));
-    assert!(trot.expect("trot").ends_with(&share_text), "{report}");
+    let cost = SpringCost::of(gait(&robot, "trot"), robot.ground()).expect("the legs lag");
+    let share_text = format!("{:.0}", 100.0 * cost.share_of_rigid.expect("trot"));
+    assert!(
+        trot.expect("the report has the gait trot")
+            .ends_with(&share_text),
+        "{report}"
+    );
     assert!(report.contains("lag  of rigid"));
 }
 
 #[test]
 fn mass_and_friction_are_read_from_the_file() {
-    let read_ground = |from: &str, to: &str| *paper_with(from, to).expect("a body").ground();
+    let read_ground =
+        |from: &str, to: &str| *paper_with(from, to).expect("the robot is valid").ground();
     let heavy_ground = read_ground("mass = 435.0 ", "mass = 310\ncentre = [5.0, -2.0] ");
     assert_eq!(
-        (heavy_ground.body.mass, heavy_ground.body.centre),
+        (heavy_ground.body.mass, heavy_ground.body.mass_centre),
         (310.0, [5.0, -2.0])
     );
-    assert!((heavy_ground.grip() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);
+    assert!((heavy_ground.mean_pad_friction() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);
     let smooth_ground = read_ground("[ground]", "[ground]\nfriction = 0.5");
-    assert!((smooth_ground.grip() - 0.5 * 0.435 * 9.80665 / 4.0).abs() < 1e-12);
+    assert!((smooth_ground.mean_pad_friction() - 0.5 * 0.435 * 9.80665 / 4.0).abs() < 1e-12);
 }

@@ -1,4 +1,4 @@
-//! Snapshots of the tables of the paper's robot, so that a changed gait shows as a diff.
+//! Snapshots of the tables of the paper's robot, so that a change of a gait can be seen as a diff.
 
 use std::fmt::Write;
 
@@ -7,15 +7,16 @@ use lizard_robot::CheckedGait;
 use crate::paper;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
-const ROWS: u32 = 64;
+const ROW_COUNT: u32 = 64;
 
 /// Makes a CSV table of a gait: the phase in cycles, and the four servo angles that the firmware reads, deg.
-fn snapshot(gait: &CheckedGait) -> String {
+fn snapshot_csv(gait: &CheckedGait) -> String {
     let mut text = "phase,A1,A2,A3,A4\n".to_string();
-    for row in 0..ROWS {
-        let [a1, a2, a3, a4] = gait.table_angles((row * (65536 / ROWS)) as u16);
-        let phase = f64::from(row) / f64::from(ROWS);
-        writeln!(text, "{phase:.6},{a1:.2},{a2:.2},{a3:.2},{a4:.2}").expect("a String takes all");
+    for row in 0..ROW_COUNT {
+        let [a1, a2, a3, a4] = gait.table_angles((row * (65536 / ROW_COUNT)) as u16);
+        let phase = f64::from(row) / f64::from(ROW_COUNT);
+        writeln!(text, "{phase:.6},{a1:.2},{a2:.2},{a3:.2},{a4:.2}")
+            .expect("writing to a String cannot fail");
     }
     text
 }
@@ -25,7 +26,7 @@ fn every_gait_of_the_papers_robot_is_as_its_snapshot_says() {
     let is_blessing = std::env::var_os("BLESS_GAITS").is_some();
     for gait in paper().gaits() {
         let path = format!("{FOLDER}/{}.csv", gait.name());
-        let current = snapshot(gait);
+        let current = snapshot_csv(gait);
         if is_blessing {
             std::fs::write(&path, &current).expect(&path);
         }

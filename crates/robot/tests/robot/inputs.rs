@@ -1,7 +1,7 @@
 //! Input pins of robot.toml, and routine steps that end on an input.
 
 use lizard_core::numbers::gaits::{Input, Step};
-use lizard_robot::{Error, Report, Robot, Round, WITHOUT_CONTACTS};
+use lizard_robot::{Error, Report, Robot, Round, WITHOUT_CONTACTS_NOTE};
 
 use super::{paper, paper_text};
 
@@ -13,10 +13,10 @@ fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
 }
 
 /// Returns the error message for these tables, with its line number counted from their first line.
-fn refusal(tables: &str) -> String {
+fn refusal_of(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let lines_before = paper_text().trim_end().lines().count() + 1;
-    let line = error.line.expect("a line") - lines_before;
+    let line = error.line.expect("the error has a line") - lines_before;
     error.to_string().replacen(
         &format!("robot.toml:{}", line + lines_before),
         &line.to_string(),
@@ -24,16 +24,16 @@ fn refusal(tables: &str) -> String {
     )
 }
 
-/// Returns kind, gait and count of each record of a routine that has only this step.
-fn records(step: &str) -> Vec<(u8, u8, u16)> {
+/// Returns kind, gait and count of each record of a routine whose only step is this one.
+fn records_of(step: &str) -> Vec<(u8, u8, u16)> {
     let robot =
         paper_with_tables(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
     let [routine] = robot.routines() else {
         panic!("one routine");
     };
-    assert_eq!(routine.count(), 1);
+    assert_eq!(routine.step_count(), 1);
     let fields_of = |step: &Step| (step.kind, step.gait, step.count);
-    routine.steps().iter().map(fields_of).collect()
+    routine.step_records().iter().map(fields_of).collect()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_step_with_an_input_is_two_records_the_input_first() {
         ),
         ("rest", vec![(Step::REST, 0, 1)]),
     ] {
-        assert_eq!(records(step), expected, "{step}");
+        assert_eq!(records_of(step), expected, "{step}");
     }
     assert_eq!((button.pin(), nose.pin()), (15, 16));
     assert!(nose.is_nose() && !button.is_nose());
@@ -90,15 +90,15 @@ fn a_step_with_an_input_is_two_records_the_input_first() {
 
 #[test]
 fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
-    let robot = paper_with_tables(INPUTS).expect("inputs");
+    let robot = paper_with_tables(INPUTS).expect("the inputs are valid");
     assert_eq!(robot.section(), paper().section());
-    let named_pins: Vec<_> = robot.inputs().each().collect();
+    let named_pins: Vec<_> = robot.inputs().named_pins().collect();
     assert_eq!(named_pins, [("button", 15), ("nose", 16)]);
-    assert_eq!(paper().inputs().each().count(), 0);
+    assert_eq!(paper().inputs().named_pins().count(), 0);
 }
 
 #[test]
-fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
+fn every_free_pin_can_be_an_input_and_a_taken_one_is_refused_with_its_owner() {
     let rail = "[supply.rail]\npin = \"A3\"\nratio = 2.0\n";
     for (pin, message) in [
         ("D9", ", which servo.A1 already has"),
@@ -130,7 +130,7 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
         ),
     ] {
         for name in ["button", "nose"] {
-            let actual = refusal(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
+            let actual = refusal_of(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
             assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
@@ -142,7 +142,7 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
             paper_with_tables(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
-    let message = refusal("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
+    let message = refusal_of("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
     assert_eq!(
         message,
         "4: input.nose.pin is \"A1\", which input.button already has"
@@ -165,7 +165,7 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
             "1: input.nose.pin is missing; it must be a string",
         ),
     ] {
-        assert_eq!(refusal(tables), message);
+        assert_eq!(refusal_of(tables), message);
     }
     for (step, message) in [
         ("wait", "must say for what, as \"wait button\""),
@@ -199,13 +199,13 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
             "names the gait \"wait-button\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
-        let actual = refusal(&format!(
+        let actual = refusal_of(&format!(
             "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
         ));
         let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
         assert_eq!(actual, expected);
     }
-    let actual = refusal("[routine.one]\nsteps = [\"wait nose\"]");
+    let actual = refusal_of("[routine.one]\nsteps = [\"wait nose\"]");
     let message =
         "names the input \"nose\", which has no pin; [input.nose] must have one, as pin = \"A1\"";
     assert_eq!(
@@ -215,7 +215,7 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
 }
 
 #[test]
-fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_way_without_an_end() {
+fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_gait_without_an_end() {
     let round_of = |steps: &str| {
         let robot = paper_with_tables(&format!(
             "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
@@ -226,17 +226,20 @@ fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_way_without_an_end() {
     let report_of =
         |tables: &str| Report::of(&paper_with_tables(tables).expect(tables)).to_string();
     let tables = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
-    assert!(report_of(&tables).contains(WITHOUT_CONTACTS));
-    assert!(!report_of(INPUTS).contains(WITHOUT_CONTACTS));
+    assert!(report_of(&tables).contains(WITHOUT_CONTACTS_NOTE));
+    assert!(!report_of(INPUTS).contains(WITHOUT_CONTACTS_NOTE));
     let round_with_inputs = round_of(
         "\"wait button\", \"walk until nose\", \"left 3 until nose\", \"rest until button\"",
     );
     let plain_round = round_of("\"walk 1\", \"left 3\", \"rest\"");
     assert!(round_with_inputs.has_inputs && !plain_round.has_inputs);
-    assert_eq!((round_with_inputs.steps, plain_round.steps), (4, 3));
+    assert_eq!(
+        (round_with_inputs.step_count, plain_round.step_count),
+        (4, 3)
+    );
     let extra_seconds = round_with_inputs.seconds - plain_round.seconds;
     assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds}");
-    let turn_of = |round: &Round| round.movement.turn.expect("known");
+    let turn_of = |round: &Round| round.movement.turn.expect("the turn is decided");
     assert!((turn_of(&round_with_inputs) - turn_of(&plain_round)).abs() < 0.1);
 }
 
@@ -247,16 +250,16 @@ fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
     let mut blocks = blocks.filter_map(|block| block.split("```").next());
     let patrol = blocks
         .find(|block| block.contains("[input."))
-        .expect("it is there");
+        .expect("the page has a block with inputs");
     assert!(include_str!("../../../../docs/quickstart.md").contains(patrol));
-    let robot = paper_with_tables(patrol).expect("a robot");
+    let robot = paper_with_tables(patrol).expect("the robot is valid");
     let [routine] = robot.routines() else {
         panic!("one routine");
     };
-    assert_eq!((routine.count(), routine.rounds()), (4, None));
+    assert_eq!((routine.step_count(), routine.rounds()), (4, None));
     let core = robot.core();
     let ids = lizard_core::numbers::gaits::GaitId::all(core.gait_count());
-    let record = core.gait(ids.last().expect("the routine"));
+    let record = core.gait(ids.last().expect("the robot has a routine"));
     let [_, steps, _, repeat_from] = record.channels.map(|channel| channel.offset);
     assert_eq!((steps, repeat_from), (6, 2));
     assert_eq!(core.step(&record, repeat_from).kind, Step::UNTIL);

@@ -32,7 +32,7 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
 }
 
 /// The body for which another implementation of the contact model computed the expected figures.
-const STUDIED: Body = Body {
+const STUDIED_BODY: Body = Body {
     mass: 307.0,
     ..Body::DEFAULT
 };

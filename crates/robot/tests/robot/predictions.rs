@@ -8,7 +8,7 @@ use crate::{gait, paper, paper_with};
 
 /// Movement of each gait in one cycle: forward mm, turn deg. The figures come from a separate implementation of the
 /// same model, by which the gaits were chosen.
-const EXPECTED: [(&str, f64, f64); 9] = [
+const EXPECTED_MOVEMENTS: [(&str, f64, f64); 9] = [
     ("stand", 0.0, 0.0),
     ("walk", 34.16, 0.0),
     ("trot", 26.66, 0.0),
@@ -33,6 +33,7 @@ fn predict(robot: &Robot, name: &str) -> Travel {
     }
 }
 
+/// Asserts that a travel equals the expected one within 1 % or 0.3 mm, and 0.2 deg.
 fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
     assert!(
         (travel.forward - forward).abs() <= 0.3f64.max(forward.abs() * 0.01),
@@ -42,9 +43,9 @@ fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
 }
 
 #[test]
-fn every_gait_of_the_papers_robot_goes_where_it_should() {
+fn every_gait_of_the_papers_robot_moves_as_another_solver_found() {
     let robot = paper();
-    for (name, forward, turn) in EXPECTED {
+    for (name, forward, turn) in EXPECTED_MOVEMENTS {
         assert_near(name, predict(robot, name), forward, turn);
     }
 }
@@ -52,10 +53,10 @@ fn every_gait_of_the_papers_robot_goes_where_it_should() {
 #[test]
 fn the_tables_at_fifty_frames_a_second_go_the_same_way() {
     let robot = paper();
-    for (name, forward, turn) in EXPECTED {
+    for (name, forward, turn) in EXPECTED_MOVEMENTS {
         let gait = gait(robot, name);
         let angles = gait.frames().map(|(_, phase)| gait.table_angles(phase));
-        assert_near(name, robot.travel(angles), forward, turn);
+        assert_near(name, robot.predict_travel(angles), forward, turn);
     }
 }
 
@@ -65,7 +66,10 @@ fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
     assert_eq!(robot.predict(gait(robot, "look")).forward, None);
     let report = Report::of(robot).to_string();
     let look = report.lines().find(|line| line.starts_with("look"));
-    let cells: Vec<&str> = look.expect("look").split_whitespace().collect();
+    let cells: Vec<&str> = look
+        .expect("the report has the gait look")
+        .split_whitespace()
+        .collect();
     // The distance with ideal servos, and with the robot's own servos.
     let [ideal_cell, real_cell] = [6, 2].map(|from_end| cells[cells.len() - from_end]);
     assert_eq!((ideal_cell, real_cell), ("-", "-"), "{cells:?}");
@@ -118,12 +122,12 @@ fn a_sine_trot_gets_nowhere() {
 }
 
 #[test]
-fn a_finer_cycle_changes_no_prediction_by_a_hundredth() {
+fn twice_the_samples_change_no_prediction_by_0_01_mm_or_deg() {
     let robot = paper();
     for gait in robot.gaits() {
-        let sweeps_at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
+        let sweeps_at = |i| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 1000.0));
         let coarse_travel = robot.ground().travel((0..=1000).map(sweeps_at));
-        let sweeps_at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 2000.0));
+        let sweeps_at = |i| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 2000.0));
         let fine_travel = robot.ground().travel((0..=2000).map(sweeps_at));
         let error = (coarse_travel.forward - fine_travel.forward)
             .hypot(coarse_travel.left - fine_travel.left);
@@ -143,7 +147,8 @@ fn forward_of(robot: &Robot, name: &str) -> f64 {
 #[test]
 fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
     for mount in ["41.0", "49.0"] {
-        let robot = paper_with("mount = 0.0", &format!("mount = {mount}")).expect("a mount");
+        let robot =
+            paper_with("mount = 0.0", &format!("mount = {mount}")).expect("the robot is valid");
         assert!((4.0..=6.5).contains(&forward_of(&robot, "walk")));
         assert!((21.0..=25.0).contains(&forward_of(&robot, "crawl")));
     }
@@ -153,20 +158,23 @@ fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
 fn pads_that_grip_backward_help_forward_gaits_until_reverse_collapses() {
     let even_robot = paper();
     let robot_with_ratio = |ratio: &str| {
-        paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("a ratio")
+        paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("the robot is valid")
     };
-    for rho in ["1.1", "1.25", "1.5"] {
-        let robot = robot_with_ratio(rho);
+    for ratio in ["1.1", "1.25", "1.5"] {
+        let robot = robot_with_ratio(ratio);
         assert!(forward_of(&robot, "walk") > forward_of(even_robot, "walk"));
         assert!(
             forward_of(&robot, "back") > forward_of(even_robot, "back"),
-            "costs reverse"
+            "grip costs some of the way back"
         );
-        assert!(forward_of(&robot, "back") < -30.0, "but does not stop it");
+        assert!(
+            forward_of(&robot, "back") < -30.0,
+            "but the robot still walks back"
+        );
     }
     assert!(
         forward_of(&robot_with_ratio("2.0"), "back") > 0.0,
-        "now back walks forward"
+        "too much grip turns the way back into a way forward"
     );
 }
 

@@ -39,7 +39,7 @@ fn every_mistake_gets_its_message() {
         let error = paper_with(&from, &to)
             .err()
             .unwrap_or_else(|| panic!("{to:?} was accepted"));
-        let location = format!("robot.toml:{}: ", error.line.expect("a line"));
+        let location = format!("robot.toml:{}: ", error.line.expect("the error has a line"));
         let full_message = error.to_string();
         // The place is at the start, or at the end if the message begins with the consequence for the robot.
         assert!(full_message.contains(&location), "{full_message}");
@@ -56,8 +56,10 @@ fn every_mistake_gets_the_line_of_its_key_or_table() {
     for Mistake { from, to, .. } in read_mistakes() {
         let text = paper_text().replacen(&from, &to, 1);
         let error = Robot::parse(&text).expect_err(&to);
-        let line = text.lines().nth(error.line.expect("a line") - 1);
-        let line = line.expect("a line of the file");
+        let line = text
+            .lines()
+            .nth(error.line.expect("the error has a line") - 1);
+        let line = line.expect("the line is in the file");
         let mut names = error.key.split(['.', '[']).filter(|name| *name != "gait");
         let is_named = names.any(|name| line.contains(name))
             || line.contains("[gait")
@@ -69,7 +71,7 @@ fn every_mistake_gets_the_line_of_its_key_or_table() {
 #[test]
 fn a_missing_file_is_named() {
     let error = Robot::load("no/such/robot.toml")
-        .expect_err("there is none")
+        .expect_err("the file does not exist")
         .to_string();
     assert!(
         error.starts_with("no/such/robot.toml: cannot be read: "),
@@ -78,15 +80,15 @@ fn a_missing_file_is_named() {
 }
 
 /// Writes a temporary file with these bytes, under a name that no other test process uses.
-fn temporary_file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
+fn write_temporary_file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
     let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
-    std::fs::write(&path, bytes).expect("a temporary file");
+    std::fs::write(&path, bytes).expect("the temporary file can be written");
     path
 }
 
 fn refusal_of(path: &std::path::Path) -> String {
     Robot::load(path)
-        .expect_err("it is no robot")
+        .expect_err("the file is no robot")
         .to_string()
         .replacen(&path.display().to_string(), "FILE", 1)
 }
@@ -100,17 +102,17 @@ fn a_file_that_is_not_text_is_refused_without_reading_all_of_it() {
     );
     let message = refusal_of(&std::env::temp_dir());
     assert!(message.starts_with("FILE: cannot be read: "), "{message}");
-    let latin_path = temporary_file("latin", b"# one\n# caf\xe9\n");
+    let latin_path = write_temporary_file("latin", b"# one\n# caf\xe9\n");
     assert_eq!(
         refusal_of(&latin_path),
         "FILE: is not UTF-8 text: line 2 holds other bytes"
     );
     let mut bytes = paper_text().into_bytes();
     bytes.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');
-    let long_path = temporary_file("long", &bytes);
+    let long_path = write_temporary_file("long", &bytes);
     assert!(Robot::load(&long_path).is_ok(), "1 MiB is allowed");
     for path in [latin_path, long_path] {
-        std::fs::remove_file(path).expect("it was there");
+        std::fs::remove_file(path).expect("the file can be removed");
     }
 }
 
@@ -122,12 +124,14 @@ fn a_byte_order_mark_changes_nothing() {
 
 #[test]
 fn an_empty_file_asks_for_its_first_table() {
-    let error = Robot::parse("").expect_err("it is empty").to_string();
+    let error = Robot::parse("")
+        .expect_err("an empty file is refused")
+        .to_string();
     assert_eq!(error, "robot.toml: links is missing; it must be a table");
 }
 
 #[test]
-fn the_limits_of_every_range_are_allowed() {
+fn values_at_the_ends_of_their_ranges_are_allowed() {
     for (from, to) in [
         ("min_us = 600.0", "min_us = 500.0"),
         ("max_us = 2400.0", "max_us = 2500"),

@@ -9,13 +9,16 @@ use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE};
 /// Lists the files in robots/, and robot.toml.
 fn list_files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folder = std::fs::read_dir(root.join("robots")).expect("robots/");
-    let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("a file").path()).collect();
+    let folder = std::fs::read_dir(root.join("robots")).expect("robots/ can be read");
+    let mut files: Vec<PathBuf> = folder
+        .map(|entry| entry.expect("the entry can be read").path())
+        .collect();
     assert!(files.len() >= 4, "{files:?}");
     files.push(root.join("robot.toml"));
     files
 }
 
+/// Runs a test for every robot, with the path of its file.
 fn for_each_robot(test: impl Fn(&str, &Robot)) {
     static ROBOTS: LazyLock<Vec<(String, Robot)>> = LazyLock::new(|| {
         let load = |file: PathBuf| {
@@ -29,6 +32,7 @@ fn for_each_robot(test: impl Fn(&str, &Robot)) {
     }
 }
 
+/// Runs a test for every gait of every robot.
 fn for_each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
     for_each_robot(|file, robot| {
         for gait in robot.gaits() {
@@ -51,7 +55,7 @@ fn every_gait_is_safe_between_its_samples_too() {
     for_each_gait(|file, robot, gait| {
         for phase in (0..=u16::MAX).step_by(7) {
             let pose = gait.table_angles(phase).into();
-            let solution = robot.lizard().solve(&pose).expect("it closes");
+            let solution = robot.lizard().solve(&pose).expect("the linkage closes");
             if let Some(violation) = robot.limits().violations(&solution).next() {
                 // The check samples 1024 phases. Between two samples, a margin changes by less than 0.01.
                 let excess = (violation.value - violation.limit).abs();
@@ -73,7 +77,7 @@ fn an_audit_has_the_least_margins_of_all_phases() {
         let (mut smallest_stroke, mut largest_stroke) = (f64::INFINITY, f64::NEG_INFINITY);
         for phase in (0..=u16::MAX).step_by(64) {
             let pose = gait.table_angles(phase).into();
-            let solution = robot.lizard().solve(&pose).expect("it closes");
+            let solution = robot.lizard().solve(&pose).expect("the linkage closes");
             for (index, margins) in [
                 &solution.margins.type2[..],
                 &solution.margins.type1,
@@ -97,16 +101,16 @@ fn an_audit_has_the_least_margins_of_all_phases() {
             );
         }
         assert!(
-            (0.0..0.1).contains(&(smallest_stroke - audit.stroke.0)),
+            (0.0..0.1).contains(&(smallest_stroke - audit.stroke_range.0)),
             "{file} {}",
             gait.name()
         );
         assert!(
-            (0.0..0.1).contains(&(audit.stroke.1 - largest_stroke)),
+            (0.0..0.1).contains(&(audit.stroke_range.1 - largest_stroke)),
             "{file} {}",
             gait.name()
         );
-        assert!(Check::TYPE2.contains(&audit.type2.what), "{file}");
+        assert!(Check::TYPE2.contains(&audit.type2.check), "{file}");
     });
 }
 
@@ -122,13 +126,13 @@ fn the_fastest_frame_is_the_fastest_in_either_direction() {
                 largest_speed = largest_speed.max((to[servo] - from[servo]).abs() * 50.0);
             }
         }
-        let peak = gait.audit().peak;
+        let peak = gait.audit().peak_speed;
         assert!(
             (peak.speed - largest_speed).abs() <= 0.005 * largest_speed,
             "{file} {}: {peak:?}, but {largest_speed}",
             gait.name()
         );
-        assert!(peak.speed <= robot.pace().gait_slew);
+        assert!(peak.speed <= robot.speed_limits().gait_slew);
     });
 }
 
@@ -136,16 +140,20 @@ fn the_fastest_frame_is_the_fastest_in_either_direction() {
 fn stand_is_the_neutral_pose_to_the_last_step() {
     for_each_robot(|file, robot| {
         let stand = &robot.gaits()[0];
-        assert_eq!((stand.name(), stand.moves()), ("stand", false), "{file}");
+        assert_eq!(
+            (stand.name(), stand.has_movement()),
+            ("stand", false),
+            "{file}"
+        );
         for phase in 0..=u16::MAX {
             assert_eq!(stand.table_sweeps(phase), [0; 4]);
         }
-        assert_eq!(stand.pose(0.3), robot.neutral());
+        assert_eq!(stand.pose(0.3), robot.neutral_pose());
     });
 }
 
 #[test]
-fn every_gait_has_its_place_its_name_and_its_travel() {
+fn every_gait_has_its_index_and_name_and_stays_within_the_servos_pulses() {
     for_each_robot(|file, robot| {
         for (index, gait) in robot.gaits().iter().enumerate() {
             assert_eq!(gait.index(), index);
@@ -170,11 +178,11 @@ fn every_gait_has_its_place_its_name_and_its_travel() {
 #[test]
 fn a_robots_sweeps_are_zero_where_it_stands_and_positive_ahead() {
     for_each_robot(|file, robot| {
-        let neutral: [f64; 4] = robot.neutral().into();
-        assert_eq!(robot.sweeps(neutral), [0.0; 4], "{file}");
+        let neutral_angles: [f64; 4] = robot.neutral_pose().into();
+        assert_eq!(robot.sweeps(neutral_angles), [0.0; 4], "{file}");
         // theta1 and theta5 fall, theta4 and theta8 rise, as the feet go forward.
         let forward_change_deg = [-3.0, 3.0, 3.0, -3.0];
-        let angles = std::array::from_fn(|i| neutral[i] + forward_change_deg[i]);
+        let angles = std::array::from_fn(|i| neutral_angles[i] + forward_change_deg[i]);
         for sweep in robot.sweeps(angles) {
             assert!((sweep - 3.0).abs() < 1e-9, "{file}");
         }

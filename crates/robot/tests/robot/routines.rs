@@ -24,9 +24,9 @@ repeat = 3
 "#;
 
 #[test]
-fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
-    let robot = paper_with_tables(PATROL).expect("a routine");
-    let routine = robot.routine("patrol").expect("it is there");
+fn the_steps_and_the_repeats_of_a_routine_are_read() {
+    let robot = paper_with_tables(PATROL).expect("the routine is valid");
+    let routine = robot.routine("patrol").expect("the file defines it");
     let gait_index_of = |name: &str| robot.gait(name).expect(name).index() as u8;
     let steps = [
         (Step::FRAMES, gait_index_of("stand"), 50),
@@ -36,7 +36,7 @@ fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
         (Step::REST, 0, 1),
     ]
     .map(|(kind, gait, count)| Step { kind, gait, count });
-    assert_eq!(routine.steps(), steps);
+    assert_eq!(routine.step_records(), steps);
     assert_eq!(routine.rounds(), Some(3));
     let rounds_of = |repeat: &str| {
         let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
@@ -51,12 +51,12 @@ fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
 fn names_of_two_words_and_times_with_decimals_are_read() {
     let text = r#"[routine.about-face]
 steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
-    let robot = paper_with_tables(text).expect("a routine");
-    let arc_index = robot.gait("arc-left").expect("it is there").index() as u8;
+    let robot = paper_with_tables(text).expect("the routine is valid");
+    let arc_index = robot.gait("arc-left").expect("the file defines it").index() as u8;
     let steps: Vec<_> = robot
         .routine("about face")
-        .expect("it is there")
-        .steps()
+        .expect("the file defines it")
+        .step_records()
         .to_vec();
     let steps_read: Vec<_> = steps
         .iter()
@@ -75,7 +75,7 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
 #[test]
 fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
     let robot = paper_with_tables(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n"))
-        .expect("two");
+        .expect("both routines are valid");
     let core = robot.core();
     let gaits = robot.gaits().len();
     assert_eq!(core.gait_count(), gaits + 2);
@@ -88,13 +88,13 @@ fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
         }
     }
     for (id, routine) in ids[gaits..].iter().zip(robot.routines()) {
-        let name: String = core.name(*id).map(char::from).collect();
+        let name: String = core.gait_name(*id).map(char::from).collect();
         assert_eq!(name, routine.name());
         let record = core.gait(*id);
         let [_, count, rounds, _] = record.channels;
-        assert_eq!(usize::from(count.offset), routine.steps().len());
+        assert_eq!(usize::from(count.offset), routine.step_records().len());
         assert_eq!(rounds.offset, routine.rounds().unwrap_or(0));
-        for (number, step) in routine.steps().iter().enumerate() {
+        for (number, step) in routine.step_records().iter().enumerate() {
             assert_eq!(core.step(&record, number as u16), *step);
         }
     }
@@ -107,7 +107,7 @@ fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() 
     let tables: String = (0..8)
         .map(|n| format!("[routine.a-long-routine-{n}]\nsteps = [{steps}]\n"))
         .collect();
-    let robot = paper_with_tables(&tables).expect("they fit");
+    let robot = paper_with_tables(&tables).expect("the routines fit");
     assert!(robot.has_room_for_maps());
     let bytes = robot.section().len() - paper().section().len();
     assert_eq!(bytes, 8 * (32 + 16 * 4 + "a-long-routine-0".len()));
@@ -243,37 +243,43 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
     let robot = paper_with_tables(
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )
-    .expect("three");
+    .expect("the routines are valid");
     let rounds = robot
         .routines()
         .iter()
         .map(|routine| Round::of(&robot, routine));
-    let [ahead_round, about_round, gaze_round]: [Round; 3] =
-        rounds.collect::<Vec<_>>().try_into().expect("three");
+    let [ahead_round, about_round, gaze_round]: [Round; 3] = rounds
+        .collect::<Vec<_>>()
+        .try_into()
+        .expect("there are three routines");
     let walk_forward = robot
-        .predict(robot.gait("walk").expect("it is there"))
+        .predict(robot.gait("walk").expect("the file defines it"))
         .forward
-        .expect("known");
+        .expect("the movement is decided");
     let left_turn = robot
-        .predict(robot.gait("left").expect("it is there"))
+        .predict(robot.gait("left").expect("the file defines it"))
         .turn
-        .expect("known");
+        .expect("the movement is decided");
     // Ten cycles of one second each, and the changes from and to the neutral pose.
     assert!(
         (10.0..11.0).contains(&ahead_round.seconds),
         "{}",
         ahead_round.seconds
     );
-    let share = ahead_round.movement.forward.expect("known") / (10.0 * walk_forward);
+    let share = ahead_round
+        .movement
+        .forward
+        .expect("the movement is decided")
+        / (10.0 * walk_forward);
     assert!((0.95..1.05).contains(&share), "{share}");
     assert!(
         (7.0..8.0).contains(&about_round.seconds),
         "{}",
         about_round.seconds
     );
-    let share = about_round.movement.turn.expect("known") / (5.0 * left_turn);
+    let share = about_round.movement.turn.expect("the movement is decided") / (5.0 * left_turn);
     assert!((0.9..1.1).contains(&share), "{share}");
-    assert_eq!((about_round.rounds, about_round.steps), (None, 2));
+    assert_eq!((about_round.round_count, about_round.step_count), (None, 2));
     // Two feet pull against two: unmeasurable differences between the pads decide whether the robot moves.
     assert_eq!(gaze_round.movement.forward, None);
 }

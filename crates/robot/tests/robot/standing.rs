@@ -1,9 +1,9 @@
-//! The load of four feet, which statics alone does not determine, and the distance that a foot that is too long
-//! costs.
+//! The loads of the four feet, which statics alone does not determine, and the distance that the robot loses if a foot
+//! is too long.
 
 use lizard_robot::{Body, Ground, Stance, Walker};
 
-use crate::{STUDIED, cycle_movement, gait, paper, paper_with};
+use crate::{STUDIED_BODY, cycle_movement, gait, paper, paper_with};
 
 const GAITS: [&str; 8] = [
     "walk",
@@ -24,13 +24,13 @@ fn ground_with(stiffness: f64, twist: f64) -> Ground {
             twist,
             ..Stance::DEFAULT
         },
-        body: STUDIED,
+        body: STUDIED_BODY,
         ..*paper().ground()
     }
 }
 
 #[test]
-fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
+fn a_diagonal_loaded_four_tenths_more_costs_as_much_as_another_solver_found() {
     // The expected figures come from a separate implementation, in which the feet of one diagonal always carry
     // four tenths more load, and the other two feet four tenths less.
     for (name, expected) in [
@@ -40,11 +40,11 @@ fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
         ("trot", 17.6),
     ] {
         let gait = gait(paper(), name);
-        let sweeps_at = |i: i32| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
+        let sweeps_at = |i: i32| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 1000.0));
         let ground = *paper().ground();
         let mut walker = Walker::with_unevenness(ground, sweeps_at(0), [1.4, 0.6, 1.4, 0.6], 1.0);
         (1..=1000).for_each(|i| {
-            walker.step(sweeps_at(i));
+            walker.move_to(sweeps_at(i));
         });
         let place = walker.place();
         let movement = match name {
@@ -56,7 +56,7 @@ fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
 }
 
 #[test]
-fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
+fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_three_percent() {
     let Stance {
         stiffness, twist, ..
     } = paper().ground().stance;
@@ -72,7 +72,7 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
 }
 
 #[test]
-fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
+fn on_stiff_feet_a_foot_0_6_mm_too_long_costs_three_quarters_of_the_movement() {
     let share_of = |name: &str| {
         let gait = gait(paper(), name);
         cycle_movement(gait, &ground_with(3.3, 0.6)) / cycle_movement(gait, paper().ground())
@@ -106,8 +106,8 @@ fn the_cost_depends_on_stiffness_times_length_over_weight() {
 #[test]
 fn stiffness_and_twist_are_read_from_the_file() {
     let robot = paper_with("[body]", "[feet]\nstiffness = 2.0\ntwist = -0.6\n[body]");
-    let stance = robot.expect("feet").ground().stance;
+    let stance = robot.expect("the robot is valid").ground().stance;
     assert_eq!((stance.stiffness, stance.twist), (2.0, -0.6));
-    assert_eq!(stance.level, Stance::DEFAULT.level);
-    assert!((stance.diagonal() + 0.3).abs() < 1e-12);
+    assert_eq!(stance.twist_error, Stance::DEFAULT.twist_error);
+    assert!((stance.diagonal_load() + 0.3).abs() < 1e-12);
 }

@@ -1,7 +1,7 @@
 //! `simulated-uno program.hex`: runs a program without a board.
 //!
-//! Prints the lines of the serial port as they arrive, each with its time, and then the pulses
-//! that an oscilloscope would have shown on each pin.
+//! Prints the lines of the serial port as they arrive, each with its time, and then the pulses that an oscilloscope
+//! would have shown on each pin.
 
 mod report;
 
@@ -27,7 +27,7 @@ struct Arguments {
     ms: u64,
     /// Send a line after this many milliseconds: --say 500:walk. May be given repeatedly.
     #[arg(long, value_name = "MS:LINE", value_parser = parse_line)]
-    say: Vec<Line>,
+    say: Vec<ScheduledLine>,
     /// The rate at which lines are sent, in baud; that of answers is the program's.
     #[arg(long, default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     baud: u32,
@@ -39,19 +39,20 @@ struct Arguments {
     stock: bool,
 }
 
-/// A line to be sent to the serial port, and its time.
+/// A line to be sent to the serial port, and the time at which it is sent.
 #[derive(Clone)]
-struct Line {
+struct ScheduledLine {
     ms: u64,
     text: String,
 }
 
-fn parse_line(argument: &str) -> Result<Line, String> {
+/// Parses a value of --say, such as `500:walk`.
+fn parse_line(argument: &str) -> Result<ScheduledLine, String> {
     let message = "a line has its time in ms before it, as in 500:walk";
     let (ms, text) = argument.split_once(':').ok_or(message)?;
     let ms = ms.parse().map_err(|_| message)?;
     let text = text.to_owned();
-    Ok(Line { ms, text })
+    Ok(ScheduledLine { ms, text })
 }
 
 fn main() -> ExitCode {
@@ -95,7 +96,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
         );
     }
     let mut edges = Vec::new();
-    let mut text = report::Text::default();
+    let mut text = report::SerialText::default();
     let mut lines = lines.into_iter().peekable();
     let end_cycle = arguments.ms * CYCLES_PER_MS;
     while *uno.state() == State::Alive && uno.cycle() < end_cycle {
@@ -113,9 +114,9 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
         edges.append(&mut uno.take_edges());
         text.print(&uno.take_transmitted(), out)?;
     }
-    text.finish(out)?;
+    text.print_unfinished_line(out)?;
     report::print_pins(&edges, arguments.pulses, out)?;
-    report::end(&uno, flash_bytes, out)?;
+    report::print_summary(&uno, flash_bytes, out)?;
     out.flush()?;
     Ok(match uno.state() {
         State::Crashed { .. } => ExitCode::FAILURE,

@@ -9,45 +9,45 @@ const MAX_LINE_BYTES: usize = 200;
 
 /// The UNO's serial text, printed line by line.
 #[derive(Default)]
-pub struct Text {
-    /// The bytes received so far of the line that has not been printed.
-    line: Vec<u8>,
+pub struct SerialText {
+    /// The bytes of the line that is not complete yet.
+    unfinished_line: Vec<u8>,
     /// The cycle at which the last byte was received.
-    cycle: u64,
+    last_cycle: u64,
 }
 
-impl Text {
+impl SerialText {
     /// Adds bytes and prints the lines that they complete.
     pub fn print(&mut self, bytes: &[SerialByte], out: &mut impl Write) -> io::Result<()> {
         for byte in bytes {
-            self.cycle = byte.cycle;
+            self.last_cycle = byte.cycle;
             if byte.byte != b'\n' {
-                self.line.push(byte.byte);
+                self.unfinished_line.push(byte.byte);
             }
-            if byte.byte == b'\n' || self.line.len() == MAX_LINE_BYTES {
+            if byte.byte == b'\n' || self.unfinished_line.len() == MAX_LINE_BYTES {
                 self.print_line(out)?;
             }
         }
         Ok(())
     }
 
-    /// Prints the last line if it has no line end.
-    pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
-        match self.line.is_empty() {
+    /// Prints the bytes after the last line end, if there are any.
+    pub fn print_unfinished_line(&mut self, out: &mut impl Write) -> io::Result<()> {
+        match self.unfinished_line.is_empty() {
             true => Ok(()),
             false => self.print_line(out),
         }
     }
 
     fn print_line(&mut self, out: &mut impl Write) -> io::Result<()> {
-        let ms = self.cycle as f64 / CYCLES_PER_MS as f64;
-        let text = String::from_utf8_lossy(&self.line);
+        let ms = self.last_cycle as f64 / CYCLES_PER_MS as f64;
+        let text = String::from_utf8_lossy(&self.unfinished_line);
         writeln!(
             out,
             "{ms:>10.2} ms  {}",
             escape(text.trim_end_matches('\r'))
         )?;
-        self.line.clear();
+        self.unfinished_line.clear();
         Ok(())
     }
 }
@@ -112,7 +112,7 @@ pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::
 }
 
 /// Prints the UNO's final state and the resources used: time, flash, SRAM, CPU time.
-pub fn end(uno: &Uno, flash_bytes: u32, out: &mut impl Write) -> io::Result<()> {
+pub fn print_summary(uno: &Uno, flash_bytes: u32, out: &mut impl Write) -> io::Result<()> {
     let state = match uno.state() {
         State::Alive => "It runs on.".to_owned(),
         State::Halted => "It sleeps with interrupts off: nothing but a reset ends this.".to_owned(),

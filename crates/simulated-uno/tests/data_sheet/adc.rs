@@ -1,17 +1,17 @@
 //! Tests of the simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
-use simulated_uno::avr_gcc::c;
+use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
-use super::{causes, distances, mark_cycles, marks, uno};
+use super::{intervals, mark_cycles, mark_values, new_uno, reset_causes};
 
-/// ADC clock of 125 kHz: prescaler 128.
-const CLOCK_CYCLES: u64 = 128;
+/// The CPU cycles of an ADC clock with prescaler 128, 125 kHz.
+const CYCLES_PER_CLOCK: u64 = 128;
 
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
 /// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
 fn program(body: &str) -> Image {
-    c(&format!(
+    compile_c(&format!(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <util/delay.h>
@@ -23,15 +23,15 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO whose program consists of this text and the macros of [`program`].
-pub fn with(body: &str) -> Uno {
-    uno(program(body))
+/// Returns a UNO with a program that consists of this text and the macros of [`program`].
+pub fn uno_with_program(body: &str) -> Uno {
+    new_uno(program(body))
 }
 
 /// Returns a UNO whose main program runs these statements once, with these voltages (mV) at A0 and the following
 /// pins.
-fn run_once(body: &str, pin_mv: &[u16]) -> Uno {
-    let mut uno = with(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
+fn uno_with_statements(body: &str, pin_mv: &[u16]) -> Uno {
+    let mut uno = uno_with_program(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     for (number, mv) in (0..).zip(pin_mv) {
         uno.set_analog_mv(Pin::a(number), *mv);
     }
@@ -39,8 +39,8 @@ fn run_once(body: &str, pin_mv: &[u16]) -> Uno {
 }
 
 /// Returns the conversion results that the program has shown so far.
-fn results(uno: &Uno) -> Vec<u16> {
-    let bytes = marks(uno);
+fn conversion_results(uno: &Uno) -> Vec<u16> {
+    let bytes = mark_values(uno);
     let pairs = bytes.chunks(2);
     pairs
         .map(|pair| u16::from_le_bytes([pair[0], pair[1]]))
@@ -49,18 +49,18 @@ fn results(uno: &Uno) -> Vec<u16> {
 
 /// Returns the conversion results of statements that the main program runs once.
 fn results_of(body: &str, pin_mv: &[u16]) -> Vec<u16> {
-    let mut uno = run_once(body, pin_mv);
+    let mut uno = uno_with_statements(body, pin_mv);
     uno.run_ms(3);
-    results(&uno)
+    conversion_results(&uno)
 }
 
 /// Program that measures the settled bandgap against AVcc repeatedly.
-const BANDGAP: &str = "int main(void) {
+const BANDGAP_PROGRAM: &str = "int main(void) {
     ADMUX = 0x4e; ADCSRA = 0x87; _delay_ms(1);
     for (;;) convert(); }";
 
 #[test]
-fn the_bandgap_against_avcc_tells_the_supply() {
+fn the_result_for_the_bandgap_is_its_ratio_to_the_supply() {
     // "ADC = VIN * 1024 / VREF" (24.7), rounded down.
     for (supply_mv, bandgap_mv) in [
         (5000.0, 1100.0),
@@ -68,39 +68,43 @@ fn the_bandgap_against_avcc_tells_the_supply() {
         (4500.0, 1017.0),
         (2800.0, 1200.0),
     ] {
-        let mut uno = with(BANDGAP);
+        let mut uno = uno_with_program(BANDGAP_PROGRAM);
         uno.set_supply_mv(supply_mv);
         uno.set_bandgap_mv(bandgap_mv);
         uno.run_ms(3);
-        let expected = (bandgap_mv * 1024.0 / supply_mv) as u16;
-        assert!(results(&uno).len() > 2);
-        assert!(results(&uno).iter().all(|result| *result == expected));
+        let expected_code = (bandgap_mv * 1024.0 / supply_mv) as u16;
+        assert!(conversion_results(&uno).len() > 2);
+        assert!(
+            conversion_results(&uno)
+                .iter()
+                .all(|result| *result == expected_code)
+        );
     }
 }
 
 #[test]
 #[should_panic(expected = "a bandgap reference has 1000 to 1200 mV")]
-fn a_bandgap_beyond_the_data_sheet_is_refused() {
-    with(BANDGAP).set_bandgap_mv(1201.0);
+fn a_bandgap_outside_the_range_of_the_data_sheet_panics() {
+    uno_with_program(BANDGAP_PROGRAM).set_bandgap_mv(1201.0);
 }
 
 #[test]
 #[should_panic(expected = "D9 is not an analogue pin")]
-fn a_digital_pin_has_no_voltage_to_set() {
-    with(BANDGAP).set_analog_mv(Pin::d(9), 1);
+fn setting_the_voltage_of_a_digital_pin_panics() {
+    uno_with_program(BANDGAP_PROGRAM).set_analog_mv(Pin::d(9), 1);
 }
 
 #[test]
 fn conversions_have_the_results_of_the_data_sheet() {
     for (message, body, pin_mv, expected) in [
         (
-            "each analogue pin is measured on its own channel, and too much reads 1023",
+            "each analogue pin is measured on its own channel, and a voltage above the reference reads 1023",
             "for (unsigned char i = 0; i < 6; i++) { ADMUX = 0x40 | i; convert(); }",
             &[100, 1100, 2100, 3100, 4100, 5100][..],
             &[20, 225, 430, 634, 839, 1023][..],
         ),
         (
-            "ground reads zero, and half of the bandgap against the bandgap 512",
+            "ground reads 0, and half of the bandgap measured against the bandgap reads 512",
             "ADMUX = 0x4f; convert(); ADMUX = 0xc1; convert();",
             &[0, 550],
             &[0, 512],
@@ -176,17 +180,17 @@ fn registers_read_as_the_data_sheet_says() {
             &[0xa8, 0xc0, 0xa8],
         ),
     ] {
-        let mut uno = run_once(body, pin_mv);
+        let mut uno = uno_with_statements(body, pin_mv);
         uno.run_ms(2);
-        assert_eq!(marks(&uno), expected, "{message}");
+        assert_eq!(mark_values(&uno), expected, "{message}");
     }
 }
 
 #[test]
-fn the_first_conversion_takes_25_clocks_and_others_13() {
+fn the_first_conversion_takes_25_clocks_and_every_other_13() {
     // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
     // A conversion "starts at the following rising edge of the ADC clock", so it may take up to one clock more.
-    let mut uno = run_once(
+    let mut uno = uno_with_statements(
         "ADMUX = 0x40; ADCSRA = 0x87;
         for (unsigned char i = 0; i < 3; i++) { start(); GPIOR0 = i; wait(); GPIOR0 = i; }
         ADCSRA = 7; ADCSRA = 0x87;
@@ -194,18 +198,18 @@ fn the_first_conversion_takes_25_clocks_and_others_13() {
         &[],
     );
     uno.run_ms(2);
-    let lengths = distances(&mark_cycles(&uno));
+    let lengths = intervals(&mark_cycles(&uno));
     for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
-        let range = clocks * CLOCK_CYCLES - 4..(clocks + 1) * CLOCK_CYCLES + 12;
+        let range = clocks * CYCLES_PER_CLOCK - 4..(clocks + 1) * CYCLES_PER_CLOCK + 12;
         assert!(range.contains(&length), "{length}, not {clocks} clocks");
     }
 }
 
 #[test]
-fn the_prescaler_divides_by_table_24_5() {
+fn the_prescaler_divides_as_in_table_24_5() {
     // ADPS 000 and 001: 2, 010: 4, ... 111: 128.
     for (select, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
-        let mut uno = run_once(
+        let mut uno = uno_with_statements(
             &format!(
                 "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
                 for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
@@ -227,10 +231,10 @@ fn the_prescaler_divides_by_table_24_5() {
 }
 
 #[test]
-fn the_lowest_prescalers_both_divide_by_two() {
+fn the_two_lowest_prescaler_settings_divide_by_two() {
     // Table 24-5: 13 clocks are 26 cycles.
     for select in [0, 1] {
-        let mut uno = run_once(
+        let mut uno = uno_with_statements(
             &format!(
                 "ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
                 ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
@@ -239,22 +243,22 @@ fn the_lowest_prescalers_both_divide_by_two() {
             &[],
         );
         uno.run_ms(1);
-        assert_eq!(marks(&uno), [0x40, 0], "{select}");
+        assert_eq!(mark_values(&uno), [0x40, 0], "{select}");
     }
 }
 
 #[test]
 fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
-    let mut uno = with("ISR(ADC_vect) { GPIOR0 = ADCSRA; show(); }
+    let mut uno = uno_with_program("ISR(ADC_vect) { GPIOR0 = ADCSRA; show(); }
         int main(void) { SMCR = 1; ADMUX = 0x40; ADCSRA = 0xcf; sei(); for (;;) asm volatile (\"sleep\"); }");
     uno.set_analog_mv(Pin::a(0), 2500);
     uno.run_ms(1);
-    assert_eq!(marks(&uno), [0x8f, 0x00, 0x02]);
+    assert_eq!(mark_values(&uno), [0x8f, 0x00, 0x02]);
     assert!(uno.asleep_cycles() > 15_000);
 }
 
 #[test]
-fn a_voltage_is_sampled_when_table_24_1_says() {
+fn a_voltage_is_sampled_at_the_time_of_table_24_1() {
     // "Sample & Hold (Cycles from Start of Conversion)": 1.5 clocks, in the first conversion 13.5. A conversion
     // starts at the next clock edge, at most one clock after ADSC is set.
     for (body, sampled_clock, too_late_clock) in [
@@ -266,13 +270,13 @@ fn a_voltage_is_sampled_when_table_24_1_says() {
         ("GPIOR0 = 0; convert();", 13, 15),
     ] {
         let result_after = |change_clock: u64| {
-            let mut uno = run_once(&format!("ADMUX = 0x40; {body}"), &[]);
+            let mut uno = uno_with_statements(&format!("ADMUX = 0x40; {body}"), &[]);
             uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
             uno.take_marks();
-            uno.run_cycles(change_clock * CLOCK_CYCLES);
+            uno.run_cycles(change_clock * CYCLES_PER_CLOCK);
             uno.set_analog_mv(Pin::a(0), 2500);
             uno.run_ms(1);
-            results(&uno)[0]
+            conversion_results(&uno)[0]
         };
         assert_eq!(
             (result_after(sampled_clock), result_after(too_late_clock)),
@@ -283,10 +287,10 @@ fn a_voltage_is_sampled_when_table_24_1_says() {
 }
 
 #[test]
-fn conversions_keep_step_with_the_adc_clock() {
+fn conversions_end_a_whole_number_of_adc_clocks_apart() {
     // "the conversion starts at the following rising edge of the ADC clock cycle" (24.4): the ends of any two
     // conversions are a whole number of clocks apart.
-    let mut uno = run_once(
+    let mut uno = uno_with_statements(
         "ADMUX = 0x40; start();
         for (unsigned char i = 0; i < 20; i++) {
             while (!(ADCSRA & 0x10)) {}
@@ -300,7 +304,7 @@ fn conversions_keep_step_with_the_adc_clock() {
     let cycles = mark_cycles(&uno);
     assert_eq!(cycles.len(), 20);
     for cycle in &cycles {
-        let error = (cycle - cycles[0] + 10) % CLOCK_CYCLES;
+        let error = (cycle - cycles[0] + 10) % CYCLES_PER_CLOCK;
         assert!(error <= 20, "{cycles:?}");
     }
 }
@@ -320,12 +324,12 @@ fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
         results_of(&body, &[previous_mv])
     };
     assert_eq!(results_after(72, 0), [225, 225]);
-    let hasty_results = results_after(30, 0);
-    assert!((80..160).contains(&hasty_results[0]), "{hasty_results:?}");
-    assert_eq!(hasty_results[1], 225, "a second one is right");
+    let early_results = results_after(30, 0);
+    assert!((80..160).contains(&early_results[0]), "{early_results:?}");
+    assert_eq!(early_results[1], 225, "the second conversion is right");
     assert!(
         results_after(30, 5000)[0] > 400,
-        "from the previous channel"
+        "the result is between the previous channel and the bandgap"
     );
 }
 
@@ -360,28 +364,28 @@ fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
 
 #[test]
 fn a_reset_switches_the_adc_off() {
-    let mut uno = run_once(
+    let mut uno = uno_with_statements(
         "GPIOR0 = ADCSRA; GPIOR0 = ADMUX; GPIOR0 = ADCL; GPIOR0 = ADCH;
         ADMUX = 0x40; start(); wait(); GPIOR0 = ADCL; start();",
         &[2500],
     );
-    uno.run_cycles(30 * CLOCK_CYCLES);
+    uno.run_cycles(30 * CYCLES_PER_CLOCK);
     uno.reset();
     uno.take_marks();
     uno.run_ms(1);
-    assert_eq!(marks(&uno)[..4], [0; 4]);
+    assert_eq!(mark_values(&uno)[..4], [0; 4]);
 }
 
 #[test]
 fn a_ramp_is_a_straight_line_that_the_adc_follows() {
-    let mut uno = with(BANDGAP);
+    let mut uno = uno_with_program(BANDGAP_PROGRAM);
     uno.run_ms(2);
     uno.ramp_supply_mv(3000.0, 100 * CYCLES_PER_MS);
     uno.run_ms(50);
     assert!((uno.supply_mv() - 4000.0).abs() < 1e-6);
     uno.run_ms(70);
     assert!((uno.supply_mv() - 3000.0).abs() < 1e-6);
-    let results = results(&uno);
+    let results = conversion_results(&uno);
     assert!(results.is_sorted());
     assert_eq!((results[0], results[results.len() - 1]), (225, 375));
     for code in 226..375 {
@@ -390,14 +394,14 @@ fn a_ramp_is_a_straight_line_that_the_adc_follows() {
 }
 
 #[test]
-fn stock_simavr_measures_the_supply_too_but_is_never_reset() {
-    let mut uno = Uno::with_image(program(BANDGAP), Fidelity::Stock);
+fn stock_simavr_measures_the_supply_but_is_never_reset_by_it() {
+    let mut uno = Uno::with_image(program(BANDGAP_PROGRAM), Fidelity::Stock);
     uno.set_supply_mv(2500.0);
     uno.run_ms(3);
-    assert_eq!(results(&uno)[1], 450);
+    assert_eq!(conversion_results(&uno)[1], 450);
     assert!(!uno.is_held_in_reset());
     uno.set_supply_mv(1000.0);
     uno.run_ms(1);
     assert!(!uno.is_held_in_reset());
-    assert_eq!(causes(&uno), [ResetCause::PowerOn]);
+    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn]);
 }

@@ -2,11 +2,11 @@
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Pin, PowerCut, ResetCause, State, Uno};
 
-use super::adc::with;
-use super::{causes, marks};
+use super::adc::uno_with_program;
+use super::{mark_values, reset_causes};
 
 /// Sets the supply voltage and runs for a millisecond.
-fn set_supply(uno: &mut Uno, mv: f64) {
+fn set_supply_and_run(uno: &mut Uno, mv: f64) {
     uno.set_supply_mv(mv);
     uno.run_ms(1);
 }
@@ -18,27 +18,30 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     // (VBOT+), the delay counter starts the MCU"; "VBOT+ = VBOT + VHYST/2" (11.5),
     // with 2.7 V and 50 mV.
     let body = "int main(void) { DDRB = 2; PORTB = 2; for (;;) GPIOR0 = MCUSR; }";
-    let mut uno = with(body);
-    set_supply(&mut uno, 2676.0);
+    let mut uno = uno_with_program(body);
+    set_supply_and_run(&mut uno, 2676.0);
     assert!(!uno.is_held_in_reset() && uno.is_high(Pin::d(9)));
-    set_supply(&mut uno, 2674.0);
+    set_supply_and_run(&mut uno, 2674.0);
     assert!(uno.is_held_in_reset() && !uno.is_high(Pin::d(9)));
     uno.set_supply_mv(2724.0);
     uno.take_marks();
     assert_eq!(*uno.run_ms(1), State::Alive);
     assert!(uno.is_held_in_reset() && uno.marks().is_empty());
-    assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes");
-    assert_eq!(uno.asleep_cycles(), 0, "but not asleep");
-    set_supply(&mut uno, 2726.0);
+    assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes in reset");
+    assert_eq!(uno.asleep_cycles(), 0, "a chip in reset is not asleep");
+    set_supply_and_run(&mut uno, 2726.0);
     assert!(!uno.is_held_in_reset());
-    assert_eq!(marks(&uno)[0], 0x05);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::BrownOut]);
+    assert_eq!(mark_values(&uno)[0], 0x05);
+    assert_eq!(
+        reset_causes(&uno),
+        [ResetCause::PowerOn, ResetCause::BrownOut]
+    );
 }
 
 #[test]
-fn a_ramp_resets_at_the_cycle_at_which_it_crosses_the_level() {
+fn a_ramp_resets_and_restarts_the_chip_when_it_crosses_the_level() {
     // 5000 mV to 2000 mV and back, at 1 mV in 1000 cycles.
-    let mut uno = with("int main(void) { for (;;) {} }");
+    let mut uno = uno_with_program("int main(void) { for (;;) {} }");
     uno.run_cycles(1000);
     uno.ramp_supply_mv(2000.0, 3_000_000);
     uno.run_cycles(2_325_000 - 100);
@@ -58,64 +61,70 @@ fn a_ramp_resets_at_the_cycle_at_which_it_crosses_the_level() {
 }
 
 #[test]
-fn the_sram_survives_a_brown_out_and_not_a_loss_of_power() {
+fn the_sram_survives_a_brown_out_but_not_a_loss_of_power() {
     let body = "static volatile unsigned char kept __attribute__((section(\".noinit\")));
         int main(void) { GPIOR0 = kept == 0x5a; GPIOR0 = MCUSR; kept = 0x5a; for (;;) {} }";
     for (lowest_mv, kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
-        let mut uno = with(body);
+        let mut uno = uno_with_program(body);
         uno.run_ms(1);
-        set_supply(&mut uno, lowest_mv);
-        set_supply(&mut uno, 5000.0);
-        assert_eq!(marks(&uno)[2..], [kept, flags]);
-        set_supply(&mut uno, 2000.0);
-        set_supply(&mut uno, 5000.0);
+        set_supply_and_run(&mut uno, lowest_mv);
+        set_supply_and_run(&mut uno, 5000.0);
+        assert_eq!(mark_values(&uno)[2..], [kept, flags]);
+        set_supply_and_run(&mut uno, 2000.0);
+        set_supply_and_run(&mut uno, 5000.0);
         assert_eq!(
-            marks(&uno)[4..],
+            mark_values(&uno)[4..],
             [1, flags | 0x04],
-            "and again at each start"
+            "the SRAM survives the second brown-out"
         );
     }
 }
 
 #[test]
-fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
-    let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
+fn a_ramp_continues_while_it_holds_the_chip_in_reset() {
+    let mut uno = uno_with_program("int main(void) { for (;;) GPIOR0 = MCUSR; }");
     uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
-    set_supply(&mut uno, 2000.0);
+    set_supply_and_run(&mut uno, 2000.0);
     uno.ramp_supply_mv(5000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
+    assert_eq!(
+        reset_causes(&uno),
+        [ResetCause::PowerOn, ResetCause::PowerOn]
+    );
 }
 
 #[test]
-fn without_the_fuse_the_chip_runs_down_to_power_on_reset() {
-    let mut uno = with("int main(void) { for (;;) GPIOR0 = 1; }");
+fn without_brown_out_detection_the_chip_runs_down_to_the_power_on_level() {
+    let mut uno = uno_with_program("int main(void) { for (;;) GPIOR0 = 1; }");
     uno.set_brown_out_mv(None);
-    set_supply(&mut uno, 1310.0);
+    set_supply_and_run(&mut uno, 1310.0);
     assert!(!uno.is_held_in_reset());
-    set_supply(&mut uno, 1290.0);
+    set_supply_and_run(&mut uno, 1290.0);
     assert!(uno.is_held_in_reset());
-    set_supply(&mut uno, 1390.0);
+    set_supply_and_run(&mut uno, 1390.0);
     assert!(uno.is_held_in_reset());
-    set_supply(&mut uno, 1410.0);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
+    set_supply_and_run(&mut uno, 1410.0);
+    assert_eq!(
+        reset_causes(&uno),
+        [ResetCause::PowerOn, ResetCause::PowerOn]
+    );
     uno.set_brown_out_mv(Some(4300.0));
     uno.run_cycles(10);
     assert!(uno.is_held_in_reset());
 }
 
 #[test]
-fn an_eeprom_write_survives_a_brown_out_but_not_less_than_1_8_v() {
+fn an_eeprom_write_survives_a_brown_out_but_is_torn_below_1_8_v() {
     let body = "int main(void) {
         if (MCUSR & 4) for (;;) {}
         EEAR = 0; EEDR = 0x0f; EECR = 4; EECR |= 2;
         for (;;) {} }";
     for (lowest_mv, expected) in [(1810.0, 0x0f), (1790.0, 0x4f)] {
-        let mut uno = with(body);
+        let mut uno = uno_with_program(body);
         uno.set_torn_bits(0x40);
         uno.run_ms(3);
-        set_supply(&mut uno, lowest_mv);
+        set_supply_and_run(&mut uno, lowest_mv);
         uno.set_supply_mv(5000.0);
         uno.run_ms(2);
         assert_eq!(uno.eeprom()[0], expected);
@@ -123,21 +132,21 @@ fn an_eeprom_write_survives_a_brown_out_but_not_less_than_1_8_v() {
 }
 
 #[test]
-fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
+fn the_watchdog_stands_still_while_the_supply_holds_the_chip_in_reset() {
     let body = "#include <avr/wdt.h>
         int main(void) { GPIOR0 = MCUSR; MCUSR = 0; wdt_enable(WDTO_15MS); for (;;) {} }";
-    let mut uno = with(body);
+    let mut uno = uno_with_program(body);
     uno.run_ms(20);
     uno.set_supply_mv(2000.0);
     uno.run_ms(100);
     uno.set_supply_mv(5000.0);
     uno.run_ms(10);
-    assert_eq!(marks(&uno), [1, 8, 4]);
+    assert_eq!(mark_values(&uno), [1, 8, 4]);
     uno.run_ms(10);
-    assert_eq!(marks(&uno), [1, 8, 4, 8]);
+    assert_eq!(mark_values(&uno), [1, 8, 4, 8]);
 
     // The watchdog also stands still if WDRF is still set, which switches the watchdog on at each reset.
-    let mut uno = with(
+    let mut uno = uno_with_program(
         "#include <avr/wdt.h>
         int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",
     );
@@ -148,8 +157,8 @@ fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
 }
 
 #[test]
-fn power_on_into_a_supply_that_is_too_low_waits_for_it() {
-    let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
+fn after_power_on_the_chip_waits_until_the_supply_is_high_enough() {
+    let mut uno = uno_with_program("int main(void) { for (;;) GPIOR0 = MCUSR; }");
     uno.set_supply_mv(2000.0);
     uno.power_cycle();
     uno.take_marks();
@@ -157,22 +166,29 @@ fn power_on_into_a_supply_that_is_too_low_waits_for_it() {
     assert!(uno.is_held_in_reset() && uno.marks().is_empty());
     uno.reset();
     uno.run_ms(1);
-    assert!(uno.marks().is_empty(), "nor does the RESET pin start it");
+    assert!(
+        uno.marks().is_empty(),
+        "the RESET pin does not start the chip either"
+    );
     uno.ramp_supply_mv(5000.0, CYCLES_PER_MS);
     uno.run_ms(2);
-    assert_eq!(marks(&uno)[0], 1);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
+    assert_eq!(mark_values(&uno)[0], 1);
+    assert_eq!(
+        reset_causes(&uno),
+        [ResetCause::PowerOn, ResetCause::PowerOn]
+    );
 }
 
 #[test]
-fn a_ramp_reaches_a_firmware_that_sleeps_forever() {
-    let mut uno =
-        with("int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
+fn a_ramp_and_a_power_cut_reach_a_firmware_that_sleeps_forever() {
+    let mut uno = uno_with_program(
+        "int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }",
+    );
     uno.ramp_supply_mv(2000.0, CYCLES_PER_MS);
     assert_eq!(*uno.run_ms(2), State::Alive);
     assert!(uno.is_held_in_reset());
     let mut sleeping_uno =
-        with("int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
+        uno_with_program("int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
     sleeping_uno.cut_power(PowerCut::AtCycle(1000 * CYCLES_PER_US), 0);
     assert_eq!(*sleeping_uno.run_ms(2), State::Off);
 }

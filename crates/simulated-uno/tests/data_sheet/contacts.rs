@@ -2,11 +2,11 @@
 
 use simulated_uno::{Pin, Uno, avr_gcc};
 
-use super::{BOTH, marks};
+use super::{FIDELITIES, mark_values};
 
 /// Program that enables the pull-ups of D4, D8 and A1 by writes to PIND, PINB and PINC (data sheet, 14.2.2), and then
 /// repeatedly marks the levels of the three pins as bits 0, 1 and 2.
-const PROGRAM: &str = "
+const LEVELS_PROGRAM: &str = "
 #include <avr/io.h>
 int main(void) {
     PIND = 1 << 4; PINB = 1 << 0; PINC = 1 << 1;
@@ -21,16 +21,16 @@ int main(void) {
 
 #[test]
 fn a_closed_contact_pulls_its_pin_low_and_the_pull_up_raises_it_again() {
-    let image = avr_gcc::c(PROGRAM);
+    let image = avr_gcc::compile_c(LEVELS_PROGRAM);
     let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
-    for fidelity in BOTH {
+    for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         let levels_with = |uno: &mut Uno, closed_contacts: u8| {
             for (bit, pin) in pins.into_iter().enumerate() {
                 uno.set_contact(pin, closed_contacts & 1 << bit != 0);
             }
             uno.run_cycles(1_000);
-            marks(uno).last().copied()
+            mark_values(uno).last().copied()
         };
         for _ in 0..2 {
             for closed_contacts in [0, 1, 2, 4, 7, 3, 0, 5] {

@@ -1,25 +1,28 @@
 //! Tests of the simulated EEPROM against the data sheet, chapters 8.4 and 8.6.
 
-use simulated_uno::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Uno};
 
-use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno, widths};
+use super::{
+    CORRECTION_IS_OBSOLETE, intervals, mark_cycles, mark_values, new_uno, pulse_widths, uno_after,
+    uno_after_ms,
+};
 
 /// Cycles of an operation that erases and writes. Table 8-1: "Erase and Write in one operation (Atomic Operation)",
 /// 3.4 ms.
-pub const ATOMIC: u64 = 3400 * CYCLES_PER_US;
+pub const ATOMIC_CYCLES: u64 = 3400 * CYCLES_PER_US;
 /// Cycles of an operation that only erases or only writes. Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
-const SINGLE: u64 = 1800 * CYCLES_PER_US;
+const SINGLE_CYCLES: u64 = 1800 * CYCLES_PER_US;
 
 /// Returns a UNO that has run for a number of cycles: first these instructions, then an endless loop.
 fn run(source: &str, cycles: u64) -> Uno {
-    after(cycles, assembler(&format!("{source}\nend: rjmp end")))
+    uno_after(cycles, assemble(&format!("{source}\nend: rjmp end")))
 }
 
 /// Compiles `body` together with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the
 /// data sheet's examples, and `busy()`.
 pub fn program(body: &str) -> Image {
-    c(&format!(
+    compile_c(&format!(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <util/delay.h>
@@ -39,23 +42,23 @@ pub fn program(body: &str) -> Image {
 
 /// Returns a UNO that has run for a number of milliseconds and whose main program runs these statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
-    after_ms(
+    uno_after_ms(
         ms,
         program(&format!("int main(void) {{ {body} for (;;) {{}} }}")),
     )
 }
 
 #[test]
-fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
+fn a_new_eeprom_is_erased_and_its_1024_bytes_can_be_set() {
     let mut uno = run_once("GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512);", 1);
-    assert_eq!(marks(&uno), [0xff, 0xff, 0xff]);
+    assert_eq!(mark_values(&uno), [0xff, 0xff, 0xff]);
     let mut contents = [0; EEPROM_SIZE];
     (contents[0], contents[1023], contents[512]) = (1, 2, 3);
     uno.set_eeprom(&contents);
     uno.take_marks();
     uno.reset();
     uno.run_ms(1);
-    assert_eq!(marks(&uno), [1, 2, 3]);
+    assert_eq!(mark_values(&uno), [1, 2, 3]);
     assert_eq!(uno.eeprom(), contents);
 }
 
@@ -72,7 +75,7 @@ fn registers_read_as_the_data_sheet_says() {
             // "If a write operation is in progress, it is neither possible to read the
             // EEPROM, nor to change the EEAR Register"; "While EEPE is set, any write to
             // EEPMn will be ignored" (8.6.3).
-            "while busy, address, mode and data of the write in progress cannot be changed",
+            "during a write, its address, mode and data cannot be changed",
             "set(0x123, 0x42, 0);
             EEAR = 0x2aa; EEDR = 0x99; EECR = 0x20;
             GPIOR0 = EEARH; GPIOR0 = EEARL; GPIOR0 = EECR;
@@ -82,7 +85,7 @@ fn registers_read_as_the_data_sheet_says() {
             &[0x01, 0x23, 0x02, 0xaa, 0x42, 0xff],
         ),
         (
-            "while busy, a read and a second write are ignored",
+            "during a write, a read and a second write are ignored",
             "set(5, 0x42, 0);
             EEDR = 0x77;
             EECR |= 1; GPIOR0 = EEDR;
@@ -93,22 +96,22 @@ fn registers_read_as_the_data_sheet_says() {
         ),
     ] {
         let uno = run_once(body, 10);
-        assert_eq!(marks(&uno), expected, "{message}");
+        assert_eq!(mark_values(&uno), expected, "{message}");
         assert!(uno.eeprom_operations().len() <= 1, "{message}");
     }
 }
 
-/// Returns a UNO that has set EEMPE and, `count + 2` cycles later, EEPE: the program runs `count` nops between the
-/// two instructions `sbi`.
-fn set_eempe_then_eepe(count: usize) -> Uno {
-    let nops = "nop\n".repeat(count);
+/// Returns a UNO that has set EEMPE and, `nop_count + 2` cycles later, EEPE: the program runs `nop_count` nops between
+/// the two instructions `sbi`.
+fn set_eempe_then_eepe(nop_count: usize) -> Uno {
+    let nops = "nop\n".repeat(nop_count);
     let source = format!(
         "ldi r16, 0x5a $ out EEDR, r16
          sbi EECR, EEMPE
          {nops}
          sbi EECR, EEPE"
     );
-    run(&source, ATOMIC + 100)
+    run(&source, ATOMIC_CYCLES + 100)
 }
 
 #[test]
@@ -135,7 +138,7 @@ fn hardware_clears_eempe_after_four_cycles() {
          out GPIOR0, r19 $ out GPIOR0, r20",
         100,
     );
-    assert_eq!(marks(&uno), [4, 4, 4, 4, 0]);
+    assert_eq!(mark_values(&uno), [4, 4, 4, 4, 0]);
 }
 
 #[test]
@@ -149,11 +152,11 @@ fn nothing_is_written_without_the_timed_sequence() {
         ),
         (
             // "the CBI and SBI instructions will only operate on the specified bit" (8.5).
-            "clearing a bit with cbi, 5 cycles after EEMPE, does not arm again",
+            "cbi on another bit of EECR does not set EEMPE again",
             "sbi EECR, EEMPE $ cbi EECR, EERIE $ nop $ sbi EECR, EEPE",
         ),
     ] {
-        let uno = run(source, ATOMIC + 100);
+        let uno = run(source, ATOMIC_CYCLES + 100);
         assert!(uno.eeprom_operations().is_empty(), "{message}");
     }
 }
@@ -162,9 +165,9 @@ fn nothing_is_written_without_the_timed_sequence() {
 fn eepe_reads_one_for_as_long_as_table_8_1_says() {
     // EEPM1:0 is 00 for erase and write (3.4 ms), 01 for erase only (1.8 ms), 10 for write only (1.8 ms).
     for (mode, duration, expected_mode) in [
-        (0, ATOMIC, EepromMode::EraseAndWrite),
-        (1, SINGLE, EepromMode::EraseOnly),
-        (2, SINGLE, EepromMode::WriteOnly),
+        (0, ATOMIC_CYCLES, EepromMode::EraseAndWrite),
+        (1, SINGLE_CYCLES, EepromMode::EraseOnly),
+        (2, SINGLE_CYCLES, EepromMode::WriteOnly),
     ] {
         let body = format!("set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1;");
         let uno = run_once(&body, 5);
@@ -186,17 +189,23 @@ fn erasing_sets_all_bits_and_writing_alone_clears_some() {
     let uno = run_once(body, 30);
     assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
     let operations = uno.eeprom_operations();
-    let old_values: Vec<u8> = operations.iter().map(|operation| operation.old).collect();
-    let new_values: Vec<u8> = operations.iter().map(|operation| operation.new).collect();
+    let old_values: Vec<u8> = operations
+        .iter()
+        .map(|operation| operation.old_value)
+        .collect();
+    let new_values: Vec<u8> = operations
+        .iter()
+        .map(|operation| operation.new_value)
+        .collect();
     assert_eq!(old_values, [0xff, 0x0f, 0xff, 0x0f, 0xff, 0x0f]);
     assert_eq!(new_values, [0x0f, 0x05, 0x0f, 0xff, 0x0f, 0xf0]);
 }
 
 #[test]
-fn a_byte_has_its_old_value_until_its_time_is_over() {
-    let mut uno = uno(program("int main(void) { set(9, 0x21, 0); for (;;) {} }"));
+fn a_byte_has_its_old_value_until_the_operation_ends() {
+    let mut uno = new_uno(program("int main(void) { set(9, 0x21, 0); for (;;) {} }"));
     uno.run_until(1000, 1, |uno| !uno.eeprom_operations().is_empty());
-    let end_cycle = uno.eeprom_operations()[0].cycle + ATOMIC;
+    let end_cycle = uno.eeprom_operations()[0].cycle + ATOMIC_CYCLES;
     uno.run_until_cycle(end_cycle - 10);
     assert_eq!(uno.eeprom()[9], 0xff);
     uno.run_until_cycle(end_cycle + 10);
@@ -223,7 +232,7 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
         100,
     );
     // sbi 2 + halt + cbi 2. The last `sbi` of EEPE is ignored, so the CPU does not halt.
-    assert_eq!(widths(&uno), [8, 6, 4]);
+    assert_eq!(pulse_widths(&uno), [8, 6, 4]);
 }
 
 #[test]
@@ -236,14 +245,14 @@ fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
             for (;;) { EECR |= 1; EECR |= 1; EECR |= 1; EECR |= 1; }
         }",
     );
-    let counts = marks(&after_ms(20, image));
+    let counts = mark_values(&uno_after_ms(20, image));
     assert!(counts.len() > 150);
     let spread = counts.iter().max().unwrap() - counts.iter().min().unwrap();
     assert!(spread <= 6, "{counts:?}"); // the longest instruction: sbi and its halt
 }
 
 #[test]
-fn the_ready_interrupt_is_a_level_while_eepe_is_zero() {
+fn the_ready_interrupt_is_requested_as_long_as_eepe_is_zero() {
     // "The EEPROM Ready interrupt generates a constant interrupt when EEPE is
     // cleared" (8.6.3). The handler writes three bytes, then disables its interrupt.
     let image = program(
@@ -256,14 +265,17 @@ fn the_ready_interrupt_is_a_level_while_eepe_is_zero() {
         }
         int main(void) { SMCR = 1; EECR = 8; sei(); for (;;) asm volatile (\"sleep\"); }",
     );
-    let uno = after_ms(15, image);
-    assert_eq!(marks(&uno), [0, 1, 2, 3]);
+    let uno = uno_after_ms(15, image);
+    assert_eq!(mark_values(&uno), [0, 1, 2, 3]);
     assert_eq!(uno.eeprom()[..4], [1, 2, 3, 0xff]);
     let asleep_share = uno.asleep_cycles() as f64 / uno.cycle() as f64;
-    assert!(asleep_share > 0.6, "it sleeps while a byte is programmed");
+    assert!(
+        asleep_share > 0.6,
+        "the CPU sleeps while a byte is programmed"
+    );
     let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
-    for distance in distances(&starts) {
-        assert!((ATOMIC..ATOMIC + 150).contains(&distance));
+    for interval in intervals(&starts) {
+        assert!((ATOMIC_CYCLES..ATOMIC_CYCLES + 150).contains(&interval));
     }
 }
 
@@ -306,14 +318,21 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     );
     uno.reset();
     uno.run_cycles(100);
-    assert_eq!(marks(&uno), [0x00, 0x22]);
+    assert_eq!(mark_values(&uno), [0x00, 0x22]);
     uno.run_ms(5);
     assert_eq!(uno.eeprom()[3], 0x42);
     let duration = uno.marks()[2].cycle - uno.eeprom_operations()[0].cycle;
-    assert!((SINGLE..SINGLE + 20).contains(&duration), "{duration}");
+    assert!(
+        (SINGLE_CYCLES..SINGLE_CYCLES + 20).contains(&duration),
+        "{duration}"
+    );
     uno.reset();
     uno.run_cycles(100);
-    assert_eq!(marks(&uno)[3], 0x00, "EEPM after a reset when idle");
+    assert_eq!(
+        mark_values(&uno)[3],
+        0x00,
+        "a reset clears EEPM while the EEPROM is idle"
+    );
 }
 
 #[test]
@@ -330,6 +349,10 @@ fn stock_simavr_writes_at_once_and_never_reads_busy() {
     let image = program("int main(void) { set(0, 0x21, 1); GPIOR0 = EECR; for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_cycles(200);
-    assert_eq!(marks(&uno), [0x10], "{FIXED}");
-    assert_eq!(uno.eeprom()[0], 0x21, "though it was an erase");
+    assert_eq!(mark_values(&uno), [0x10], "{CORRECTION_IS_OBSOLETE}");
+    assert_eq!(
+        uno.eeprom()[0],
+        0x21,
+        "stock simavr writes in the mode erase only, too"
+    );
 }

@@ -1,9 +1,9 @@
 //! Tests of images as Intel HEX, against the same program as ELF and against lines written by hand.
 
 use simulated_uno::Image;
-use simulated_uno::avr_gcc::c;
+use simulated_uno::avr_gcc::compile_c;
 
-use super::{LED, after_ms};
+use super::{LED, uno_after_ms};
 
 /// Formats a line of Intel HEX as avr-objcopy does: `:`, length, address, type, bytes, checksum.
 fn format_line(address: u16, record_type: u8, bytes: &[u8]) -> String {
@@ -21,22 +21,24 @@ fn format_line(address: u16, record_type: u8, bytes: &[u8]) -> String {
 const END_LINE: &str = ":00000001FF\n";
 
 #[test]
-fn a_program_as_hex_does_what_it_does_as_elf() {
-    let elf = c("#include <avr/io.h>
+fn a_program_behaves_the_same_as_hex_and_as_elf() {
+    let elf = compile_c(
+        "#include <avr/io.h>
         #include <util/delay.h>
         int main(void) { DDRB = 0x20;
-            for (;;) { PORTB = 0x20; _delay_us(100); PORTB = 0; _delay_us(300); } }");
+            for (;;) { PORTB = 0x20; _delay_us(100); PORTB = 0; _delay_us(300); } }",
+    );
     let flash = elf.flash();
     let lines = flash.chunks(16).enumerate();
     let mut text: String = lines
         .map(|(n, bytes)| format_line(16 * n as u16, 0, bytes))
         .collect();
     text += END_LINE;
-    let hex = Image::parse_hex(&text).expect("it is Intel HEX");
+    let hex = Image::parse_hex(&text).expect("the text is Intel HEX");
     assert_eq!(hex.flash(), flash);
     assert_eq!((hex.static_ram(), hex.symbols().len()), (0, 0));
     let edges_of = |image| {
-        let uno = after_ms(10, image);
+        let uno = uno_after_ms(10, image);
         assert!(uno.pulses(LED).len() > 20);
         uno.edges()
     };
@@ -45,11 +47,11 @@ fn a_program_as_hex_does_what_it_does_as_elf() {
 
 #[test]
 fn a_file_that_begins_with_a_colon_is_read_as_hex() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let file = folder.path().join("loop.hex");
     let text = format_line(0, 0, &[0xff, 0xcf]) + END_LINE;
-    std::fs::write(&file, text).expect("it is written");
-    let image = Image::read(&file).expect("it is Intel HEX");
+    std::fs::write(&file, text).expect("the file can be written");
+    let image = Image::read(&file).expect("the text is Intel HEX");
     assert_eq!(image.flash(), [0xff, 0xcf]);
 }
 
@@ -63,7 +65,7 @@ fn addresses_of_more_than_16_bits_and_gaps_are_understood() {
         format_line(0x7fff, 0, &[3]),
         END_LINE.to_owned(),
     ];
-    let image = Image::parse_hex(&text.concat()).expect("it is Intel HEX");
+    let image = Image::parse_hex(&text.concat()).expect("the text is Intel HEX");
     let flash = image.flash();
     assert_eq!(flash.len(), 0x8000);
     assert_eq!((flash[0x0010], flash[0x1002], flash[0x7fff]), (1, 2, 3));
@@ -71,7 +73,7 @@ fn addresses_of_more_than_16_bits_and_gaps_are_understood() {
 }
 
 #[test]
-fn hex_that_is_wrong_is_refused_with_the_line() {
+fn each_fault_of_a_hex_file_is_reported() {
     let good_line = format_line(0, 0, &[0xff, 0xcf]);
     for (text, error) in [
         (
@@ -93,7 +95,7 @@ fn hex_that_is_wrong_is_refused_with_the_line() {
             "1 bytes at 0xffffffff do not fit an ATmega328P",
         ),
     ] {
-        let refusal = Image::parse_hex(&text).expect_err("it is not an image");
+        let refusal = Image::parse_hex(&text).expect_err("the text is not an image");
         assert!(refusal.to_string().starts_with(error), "{refusal}: {text}");
     }
 }

@@ -1,14 +1,14 @@
 //! Tests of the simulated UNO with programs whose cycles can be counted by hand with the data sheet.
 
-use simulated_uno::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, most_pins_high};
 
-use super::{BOTH, LED, after, both_after, edges, uno, widths};
+use super::{FIDELITIES, LED, new_uno, numbered_edges, pulse_widths, uno_after, unos_after};
 
 #[test]
 fn a_pulse_of_counted_instructions_has_its_counted_width() {
     // High at the end of the first `out`; then 3 nops and the second `out`: 4 cycles.
-    let image = assembler(
+    let image = assemble(
         "sbi DDRB, 5
          ldi r16, 0x20
          ldi r17, 0
@@ -17,7 +17,7 @@ fn a_pulse_of_counted_instructions_has_its_counted_width() {
          out PORTB, r17
     end: rjmp end",
     );
-    for uno in both_after(100, &image) {
+    for uno in unos_after(100, &image) {
         let pulses = uno.pulses(LED);
         assert_eq!(pulses.len(), 1);
         // sbi 2, ldi 1, ldi 1, out 1: high after 5 cycles.
@@ -26,10 +26,10 @@ fn a_pulse_of_counted_instructions_has_its_counted_width() {
 }
 
 #[test]
-fn unlike_stores_are_stamped_alike() {
+fn an_edge_is_stamped_with_the_last_cycle_of_any_store_instruction() {
     // First pulse: `out` (1 cycle) high, then 2 nops and `cbi` (2 cycles) low: 4 cycles. Second pulse: `sts` (2
     // cycles) high, then 1 nop and `out` (1 cycle) low: 2 cycles.
-    let image = assembler(
+    let image = assemble(
         "sbi DDRB, 5
          ldi r16, 0x20
          ldi r17, 0
@@ -42,14 +42,14 @@ fn unlike_stores_are_stamped_alike() {
          out PORTB, r17
     end: rjmp end",
     );
-    for uno in both_after(100, &image) {
-        assert_eq!(widths(&uno), [4, 2]);
+    for uno in unos_after(100, &image) {
+        assert_eq!(pulse_widths(&uno), [4, 2]);
     }
 }
 
 #[test]
 fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
-    let image = assembler(
+    let image = assemble(
         "ldi r16, 0xff
          out DDRB, r16
          out DDRD, r16
@@ -61,12 +61,12 @@ fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
          cbi PORTB, 3
     end: rjmp end",
     );
-    let uno = after(100, image);
+    let uno = uno_after(100, image);
     let (first_edges, last_edges) = (
         [(3, true), (9, true), (3, false)],
         [(9, false), (11, true), (11, false)],
     );
-    assert_eq!(edges(&uno), [first_edges, last_edges].concat());
+    assert_eq!(numbered_edges(&uno), [first_edges, last_edges].concat());
     assert_eq!(most_pins_high(&uno.edges()), 2);
 }
 
@@ -85,8 +85,8 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
         }
     }
     source += "end: rjmp end";
-    let image = assembler(&source);
-    for uno in both_after(200, &image) {
+    let image = assemble(&source);
+    for uno in unos_after(200, &image) {
         for (pin, start, width) in &expected {
             let pulses = uno.pulses(*pin);
             let found_pulses: Vec<_> = pulses
@@ -111,13 +111,13 @@ fn an_analogue_pin_has_an_arduino_number_and_a_name() {
 
 #[test]
 fn the_level_of_an_analogue_pin_is_seen_and_toggled_alone() {
-    let image = assembler(
+    let image = assemble(
         "ldi r16, 0xff $ out DDRC, r16
          sbi PORTC, 0
          sbi PINC, 5
     end: rjmp end",
     );
-    let mut uno = uno(image);
+    let mut uno = new_uno(image);
     assert!(!uno.is_high(Pin::a(0)));
     uno.run_cycles(100);
     let high_pins: Vec<u8> = (2..20).filter(|n| uno.is_high(Pin::arduino(*n))).collect();
@@ -126,45 +126,47 @@ fn the_level_of_an_analogue_pin_is_seen_and_toggled_alone() {
 
 #[test]
 fn sbi_on_a_pin_register_toggles_one_pin() {
-    let image = assembler(
+    let image = assemble(
         "ldi r16, 0xff $ out DDRB, r16
          sbi PORTB, 1
          sbi PINB, 5
          sbi PINB, 5
     end: rjmp end",
     );
-    let uno = after(100, image);
-    assert_eq!(edges(&uno), [(9, true), (13, true), (13, false)]);
+    let uno = uno_after(100, image);
+    assert_eq!(numbered_edges(&uno), [(9, true), (13, true), (13, false)]);
 }
 
 #[test]
 fn sleeping_with_interrupts_off_is_a_halt() {
-    let image = assembler("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep\nend: rjmp end");
-    for fidelity in BOTH {
+    let image = assemble("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep\nend: rjmp end");
+    for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         assert_eq!(*uno.run_ms(1), State::Halted);
-        assert!(uno.cycle() < 100, "time stops with the firmware");
+        assert!(uno.cycle() < 100, "time stops when the firmware halts");
     }
 }
 
 #[test]
-fn an_address_outside_memory_is_a_crash() {
-    let image = assembler("ldi r16, 1 $ sts 0x0fff, r16\nend: rjmp end");
-    let mut uno = uno(image);
+fn a_store_outside_memory_is_a_crash() {
+    let image = assemble("ldi r16, 1 $ sts 0x0fff, r16\nend: rjmp end");
+    let mut uno = new_uno(image);
     assert!(matches!(uno.run_ms(1), State::Crashed { .. }));
 }
 
 #[test]
-fn a_starved_watchdog_resets_and_is_counted() {
-    let image = c("#include <avr/io.h>
+fn resets_by_the_watchdog_are_counted() {
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/wdt.h>
         int main(void) {
             MCUSR = 0;
             wdt_enable(WDTO_15MS);
             PORTB = 0; DDRB = 0x20; PORTB = 0x20;
             for (;;) {}
-        }");
-    for uno in both_after(70 * CYCLES_PER_MS, &image) {
+        }",
+    );
+    for uno in unos_after(70 * CYCLES_PER_MS, &image) {
         assert_eq!(uno.watchdog_resets(), 4, "every 16 ms");
     }
 }
@@ -172,14 +174,14 @@ fn a_starved_watchdog_resets_and_is_counted() {
 #[test]
 fn the_noise_in_the_sram_shows_the_depth_of_the_stack() {
     // A call pushes its return address of two bytes; the function pushes two more.
-    let image = assembler(
+    let image = assemble(
         "ldi r16, 0x08 $ out SPH, r16
          ldi r16, 0xff $ out SPL, r16
          rcall deep
     end: rjmp end
     deep: push r16 $ push r16 $ pop r16 $ pop r16 $ ret",
     );
-    let mut uno = uno(image);
+    let mut uno = new_uno(image);
     assert_eq!(uno.stack_used(), 0);
     uno.run_cycles(100);
     assert_eq!(uno.stack_used(), 4);
@@ -187,10 +189,12 @@ fn the_noise_in_the_sram_shows_the_depth_of_the_stack() {
 }
 
 #[test]
-fn sizes_come_from_the_elf() {
-    let image = c("static volatile unsigned char zeroed[100];
+fn the_sizes_of_memory_and_symbols_come_from_the_elf() {
+    let image = compile_c(
+        "static volatile unsigned char zeroed[100];
         static volatile unsigned char given[20] = {1};
-        int main(void) { return zeroed[3] + given[4]; }");
+        int main(void) { return zeroed[3] + given[4]; }",
+    );
     assert_eq!(image.static_ram(), 120);
     let flash_bytes = image.flash_used();
     assert!((200..500).contains(&flash_bytes), "{flash_bytes}");
@@ -199,13 +203,16 @@ fn sizes_come_from_the_elf() {
 
 /// Returns the calls of the function `work` within a number of cycles.
 fn calls_of_work(image: Image, cycles: u64) -> Vec<Call> {
-    let entry = image.symbol("work").expect("it is global").address as u32;
-    uno(image).time_calls(entry, cycles)
+    let entry = image
+        .symbol("work")
+        .expect("the symbol `work` is global")
+        .address as u32;
+    new_uno(image).time_calls(entry, cycles)
 }
 
 #[test]
-fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
-    let image = assembler(
+fn a_call_without_interrupts_takes_its_counted_cycles() {
+    let image = assemble(
         "jmp start
          .org 0x68
          start: ldi r16, 0x08 $ out SPH, r16
@@ -226,16 +233,21 @@ fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
 }
 
 #[test]
-fn a_function_that_calls_itself_is_timed_to_its_own_return() {
-    let image = c("#include <avr/io.h>
+fn only_the_outermost_of_recursive_calls_is_timed() {
+    let image = compile_c(
+        "#include <avr/io.h>
         __attribute__((noinline)) void work(unsigned char depth) {
             GPIOR0 = depth;
             if (depth) work(depth - 1);
             __builtin_avr_delay_cycles(1000);
         }
-        int main(void) { work(9); for (;;) {} }");
-    let entry = image.function("work").expect("it is a function").address as u32;
-    let mut uno = uno(image);
+        int main(void) { work(9); for (;;) {} }",
+    );
+    let entry = image
+        .function("work")
+        .expect("the symbol `work` is a function")
+        .address as u32;
+    let mut uno = new_uno(image);
     // Timing starts inside the first call, so the outermost timed call is the one with depth 8. All nested calls
     // have the same return address.
     assert!(uno.run_until(1000, 1, |uno| !uno.marks().is_empty()));
@@ -246,7 +258,8 @@ fn a_function_that_calls_itself_is_timed_to_its_own_return() {
 
 #[test]
 fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <util/delay.h>
         ISR(TIMER1_COMPA_vect, ISR_NAKED) { asm volatile (\"nop\\n nop\\n reti\"); }
@@ -257,22 +270,23 @@ fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
             sei();
             work();
             for (;;) {}
-        }");
+        }",
+    );
     let calls = calls_of_work(image, 20 * CYCLES_PER_MS);
     assert_eq!(calls.len(), 2);
-    assert_eq!(calls[0].interrupted, 0);
+    assert_eq!(calls[0].interrupt_cycles, 0);
     // Each interrupt takes entry 4, jmp 3, nop 1, nop 1, reti 4: 13 cycles.
-    assert!(calls[1].interrupted >= 100 * 13 && calls[1].interrupted.is_multiple_of(13));
+    assert!(calls[1].interrupt_cycles >= 100 * 13 && calls[1].interrupt_cycles.is_multiple_of(13));
     assert_eq!(calls[1].own_cycles(), calls[0].cycles());
 }
 
 #[test]
-fn only_an_avr_elf_is_loaded() {
-    let own_program = std::env::current_exe().expect("the test has a name");
+fn a_file_that_is_not_an_avr_elf_is_rejected() {
+    let own_program = std::env::current_exe().expect("the test program has a path");
     assert!(Image::read(own_program).is_err());
-    let error = Image::read("no/such.elf").expect_err("it does not exist");
+    let error = Image::read("no/such.elf").expect_err("the file does not exist");
     assert!(error.to_string().starts_with("cannot read no/such.elf"));
-    let endless_error = Image::read("/dev/zero").expect_err("it never ends");
+    let endless_error = Image::read("/dev/zero").expect_err("the file never ends");
     assert_eq!(
         endless_error.to_string(),
         "not an ELF file of an AVR: it is longer than 4 MiB"

@@ -1,13 +1,15 @@
 //! Tests of the simulated UNO's interrupts and Timer1, with programs whose cycles are counted by hand.
 
-use simulated_uno::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{Fidelity, Uno};
 
-use super::{BOTH, FIXED, LED, after, both_after, mark_cycles, marks};
+use super::{
+    CORRECTION_IS_OBSOLETE, FIDELITIES, LED, mark_cycles, mark_values, uno_after, unos_after,
+};
 
 /// Program that sleeps, with Timer1 in CTC mode and a compare interrupt every 10 000 cycles. The handler's first
 /// instruction switches the LED on, and its second switches the LED off.
-const TICK: &str = "
+const TICK_PROGRAM: &str = "
     .org 0
         jmp start
     .org 0x2c                   ; TIMER1_COMPA
@@ -36,10 +38,10 @@ const TICK: &str = "
 
 #[test]
 fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
-    // On the chip, the counter starts with the last cycle of the `sts` to TCCR1B; the model starts it with the first
-    // cycle. The counter matches 10 000 cycles later. Then follow 4 + 4 cycles of interrupt entry from sleep, 3 for
-    // the vector's jmp, 1 for out.
-    let mut uno = after(100_000, assembler(TICK));
+    // On the chip, the counter starts with the last cycle of the `sts` to TCCR1B; simavr starts it with the first
+    // cycle. The counter matches 10 000 cycles later. Then follow 4 + 4 cycles of interrupt entry from sleep, 3 of the
+    // vector's jmp, 1 of out.
+    let mut uno = uno_after(100_000, assemble(TICK_PROGRAM));
     let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
     assert!(starts.len() >= 9);
     // jmp 3, then 2 * (ldi, out) 4, sbi 2, ldi 2, 2 * (ldi, sts) 6, (ldi, sts) 3,
@@ -50,14 +52,14 @@ fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
     assert_eq!(starts, expected);
 
     // The CPU is awake for 20 cycles per interrupt: entry 8, jmp 3, out 1, out 1, reti 4, rjmp 2, sleep 1.
-    let counts_before = (uno.awake_cycles(), uno.cycle());
+    let awake_cycles_before = uno.awake_cycles();
     uno.run_cycles(1_000_000);
-    assert_eq!(uno.awake_cycles() - counts_before.0, 20 * 100);
+    assert_eq!(uno.awake_cycles() - awake_cycles_before, 20 * 100);
 }
 
 #[test]
 fn stock_simavr_enters_an_interrupt_in_no_time() {
-    let mut uno = Uno::with_image(assembler(TICK), Fidelity::Stock);
+    let mut uno = Uno::with_image(assemble(TICK_PROGRAM), Fidelity::Stock);
     uno.run_cycles(100_000);
     let first_cycle = uno.pulses(LED)[0].start;
     // In stock simavr, entry takes no time and waking from sleep takes 1 cycle; then jmp 3, out 1.
@@ -66,7 +68,7 @@ fn stock_simavr_enters_an_interrupt_in_no_time() {
 
 #[test]
 fn interrupts_are_counted_with_their_cycles() {
-    let uno = after(100_000, assembler(TICK));
+    let uno = uno_after(100_000, assemble(TICK_PROGRAM));
     let statistics = uno.interrupts();
     assert_eq!(statistics.len(), 1);
     assert_eq!(
@@ -79,8 +81,8 @@ fn interrupts_are_counted_with_their_cycles() {
 }
 
 #[test]
-fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
-    let source_of = |count: usize| {
+fn one_instruction_runs_between_sei_and_a_pending_interrupt() {
+    let source_of = |nop_count: usize| {
         format!(
             "jmp start
              .org 0x2c
@@ -98,20 +100,20 @@ fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
              end: rjmp end
              tick: cbi DDRB, 5
              reti",
-            "nop\n".repeat(count)
+            "nop\n".repeat(nop_count)
         )
     };
     // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED is
     // switched on only if that instruction is `sbi PORTB, 5`.
     for (nops, has_edge) in [(0, true), (1, false)] {
-        let mut uno = Uno::with_image(assembler(&source_of(nops)), Fidelity::DataSheet);
+        let mut uno = Uno::with_image(assemble(&source_of(nops)), Fidelity::DataSheet);
         uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
         assert_eq!(!uno.edges().is_empty(), has_edge, "{nops} nops");
     }
 }
 
 #[test]
-fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
+fn an_interrupt_enabled_after_its_flag_fires_and_clearing_a_flag_leaves_the_others() {
     for (message, program, expected, expected_of_stock) in [
         (
             "an interrupt that is enabled fires if its flag is set",
@@ -140,19 +142,20 @@ fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
             &[0],
         ),
     ] {
-        let image = c(&format!(
+        let image = compile_c(&format!(
             "#include <avr/io.h>\n#include <avr/interrupt.h>\n{program}"
         ));
-        let [simavr_marks, data_sheet_marks] = both_after(100_000, &image).map(|uno| marks(&uno));
+        let [simavr_marks, data_sheet_marks] =
+            unos_after(100_000, &image).map(|uno| mark_values(&uno));
         assert_eq!(data_sheet_marks, expected, "{message}");
-        assert_eq!(simavr_marks, expected_of_stock, "{FIXED}");
+        assert_eq!(simavr_marks, expected_of_stock, "{CORRECTION_IS_OBSOLETE}");
     }
 }
 
 #[test]
-fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
+fn an_interrupt_enabled_while_its_flag_is_set_is_served_after_that_instruction() {
     // From the first `out` to the handler's: sts 2, entry 4, jmp 3, out 1.
-    let image = assembler(
+    let image = assemble(
         "jmp start
          .org 0x34                  ; TIMER1_OVF
          jmp over
@@ -168,7 +171,7 @@ fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
     over: out GPIOR0, r16
          reti",
     );
-    let uno = after(70_000, image);
+    let uno = uno_after(70_000, image);
     let cycles = mark_cycles(&uno);
     assert_eq!(cycles[1] - cycles[0], 2 + 4 + 3 + 1);
 }
@@ -177,24 +180,26 @@ fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
 fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
     // The program writes the high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A. A write to a
     // high byte only fills TEMP, so both registers get the high byte that was written for OCR1B.
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         int main(void) {
             OCR1AH = 0x12;
             OCR1BH = 0x34; OCR1BL = 0x56;
             OCR1AL = 0x78;
             GPIOR0 = OCR1AH; GPIOR0 = OCR1AL; GPIOR0 = OCR1BH; GPIOR0 = OCR1BL;
             for (;;) {}
-        }");
-    let uno = after(500, image);
-    assert_eq!(marks(&uno), [0x34, 0x78, 0x34, 0x56]);
+        }",
+    );
+    let uno = uno_after(500, image);
+    assert_eq!(mark_values(&uno), [0x34, 0x78, 0x34, 0x56]);
 }
 
 #[test]
-fn a_run_cut_into_pieces_gives_the_same_edges() {
-    for fidelity in BOTH {
-        let mut unbroken_uno = Uno::with_image(assembler(TICK), fidelity);
+fn several_short_runs_give_the_same_edges_as_one_long_run() {
+    for fidelity in FIDELITIES {
+        let mut unbroken_uno = Uno::with_image(assemble(TICK_PROGRAM), fidelity);
         unbroken_uno.run_until_cycle(400_000);
-        let mut stepped_uno = Uno::with_image(assembler(TICK), fidelity);
+        let mut stepped_uno = Uno::with_image(assemble(TICK_PROGRAM), fidelity);
         let mut step_cycles = 1;
         while stepped_uno.cycle() < 400_000 {
             stepped_uno.run_until_cycle((stepped_uno.cycle() + step_cycles).min(400_000));
@@ -208,16 +213,16 @@ fn a_run_cut_into_pieces_gives_the_same_edges() {
 #[test]
 fn boards_on_several_threads_do_not_disturb_each_other() {
     let run = |fidelity| {
-        let mut uno = Uno::with_image(assembler(TICK), fidelity);
+        let mut uno = Uno::with_image(assemble(TICK_PROGRAM), fidelity);
         uno.run_cycles(3_000_000);
         (uno.edges(), uno.asleep_cycles())
     };
-    let expected = BOTH.map(run);
+    let expected = FIDELITIES.map(run);
     let threads: Vec<_> = (0..6)
-        .map(|n| std::thread::spawn(move || (n % 2, run(BOTH[n % 2]))))
+        .map(|n| std::thread::spawn(move || (n % 2, run(FIDELITIES[n % 2]))))
         .collect();
     for thread in threads {
-        let (index, result) = thread.join().expect("the thread ends");
+        let (index, result) = thread.join().expect("the thread does not panic");
         assert_eq!(result, expected[index]);
     }
 }

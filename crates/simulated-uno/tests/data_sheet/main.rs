@@ -4,7 +4,7 @@
 mod adc;
 mod brown_out;
 mod contacts;
-mod disturbed;
+mod disturbance;
 mod eeprom;
 mod hex;
 mod instructions;
@@ -17,40 +17,43 @@ mod watchdog;
 
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
+/// The pin of the LED on the board.
 const LED: Pin = Pin::d(13);
-const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
+const FIDELITIES: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
 
 /// Returns a UNO of each fidelity with this program, after a number of cycles.
-fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
-    BOTH.map(|fidelity| {
+fn unos_after(cycles: u64, image: &Image) -> [Uno; 2] {
+    FIDELITIES.map(|fidelity| {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         uno.run_cycles(cycles);
         uno
     })
 }
 
-/// Failure message of a test that stock simavr has an error. The test fails if simavr no longer needs the correction.
-const FIXED: &str = "stock simavr now follows the data sheet here: drop the correction";
+/// Failure message of an assertion that stock simavr has an error. The assertion fails if simavr no longer needs the
+/// correction.
+const CORRECTION_IS_OBSOLETE: &str =
+    "stock simavr now follows the data sheet here: drop the correction";
 
 /// Returns a UNO with this program, corrected by the data sheet, at power-on.
-fn uno(image: Image) -> Uno {
+fn new_uno(image: Image) -> Uno {
     Uno::with_image(image, Fidelity::DataSheet)
 }
 
 /// Returns a UNO with this program, corrected by the data sheet, after a number of cycles.
-fn after(cycles: u64, image: Image) -> Uno {
-    let mut uno = uno(image);
+fn uno_after(cycles: u64, image: Image) -> Uno {
+    let mut uno = new_uno(image);
     uno.run_cycles(cycles);
     uno
 }
 
 /// Returns a UNO with this program, corrected by the data sheet, after a number of milliseconds.
-fn after_ms(ms: u64, image: Image) -> Uno {
-    after(ms * CYCLES_PER_MS, image)
+fn uno_after_ms(ms: u64, image: Image) -> Uno {
+    uno_after(ms * CYCLES_PER_MS, image)
 }
 
 /// Returns the bytes that the program has written to GPIOR0.
-fn marks(uno: &Uno) -> Vec<u8> {
+fn mark_values(uno: &Uno) -> Vec<u8> {
     uno.marks().iter().map(|mark| mark.value).collect()
 }
 
@@ -60,30 +63,30 @@ fn mark_cycles(uno: &Uno) -> Vec<u64> {
 }
 
 /// Returns the number of cycles from each event to the next.
-fn distances(cycles: &[u64]) -> Vec<u64> {
+fn intervals(cycles: &[u64]) -> Vec<u64> {
     cycles.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
 /// Returns the widths of the pulses on the LED's pin, cycles.
-fn widths(uno: &Uno) -> Vec<u64> {
+fn pulse_widths(uno: &Uno) -> Vec<u64> {
     uno.pulses(LED).iter().map(|pulse| pulse.width).collect()
 }
 
 /// Returns the edges of all pins: for each edge the pin's Arduino number, and true if the edge is rising.
-fn edges(uno: &Uno) -> Vec<(u8, bool)> {
+fn numbered_edges(uno: &Uno) -> Vec<(u8, bool)> {
     let edges = uno.edges();
     edges
         .iter()
-        .map(|edge| (edge.pin.number(), edge.high))
+        .map(|edge| (edge.pin.number(), edge.is_rising))
         .collect()
 }
 
-/// Returns the bytes that the program has transmitted on the serial line.
-fn text(uno: &Uno) -> Vec<u8> {
+/// Returns the bytes that the program has sent on the serial line.
+fn transmitted_bytes(uno: &Uno) -> Vec<u8> {
     uno.transmitted().iter().map(|byte| byte.byte).collect()
 }
 
 /// Returns the causes of all starts of the program, the first power-on included.
-fn causes(uno: &Uno) -> Vec<ResetCause> {
+fn reset_causes(uno: &Uno) -> Vec<ResetCause> {
     uno.reset_events().iter().map(|reset| reset.cause).collect()
 }

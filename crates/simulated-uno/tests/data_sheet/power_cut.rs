@@ -2,18 +2,19 @@
 
 use simulated_uno::{EEPROM_SIZE, PowerCut, ResetCause, State, Uno};
 
-use super::eeprom::{ATOMIC, program};
-use super::{causes, marks, uno};
+use super::eeprom::{ATOMIC_CYCLES, program};
+use super::{mark_values, new_uno, reset_causes};
 
 /// Program that writes 0x35 over 0xa6 at address 0, then 0x5c at address 1. If address 0 does not contain 0xa6, as
 /// after a power cut, the program only marks the byte that it contains.
-const TWO_BYTES: &str = "int main(void) {
+const TWO_BYTES_PROGRAM: &str = "int main(void) {
     if (get(0) != 0xa6) { GPIOR0 = get(0); for (;;) {} }
     set(0, 0x35, 0); set(1, 0x5c, 0); while (busy()) {}
     for (;;) {} }";
 
+/// Returns a UNO with [`TWO_BYTES_PROGRAM`] at power-on, and 0xa6 at address 0 of its EEPROM.
 fn uno_with_two_bytes() -> Uno {
-    let mut uno = uno(program(TWO_BYTES));
+    let mut uno = new_uno(program(TWO_BYTES_PROGRAM));
     let mut contents = [0xff; EEPROM_SIZE];
     contents[0] = 0xa6;
     uno.set_eeprom(&contents);
@@ -21,7 +22,7 @@ fn uno_with_two_bytes() -> Uno {
 }
 
 #[test]
-fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
+fn a_power_cut_in_the_erase_phase_leaves_the_old_byte_with_the_chosen_bits_set() {
     for ones in [0, 0x01, 0x58, 0x0f, 0xff] {
         let mut uno = uno_with_two_bytes();
         uno.cut_power(PowerCut::InErase(0), ones);
@@ -30,14 +31,17 @@ fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
         let operations = uno.eeprom_operations();
         assert_eq!(operations.len(), 1);
         assert!(operations[0].is_torn);
-        assert_eq!(operations[0].new, 0xa6 | ones);
+        assert_eq!(operations[0].new_value, 0xa6 | ones);
         let elapsed_cycles = uno.cycle() - operations[0].cycle;
-        assert!(elapsed_cycles.abs_diff(ATOMIC / 4) < 10, "{elapsed_cycles}");
+        assert!(
+            elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4) < 10,
+            "{elapsed_cycles}"
+        );
     }
 }
 
 #[test]
-fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
+fn a_power_cut_in_the_write_phase_leaves_the_new_byte_with_the_chosen_bits_set() {
     for ones in [0, 0x80, 0x4a, 0xff] {
         let mut uno = uno_with_two_bytes();
         uno.cut_power(PowerCut::InWrite(1), ones);
@@ -50,23 +54,23 @@ fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
         );
         let elapsed_cycles = uno.cycle() - operations[1].cycle;
         assert!(
-            elapsed_cycles.abs_diff(ATOMIC / 4 * 3) < 10,
+            elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4 * 3) < 10,
             "{elapsed_cycles}"
         );
     }
 }
 
 #[test]
-fn a_power_cut_at_a_cycle_takes_the_phase_of_that_moment() {
+fn a_power_cut_at_a_cycle_tears_the_byte_by_its_phase_at_that_cycle() {
     let mut unbroken_uno = uno_with_two_bytes();
     unbroken_uno.run_ms(20);
     let start = unbroken_uno.eeprom_operations()[1].cycle;
     for (delay_cycles, expected) in [
         (100, 0xff),
-        (ATOMIC / 2 - 100, 0xff),
-        (ATOMIC / 2 + 100, 0x5e),
-        (ATOMIC - 100, 0x5e),
-        (ATOMIC + 100, 0x5c),
+        (ATOMIC_CYCLES / 2 - 100, 0xff),
+        (ATOMIC_CYCLES / 2 + 100, 0x5e),
+        (ATOMIC_CYCLES - 100, 0x5e),
+        (ATOMIC_CYCLES + 100, 0x5c),
     ] {
         let mut uno = uno_with_two_bytes();
         uno.cut_power(PowerCut::AtCycle(start + delay_cycles), 0x02);
@@ -80,7 +84,7 @@ fn a_power_cut_at_a_cycle_takes_the_phase_of_that_moment() {
 fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
     let torn_byte_of = |mode: u8, cut: PowerCut, ones: u8| {
         let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
-        let mut uno = uno(program(&body));
+        let mut uno = new_uno(program(&body));
         uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
         uno.cut_power(cut, ones);
         assert_eq!(*uno.run_ms(5), State::Off);
@@ -103,15 +107,18 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
     assert_eq!(uno.cycle(), cut_cycle);
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);
-    assert_eq!(marks(&uno), [0x35 | 0x08]);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
+    assert_eq!(mark_values(&uno), [0x35 | 0x08]);
+    assert_eq!(
+        reset_causes(&uno),
+        [ResetCause::PowerOn, ResetCause::PowerOn]
+    );
 }
 
 #[test]
-fn a_power_cut_comes_once() {
+fn a_power_cut_happens_once() {
     let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
     for cut in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
-        let mut uno = uno(program(body));
+        let mut uno = new_uno(program(body));
         uno.cut_power(cut, 0xff);
         assert_eq!(*uno.run_ms(5), State::Off);
         uno.power_cycle();
@@ -134,7 +141,7 @@ fn a_reset_before_a_power_cut_does_not_prevent_it() {
 }
 
 #[test]
-fn a_power_cut_that_is_taken_back_does_not_come() {
+fn a_cancelled_power_cut_does_not_happen() {
     let mut uno = uno_with_two_bytes();
     uno.cut_power(PowerCut::AtCycle(60_000), 0);
     uno.cut_power(PowerCut::InErase(1), 0);
@@ -144,7 +151,7 @@ fn a_power_cut_that_is_taken_back_does_not_come() {
 }
 
 #[test]
-fn a_power_cycle_in_a_write_tears_it() {
+fn a_power_cycle_during_a_write_tears_the_byte() {
     let mut uno = uno_with_two_bytes();
     uno.set_torn_bits(0x40);
     uno.run_ms(1);

@@ -1,45 +1,47 @@
 //! Tests of the simulated UNO's resets against the data sheet, chapter 11.
 
-use simulated_uno::avr_gcc::{assembler, assembler_at, c};
+use simulated_uno::avr_gcc::{assemble, assemble_at, compile_c};
 use simulated_uno::{
     CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, ResetCause, SRAM_END, SRAM_START, State, Uno,
 };
 
-use super::{after, after_ms, both_after, causes, marks, text, uno};
+use super::{
+    mark_values, new_uno, reset_causes, transmitted_bytes, uno_after, uno_after_ms, unos_after,
+};
 
 /// Compiles a program whose main function runs these statements once.
 fn program_once(body: &str) -> Image {
-    c(&format!(
+    compile_c(&format!(
         "#include <avr/io.h>\nint main(void) {{ {body} for (;;) {{}} }}"
     ))
 }
 
 /// Compiles a program that marks the value of MCUSR at each start and does not change MCUSR.
-fn show_cause() -> Image {
+fn program_that_marks_mcusr() -> Image {
     program_once("GPIOR0 = MCUSR;")
 }
 
 /// Pulls the RESET pin low for an instant, then runs for a millisecond.
-fn reset(uno: &mut Uno) {
+fn reset_and_run(uno: &mut Uno) {
     uno.reset();
     uno.run_ms(1);
 }
 
 #[test]
-fn mcusr_gathers_the_causes_until_power_on() {
+fn mcusr_accumulates_the_causes_until_power_on() {
     // "The bit is reset by a Power-on Reset, or by writing a logic zero to the flag" (11.9.1, of each of the bits
     // EXTRF, BORF and WDRF).
-    let mut uno = after_ms(1, show_cause());
-    reset(&mut uno);
+    let mut uno = uno_after_ms(1, program_that_marks_mcusr());
+    reset_and_run(&mut uno);
     uno.set_supply_mv(2500.0);
     uno.run_ms(1);
     uno.set_supply_mv(5000.0);
     uno.run_ms(1);
     uno.power_cycle();
     uno.run_ms(1);
-    assert_eq!(marks(&uno), [0x01, 0x03, 0x07, 0x01]);
+    assert_eq!(mark_values(&uno), [0x01, 0x03, 0x07, 0x01]);
     assert_eq!(
-        causes(&uno),
+        reset_causes(&uno),
         [
             ResetCause::PowerOn,
             ResetCause::External,
@@ -55,26 +57,26 @@ fn software_clears_flags_of_mcusr_and_cannot_set_them() {
         "GPIOR0 = MCUSR; MCUSR = 0x0e; GPIOR0 = MCUSR;
         MCUSR = 0x0f; GPIOR0 = MCUSR;",
     );
-    let mut uno = after_ms(1, image);
-    reset(&mut uno);
-    assert_eq!(marks(&uno), [1, 0, 0, 2, 2, 2]);
+    let mut uno = uno_after_ms(1, image);
+    reset_and_run(&mut uno);
+    assert_eq!(mark_values(&uno), [1, 0, 0, 2, 2, 2]);
 }
 
 #[test]
 fn stock_simavr_forgets_every_cause_but_the_last() {
-    let mut uno = Uno::with_image(show_cause(), Fidelity::Stock);
+    let mut uno = Uno::with_image(program_that_marks_mcusr(), Fidelity::Stock);
     uno.run_ms(1);
-    reset(&mut uno);
+    reset_and_run(&mut uno);
     uno.power_cycle();
     uno.run_ms(1);
-    assert_eq!(marks(&uno), [1, 2, 1]);
+    assert_eq!(mark_values(&uno), [1, 2, 1]);
 }
 
 #[test]
 fn sram_and_registers_survive_every_reset_but_power_on() {
     // "During reset, all I/O Registers are set to their initial values" (11.1): SRAM and r0 to r31 are not I/O
     // registers.
-    let image = assembler(
+    let image = assemble(
         "lds r18, 0x0234
          out GPIOR0, r18
          out GPIOR0, r2
@@ -82,23 +84,23 @@ fn sram_and_registers_survive_every_reset_but_power_on() {
          ldi r16, 0x77 $ out GPIOR1, r16 $ sts OCR1AL, r16
     end: rjmp end",
     );
-    for mut uno in both_after(CYCLES_PER_MS, &image) {
+    for mut uno in unos_after(CYCLES_PER_MS, &image) {
         assert_eq!(uno.peek(0x4a), 0x77);
         uno.reset();
         assert_eq!(uno.peek(0x4a), 0, "GPIOR1 is an I/O register");
         uno.run_ms(1);
-        assert_eq!(marks(&uno)[2..], [0x5a, 0x5a]);
+        assert_eq!(mark_values(&uno)[2..], [0x5a, 0x5a]);
         uno.power_cycle();
         uno.run_ms(1);
-        let noise = &marks(&uno)[4..];
+        let noise = &mark_values(&uno)[4..];
         assert!(!noise.contains(&0x5a), "{noise:?}");
     }
 }
 
 #[test]
-fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
+fn power_on_fills_the_sram_with_noise_that_depends_on_the_seed() {
     let sram_after_seed = |seed: Option<u64>| {
-        let mut uno = uno(assembler("end: rjmp end"));
+        let mut uno = new_uno(assemble("end: rjmp end"));
         if let Some(seed) = seed {
             uno.set_noise_seed(seed);
             uno.power_cycle();
@@ -111,7 +113,7 @@ fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
     assert_eq!(
         sram_after_seed(None),
         sram_after_seed(None),
-        "the same in every run"
+        "without a seed, the noise is the same in every run"
     );
     assert_eq!(sram_after_seed(Some(1)), sram_after_seed(Some(1)));
     assert_ne!(sram_after_seed(Some(1)), sram_after_seed(Some(2)));
@@ -123,18 +125,22 @@ fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
 }
 
 #[test]
-fn each_power_on_leaves_other_noise_and_restarts_the_measurement_of_the_stack() {
-    let image = assembler(
+fn each_power_on_leaves_different_noise_and_restarts_the_stack_measurement() {
+    let image = assemble(
         "ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
          push r16 $ push r16 $ push r16
     end: rjmp end",
     );
-    let mut uno = uno(image);
+    let mut uno = new_uno(image);
     let first_byte = uno.peek(0x300);
     uno.run_ms(1);
     assert_eq!(uno.stack_used(), 3);
     uno.reset();
-    assert_eq!(uno.stack_used(), 3, "since power-on");
+    assert_eq!(
+        uno.stack_used(),
+        3,
+        "the stack is measured from power-on, not from the reset"
+    );
     uno.power_cycle();
     assert_eq!(uno.stack_used(), 0);
     let second_byte = uno.peek(0x300);
@@ -147,7 +153,7 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
     // "the I/O ports of the AVR are immediately reset to their initial state when a
     // reset source goes active" (11.1).
     let image = program_once("DDRB = 2; PORTB = 2;");
-    for mut uno in both_after(CYCLES_PER_MS, &image) {
+    for mut uno in unos_after(CYCLES_PER_MS, &image) {
         assert!(uno.is_high(Pin::d(9)));
         uno.reset();
         assert!(!uno.is_high(Pin::d(9)));
@@ -157,7 +163,7 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
         assert!(!uno.is_high(Pin::d(9)));
         let pulses = uno.pulses(Pin::d(9));
         let [first, second] = pulses[..] else {
-            panic!("two pulses, not {pulses:?}")
+            panic!("expected two pulses, not {pulses:?}")
         };
         assert_eq!(first.start + first.width, CYCLES_PER_MS);
         assert!(second.start + second.width - 3 * CYCLES_PER_MS < 5);
@@ -177,32 +183,32 @@ fn a_timer_is_stopped_after_a_reset() {
         }
         OCR1A = 999; TCCR1B = 9;",
     );
-    for mut uno in both_after(CYCLES_PER_MS, &image) {
-        reset(&mut uno);
-        assert_eq!(marks(&uno), [0, 0, 0, 0]);
+    for mut uno in unos_after(CYCLES_PER_MS, &image) {
+        reset_and_run(&mut uno);
+        assert_eq!(mark_values(&uno), [0, 0, 0, 0]);
     }
 }
 
 #[test]
 fn temp_is_cleared_by_a_reset() {
-    let image = assembler(
+    let image = assemble(
         "ldi r16, 0x12 $ sts OCR1AL, r16 $ lds r17, OCR1AH $ out GPIOR0, r17
          ldi r16, 0x34 $ sts OCR1AH, r16
     end: rjmp end",
     );
-    let mut uno = after_ms(1, image);
-    reset(&mut uno);
-    assert_eq!(marks(&uno), [0, 0]);
+    let mut uno = uno_after_ms(1, image);
+    reset_and_run(&mut uno);
+    assert_eq!(mark_values(&uno), [0, 0]);
 }
 
 #[test]
-fn a_reset_revives_a_firmware_that_has_halted_or_crashed() {
+fn a_reset_restarts_a_firmware_that_has_halted_or_crashed() {
     for (source, is_halt) in [
         ("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep", true),
         ("ldi r16, 1 $ sts 0x0fff, r16", false),
     ] {
-        let image = assembler(&format!("out GPIOR0, r1\n{source}\nend: rjmp end"));
-        let mut uno = after_ms(1, image);
+        let image = assemble(&format!("out GPIOR0, r1\n{source}\nend: rjmp end"));
+        let mut uno = uno_after_ms(1, image);
         assert_ne!(*uno.state(), State::Alive);
         assert_eq!(*uno.state() == State::Halted, is_halt, "{source}");
         uno.reset();
@@ -213,12 +219,12 @@ fn a_reset_revives_a_firmware_that_has_halted_or_crashed() {
 }
 
 #[test]
-fn a_board_that_sleeps_is_reset_at_the_cycle_reached() {
-    let image = assembler(
+fn a_sleeping_board_is_reset_at_the_current_cycle() {
+    let image = assemble(
         "out GPIOR0, r1 $ ldi r16, 1 $ out SMCR, r16 $ sei
     end: sleep $ rjmp end",
     );
-    let mut uno = after(12_345, image);
+    let mut uno = uno_after(12_345, image);
     let asleep_cycles = uno.asleep_cycles();
     uno.reset();
     assert_eq!((uno.cycle(), uno.asleep_cycles()), (12_345, asleep_cycles));
@@ -227,72 +233,76 @@ fn a_board_that_sleeps_is_reset_at_the_cycle_reached() {
 }
 
 #[test]
-fn a_serial_line_goes_on_after_a_reset() {
-    let image = c("#include <avr/io.h>
+fn the_serial_line_continues_after_a_reset() {
+    let image = compile_c(
+        "#include <avr/io.h>
         int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
-            for (;;) { while (!(UCSR0A & 0x80)) {} UDR0 = UDR0; } }");
-    let mut uno = after_ms(1, image);
+            for (;;) { while (!(UCSR0A & 0x80)) {} UDR0 = UDR0; } }",
+    );
+    let mut uno = uno_after_ms(1, image);
     uno.send(b"abcdefgh");
     uno.run_cycles(3 * 1389 + 700);
     uno.reset();
     uno.run_ms(3);
     // At the reset, the UNO is sending `c` back and receiving `d`, so both are lost.
-    assert_eq!(text(&uno), b"abefgh");
+    assert_eq!(transmitted_bytes(&uno), b"abefgh");
 }
 
 #[test]
-fn behind_a_boot_loader_mcusr_is_zero_and_the_watchdog_off() {
+fn after_a_boot_loader_mcusr_is_zero_and_the_watchdog_is_off() {
     // Optiboot: `ch = MCUSR; MCUSR = 0; if (!(ch & _BV(EXTRF))) appStart();`, and
     // appStart begins with watchdogConfig(WATCHDOG_OFF).
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/wdt.h>
         int main(void) {
             GPIOR0 = MCUSR; GPIOR0 = WDTCSR;
             static volatile unsigned char starts __attribute__((section(\".noinit\")));
             if (GPIOR0 == 0 && starts != 0x99) { starts = 0x99; wdt_enable(WDTO_15MS); }
-            for (;;) {} }");
-    let mut uno = uno(image);
+            for (;;) {} }",
+    );
+    let mut uno = new_uno(image);
     uno.set_boot_loader(true);
     uno.run_ms(60);
     uno.reset();
     uno.run_ms(20);
     uno.power_cycle();
     uno.run_cycles(1000);
-    assert_eq!(marks(&uno), [0; 8]);
+    assert_eq!(mark_values(&uno), [0; 8]);
     assert_eq!(
-        causes(&uno),
+        reset_causes(&uno),
         [
             ResetCause::PowerOn,
             ResetCause::Watchdog,
             ResetCause::External,
             ResetCause::PowerOn
         ],
-        "the bench knows them nevertheless"
+        "the simulator records the causes nevertheless"
     );
     uno.set_boot_loader(false);
     uno.reset();
     uno.run_cycles(1000);
-    assert_eq!(marks(&uno)[8..], [2, 0]);
+    assert_eq!(mark_values(&uno)[8..], [2, 0]);
 }
 
 #[test]
 fn a_boot_loader_set_before_the_first_cycle_may_be_removed_again() {
-    let mut uno = uno(show_cause());
+    let mut uno = new_uno(program_that_marks_mcusr());
     uno.set_boot_loader(true);
     uno.set_boot_loader(false);
     uno.run_ms(1);
-    assert_eq!(marks(&uno), [1]);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn]);
+    assert_eq!(mark_values(&uno), [1]);
+    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn]);
 }
 
 #[test]
-fn after_a_reset_a_board_as_sold_starts_in_its_boot_loader() {
-    let loader = assembler_at(0x7e00, "ldi r16, 7\n out GPIOR0, r16\n loop: rjmp loop");
+fn after_a_reset_a_board_with_a_boot_loader_starts_in_it() {
+    let loader = assemble_at(0x7e00, "ldi r16, 7\n out GPIOR0, r16\n loop: rjmp loop");
     let mut uno = Uno::with_boot_loader(loader, Fidelity::DataSheet);
     uno.run_ms(1);
-    reset(&mut uno);
-    assert_eq!(marks(&uno), [7, 7]);
+    reset_and_run(&mut uno);
+    assert_eq!(mark_values(&uno), [7, 7]);
     assert_eq!(uno.flash()[0], 0xff);
     assert_eq!(uno.flash()[0x7e00..0x7e02], [0x07, 0xe0]);
 }

@@ -1,12 +1,12 @@
 //! Tests of `Uno::say`, which sends a line to the UNO and returns its answer.
 
-use simulated_uno::avr_gcc::c;
+use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{State, Uno};
 
-use super::{BOTH, after_ms, uno};
+use super::{FIDELITIES, new_uno, uno_after_ms};
 
 /// Program at 115 200 baud that answers each line with the same line in capitals. It ignores `x` and halts at `!`.
-const CAPITALS: &str = r"
+const CAPITALS_PROGRAM: &str = r"
     #include <avr/io.h>
     #include <avr/sleep.h>
     static void put(char byte) { while (!(UCSR0A & 1 << UDRE0)) {} UDR0 = byte; }
@@ -25,26 +25,29 @@ const CAPITALS: &str = r"
 
 #[test]
 fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(c(CAPITALS), fidelity);
+    for fidelity in FIDELITIES {
+        let mut uno = Uno::with_image(compile_c(CAPITALS_PROGRAM), fidelity);
         uno.run_ms(2);
         assert_eq!(uno.say("walk").as_deref(), Some("WALK"), "{fidelity:?}");
         assert_eq!(uno.say("stop 2").as_deref(), Some("STOP 2"));
-        assert!(uno.transmitted().is_empty(), "it is removed");
+        assert!(
+            uno.transmitted().is_empty(),
+            "the answer is removed from the record"
+        );
     }
 }
 
 #[test]
 fn a_second_of_silence_in_the_chips_time_counts_as_no_answer() {
     // The program never reads the serial line, so it does not answer.
-    let mut uno = uno(c("int main(void) { for (;;) {} }"));
+    let mut uno = new_uno(compile_c("int main(void) { for (;;) {} }"));
     assert_eq!(uno.say("anybody"), None);
     assert!((1000.0..1001.0).contains(&uno.ms()), "{}", uno.ms());
 }
 
 #[test]
 fn a_firmware_that_halts_does_not_answer() {
-    let mut uno = after_ms(2, c(CAPITALS));
+    let mut uno = uno_after_ms(2, compile_c(CAPITALS_PROGRAM));
     assert_eq!(uno.say("!"), None);
     assert_eq!(*uno.state(), State::Halted);
 }

@@ -1,9 +1,12 @@
 //! Tests of the simulated serial line against the data sheet: baud rate, lost bytes, framing errors and floods.
 
-use simulated_uno::avr_gcc::c;
+use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
-use super::{BOTH, after, after_ms, both_after, distances, marks, text, uno};
+use super::{
+    FIDELITIES, intervals, mark_values, new_uno, transmitted_bytes, uno_after, uno_after_ms,
+    unos_after,
+};
 
 /// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's rate.
 const FRAME_CYCLES: f64 = 10.0 * 16_000_000.0 / 115_200.0;
@@ -13,7 +16,7 @@ const UNO_FRAME_CYCLES: u64 = 10 * 17 * 8;
 /// Compiles a program at 115 200 baud that runs `body` in an endless loop; `get()` receives a byte, `put()` sends
 /// one.
 fn program(body: &str) -> Image {
-    c(&format!(
+    compile_c(&format!(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <util/delay.h>
@@ -29,13 +32,13 @@ fn program(body: &str) -> Image {
 
 #[test]
 fn an_echo_returns_what_was_sent() {
-    for fidelity in BOTH {
+    for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(program("put(get());"), fidelity);
         uno.run_ms(1);
         uno.send(b"the quick brown fox");
         uno.run_ms(5);
-        assert_eq!(text(&uno), b"the quick brown fox");
-        assert_eq!(uno.unsent(), 0);
+        assert_eq!(transmitted_bytes(&uno), b"the quick brown fox");
+        assert_eq!(uno.bytes_unsent(), 0);
     }
 }
 
@@ -56,16 +59,16 @@ fn an_echo_arrives_a_frame_after_its_byte() {
 }
 
 #[test]
-fn bytes_go_out_back_to_back_at_ten_bits_each() {
+fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
     let mut uno = Uno::with_image(program("put('a');"), Fidelity::DataSheet);
     uno.run_ms(10);
-    let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
-    assert!(stamps.len() > 100);
+    let frame_ends: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
+    assert!(frame_ends.len() > 100);
     // A frame may end in the middle of an instruction; this does not delay the following frames.
     assert!(
-        distances(&stamps)
+        intervals(&frame_ends)
             .iter()
-            .all(|distance| *distance == UNO_FRAME_CYCLES)
+            .all(|interval| *interval == UNO_FRAME_CYCLES)
     );
 }
 
@@ -82,7 +85,7 @@ fn the_sender_keeps_the_baud_rate_in_the_long_run() {
 }
 
 #[test]
-fn two_bytes_wait_and_a_third_in_the_shift_register() {
+fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
     // The program reads nothing for 2 ms, in which 20 bytes can arrive.
     let late_body = "_delay_ms(2); for (unsigned char i = 0; i < 5; i++) put(get());";
     for (sent_text, kept_bytes, lost_count) in [
@@ -90,11 +93,11 @@ fn two_bytes_wait_and_a_third_in_the_shift_register() {
         ("abcd", b"abd", 1),   // c is overwritten by d
         ("abcdef", b"abf", 3), // then d is overwritten by e, and e by f
     ] {
-        let mut uno = after(3200, program(late_body));
+        let mut uno = uno_after(3200, program(late_body));
         uno.send(sent_text.as_bytes());
         uno.run_ms(4);
         assert_eq!(
-            (&*text(&uno), uno.overruns()),
+            (&*transmitted_bytes(&uno), uno.overruns()),
             (kept_bytes, lost_count),
             "{sent_text}"
         );
@@ -103,15 +106,15 @@ fn two_bytes_wait_and_a_third_in_the_shift_register() {
     uno.run_cycles(3200);
     uno.send(b"abcde");
     uno.run_ms(5);
-    let stock_result = (text(&uno).len(), uno.overruns());
-    assert_eq!(stock_result, (5, 0), "stock simavr hides the loss");
+    let stock_result = (transmitted_bytes(&uno).len(), uno.overruns());
+    assert_eq!(stock_result, (5, 0), "stock simavr loses nothing");
 }
 
 #[test]
 fn an_overrun_is_flagged_until_the_next_read() {
     let body = "_delay_ms(2); unsigned char before = UCSR0A, byte = UDR0, after = UCSR0A;
                 (void)byte; GPIOR0 = before; GPIOR0 = after;";
-    let mut uno = after(3200, program(body));
+    let mut uno = uno_after(3200, program(body));
     uno.send(b"abcd");
     uno.run_ms(3);
     let marks = uno.marks();
@@ -120,7 +123,8 @@ fn an_overrun_is_flagged_until_the_next_read() {
 
 #[test]
 fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/interrupt.h>
         static volatile unsigned char sum;
         ISR(USART_RX_vect) { sum += UDR0; GPIOR0 = sum; }
@@ -128,8 +132,9 @@ fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
             sei();
             for (;;) {}
-        }");
-    for mut uno in both_after(1000, &image) {
+        }",
+    );
+    for mut uno in unos_after(1000, &image) {
         let bytes: Vec<u8> = (0..1000).map(|n| (n * 7) as u8).collect();
         uno.send(&bytes);
         uno.run_ms(100);
@@ -145,40 +150,42 @@ fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
 
 #[test]
 fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
-    let image = c("#include <avr/io.h>
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/interrupt.h>
         ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
-        int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }");
-    let uno = after_ms(20, image);
-    assert_eq!(text(&uno), (0..100).collect::<Vec<u8>>());
-    let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
-    assert_eq!(distances(&stamps), [UNO_FRAME_CYCLES; 99]);
+        int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }",
+    );
+    let uno = uno_after_ms(20, image);
+    assert_eq!(transmitted_bytes(&uno), (0..100).collect::<Vec<u8>>());
+    let frame_ends: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
+    assert_eq!(intervals(&frame_ends), [UNO_FRAME_CYCLES; 99]);
 }
 
 #[test]
 fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
     // One byte is in the shift register and one waits; there is no room for a third.
     let body = "UDR0 = 'a'; UDR0 = 'b'; UDR0 = 'c'; _delay_ms(1); put('d'); for (;;) {}";
-    let uno = after_ms(3, program(body));
-    assert_eq!(text(&uno), b"abd");
+    let uno = uno_after_ms(3, program(body));
+    assert_eq!(transmitted_bytes(&uno), b"abd");
 }
 
 /// Sends a byte at this baud rate to a program that runs `body` in a loop, and returns the first byte that the
 /// program writes to GPIOR0.
 fn first_mark_at(baud: f64, byte: u8, body: &str) -> u8 {
-    let mut uno = uno(program(body));
+    let mut uno = new_uno(program(body));
     uno.set_baud(baud);
     uno.run_ms(1);
     uno.send(&[byte]);
     uno.run_ms(2);
-    marks(&uno)[0]
+    mark_values(&uno)[0]
 }
 
 #[test]
 fn a_wrong_baud_rate_is_a_framing_error() {
     let body = "while (!(UCSR0A & 0x80)) {} GPIOR0 = UCSR0A & 0x10; (void)UDR0;";
     let fast_mark = first_mark_at(115_200.0, b'x', body);
-    assert_eq!(fast_mark, 0, "UBRR 16 is 2.1 % fast: good enough");
+    assert_eq!(fast_mark, 0, "UBRR 16 is 2.1 % fast, within the tolerance");
     assert_eq!(first_mark_at(57_600.0, b'x', body), 0x10);
 }
 
@@ -199,7 +206,7 @@ fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
     // FE0 is valid until UDR0 is read, so the program reads UCSR0A first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
                 GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
-    for fidelity in BOTH {
+    for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(program(body), fidelity);
         uno.run_ms(1);
         uno.send(b"a");
@@ -207,20 +214,24 @@ fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
         uno.send(b"d");
         uno.run_ms(2);
         let expected = [0, b'a', 0x10, b'b', 0x10, b'c', 0, b'd'];
-        assert_eq!(marks(&uno), expected, "{fidelity:?}");
-        assert_eq!(uno.received_by_uno().len(), 4, "on the line all are bytes");
+        assert_eq!(mark_values(&uno), expected, "{fidelity:?}");
+        assert_eq!(
+            uno.received_by_uno().len(),
+            4,
+            "the record has the bytes with a framing error, too"
+        );
     }
 }
 
 #[test]
-fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
+fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_to_be_read() {
     // The program reads nothing for 2 ms; then it marks the status before it reads each byte, and after the last
     // byte.
     let body = "_delay_ms(2);
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
     let statuses_with = |broken_index: usize| {
-        let mut uno = after(3200, program(body));
+        let mut uno = uno_after(3200, program(body));
         for (index, byte) in b"abc".iter().enumerate() {
             if index == broken_index {
                 uno.send_with_framing_error(&[*byte]);
@@ -229,36 +240,42 @@ fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
             }
         }
         uno.run_ms(3);
-        marks(&uno)
+        mark_values(&uno)
     };
     // Two bytes wait in the buffer, the third in the shift register.
     assert_eq!(statuses_with(0), [0x90, 0x80, 0x80, 0]);
     assert_eq!(statuses_with(1), [0x80, 0x90, 0x80, 0]);
     assert_eq!(statuses_with(2), [0x80, 0x80, 0x90, 0]);
-    assert_eq!(statuses_with(3), [0x80, 0x80, 0x80, 0], "none");
+    assert_eq!(
+        statuses_with(3),
+        [0x80, 0x80, 0x80, 0],
+        "no byte has a framing error"
+    );
 }
 
 #[test]
-fn a_line_is_waited_for_no_longer_than_it_takes() {
-    let mut uno = uno(program("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
+fn a_run_until_a_line_ends_with_the_line_or_at_the_limit() {
+    let mut uno = new_uno(program("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
     assert!(uno.run_until_line(20 * CYCLES_PER_MS));
-    assert_eq!(text(&uno), b"ok\n");
+    assert_eq!(transmitted_bytes(&uno), b"ok\n");
     assert!(uno.cycle() < 4 * UNO_FRAME_CYCLES);
     assert!(!uno.run_until_line(20 * CYCLES_PER_MS), "50 ms of silence");
     assert!(uno.run_until_line(40 * CYCLES_PER_MS));
 }
 
 #[test]
-fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
-    let image = c("#include <avr/io.h>
+fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_divided() {
+    let image = compile_c(
+        "#include <avr/io.h>
         #include <avr/interrupt.h>
         ISR(USART_RX_vect) { GPIOR0 = UDR0; }
         int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90; SMCR = 1; sei();
             for (;;) asm volatile (\"sleep\");
-        }");
+        }",
+    );
     let run = |pieces: u64| {
-        let mut uno = uno(image.clone());
+        let mut uno = new_uno(image.clone());
         uno.run_until_cycle(12_345);
         uno.send(b"hello");
         for n in 1..=pieces {
@@ -266,13 +283,13 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
         }
         uno.marks()
     };
-    let whole_marks = run(1);
-    assert_eq!(whole_marks.len(), 5);
+    let undivided_marks = run(1);
+    assert_eq!(undivided_marks.len(), 5);
     let arrival_cycle = 12_345 + (0.95 * FRAME_CYCLES).ceil() as u64;
     // From arrival to mark: entry from sleep 8, jmp 3, a few pushes and the read of UDR0.
     assert!(
-        (arrival_cycle..arrival_cycle + 40).contains(&whole_marks[0].cycle),
-        "{whole_marks:?}"
+        (arrival_cycle..arrival_cycle + 40).contains(&undivided_marks[0].cycle),
+        "{undivided_marks:?}"
     );
-    assert_eq!(run(1000), whole_marks);
+    assert_eq!(run(1000), undivided_marks);
 }

@@ -1,15 +1,17 @@
 //! Tests of the simulated watchdog against the data sheet, chapters 11.8 and 11.9.2.
 
-use simulated_uno::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
-use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno};
+use super::{
+    CORRECTION_IS_OBSOLETE, intervals, mark_cycles, mark_values, new_uno, uno_after, uno_after_ms,
+};
 
 /// The shortest time-out, 2 048 cycles of the 128 kHz oscillator, in CPU cycles.
-const MIN_TIMEOUT: u64 = 16 * CYCLES_PER_MS;
+const MIN_TIMEOUT_CYCLES: u64 = 16 * CYCLES_PER_MS;
 
 /// Returns the cycles at which the watchdog has reset the chip.
-fn watchdog_resets(uno: &Uno) -> Vec<u64> {
+fn watchdog_reset_cycles(uno: &Uno) -> Vec<u64> {
     let resets = uno.reset_events().into_iter();
     let watchdog_events = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
     watchdog_events.map(|reset| reset.cycle).collect()
@@ -17,7 +19,7 @@ fn watchdog_resets(uno: &Uno) -> Vec<u64> {
 
 /// Compiles a program in which the macro `set(value)` runs the timed sequence of 11.8.2 and writes `value` to WDTCSR.
 fn program(body: &str) -> Image {
-    c(&format!(
+    compile_c(&format!(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <util/delay.h>
@@ -29,8 +31,9 @@ fn program(body: &str) -> Image {
     ))
 }
 
+/// Returns a UNO that has run this program, with the macros of [`program`], for a number of milliseconds.
 fn run(body: &str, ms: u64) -> Uno {
-    after_ms(ms, program(body))
+    uno_after_ms(ms, program(body))
 }
 
 /// Returns a UNO that has run for a number of milliseconds and whose main program clears MCUSR and then runs these
@@ -42,9 +45,9 @@ fn run_once(body: &str, ms: u64) -> Uno {
     )
 }
 
-/// Returns the number of cycles from the program's write number `mark` to GPIOR0 to the first reset by the watchdog.
-fn cycles_to_reset(uno: &Uno, mark: usize) -> u64 {
-    watchdog_resets(uno)[0] - uno.marks()[mark].cycle
+/// Returns the number of cycles from the mark number `mark_index` (from 0) to the first reset by the watchdog.
+fn cycles_to_reset(uno: &Uno, mark_index: usize) -> u64 {
+    watchdog_reset_cycles(uno)[0] - uno.marks()[mark_index].cycle
 }
 
 #[test]
@@ -59,49 +62,55 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
                 GPIOR0 = 1; set({value}); SMCR = 1; asm volatile (\"sleep\"); for (;;) {{}} }}"
         );
         let expected = (2048u64 << wdp) * 125;
-        let uno = after(expected + CYCLES_PER_MS, program(&body));
-        assert_eq!(watchdog_resets(&uno).len(), 1, "WDP = {wdp}");
-        let elapsed = cycles_to_reset(&uno, 0);
-        assert!((expected..expected + 12).contains(&elapsed), "{elapsed}");
+        let uno = uno_after(expected + CYCLES_PER_MS, program(&body));
+        assert_eq!(watchdog_reset_cycles(&uno).len(), 1, "WDP = {wdp}");
+        let elapsed_cycles = cycles_to_reset(&uno, 0);
+        assert!(
+            (expected..expected + 12).contains(&elapsed_cycles),
+            "{elapsed_cycles}"
+        );
     }
 }
 
 #[test]
-fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() {
+fn the_time_out_is_counted_from_the_last_wdr_or_from_the_switching_on() {
     for (message, body, ms, mark, expected) in [
         (
-            "wdr restarts the time",
+            "wdr restarts the time-out",
             "set(8); for (unsigned char i = 0; i < 10; i++) { _delay_ms(15); GPIOR0 = i; wdr(); }",
             175,
             9,
-            MIN_TIMEOUT..MIN_TIMEOUT + 5,
+            MIN_TIMEOUT_CYCLES..MIN_TIMEOUT_CYCLES + 5,
         ),
         (
-            "a watchdog that was off starts with its full time",
+            "a watchdog that was off starts with the full time-out",
             "_delay_ms(40); GPIOR0 = 1; set(8);",
             57,
             0,
-            MIN_TIMEOUT..MIN_TIMEOUT + 12,
+            MIN_TIMEOUT_CYCLES..MIN_TIMEOUT_CYCLES + 12,
         ),
         (
             // "The Watchdog Timer should be reset before any change of the WDP bits, since
             // a change in the WDP bits can result in a time-out when switching to a shorter
             // time-out period" (11.8.2).
-            "a shorter prescaler does not restart the time",
+            "a shorter prescaler does not restart the time-out",
             "set(0x0e); _delay_ms(20); GPIOR0 = 1; set(8);",
             21,
             0,
             0..20,
         ),
     ] {
-        let elapsed = cycles_to_reset(&run_once(body, ms), mark);
-        assert!(expected.contains(&elapsed), "{message}: {elapsed}");
+        let elapsed_cycles = cycles_to_reset(&run_once(body, ms), mark);
+        assert!(
+            expected.contains(&elapsed_cycles),
+            "{message}: {elapsed_cycles}"
+        );
     }
 }
 
-/// Returns a UNO after 17 ms of a program that starts the watchdog with 16 ms, sets WDCE and WDE, and writes 0 to
-/// WDTCSR after `count` nops.
-fn switch_off_after(count: usize) -> Uno {
+/// Returns a UNO after 17 ms of a program that starts the watchdog with a time-out of 16 ms, sets WDCE and WDE, and
+/// writes 0 to WDTCSR after `nop_count` nops.
+fn switch_off_after_nops(nop_count: usize) -> Uno {
     let source = format!(
         "ldi r16, 0 $ out MCUSR, r16
          ldi r17, 0x18 $ ldi r18, 0
@@ -110,9 +119,9 @@ fn switch_off_after(count: usize) -> Uno {
          {}
          sts WDTCSR, r18
     end: rjmp end",
-        "nop\n".repeat(count)
+        "nop\n".repeat(nop_count)
     );
-    after_ms(17, assembler(&source))
+    uno_after_ms(17, assemble(&source))
 }
 
 #[test]
@@ -121,7 +130,7 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
     // (WDP) as desired, but with the WDCE bit cleared" (11.8.2).
     for (nops, is_off) in [(0, true), (2, true), (3, false), (8, false)] {
         assert_eq!(
-            watchdog_resets(&switch_off_after(nops)).is_empty(),
+            watchdog_reset_cycles(&switch_off_after_nops(nops)).is_empty(),
             is_off,
             "{nops} nops"
         );
@@ -132,7 +141,7 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
 fn wdtcsr_reads_as_the_data_sheet_says() {
     for (message, body, ms, expected) in [
         (
-            "WDE is not cleared nor the prescaler changed without the sequence",
+            "without the timed sequence, WDE is not cleared and the prescaler is not changed",
             "WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27; GPIOR0 = WDTCSR;",
             1,
             &[0x08][..],
@@ -147,7 +156,7 @@ fn wdtcsr_reads_as_the_data_sheet_says() {
         (
             // "A logic one must be written to WDE regardless of the previous value of the
             // WDE bit" (11.8.2).
-            "WDCE alone opens nothing",
+            "WDCE without WDE does not allow a change",
             "WDTCSR = 0x10; WDTCSR = 7; GPIOR0 = WDTCSR;",
             1,
             &[0],
@@ -156,7 +165,7 @@ fn wdtcsr_reads_as_the_data_sheet_says() {
             // "This bit is set when a time-out occurs in the Watchdog Timer and the Watchdog
             // Timer is configured for interrupt... WDIF is cleared by writing a logic one to
             // the flag" (11.9.2).
-            "an interrupt that is not served waits as a flag, and never resets",
+            "in interrupt mode, an interrupt that is not served stays a flag and never resets",
             "set(0x40); _delay_ms(40); GPIOR0 = WDTCSR;
             WDTCSR = 0x40; GPIOR0 = WDTCSR;
             WDTCSR = 0xc0; GPIOR0 = WDTCSR;",
@@ -164,20 +173,23 @@ fn wdtcsr_reads_as_the_data_sheet_says() {
             &[0xc0, 0xc0, 0x40],
         ),
     ] {
-        assert_eq!(marks(&run_once(body, ms)), expected, "{message}");
+        assert_eq!(mark_values(&run_once(body, ms)), expected, "{message}");
     }
     let uncleared_uno = run_once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
-    assert_eq!(watchdog_resets(&uncleared_uno).len(), 1);
+    assert_eq!(watchdog_reset_cycles(&uncleared_uno).len(), 1);
 }
 
 #[test]
-fn wdce_goes_after_four_cycles() {
+fn hardware_clears_wdce_after_four_cycles() {
     // "hardware will clear WDCE after four clock cycles" (11.9.2).
     let source = "ldi r17, 0x18 $ sts WDTCSR, r17
          lds r18, WDTCSR $ lds r19, WDTCSR $ lds r20, WDTCSR
          out GPIOR0, r18 $ out GPIOR0, r19 $ out GPIOR0, r20
     end: rjmp end";
-    assert_eq!(marks(&after(50, assembler(source))), [0x18, 0x18, 0x08]);
+    assert_eq!(
+        mark_values(&uno_after(50, assemble(source))),
+        [0x18, 0x18, 0x08]
+    );
 }
 
 #[test]
@@ -186,9 +198,9 @@ fn the_interrupt_mode_never_resets_and_stays_on() {
     let body = "ISR(WDT_vect) { GPIOR0 = WDTCSR; }
         int main(void) { SMCR = 1; MCUSR = 0; set(0x40); sei(); for (;;) asm volatile (\"sleep\"); }";
     let uno = run(body, 100);
-    assert_eq!(marks(&uno), [0x40; 6], "WDIE still set, WDIF cleared");
-    assert_eq!(distances(&mark_cycles(&uno)), [MIN_TIMEOUT; 5]);
-    assert!(watchdog_resets(&uno).is_empty());
+    assert_eq!(mark_values(&uno), [0x40; 6], "WDIE still set, WDIF cleared");
+    assert_eq!(intervals(&mark_cycles(&uno)), [MIN_TIMEOUT_CYCLES; 5]);
+    assert!(watchdog_reset_cycles(&uno).is_empty());
 }
 
 #[test]
@@ -201,11 +213,11 @@ fn interrupt_and_reset_mode_warns_first_and_then_resets() {
             if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
             set(0x48); sei(); for (;;) {} }";
     let uno = run(body, 40);
-    assert_eq!(marks(&uno), [0x08]);
-    let elapsed = cycles_to_reset(&uno, 0);
+    assert_eq!(mark_values(&uno), [0x08]);
+    let elapsed_cycles = cycles_to_reset(&uno, 0);
     assert!(
-        (MIN_TIMEOUT - 100..MIN_TIMEOUT).contains(&elapsed),
-        "{elapsed}"
+        (MIN_TIMEOUT_CYCLES - 100..MIN_TIMEOUT_CYCLES).contains(&elapsed_cycles),
+        "{elapsed_cycles}"
     );
 }
 
@@ -217,10 +229,10 @@ fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() 
         if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
         GPIOR0 = 1; set(0x48); for (;;) {} }";
     let uno = run(body, 40);
-    let elapsed = cycles_to_reset(&uno, 0);
+    let elapsed_cycles = cycles_to_reset(&uno, 0);
     assert!(
-        (2 * MIN_TIMEOUT..2 * MIN_TIMEOUT + 12).contains(&elapsed),
-        "{elapsed}"
+        (2 * MIN_TIMEOUT_CYCLES..2 * MIN_TIMEOUT_CYCLES + 12).contains(&elapsed_cycles),
+        "{elapsed_cycles}"
     );
 }
 
@@ -234,15 +246,15 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
         set(0); GPIOR0 = WDTCSR & 0x2f;
         for (;;) {} }";
     let uno = run(body, 128 + 40);
-    assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
-    let reset_cycles = watchdog_resets(&uno);
+    assert_eq!(mark_values(&uno), [8, 8, 8, 8, 8, 8]);
+    let reset_cycles = watchdog_reset_cycles(&uno);
     // The reset comes at the end of the instruction in which the time-out occurs.
     assert!(
-        (reset_cycles[1] - reset_cycles[0]).abs_diff(MIN_TIMEOUT) < 3,
+        (reset_cycles[1] - reset_cycles[0]).abs_diff(MIN_TIMEOUT_CYCLES) < 3,
         "{reset_cycles:?}"
     );
     assert!(
-        (reset_cycles[2] - reset_cycles[1]).abs_diff(MIN_TIMEOUT) < 3,
+        (reset_cycles[2] - reset_cycles[1]).abs_diff(MIN_TIMEOUT_CYCLES) < 3,
         "{reset_cycles:?}"
     );
 
@@ -252,7 +264,7 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
             MCUSR = 0; GPIOR0 = WDTCSR & 0x2f; set(0); GPIOR0 = WDTCSR & 0x2f; for (;;) {} }",
         100,
     );
-    assert_eq!(marks(&cleared_uno), [8, 0]);
+    assert_eq!(mark_values(&cleared_uno), [8, 0]);
     assert_eq!(cleared_uno.watchdog_resets(), 1);
 }
 
@@ -261,7 +273,7 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
     let image = program(
         "int main(void) { SMCR = 1; MCUSR = 0; set(8); asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }",
     );
-    let mut uno = uno(image.clone());
+    let mut uno = new_uno(image.clone());
     assert_eq!(*uno.run_ms(40), State::Alive);
     assert_eq!(uno.watchdog_resets(), 2);
     assert!(uno.marks().is_empty());
@@ -281,7 +293,7 @@ fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
 }
 
 #[test]
-fn an_interrupt_in_the_very_cycle_of_a_sleep_does_not_end_it_either() {
+fn an_interrupt_in_the_cycle_of_the_sleep_instruction_does_not_end_the_sleep() {
     for nops in 0..30 {
         let source = format!(
             "ldi r16, 0 $ out MCUSR, r16 $ ldi r16, 8 $ sts WDTCSR, r16
@@ -293,24 +305,28 @@ fn an_interrupt_in_the_very_cycle_of_a_sleep_does_not_end_it_either() {
         end: rjmp end",
             "nop\n".repeat(nops)
         );
-        let uno = after_ms(10, assembler(&source));
+        let uno = uno_after_ms(10, assemble(&source));
         assert!(uno.marks().is_empty(), "{nops} nops");
     }
 }
 
 #[test]
-fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
+fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_divided() {
     let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
-    let mut unbroken_uno = uno(image.clone());
+    let mut unbroken_uno = new_uno(image.clone());
     unbroken_uno.run_until_cycle(50 * CYCLES_PER_MS);
-    let mut stepped_uno = uno(image.clone());
+    let mut stepped_uno = new_uno(image.clone());
     while stepped_uno.cycle() < 50 * CYCLES_PER_MS {
         stepped_uno.run_until_cycle((stepped_uno.cycle() + 997).min(50 * CYCLES_PER_MS));
     }
     assert_eq!(stepped_uno.reset_events(), unbroken_uno.reset_events());
-    let mut exact_uno = uno(image);
-    exact_uno.run_until_cycle(watchdog_resets(&unbroken_uno)[0]);
-    assert_eq!(exact_uno.watchdog_resets(), 1, "by the last cycle of a run");
+    let mut exact_uno = new_uno(image);
+    exact_uno.run_until_cycle(watchdog_reset_cycles(&unbroken_uno)[0]);
+    assert_eq!(
+        exact_uno.watchdog_resets(),
+        1,
+        "a reset in the last cycle of a run belongs to the run"
+    );
     assert_eq!(stepped_uno.marks(), unbroken_uno.marks());
 }
 
@@ -319,5 +335,5 @@ fn stock_simavr_never_resets_while_the_interrupt_is_enabled() {
     let image = program("int main(void) { set(0x48); for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_ms(100);
-    assert_eq!(uno.watchdog_resets(), 0, "{FIXED}");
+    assert_eq!(uno.watchdog_resets(), 0, "{CORRECTION_IS_OBSOLETE}");
 }

@@ -23,26 +23,26 @@ pub(crate) const CODE: &str = include_str!("../../../../firmware/code.hex");
 
 /// An image of five pages, the last one partly filled.
 fn image() -> Image {
-    Image::new(bytes(600, 3)).expect("it fits")
+    Image::new(pattern_bytes(600, 3)).expect("the image fits")
 }
 
 /// The addresses of the pages of [`image`].
 const PAGE_ADDRESSES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
 
-fn bytes(count: usize, factor: usize) -> Vec<u8> {
+fn pattern_bytes(count: usize, factor: usize) -> Vec<u8> {
     (0..count).map(|at| (at * factor + 1) as u8).collect()
 }
 
 /// A board whose flash holds [`image`].
-fn with_image() -> BoardDouble {
+fn board_with_image() -> BoardDouble {
     BoardDouble::with(image().bytes())
 }
 
-/// The result of an upload, its events, and the board afterwards.
+/// The result of an upload, the events that it reported, and the board afterwards.
 struct Run {
     result: Result<PageCounts, UploadError>,
-    found: Vec<String>,
-    retries: usize,
+    reported_contents: Vec<String>,
+    retry_count: usize,
     board: BoardDouble,
 }
 
@@ -54,38 +54,38 @@ fn run_with(board: BoardDouble, image: &Image) -> Run {
     run_as(board, image, Target::default())
 }
 
-/// Uploads to a board. `target` is what is known about the board before its boot loader answers.
+/// Uploads an image to a board; `target` holds the facts that are known before the boot loader answers.
 fn run_as(board: BoardDouble, image: &Image, target: Target) -> Run {
     let mut loader = Loader::new(board);
-    let (mut found, mut again) = (Vec::new(), 0);
+    let (mut reported_contents, mut retry_count) = (Vec::new(), 0);
     let mut report = |event: Event<'_>| match event {
-        Event::Found(what) => found.push(what.to_string()),
-        Event::Retry { .. } => again += 1,
+        Event::Found(contents) => reported_contents.push(contents.to_string()),
+        Event::Retry { .. } => retry_count += 1,
         Event::Progress(_, done, of) => assert!((1..=of).contains(&done), "{done} of {of}"),
     };
     let result = block_on(upload(&mut loader, image, target, &mut report));
     let board = loader.into_board();
     Run {
         result,
-        found,
-        retries: again,
+        reported_contents,
+        retry_count,
         board,
     }
 }
 
 impl Run {
-    /// Checks that the board has the image, was told to start it, and kept its boot loader.
+    /// Checks that the board has [`image`], has started it, and still has its boot loader.
     fn assert_written(&self) -> PageCounts {
-        let done = *self.result.as_ref().expect("it is written");
+        let counts = *self.result.as_ref().expect("the image is written");
         let (flash, blank) = (&self.board.flash, BoardDouble::blank().flash);
-        assert_eq!(flash[..600], bytes(600, 3));
+        assert_eq!(flash[..600], pattern_bytes(600, 3));
         assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
         assert!(self.board.has_started_program, "the program is started");
-        done
+        counts
     }
 
-    fn error(&self) -> String {
-        let error = self.result.as_ref().expect_err("it is not written");
+    fn error_message(&self) -> String {
+        let error = self.result.as_ref().expect_err("the image is not written");
         error.to_string()
     }
 
@@ -95,19 +95,19 @@ impl Run {
     }
 }
 
-/// The robot of the robot file of this name.
+/// The robot of the robot file with this name.
 pub(crate) fn robot(name: &str) -> Robot {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots"));
-    Robot::load(folder.join(format!("{name}.toml"))).expect("it is right")
+    Robot::load(folder.join(format!("{name}.toml"))).expect("the robot file is valid")
 }
 
 /// A board with the firmware and the robot of this name.
-fn with_robot(name: &str) -> BoardDouble {
-    BoardDouble::with(whole_image(name).bytes())
+fn board_with_robot(name: &str) -> BoardDouble {
+    BoardDouble::with(firmware_image(name).bytes())
 }
 
 fn robot_image(name: &str) -> Image {
-    Image::robot_alone(robot(name).section()).expect("it fits")
+    Image::robot_alone(robot(name).section()).expect("the image fits")
 }
 
 /// The name of the robot that the firmware would load.
@@ -115,81 +115,90 @@ fn robot_name(board: &BoardDouble) -> Option<String> {
     robot_in(&board.flash[..BOOT_ADDRESS]).map(|robot| robot.robot_name().map(char::from).collect())
 }
 
-/// The firmware's image with the robot of the robot file of this name.
-fn whole_image(name: &str) -> Image {
-    Image::firmware(CODE, &robot(name).section()).expect("it fits")
+/// The firmware's image with the robot of the robot file with this name.
+fn firmware_image(name: &str) -> Image {
+    Image::firmware(CODE, &robot(name).section()).expect("the image fits")
 }
 
 #[test]
 fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
     let run = run(BoardDouble::blank());
-    let done = run.assert_written();
-    assert_eq!((done.written, done.kept), (5, 0));
-    assert_eq!(run.found, ["the board has no program"]);
+    let counts = run.assert_written();
+    assert_eq!((counts.written, counts.kept), (5, 0));
+    assert_eq!(run.reported_contents, ["the board has no program"]);
     assert!(run.board.flash[0x280..0x7e00].iter().all(|&it| it == 0xff));
-    assert_eq!((run.board.resets, run.retries), (1, 0));
+    assert_eq!((run.board.reset_count, run.retry_count), (1, 0));
 }
 
 #[test]
 fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
     let run = run(BoardDouble::with(&[9; 5000]));
     run.assert_written();
-    assert_eq!(run.found, ["the board has another program, of 5000 bytes"]);
-    assert_eq!(run.board.written, [&PAGE_ADDRESSES[..], &[0]].concat());
+    assert_eq!(
+        run.reported_contents,
+        ["the board has another program, of 5000 bytes"]
+    );
+    assert_eq!(
+        run.board.written_addresses,
+        [&PAGE_ADDRESSES[..], &[0]].concat()
+    );
 }
 
 #[test]
 fn a_board_that_has_the_image_is_only_started() {
-    let run = run(with_image());
-    let done = run.assert_written();
-    assert_eq!((done.written, done.kept), (0, 5));
-    assert_eq!(run.found, ["the board has this program already"]);
-    assert!(run.board.written.is_empty());
+    let run = run(board_with_image());
+    let counts = run.assert_written();
+    assert_eq!((counts.written, counts.kept), (0, 5));
+    assert_eq!(
+        run.reported_contents,
+        ["the board has this program already"]
+    );
+    assert!(run.board.written_addresses.is_empty());
 }
 
 #[test]
 fn only_pages_that_differ_are_written() {
-    let mut board = with_image();
+    let mut board = board_with_image();
     board.flash[0x105] ^= 1;
     let run = run(board);
-    let done = run.assert_written();
-    assert_eq!(run.board.written, [0, 0x100, 0]);
-    assert_eq!((done.written, done.kept), (2, 3));
+    let counts = run.assert_written();
+    assert_eq!(run.board.written_addresses, [0, 0x100, 0]);
+    assert_eq!((counts.written, counts.kept), (2, 3));
 }
 
 #[test]
-fn a_loader_that_answers_only_the_third_call_is_waited_for() {
+fn a_loader_that_answers_only_the_third_call_needs_no_second_reset() {
     let mut board = BoardDouble::blank();
-    board.ignored_calls = 2;
+    board.ignored_calls_per_reset = 2;
     let run = run(board);
     run.assert_written();
-    assert_eq!(run.board.resets, 1);
+    assert_eq!(run.board.reset_count, 1);
 }
 
 #[test]
 fn output_of_the_old_program_before_the_answer_is_skipped() {
     let mut board = BoardDouble::with(&[9; 500]);
     // The output contains both bytes of an answer, but not next to each other.
-    board.garbage = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
+    board.old_program_output = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
     run(board).assert_written();
 }
 
 #[test]
-fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
+fn a_board_that_never_answers_is_reset_four_times_and_not_written() {
     let mut board = BoardDouble::with(&[9; 500]);
     board.is_mute = true;
     let run = run(board);
     assert!(matches!(run.result, Err(UploadError::NoLoader)));
     assert!(
-        run.error()
+        run.error_message()
             .starts_with("no boot loader answers. Is it a UNO or a Nano?")
     );
-    assert_eq!((run.board.resets, run.retries), (4, 3));
-    assert!(run.board.written.is_empty());
+    assert_eq!((run.board.reset_count, run.retry_count), (4, 3));
+    assert!(run.board.written_addresses.is_empty());
 }
 
 #[test]
-fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
+fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
     struct Talker;
     impl Board for Talker {
         async fn reset(&mut self, _baud: u32) -> Result<(), BoardError> {
@@ -218,81 +227,109 @@ fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
 
 #[test]
 fn a_board_is_identified_by_its_boot_loader_and_starts_again() {
-    let identified = |board: BoardDouble| {
+    let identify_board = |board: BoardDouble| {
         let mut loader = Loader::new(board);
         let kind = block_on(identify(&mut loader));
         let board = loader.into_board();
-        assert!(board.written.is_empty());
+        assert!(board.written_addresses.is_empty());
         (
             kind.map_err(|error| error.to_string()),
             board.has_started_program,
         )
     };
-    assert_eq!(identified(with_image()), (Ok(Kind::Optiboot), true));
     assert_eq!(
-        identified(BoardDouble::old_nano()),
-        (Ok(Kind::AtmegaBoot), true)
+        identify_board(board_with_image()),
+        (Ok(LoaderKind::Optiboot), true)
+    );
+    assert_eq!(
+        identify_board(BoardDouble::old_nano()),
+        (Ok(LoaderKind::AtmegaBoot), true)
     );
     let mut other = BoardDouble::blank();
     other.signature = [0x1e, 0x95, 0x14];
-    let (refused, has_started) = identified(other);
+    let (refusal, has_started) = identify_board(other);
     assert!(
         has_started
-            && refused.is_err_and(|words| words.starts_with("the chip is an ATmega328, without P"))
+            && refusal
+                .is_err_and(|message| message.starts_with("the chip is an ATmega328, without P"))
     );
     let mut unplugged = BoardDouble::blank();
-    unplugged.unplugged_after = Some(0);
+    unplugged.unplugged_after_pages = Some(0);
     assert!(
-        identified(unplugged)
+        identify_board(unplugged)
             .0
-            .is_err_and(|words| words.starts_with("the port is gone"))
+            .is_err_and(|message| message.starts_with("the port is gone"))
     );
 }
 
 #[test]
 fn another_chip_is_named_and_not_written() {
-    let words = |signature| {
+    let error_for_signature = |signature| {
         let mut board = BoardDouble::blank();
         board.signature = signature;
         let run = run(board);
-        assert!(run.board.written.is_empty());
-        run.error()
+        assert!(run.board.written_addresses.is_empty());
+        run.error_message()
     };
     assert_eq!(
-        words([0x1e, 0x95, 0x14]),
+        error_for_signature([0x1e, 0x95, 0x14]),
         "the chip is an ATmega328, without P (signature 1E 95 14); the firmware is for an \
          ATmega328P (signature 1E 95 0F). Nothing was written"
     );
-    assert!(words([1, 2, 3]).starts_with("the chip is an unknown chip (signature 01 02 03)"));
+    assert!(
+        error_for_signature([1, 2, 3])
+            .starts_with("the chip is an unknown chip (signature 01 02 03)")
+    );
 }
 
 #[test]
 fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
     let old = [9; 500];
-    let whole = run(BoardDouble::with(&old)).board;
-    assert!(whole.received > 2000, "{} bytes", whole.received);
-    for at in 0..whole.received {
+    let undisturbed_board = run(BoardDouble::with(&old)).board;
+    assert!(
+        undisturbed_board.received_count > 2000,
+        "{} bytes",
+        undisturbed_board.received_count
+    );
+    for lost_byte in 0..undisturbed_board.received_count {
         let mut board = BoardDouble::with(&old);
-        board.lost_byte_to_board = Some(at);
+        board.lost_byte_to_board = Some(lost_byte);
         let run = run(board);
-        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
+        assert!(
+            run.result.is_ok(),
+            "byte {lost_byte}: {}",
+            run.error_message()
+        );
         let flash = &run.board.flash;
-        assert!(flash[..600] == bytes(600, 3), "byte {at}");
-        assert_eq!(run.found.len(), 1, "byte {at}: told once what was found");
+        assert!(flash[..600] == pattern_bytes(600, 3), "byte {lost_byte}");
+        assert_eq!(
+            run.reported_contents.len(),
+            1,
+            "byte {lost_byte}: the contents are reported once"
+        );
     }
 }
 
 #[test]
 fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
     let old = [9; 500];
-    let whole = run(BoardDouble::with(&old)).board;
-    assert!(whole.sent > 30_000, "{} bytes", whole.sent);
-    // Each byte of the call and of the first pages; then steps of 101 lose each byte of a page's answer at some page.
-    for at in (0..300).chain((300..whole.sent).step_by(101)) {
+    let undisturbed_board = run(BoardDouble::with(&old)).board;
+    assert!(
+        undisturbed_board.sent_count > 30_000,
+        "{} bytes",
+        undisturbed_board.sent_count
+    );
+    // First, each byte of the call and of the first pages is lost. Then, with steps of 101 bytes, each byte of a page's
+    // answer is lost for some page.
+    for lost_byte in (0..300).chain((300..undisturbed_board.sent_count).step_by(101)) {
         let mut board = BoardDouble::with(&old);
-        board.lost_byte_from_board = Some(at);
+        board.lost_byte_from_board = Some(lost_byte);
         let run = run(board);
-        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
+        assert!(
+            run.result.is_ok(),
+            "byte {lost_byte}: {}",
+            run.error_message()
+        );
         run.assert_written();
     }
 }
@@ -300,31 +337,31 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
 #[test]
 fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     let mut board = BoardDouble::with(&[9; 500]);
-    let right = image().bytes()[0x85];
-    board.stuck_bits = Some((0x85, right & right.wrapping_neg()));
+    let expected_byte = image().bytes()[0x85];
+    board.stuck_bits = Some((0x85, expected_byte & expected_byte.wrapping_neg()));
     let run = run(board);
-    let words = run.error();
-    assert!(words.contains("the byte at address 0x0085"), "{words}");
-    assert!(words.ends_with("write it again"), "{words}");
+    let message = run.error_message();
+    assert!(message.contains("the byte at address 0x0085"), "{message}");
+    assert!(message.ends_with("write it again"), "{message}");
     assert!(run.starts_in_a_loop());
-    assert_eq!(run.retries, 0, "another reset does not mend flash");
+    assert_eq!(run.retry_count, 0, "another reset does not mend flash");
 }
 
 #[test]
 fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
     for pages in 1..=5 {
         let mut board = BoardDouble::with(&[9; 500]);
-        board.unplugged_after = Some(pages);
-        let cut = run(board);
-        let words = cut.error();
-        assert!(words.starts_with("the port is gone"), "{words}");
+        board.unplugged_after_pages = Some(pages);
+        let interrupted_run = run(board);
+        let message = interrupted_run.error_message();
+        assert!(message.starts_with("the port is gone"), "{message}");
         assert!(
-            words.contains("half a program now, and does nothing"),
-            "{words}"
+            message.contains("half a program now, and does nothing"),
+            "{message}"
         );
-        assert!(cut.starts_in_a_loop(), "after {pages} pages");
-        let mut board = cut.board;
-        board.unplugged_after = None;
+        assert!(interrupted_run.starts_in_a_loop(), "after {pages} pages");
+        let mut board = interrupted_run.board;
+        board.unplugged_after_pages = None;
         run(board).assert_written();
     }
 }
@@ -332,10 +369,10 @@ fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
 #[test]
 fn a_board_unplugged_before_the_first_page_is_unchanged() {
     let mut board = BoardDouble::with(&[9; 500]);
-    board.unplugged_after = Some(0);
+    board.unplugged_after_pages = Some(0);
     let run = run(board);
     assert!(
-        run.error()
+        run.error_message()
             .ends_with("Nothing was written: the board is unchanged")
     );
     assert_eq!(run.board.flash[..500], [9; 500]);

@@ -34,7 +34,7 @@ const SUPPLY_SETTLING: Time = 14 * FRAME;
 pub(super) fn limits(robot: &Robot) -> Limits {
     let board = robot.supplies().board;
     Limits {
-        levels: [board.slow, board.stop, board.rest].map(u32::from),
+        levels: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
         // The console reports at once when `boot` begins.
         boots_to_rest: true,
         ..Limits::default()
@@ -71,7 +71,7 @@ impl World {
         let is_refused = text.starts_with("err 8");
         if is_refused
             && !self.observer.was_low(0, 70 * FRAME)
-            && Time::from(self.running.motion().frames()) * FRAME > SUPPLY_SETTLING
+            && Time::from(self.running.motion().frame_count()) * FRAME > SUPPLY_SETTLING
         {
             return broken(Rule::Allowed, text);
         }
@@ -139,8 +139,8 @@ impl World {
     /// Closes or opens a contact. Unless a routine runs, checks that the contact has no effect on the robot.
     pub(super) fn set_contact(&mut self, pin: u8, is_closed: bool) -> Verdict {
         let mut unchanged = self.running.clone();
-        let other_contacts = self.running.board.closed & !(1 << pin);
-        self.running.board.closed = other_contacts | u32::from(is_closed) << pin;
+        let other_contacts = self.running.board.closed_pins & !(1 << pin);
+        self.running.board.closed_pins = other_contacts | u32::from(is_closed) << pin;
         let robot = self.robot();
         let activity = self.running.main.control().activity();
         if matches!(activity, Activity::Gait(id) if robot.gait(id).is_routine()) {
@@ -163,7 +163,7 @@ impl World {
         let memory = &self.running.board.memory;
         let motion = self.running.motion();
         // A busy EEPROM cannot be read, but a copy of its bytes can.
-        let readable_memory = Eeprom::with(*memory.bytes());
+        let readable_memory = Eeprom::with_bytes(*memory.bytes());
         motion.is_resting()
             && copies::last_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
     }
@@ -171,7 +171,7 @@ impl World {
     fn check_stands_after(&self, answer: &str) -> Verdict {
         let mut future_robot = self.running.clone();
         for _ in 0..MOTION_FRAMES {
-            future_robot.frame();
+            future_robot.run_frame();
         }
         let motion = future_robot.motion();
         let standing_pulses = Pose::NEUTRAL.pulses(motion.calibration());
@@ -207,7 +207,7 @@ impl World {
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {
-            let max = calibration.slew(slew).saturating_add(ROUNDING);
+            let max = calibration.max_width_change(slew).saturating_add(ROUNDING);
             self.observer.limits.leap[servo] = max.into();
         }
         self.observer.observe_frame(self.now, widths);

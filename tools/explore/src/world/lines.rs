@@ -2,7 +2,7 @@
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::step::Step;
-use lizard_core::virtual_board::{RunningRobot, is_final};
+use lizard_core::virtual_board::{RunningRobot, is_answer};
 use lizard_rules::{Event, Rule, Time};
 
 use super::{MAX_LINES_TO_FIND_RATE, UNREADABLE, Verdict, World, broken};
@@ -19,7 +19,7 @@ impl World {
         self.observe(Event::Line { is_command });
         self.unread = Some(line);
         for _ in 0..10_000 {
-            if self.running.board.unread() == 0 {
+            if self.running.board.unread_count() == 0 {
                 break;
             }
             let step = self.running.main.step(&mut self.running.board);
@@ -28,7 +28,7 @@ impl World {
                 break;
             }
         }
-        if self.running.board.unread() == 0 {
+        if self.running.board.unread_count() == 0 {
             self.predict(line, &robot_before)?;
         }
         if self.unread.is_some() {
@@ -67,7 +67,7 @@ impl World {
             };
             asked_robot.board.send(line);
             for _ in 0..4 {
-                asked_robot.frame();
+                asked_robot.run_frame();
             }
             if asked_robot.board.transmitter.text.contains("ok gait=") {
                 return Ok(());
@@ -89,7 +89,7 @@ impl World {
     fn predict(&mut self, line: &'static str, robot_before: &RunningRobot) -> Verdict {
         let robot_after = self.settled_clone();
         let text = &robot_after.board.transmitter.text;
-        let Some(answer) = text.lines().find(|line| is_final(line)) else {
+        let Some(answer) = text.lines().find(|line| is_answer(line)) else {
             return Ok(());
         };
         let fingerprint_of =
@@ -118,7 +118,7 @@ impl World {
         rest.clone_into(&mut self.running.board.transmitter.text);
         for line in complete_lines.split("\r\n").filter(|line| !line.is_empty()) {
             self.observe(Event::Printed(since, line));
-            if is_final(line) {
+            if is_answer(line) {
                 if self.judged_answers > 0 && !line.starts_with("ok gait=") {
                     self.judged_answers -= 1;
                 } else if let Some(asked_line) = self.unread.take() {

@@ -1,24 +1,27 @@
-// The drawing of the first connection, from above with forward upward: each servo, the direction of its crank, and an
-// arrow for a turn. The body is drawn shorter than it is, so that the cranks are large.
+// The drawing of the robot for the first connection, from above with forward upward: each servo, the direction of its
+// crank, and an arrow for a turn. The body is drawn shorter than it is, so that the cranks are large.
 import type { Description, Four, Scene, Point } from '../../robot';
 
-export const PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
-export const nameOf = (servo: number): string => `A${servo + 1}, ${PLACES[servo]}`;
+/** The places of the servos A1 to A4 in the robot. */
+export const SERVO_PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
+/** Returns a servo's name with its place, such as `A1, front left`. */
+export const servoName = (servo: number): string => `A${servo + 1}, ${SERVO_PLACES[servo]}`;
 
 /** The selected servo. */
 export interface SelectedServo {
   servo: number;
   /** The servo's turn, deg counter-clockwise; null for none. */
-  by: number | null;
+  turnDeg: number | null;
 }
 
-/** Half of the drawn distance from the front shafts to the rear shafts, mm. */
+/** Half of the drawn distance from the front shafts to the rear shafts. */
 const HALF_LENGTH_MM = 34;
-/** Length of the arrow's arc, deg: more than the servo turns, to be seen clearly. */
+/** Length of the arrow's arc: more than the servo turns, so that it is seen clearly. */
 const ARC_DEG = 55;
 const NAMESPACE = 'http://www.w3.org/2000/svg';
 const RADIANS_PER_DEG = Math.PI / 180;
 
+/** Makes an SVG element; numbers in its attributes are rounded to hundredths. */
 function makeShape(tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
   const node = document.createElementNS(NAMESPACE, tag);
   for (const [key, value] of Object.entries(attributes)) {
@@ -28,14 +31,14 @@ function makeShape(tag: string, attributes: Record<string, string | number>, tex
   return node;
 }
 
-/** Returns the point at a distance, mm, and an angle from another point, in the drawing's frame with y downward. */
+/** Returns the point at a distance in mm and an angle from another point, in the drawing's frame with y downward. */
 function pointAt([x, y]: Point, length: number, degrees: number): Point {
   return [x + length * Math.cos(degrees * RADIANS_PER_DEG), y - length * Math.sin(degrees * RADIANS_PER_DEG)];
 }
 
 const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeShape('line', { class: className, x1, y1, x2, y2 });
 
-/** Draws an arrow about a shaft. It begins at the angle `begin`, deg, and turns in the direction of `turn`. */
+/** Makes an arrow about a shaft. It begins at the angle `begin` in deg, and has the direction of the turn `turn`. */
 function makeArrow(shaft: Point, radius: number, begin: number, turn: number): SVGElement[] {
   const direction = Math.sign(turn);
   const end = begin + direction * ARC_DEG;
@@ -47,22 +50,22 @@ function makeArrow(shaft: Point, radius: number, begin: number, turn: number): S
   return [arc, makeShape('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
-/** Draws the robot; `selected` is the servo that is highlighted, or null. */
-export function drawing({ servos, plate }: Description, { shafts, tips }: Scene, selected: SelectedServo | null): SVGElement {
+/** Makes the drawing of the robot; `selected` is the servo to highlight, null for none. */
+export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Scene, selected: SelectedServo | null): SVGElement {
   const shortening = Math.max(...shafts.map(([, y]) => Math.abs(y))) - HALF_LENGTH_MM;
   const shorten = ([x, y]: Point): Point => [x, -Math.sign(y) * (Math.abs(y) - shortening)];
-  const places = shafts.map(shorten) as Four<Point>;
-  const length = Math.hypot(tips[0][0] - shafts[0][0], tips[0][1] - shafts[0][1]);
+  const shaftPoints = shafts.map(shorten) as Four<Point>;
+  const crankLength = Math.hypot(tips[0][0] - shafts[0][0], tips[0][1] - shafts[0][1]);
   const [halfWidth, halfLength] = [plate.half[0], plate.half[1] - shortening];
-  const viewHalfWidth = Math.max(...places.map(([x]) => Math.abs(x))) + length + 58;
-  const viewHalfHeight = Math.max(HALF_LENGTH_MM + length, halfLength) + 8;
-  const angles = servos.map(({ neutral }, n) => `${nameOf(n)}: ${neutral.toFixed(1)}°`).join('; ');
-  const turn = selected?.by ? ` An arrow shows A${selected.servo + 1} turning ${selected.by > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
+  const viewHalfWidth = Math.max(...shaftPoints.map(([x]) => Math.abs(x))) + crankLength + 58;
+  const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
+  const angles = servos.map(({ neutral }, n) => `${servoName(n)}: ${neutral.toFixed(1)}°`).join('; ');
+  const arrowText = selected?.turnDeg ? ` An arrow shows A${selected.servo + 1} turning ${selected.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
   const svg = makeShape('svg', {
     class: 'robot-drawing',
     viewBox: `${-viewHalfWidth} ${-viewHalfHeight} ${2 * viewHalfWidth} ${2 * viewHalfHeight}`,
     role: 'img',
-    'aria-label': `The robot from above, ahead is up. Where the cranks point, from its right, counter-clockwise: ${angles}.${turn}`,
+    'aria-label': `The robot from above, ahead is up. Where the cranks point, from its right, counter-clockwise: ${angles}.${arrowText}`,
   });
   svg.append(
     makeShape('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
@@ -70,20 +73,20 @@ export function drawing({ servos, plate }: Description, { shafts, tips }: Scene,
     makeShape('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
     makeShape('text', { x: 0, y: 28 }, 'ahead'),
   );
-  places.forEach((shaft, n) => {
+  shaftPoints.forEach((shaft, n) => {
     const { neutral, pin } = servos[n];
     const isSelected = selected?.servo === n;
     const group = makeShape('g', { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` });
-    const tip = pointAt(shaft, length, neutral);
-    group.append(makeLine('zero', shaft, pointAt(shaft, length * 0.6, 0)), makeLine('crank', shaft, tip));
-    if (isSelected && selected.by !== null) {
-      group.append(makeLine('ghost', shaft, pointAt(shaft, length, neutral + selected.by)), ...makeArrow(shaft, length * 0.75, neutral + Math.sign(selected.by) * 8, selected.by));
+    const tip = pointAt(shaft, crankLength, neutral);
+    group.append(makeLine('zero', shaft, pointAt(shaft, crankLength * 0.6, 0)), makeLine('crank', shaft, tip));
+    if (isSelected && selected.turnDeg !== null) {
+      group.append(makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + selected.turnDeg)), ...makeArrow(shaft, crankLength * 0.75, neutral + Math.sign(selected.turnDeg) * 8, selected.turnDeg));
     }
     group.append(makeShape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
     // The text is outside the arrow, which may reach as far as the crank.
     const isLeft = shaft[0] < 0;
-    const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + length + 6);
-    const y = shaft[1] + Math.sign(shaft[1]) * length * 0.4;
+    const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
+    const y = shaft[1] + Math.sign(shaft[1]) * crankLength * 0.4;
     const side = isLeft ? 'left' : 'right';
     group.append(
       makeShape('text', { class: `name ${side}`, x, y: y - 5 }, `A${n + 1}`),

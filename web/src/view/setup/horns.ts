@@ -1,14 +1,14 @@
-// The step Horns: each servo holds its middle while its crank is pressed on.
-import { button, list, note, row, words } from '../make';
+// The step Horns: each servo holds the middle of its travel while its crank is pressed on.
+import { button, list, note, row, paragraph } from '../make';
 import type { Step } from './step';
 
-export const horns: Step = {
+export const hornsStep: Step = {
   name: 'Horns',
   title: 'Fit the horns',
   needsRobot: true,
-  drawing: () => null,
-  parts: ({ run, done }) => [
-    words('Nothing is on the shafts yet, and each horn is screwed into its link. First end the pulses; then switch on the servos\' supply, so that nothing starts.'),
+  selectedServo: () => null,
+  makeElements: ({ run, markDone }) => [
+    paragraph('Nothing is on the shafts yet, and each horn is screwed into its link. First end the pulses; then switch on the servos\' supply, so that nothing starts.'),
     row(
       button('Let the servos rest', () =>
         run(async (guide) => {
@@ -21,7 +21,7 @@ export const horns: Step = {
         () =>
           run(async (guide) => {
             await guide.center();
-            done('Horns');
+            markDone('Horns');
             return 'Every servo holds its middle now, a pulse of 1500 µs.';
           }),
         true,

@@ -1,100 +1,101 @@
-// The step Signs, in which the user proves the direction in which each servo turns. A servo with a wrong sign stands
-// on the other side of its neutral angle, and the guard would take an unsafe pose for a safe one.
-import { nameOf, PLACES, type SelectedServo } from './drawing';
-import { button, note, row, words } from '../make';
-import type { Step, Tools } from './step';
+// The step Signs, in which the user proves the direction in which each servo turns. A servo with a wrong sign turns to
+// the other side of its neutral angle, so the guard would take an unsafe pose for a safe one.
+import { servoName, SERVO_PLACES, type SelectedServo } from './drawing';
+import { button, note, row, paragraph } from '../make';
+import type { Step, StepTools } from './step';
 
-const doneWord = (servo: number) => `sign ${servo}`;
+/** The key under which a servo's sign is marked as done. */
+const signKey = (servo: number) => `sign ${servo}`;
 
-/** The servos whose signs are not proven. */
-export const unproven = (tools: Tools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(doneWord(servo)));
+/** Returns the servos whose signs are not proven yet. */
+export const findUnprovenServos = (tools: StepTools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(signKey(servo)));
 
-export class Signs implements Step {
+export class SignsStep implements Step {
   readonly name = 'Signs';
   readonly title = 'Prove the signs';
   readonly needsRobot = true;
-  readonly isByServo = true;
-  /** The servo that was turned, and its turn, deg; null before the first turn. */
-  private moved: { servo: number; by: number } | null = null;
-  /** The user's observation, if it points to a mistake in the wiring: another servo turned, or none. */
-  private observed: 'other' | 'none' | null = null;
+  readonly isPerServo = true;
+  /** The servo that was turned last, and its turn in deg counter-clockwise; null before the first turn. */
+  private lastTurn: { servo: number; turnDeg: number } | null = null;
+  /** The mistake that the user has observed: another servo turned, or none; null without a mistake. */
+  private observedMistake: 'other' | 'none' | null = null;
 
-  forget(): void {
-    this.moved = this.observed = null;
+  reset(): void {
+    this.lastTurn = this.observedMistake = null;
   }
 
-  drawing({ servo }: Tools): SelectedServo {
-    return { servo, by: this.moved?.servo === servo ? this.moved.by : 10 };
+  selectedServo({ servo }: StepTools): SelectedServo {
+    return { servo, turnDeg: this.lastTurn?.servo === servo ? this.lastTurn.turnDeg : 10 };
   }
 
-  parts(tools: Tools): Node[] {
+  makeElements(tools: StepTools): Node[] {
     const { servo } = tools;
-    const wasMoved = this.moved?.servo === servo;
+    const wasMoved = this.lastTurn?.servo === servo;
     const name = `A${servo + 1}`;
     return [
-      words(`${nameOf(servo)}: one servo alone turns by 10°. Look from above.`),
-      row(button(wasMoved ? `Turn ${name} once more` : `Turn ${name}`, () => this.turn(tools), !wasMoved)),
-      ...(wasMoved ? this.question(tools) : []),
+      paragraph(`${servoName(servo)}: one servo alone turns by 10°. Look from above.`),
+      row(button(wasMoved ? `Turn ${name} once more` : `Turn ${name}`, () => this.turnServo(tools), !wasMoved)),
+      ...(wasMoved ? this.makeQuestion(tools) : []),
       note('Do not leave this step out: the robot would take an unsafe pose for a safe one.'),
     ];
   }
 
-  private question(tools: Tools): Node[] {
+  private makeQuestion(tools: StepTools): Node[] {
     const { servo, session } = tools;
     const { pin } = session.description.servos[servo];
     const observe = (observation: 'other' | 'none') => () => {
-      this.observed = observation;
-      tools.show();
+      this.observedMistake = observation;
+      tools.redraw();
     };
     const advice = {
-      other: `Two signal wires are exchanged. Switch the servos' supply off and put the signal of the servo at the ${PLACES[servo]} on pin D${pin}. Then turn it once more.`,
+      other: `Two signal wires are exchanged. Switch the servos' supply off and put the signal of the servo at the ${SERVO_PLACES[servo]} on pin D${pin}. Then turn it once more.`,
       none: `Has its supply power, and are its ground and the UNO's joined? Is its plug the right way round, the signal (orange) on pin D${pin}? Then turn it once more.`,
     };
     return [
-      words('Did it turn as the arrow shows?'),
+      paragraph('Did it turn as the arrow shows?'),
       row(
         button('Yes', () => this.markProven(tools), true),
-        button('No, the other way', () => this.reverse(tools)),
+        button('No, the other way', () => this.reverseSign(tools)),
         button('Another servo turned', observe('other')),
         button('Nothing turned', observe('none')),
       ),
-      ...(this.observed ? [words(advice[this.observed])] : []),
+      ...(this.observedMistake ? [paragraph(advice[this.observedMistake])] : []),
     ];
   }
 
-  private turn(tools: Tools): void {
+  private turnServo(tools: StepTools): void {
     const { servo } = tools;
     tools.run(async (guide) => {
       const turn = await guide.turnForSign(servo);
-      this.observed = null;
-      this.moved = { servo, by: turn };
+      this.observedMistake = null;
+      this.lastTurn = { servo, turnDeg: turn };
       return `A${servo + 1} was told to turn ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });
   }
 
-  private reverse(tools: Tools): void {
+  private reverseSign(tools: StepTools): void {
     const { servo } = tools;
     tools.run(async (guide) => {
       await guide.reverse(servo);
-      this.forget();
+      this.reset();
       return `The sign of A${servo + 1} is "${guide.calibration.servos[servo].dir}" now. Turn it once more and look.`;
     });
   }
 
   /** Marks this sign as proven and goes to the next unproven servo, or to the next step. */
-  private markProven(tools: Tools): void {
-    tools.done(doneWord(tools.servo));
-    this.forget();
-    const [nextServo] = unproven(tools);
+  private markProven(tools: StepTools): void {
+    tools.markDone(signKey(tools.servo));
+    this.reset();
+    const [nextServo] = findUnprovenServos(tools);
     if (nextServo !== undefined) {
       tools.servo = nextServo;
-      return tools.show();
+      return tools.redraw();
     }
-    tools.done(this.name);
+    tools.markDone(this.name);
     tools.run(async (guide) => {
       await guide.stand();
       return 'All four turn the right way.';
     });
-    tools.go('Trims');
+    tools.goTo('Trims');
   }
 }

@@ -5,10 +5,11 @@ import type { Session } from '../../session';
 import type { WriteContent, Writer } from '../writer';
 import type { SelectedServo } from './drawing';
 
-export interface Tools {
+/** What the dialog offers to its steps. */
+export interface StepTools {
   readonly session: Session;
   readonly writer: Writer;
-  /** The guide; null until the robot has sent its calibration. */
+  /** The guide through the calibration of the connected robot; null until the robot has sent its calibration. */
   readonly guide: BoardGuide | null;
   /** The servo that a step is about, 0 to 3. */
   servo: number;
@@ -18,30 +19,31 @@ export interface Tools {
   write(content: WriteContent): void;
   /** Runs an action with the robot's guide; shows the returned message or the reason of a failure. */
   run(act: (guide: Guide) => Promise<string>): void;
-  /** Sets the calibration in the text of a file, without saving it in the board. */
+  /** Sets the calibration in the text of a file named `name`, without saving it in the board. */
   setCalibration(text: string, name: string): void;
-  /** Marks a step as done. */
-  done(step: string): void;
-  /** Returns true if a step is done. */
+  /** Marks a step, or a part of a step, as done. */
+  markDone(step: string): void;
+  /** Returns true if a step, or a part of a step, is done. */
   isDone(step: string): boolean;
   /** Goes to another step. */
-  go(step: string): void;
+  goTo(step: string): void;
   /** Redraws the step. */
-  show(): void;
+  redraw(): void;
 }
 
+/** A step of the first connection. */
 export interface Step {
   /** The step's name in the list of steps. */
   readonly name: string;
   readonly title: string;
   /** True if the step needs a robot with this firmware. */
   readonly needsRobot: boolean;
-  /** True if the step is done for each servo, which the user selects. */
-  readonly isByServo?: boolean;
+  /** True if the step is done for one servo at a time, which the user selects. */
+  readonly isPerServo?: boolean;
   /** Makes the elements of the step. */
-  parts(tools: Tools): Node[];
-  /** The servo selected in the drawing; a step without this has no drawing. */
-  drawing?(tools: Tools): SelectedServo | null;
+  makeElements(tools: StepTools): Node[];
+  /** Returns the servo to highlight in the drawing, null for none; a step without this method has no drawing. */
+  selectedServo?(tools: StepTools): SelectedServo | null;
   /** Resets the step's own state when the step is entered or another board is connected. */
-  forget?(): void;
+  reset?(): void;
 }

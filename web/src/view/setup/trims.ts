@@ -1,24 +1,24 @@
-// The step Trims: each crank is straightened in small turns, which act at once.
-import { nameOf } from './drawing';
-import { button, note, row, words } from '../make';
+// The step Trims: the user corrects each crank's angle in small turns, which take effect at once.
+import { servoName } from './drawing';
+import { button, note, row, paragraph } from '../make';
 import type { Step } from './step';
 
 /** Coarse and fine changes of the trim, deg counter-clockwise. */
 const TRIM_CHANGES = [0.5, 0.1, -0.1, -0.5];
 
-export const trims: Step = {
+export const trimsStep: Step = {
   name: 'Trims',
   title: 'Straighten the cranks',
   needsRobot: true,
-  isByServo: true,
-  drawing: ({ servo }) => ({ servo, by: null }),
-  parts({ guide, servo, run, done, session }) {
+  isPerServo: true,
+  selectedServo: ({ servo }) => ({ servo, turnDeg: null }),
+  makeElements({ guide, servo, run, markDone, session }) {
     const trim = guide?.calibration.servos[servo].trim;
     const neutral = session.description.servos[servo].neutral.toFixed(1);
-    const turn = (change: number) => () =>
+    const changeTrim = (change: number) => () =>
       run(async (guide) => {
         await guide.trim(servo, change);
-        done('Trims');
+        markDone('Trims');
         return `The trim of A${servo + 1} is ${guide.calibration.servos[servo].trim.toFixed(2)}°.`;
       });
     const stand = () =>
@@ -27,10 +27,10 @@ export const trims: Step = {
         return 'The robot stands.';
       });
     return [
-      words(`Let the robot stand, and turn the crank of ${nameOf(servo)} until it points to ${neutral}°, or mirrors the one on the other side.`),
+      paragraph(`Let the robot stand, and turn the crank of ${servoName(servo)} until it points to ${neutral}°, or mirrors the one on the other side.`),
       row(button('Stand', stand, true)),
-      row(...TRIM_CHANGES.map((change) => button(`${change > 0 ? '↺' : '↻'} ${Math.abs(change)}°`, turn(change)))),
-      words(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
+      row(...TRIM_CHANGES.map((change) => button(`${change > 0 ? '↺' : '↻'} ${Math.abs(change)}°`, changeTrim(change)))),
+      paragraph(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
       note('↺ is counter-clockwise seen from above. A trim above 7.2° would be less on the next tooth: fit that horn again.'),
     ];
   },

@@ -7,7 +7,8 @@ use crate::solids::Triangles;
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
 fn model_of(drive: &str) -> Model {
-    Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\"")).expect("paper")
+    Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\""))
+        .expect("paper.toml is valid with either drive")
 }
 
 /// Transforms a point from a mount's frame to the chassis frame.
@@ -17,18 +18,18 @@ fn to_chassis([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
 }
 
 #[test]
-fn legs_that_lag_are_where_the_drawing_has_them() {
+fn lagging_legs_are_where_the_shape_has_them() {
     let model = model_of("strut");
     let robot = model.assembly().robot().clone();
-    let neutral: [f64; 4] = robot.neutral().into();
+    let neutral: [f64; 4] = robot.neutral_pose().into();
     let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
-    let lag = [0.0, 2.5, -3.0, 7.0];
+    let lags = [0.0, 2.5, -3.0, 7.0];
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
     twin.push_angles(angles);
-    let sweeps = [0, 1, 2, 3].map(|i| FORWARD[i] * (angles[i] - neutral[i]) - lag[i]);
-    let shape = Shape::of(&robot, angles, sweeps).expect("closes");
-    let places = model.pose(angles, lag).expect("closes");
-    let place_of = |mount| places[model.mount(mount)];
+    let sweeps = [0, 1, 2, 3].map(|i| FORWARD_TURN_SIGN[i] * (angles[i] - neutral[i]) - lags[i]);
+    let shape = Shape::of(&robot, angles, sweeps).expect("every loop closes");
+    let places = model.mount_places(angles, lags).expect("every loop closes");
+    let place_of = |mount| places[model.mount_index(mount)];
     for servo in 0..4 {
         let (leg, plan) = (shape.legs[servo], &model.assembly().layout().legs[servo]);
         for (joint, mount) in leg
@@ -36,12 +37,12 @@ fn legs_that_lag_are_where_the_drawing_has_them() {
             .into_iter()
             .zip([Mount::Crank(servo), Mount::Follower(servo)])
         {
-            let error = (to_chassis(place_of(mount), plan.joint) - joint).length();
+            let error = (to_chassis(place_of(mount), plan.crank_joint) - joint).length();
             assert!(error < 1e-9, "{mount:?} is off by {error} mm");
         }
         let error = (to_chassis(place_of(Mount::Foot(servo)), plan.foot) - leg.foot).length();
         assert!(error < 1e-9, "foot {servo} is off by {error} mm");
-        let [from, to] = leg.strut;
+        let [from, to] = leg.strut_anchors;
         let strut_end = Vector::new((to - from).length(), 0.0);
         let strut = place_of(Mount::Strut(servo));
         let error = (to_chassis(strut, Vector::default()) - from).length()
@@ -51,19 +52,24 @@ fn legs_that_lag_are_where_the_drawing_has_them() {
 }
 
 #[test]
-fn without_lag_every_mount_is_where_the_assembly_has_it() {
+fn without_lag_every_mount_is_at_its_place_in_the_assembly() {
     let model = model_of("rigid");
     let robot = model.assembly().robot();
     let angles = [130.0, 45.0, 322.0, 219.0];
-    let pose = robot.lizard().solve(&angles.into()).expect("closes");
-    let places = model.pose(angles, [0.0; 4]).expect("closes");
+    let pose = robot
+        .lizard()
+        .solve(&angles.into())
+        .expect("every loop closes");
+    let places = model
+        .mount_places(angles, [0.0; 4])
+        .expect("every loop closes");
     assert_eq!(places.len(), model.mounts.len());
     for (mount, place) in model.mounts.iter().zip(places) {
         let Placement { origin, x_axis } = model.assembly().place(*mount, &pose);
-        let error = [origin.x, origin.y, x_axis.x, x_axis.y]
+        let coordinates = [origin.x, origin.y, x_axis.x, x_axis.y]
             .into_iter()
             .zip(place);
-        let error = error.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let error = coordinates.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-9, "{mount:?}: {place:?}");
     }
 }
@@ -75,11 +81,14 @@ fn corners_of(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
 }
 
 #[test]
-fn a_printed_solid_is_placed_exactly_into_its_body() {
+fn a_solid_has_the_height_of_its_body_and_no_corner_outside_it() {
     let model = model_of("strut");
-    let (entry, solids) = (model.entry(), corners_of(&model.solids().expect("closed")));
-    let largest = entry.bodies.iter().map(|body| body.solid).max();
-    assert_eq!(largest, Some(solids.len() - 1));
+    let (entry, solids) = (
+        model.entry(),
+        corners_of(&model.solids().expect("every solid is closed")),
+    );
+    let largest_solid_index = entry.bodies.iter().map(|body| body.solid).max();
+    assert_eq!(largest_solid_index, Some(solids.len() - 1));
     for (body_entry, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
         let matrix = body_entry.place;
         let z = solids[body_entry.solid].iter().map(|corner| {
@@ -116,7 +125,7 @@ fn a_printed_solid_is_placed_exactly_into_its_body() {
 }
 
 #[test]
-fn a_printed_body_is_that_of_its_part_and_in_one_step() {
+fn every_body_has_a_step_and_every_part_has_as_many_bodies_as_pieces() {
     let model = model_of("strut");
     let entry = model.entry();
     assert_eq!(entry.steps.len(), 15);
@@ -137,9 +146,9 @@ fn a_printed_body_is_that_of_its_part_and_in_one_step() {
 }
 
 #[test]
-fn a_robot_without_possible_parts_is_refused_with_the_message_of_lizard_parts() {
+fn a_robot_whose_parts_cannot_be_made_is_refused_with_the_key_and_the_value() {
     let toml = format!("{PAPER}\n[parts]\nheight = 10.0");
-    let refusal = Model::read(&toml).err().expect("refused");
+    let refusal = Model::read(&toml).err().expect("the robot is refused");
     assert!(
         refusal.refused.contains("parts.height is 10 mm"),
         "{}",

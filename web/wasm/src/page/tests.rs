@@ -1,54 +1,58 @@
-//! Tests of the page's robot, without a browser.
+//! Tests of the page's state, without a browser.
 
 use lizard_robot::Travel;
 
 use super::*;
 
-const PAPER: &str = include_str!("../../../../robots/paper.toml");
+const PAPER_TOML: &str = include_str!("../../../../robots/paper.toml");
 
 #[test]
-fn a_refused_robot_leaves_the_previous_one() {
+fn a_refused_robot_leaves_the_previous_one_in_place() {
     let mut page = Page::default();
-    assert_eq!(page.pulses([24_000; 4]), None);
-    page.read(PAPER).expect("right");
-    let error = page.read("[links]").expect_err("refused");
+    assert_eq!(page.follow_pulses([24_000; 4]), None);
+    page.read(PAPER_TOML).expect("paper.toml is valid");
+    let error = page.read("[links]").expect_err("the robot has no links");
     assert!(error.refused.starts_with("robot.toml"), "{error:?}");
-    assert!(page.pulses([24_000; 4]).is_some());
+    assert!(page.follow_pulses([24_000; 4]).is_some());
 }
 
 fn page_of_paper() -> Page {
     let mut page = Page::default();
-    page.read(PAPER).expect("right");
+    page.read(PAPER_TOML).expect("paper.toml is valid");
     page
 }
 
 /// Returns the index of a gait.
-fn index_of(page: &Page, name: &str) -> usize {
+fn gait_index(page: &Page, name: &str) -> usize {
     let gait = page.robot().and_then(|robot| robot.gait(name));
     gait.expect(name).index()
 }
 
 #[test]
-fn pulses_that_end_leave_a_servo_where_it_is() {
+fn a_servo_stays_where_it_is_when_its_pulses_end() {
     let mut page = page_of_paper();
     page.set_servos("ideal");
-    let scene_of = |frame: Option<Frame>| frame.and_then(|frame| frame.scene).expect("closes");
-    let first_scene = scene_of(page.pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
+    let scene_of = |frame: Option<Frame>| {
+        frame
+            .and_then(|frame| frame.scene)
+            .expect("every loop closes")
+    };
+    let first_scene = scene_of(page.follow_pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
     assert!(
         (first_scene.angles[0] - 148.590378).abs() < 1e-9,
         "{first_scene:?}"
     );
-    assert_eq!(scene_of(page.pulses([0; 4])), first_scene);
+    assert_eq!(scene_of(page.follow_pulses([0; 4])), first_scene);
 }
 
 #[test]
-fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
+fn real_servos_have_a_dead_band_and_a_limited_speed_and_ideal_ones_neither() {
     let mut page = page_of_paper();
     let turn_and_error = |page: &mut Page, cycles: u32| {
-        let frame = page.pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
-        let frame = frame.expect("a robot");
+        let frame = page.follow_pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
+        let frame = frame.expect("a robot was read");
         (
-            frame.scene.expect("closes").angles[0] - 138.590378,
+            frame.scene.expect("every loop closes").angles[0] - 138.590378,
             frame.errors[0],
         )
     };
@@ -58,8 +62,8 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     };
     // 4 us are less than half of the servo's dead band of 10 us.
     assert_near(turn_and_error(&mut page, 64), [0.0, 0.4]);
-    // A step of 20 deg: less than 10 in the first 20 ms at 500 deg/s, as the rotor must spin up; then it stays within
-    // the dead band plus the error that the servo needs to hold its pad against friction.
+    // A jump of 20 deg: in the first 20 ms a servo of 500 deg/s turns by less than 10 deg, as the rotor must spin up.
+    // Then its error stays within the dead band plus the error that holds the pad against friction.
     let (first_turn, _) = turn_and_error(&mut page, 3200);
     assert!((1.0..10.0).contains(&first_turn), "{first_turn}");
     for _ in 0..20 {
@@ -75,8 +79,8 @@ fn servos_have_their_dead_band_and_their_rate_and_ideal_ones_neither() {
     assert_near(turn_and_error(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Lets the page follow two cycles of a gait with ideal servos, by poses `frames` frames apart. Returns the
-/// second cycle's displacement, its slide of each foot per pose, mm, and its largest lag, deg.
+/// Lets the page follow two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns, of
+/// the second cycle, the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
 fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
@@ -86,11 +90,12 @@ fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64;
         .map(|(_, phase)| gait.table_angles(phase))
         .collect();
     let mut follow_cycle = || -> Vec<Frame> {
-        let frame_at = |angles: &[f64; 4]| page.pose(*angles, frames).expect("a robot");
+        let frame_at =
+            |angles: &[f64; 4]| page.follow_pose(*angles, frames).expect("a robot was read");
         poses.iter().map(frame_at).collect()
     };
     let (first, second) = (follow_cycle(), follow_cycle());
-    let end_place = |frames: &[Frame]| frames.last().expect("frames").place;
+    let end_place = |frames: &[Frame]| frames.last().expect("a cycle has frames").place;
     let slides = second.iter().map(|frame| frame.slides).collect();
     let lags = second.iter().flat_map(|frame| frame.lag);
     let largest_lag = lags.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
@@ -102,16 +107,16 @@ fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64;
 }
 
 #[test]
-fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
+fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
     for name in ["walk", "left", "arc-right", "back"] {
         let mut page = page_of_paper();
-        let robot = page.robot().expect("a robot");
-        let prediction = robot.predict(robot.gait(name).expect("a gait"));
-        // A pose in every frame, and in every second frame, as a board on USB reports.
+        let robot = page.robot().expect("a robot was read");
+        let prediction = robot.predict(robot.gait(name).expect("the robot has this gait"));
+        // A pose in every frame, and one in every second frame, as a board reports it on USB.
         for frames in [1, 2] {
             let (movement, _, _) = follow_cycles(&mut page, name, frames);
             let assert_near = |value: f64, expected: Option<f64>, tolerance: f64| {
-                let deviation = value - expected.expect("decided");
+                let deviation = value - expected.expect("the displacement is determined");
                 assert!(deviation.abs() < tolerance, "{name} {frames} {movement:?}");
             };
             // The poses in between are interpolated.
@@ -127,16 +132,16 @@ fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
 }
 
 #[test]
-fn servos_with_a_dead_band_are_predicted_to_lose_it() {
+fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     let mut page = page_of_paper();
-    let walk = index_of(&page, "walk");
+    let walk_index = gait_index(&page, "walk");
     let forward_of = |page: &Page| {
-        page.predict(walk)
-            .and_then(|movement| movement.movement.forward())
+        page.predict(walk_index)
+            .and_then(|prediction| prediction.movement.forward())
     };
-    let sg90_mm = forward_of(&page).expect("decided");
+    let sg90_mm = forward_of(&page).expect("the displacement is determined");
     page.set_servos("ideal");
-    let ideal_mm = forward_of(&page).expect("decided");
+    let ideal_mm = forward_of(&page).expect("the displacement is determined");
     // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % where the samples
     // of a waveform cut its corners; the prediction for ideal servos has no such samples.
     assert!(
@@ -144,13 +149,15 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
         "{sg90_mm} {ideal_mm}"
     );
     page.set_servos("copy");
-    let copy_prediction = page.predict(walk).expect("decided");
-    let copy_lines = copy_prediction.lines.expect("shares");
+    let copy_prediction = page
+        .predict(walk_index)
+        .expect("the displacement is determined");
+    let copy_lines = copy_prediction.lines.expect("the servos are not ideal");
     page.set_servos("own");
     let own_lines = page
-        .predict(walk)
-        .and_then(|movement| movement.lines)
-        .expect("shares");
+        .predict(walk_index)
+        .and_then(|prediction| prediction.lines)
+        .expect("the servos are not ideal");
     for (copy_share, own_share) in copy_lines.into_iter().zip(own_lines) {
         assert!(
             copy_share > 1.3 * own_share,
@@ -163,22 +170,25 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
         "{own_lines:?}"
     );
     page.set_servos("own at 4.0");
-    let weak_lines = page.predict(walk).and_then(|movement| movement.lines);
+    let weak_lines = page
+        .predict(walk_index)
+        .and_then(|prediction| prediction.lines);
     assert!(
-        (weak_lines.expect("shares")[19] - 0.87).abs() < 0.005,
+        (weak_lines.expect("the servos are not ideal")[19] - 0.87).abs() < 0.005,
         "{weak_lines:?}"
     );
     // An unknown supply changes nothing.
     page.set_servos("own at 12");
     page.set_servos("own at a wall");
     assert_eq!(
-        page.predict(walk).and_then(|movement| movement.lines),
+        page.predict(walk_index)
+            .and_then(|prediction| prediction.lines),
         weak_lines
     );
 }
 
 #[test]
-fn in_a_walk_most_feet_hold() {
+fn at_least_two_feet_hold_at_any_time_of_a_walk() {
     let (_, slides, _) = follow_cycles(&mut page_of_paper(), "walk", 1);
     let mut slid_mm = [0.0; 4];
     for frame_slides in slides {
@@ -188,57 +198,68 @@ fn in_a_walk_most_feet_hold() {
     }
     assert!(
         slid_mm.iter().all(|mm| *mm > 20.0),
-        "each foot is dragged once: {slid_mm:?}"
+        "each foot is dragged in the cycle: {slid_mm:?}"
     );
 }
 
 #[test]
-fn springs_that_are_set_act_and_are_predicted() {
+fn springs_set_on_the_page_act_as_predicted() {
     let mut page = page_of_paper();
     page.set_servos("ideal");
-    let walk = index_of(&page, "walk");
-    let rigid = page.predict(walk).expect("a gait");
-    assert_eq!((rigid.lag, rigid.share), (None, None));
+    let walk_index = gait_index(&page, "walk");
+    let rigid_prediction = page.predict(walk_index).expect("the robot has this gait");
+    assert_eq!((rigid_prediction.lag, rigid_prediction.share), (None, None));
     for force in [0.35, 0.55] {
         page.set_floor(Floor {
             kind: Legs::Strut,
             force,
-            ..Floor::of(page.robot().expect("a robot"))
+            ..Floor::of(page.robot().expect("a robot was read"))
         });
-        let soft = page.predict(walk).expect("a gait");
-        let (movement, _, lag) = follow_cycles(&mut page, "walk", 1);
-        let forward_of = |movement: &GaitPrediction| movement.movement.forward().expect("decided");
+        let sprung_prediction = page.predict(walk_index).expect("the robot has this gait");
+        let (movement, _, largest_lag) = follow_cycles(&mut page, "walk", 1);
+        let forward_of = |prediction: &GaitPrediction| {
+            prediction
+                .movement
+                .forward()
+                .expect("the displacement is determined")
+        };
         assert!(
-            (movement.forward - forward_of(&soft)).abs() < 0.5,
-            "{movement:?} {soft:?}"
+            (movement.forward - forward_of(&sprung_prediction)).abs() < 0.5,
+            "{movement:?} {sprung_prediction:?}"
         );
         assert!(
-            (lag / soft.lag.expect("springs") - 1.0).abs() < 0.05,
-            "{lag} {soft:?}"
+            (largest_lag / sprung_prediction.lag.expect("the legs have springs") - 1.0).abs()
+                < 0.05,
+            "{largest_lag} {sprung_prediction:?}"
         );
-        let share = forward_of(&soft) / forward_of(&rigid);
+        let share = forward_of(&sprung_prediction) / forward_of(&rigid_prediction);
         assert!(
-            (soft.share.expect("springs") - share).abs() < 0.01,
-            "{soft:?}"
+            (sprung_prediction.share.expect("the legs have springs") - share).abs() < 0.01,
+            "{sprung_prediction:?}"
         );
     }
 }
 
 #[test]
-fn a_strut_that_bears_the_friction_is_as_good_as_rigid() {
+fn a_strut_with_a_strong_spring_is_as_good_as_a_rigid_one() {
     let mut page = page_of_paper();
     let floor = Floor {
         kind: Legs::Strut,
         force: 3.0,
-        ..Floor::of(page.robot().expect("a robot"))
+        ..Floor::of(page.robot().expect("a robot was read"))
     };
     page.set_floor(floor);
-    let prediction = page.predict(index_of(&page, "walk")).expect("a gait");
-    assert!(prediction.share.expect("springs") > 0.99, "{prediction:?}");
+    let prediction = page
+        .predict(gait_index(&page, "walk"))
+        .expect("the robot has this gait");
+    assert!(
+        prediction.share.expect("the legs have springs") > 0.99,
+        "{prediction:?}"
+    );
 }
 
 #[test]
-fn weight_and_friction_matter_to_springs_alone() {
+fn mass_and_friction_matter_only_with_springs() {
     let forward_with = |kind: Legs, mass: f64, friction: f64, force: f64| {
         let mut page = page_of_paper();
         page.set_servos("ideal");
@@ -248,14 +269,14 @@ fn weight_and_friction_matter_to_springs_alone() {
             rate: 0.8 * force,
             mass,
             friction,
-            ..Floor::of(page.robot().expect("a robot"))
+            ..Floor::of(page.robot().expect("a robot was read"))
         };
         page.set_floor(floor);
         let movement = page
-            .predict(index_of(&page, "walk"))
-            .expect("a gait")
+            .predict(gait_index(&page, "walk"))
+            .expect("the robot has this gait")
             .movement;
-        movement.forward().expect("decided")
+        movement.forward().expect("the displacement is determined")
     };
     let [rigid, strut] = [Legs::Rigid, Legs::Strut];
     let rigid_mm = forward_with(rigid, 280.0, 0.7, 1.0);
@@ -269,26 +290,26 @@ fn weight_and_friction_matter_to_springs_alone() {
 #[test]
 fn friction_that_differs_by_direction_changes_the_prediction() {
     let mut page = page_of_paper();
-    let walk = index_of(&page, "walk");
-    let even_prediction = page.predict(walk);
+    let walk_index = gait_index(&page, "walk");
+    let even_prediction = page.predict(walk_index);
     let floor = Floor {
         ratio: 1.4,
-        ..Floor::of(page.robot().expect("a robot"))
+        ..Floor::of(page.robot().expect("a robot was read"))
     };
     page.set_floor(floor);
-    assert_ne!(page.predict(walk), even_prediction);
+    assert_ne!(page.predict(walk_index), even_prediction);
     assert_eq!(page.predict(99), None);
 }
 
 #[test]
 fn a_written_floor_is_read_back_and_everything_else_stays() {
-    let floor_of = |text: &str| Floor::of(&Robot::parse(text).expect("right"));
+    let floor_of = |text: &str| Floor::of(&Robot::parse(text).expect("the text is a valid robot"));
     let write_floor = |text: &str, floor| {
-        let edited = Page::edit_floor(text, floor).expect("it has room");
+        let edited = Page::edit_floor(text, floor).expect("the values can be written");
         assert_eq!(edited.refusal, None);
         edited.text
     };
-    assert_eq!(write_floor(PAPER, floor_of(PAPER)), PAPER);
+    assert_eq!(write_floor(PAPER_TOML, floor_of(PAPER_TOML)), PAPER_TOML);
     let floor = Floor {
         friction: 0.55,
         ratio: 1.5,
@@ -300,19 +321,19 @@ fn a_written_floor_is_read_back_and_everything_else_stays() {
         rate: 0.25,
         play: 0.5,
     };
-    let slotted_toml = write_floor(PAPER, floor);
-    assert_eq!(floor_of(&slotted_toml), floor);
-    let rigid_toml = write_floor(&slotted_toml, floor_of(PAPER));
-    assert_eq!(floor_of(&rigid_toml), floor_of(PAPER));
+    let strut_toml = write_floor(PAPER_TOML, floor);
+    assert_eq!(floor_of(&strut_toml), floor);
+    let rigid_toml = write_floor(&strut_toml, floor_of(PAPER_TOML));
+    assert_eq!(floor_of(&rigid_toml), floor_of(PAPER_TOML));
     assert!(!rigid_toml.contains("\nforce ="), "{rigid_toml}");
 }
 
 #[test]
-fn a_foot_that_is_too_long_is_predicted() {
+fn a_foot_that_is_too_long_shortens_the_predicted_walk_on_stiff_feet() {
     let mut page = page_of_paper();
-    let (walk, own_floor) = (
-        index_of(&page, "walk"),
-        Floor::of(page.robot().expect("one")),
+    let (walk_index, own_floor) = (
+        gait_index(&page, "walk"),
+        Floor::of(page.robot().expect("a robot was read")),
     );
     let mut forward_with = |leaf: f64, twist: f64| {
         page.set_floor(Floor {
@@ -320,8 +341,11 @@ fn a_foot_that_is_too_long_is_predicted() {
             twist,
             ..own_floor
         });
-        let movement = page.predict(walk).expect("a gait").movement;
-        movement.forward().expect("decided")
+        let movement = page
+            .predict(walk_index)
+            .expect("the robot has this gait")
+            .movement;
+        movement.forward().expect("the displacement is determined")
     };
     let level_mm = forward_with(2.0, 0.0);
     assert!(

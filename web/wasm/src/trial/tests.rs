@@ -1,31 +1,36 @@
-//! Tests of an edited gait: converted to bars, tried, refused and written.
+//! Tests of edited gaits: their conversion to bars, their trial and refusal, and their tables.
 
 use super::*;
-use crate::paper::{TEXT, paper, with_twin};
+use crate::paper::{PAPER_TOML, paper_robot, paper_robot_and_twin};
 
 fn bars_of(robot: &Robot, name: &str) -> Bars {
-    robot.gait(name).expect(name).bars().expect("bars")
+    robot
+        .gait(name)
+        .expect(name)
+        .bars()
+        .expect("the gait has bars")
 }
 
 fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
     let gait = EditedGait::Bars(bars.clone());
-    gait.trial(twin).expect("bars always have a table")
+    gait.try_on(twin).expect("bars always have a table")
 }
 
 /// Puts a gait into the text of a robot.toml.
 fn put_into(bars: &Bars, text: &str) -> String {
     let gait = EditedGait::Bars(bars.clone());
-    gait.put_into(text, &paper()).expect("a table")
+    gait.put_into(text, &paper_robot())
+        .expect("bars always have a table")
 }
 
 #[test]
-fn a_gait_taken_apart_and_put_together_is_the_same() {
-    let (robot, twin) = with_twin();
+fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
+    let (robot, twin) = paper_robot_and_twin();
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect(name);
-        let trial = try_bars(&bars_of(&robot, name), &twin).expect("it walks");
+        let trial = try_bars(&bars_of(&robot, name), &twin).expect("the gait is valid");
         assert_eq!(trial.outlook, GaitPrediction::of(&twin, gait), "{name}");
-        assert_eq!(trial.speed, gait.audit().peak.speed, "{name}");
+        assert_eq!(trial.speed, gait.audit().peak_speed.speed, "{name}");
     }
     for name in ["stand", "look"] {
         let gait = robot.gait(name).expect(name);
@@ -33,29 +38,34 @@ fn a_gait_taken_apart_and_put_together_is_the_same() {
     }
 }
 
-/// `back` is `walk` in reverse, so its distance can be computed in two ways.
+/// The robot has a gait in reverse, `back`, so its distance can be computed in two ways.
 #[test]
-fn a_reversed_gait_walks_as_the_core_in_reverse() {
-    let (robot, twin) = with_twin();
-    let back = robot.gait("back").expect("there");
+fn a_reversed_gait_walks_the_same_distance_backwards() {
+    let (robot, twin) = paper_robot_and_twin();
+    let back = robot.gait("back").expect("the robot has this gait");
     let predicted_mm = GaitPrediction::of(&twin, back)
         .movement
         .forward()
-        .expect("decided");
-    let trial = try_bars(&bars_of(&robot, "back"), &twin).expect("it walks");
-    let trial_mm = trial.outlook.movement.forward().expect("decided");
+        .expect("the distance is determined");
+    let trial = try_bars(&bars_of(&robot, "back"), &twin).expect("the gait is valid");
+    let trial_mm = trial
+        .outlook
+        .movement
+        .forward()
+        .expect("the distance is determined");
     assert!(
         predicted_mm < -5.0 && (trial_mm - predicted_mm).abs() < 0.1,
         "{trial_mm} and {predicted_mm} mm"
     );
-    assert!((trial.speed - back.audit().peak.speed).abs() < 2.0);
+    assert!((trial.speed - back.audit().peak_speed.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
         let bars = bars_of(&robot, name);
-        let forward_trial = try_bars(&bars, &twin).expect("it walks");
-        let reversed_trial = try_bars(&bars.reversed(), &twin).expect("it walks");
+        let forward_trial = try_bars(&bars, &twin).expect("the gait is valid");
+        let reversed_trial = try_bars(&bars.reversed(), &twin).expect("the gait is valid");
         let [forward_mm, reversed_mm] =
             [forward_trial, reversed_trial].map(|trial| trial.outlook.movement.forward());
-        let sum = forward_mm.expect("decided") + reversed_mm.expect("decided");
+        let sum = forward_mm.expect("the distance is determined")
+            + reversed_mm.expect("the distance is determined");
         assert!(
             sum.abs() < 0.2,
             "{name}: {forward_mm:?} and {reversed_mm:?} mm"
@@ -74,13 +84,13 @@ fn a_reversed_gait_walks_as_the_core_in_reverse() {
 
 #[test]
 fn a_refusal_offers_the_nearest_values_that_are_possible() {
-    let (robot, twin) = with_twin();
-    let too_large = Bars {
+    let (robot, twin) = paper_robot_and_twin();
+    let too_large_gait = Bars {
         amplitude: 60.0,
         ..bars_of(&robot, "walk")
     };
     {
-        let refusal = try_bars(&too_large, &twin).expect_err("refused");
+        let refusal = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
         assert!(
             refusal.refused.key.starts_with("gait.walk"),
             "{:?}",
@@ -91,11 +101,11 @@ fn a_refusal_offers_the_nearest_values_that_are_possible() {
             let with_value = |value: f64| match what {
                 "amplitude" => Bars {
                     amplitude: value,
-                    ..too_large.clone()
+                    ..too_large_gait.clone()
                 },
                 _ => Bars {
                     period: value,
-                    ..too_large.clone()
+                    ..too_large_gait.clone()
                 },
             };
             let step = if what == "amplitude" { 0.1 } else { -0.01 };
@@ -113,25 +123,26 @@ fn a_refusal_offers_the_nearest_values_that_are_possible() {
 
 #[test]
 fn the_table_is_valid_in_a_robot_toml() {
-    let robot = paper();
+    let robot = paper_robot();
     let mine = Bars {
         name: "mine".to_string(),
         amplitude: 18.5,
         ..bars_of(&robot, "arc-left")
     };
-    let robot = Robot::parse(&format!("{TEXT}\n{}", mine.table())).expect("right");
+    let robot = Robot::parse(&format!("{PAPER_TOML}\n{}", mine.to_toml()))
+        .expect("the robot with the gait is valid");
     assert_eq!(bars_of(&robot, "mine"), mine);
 }
 
 #[test]
-fn a_gait_takes_the_place_of_the_one_of_its_name() {
-    let robot = paper();
+fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
+    let robot = paper_robot();
     let walk = Bars {
         amplitude: 15.0,
         ..bars_of(&robot, "walk")
     };
-    let text = put_into(&walk, TEXT);
-    let changed_robot = Robot::parse(&text).expect("right");
+    let text = put_into(&walk, PAPER_TOML);
+    let changed_robot = Robot::parse(&text).expect("the changed robot is valid");
     assert_eq!(bars_of(&changed_robot, "walk"), walk);
     let gait_names = |robot: &Robot| -> Vec<_> {
         let names = robot.gaits().iter().map(|gait| gait.name().to_string());
@@ -142,7 +153,8 @@ fn a_gait_takes_the_place_of_the_one_of_its_name() {
         name: "mine".to_string(),
         ..walk
     };
-    let extended_robot = Robot::parse(&put_into(&mine, &text)).expect("right");
+    let extended_robot =
+        Robot::parse(&put_into(&mine, &text)).expect("the extended robot is valid");
     assert_eq!(
         gait_names(&extended_robot).len(),
         gait_names(&robot).len() + 1
@@ -151,8 +163,8 @@ fn a_gait_takes_the_place_of_the_one_of_its_name() {
 }
 
 #[test]
-fn an_invalid_name_is_refused_without_other_values() {
-    let (robot, twin) = with_twin();
+fn an_invalid_name_is_refused_without_alternatives() {
+    let (robot, twin) = paper_robot_and_twin();
     let result = try_bars(
         &Bars {
             name: "Wa lk".to_string(),
@@ -160,5 +172,5 @@ fn an_invalid_name_is_refused_without_other_values() {
         },
         &twin,
     );
-    assert_eq!(result.expect_err("refused").instead, []);
+    assert_eq!(result.expect_err("the name is invalid").instead, []);
 }

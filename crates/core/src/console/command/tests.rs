@@ -1,4 +1,4 @@
-//! Every word of the console, every notation of a number, and every mistake.
+//! Tests of the parser: words, gaits, notations of numbers, and errors.
 
 use std::format;
 use std::string::{String, ToString};
@@ -6,19 +6,20 @@ use std::string::{String, ToString};
 mod angles;
 
 use super::*;
-use crate::sample::{GAITS, Sample};
+use crate::sample::{GAIT_NAMES, Sample};
 
-fn read(line: &str) -> Result<Command, Misread> {
+/// Parses a line for the odd sample robot.
+fn parse_line(line: &str) -> Result<Command, LineError> {
     parse(line.as_bytes(), &Sample::odd())
 }
 
-/// The command of a gait.
+/// The command that starts a gait without a number of cycles.
 fn command_of_gait(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }
 
 #[test]
-fn every_word_is_its_command() {
+fn words_are_parsed_as_their_commands() {
     for (line, command) in [
         ("help", Command::Help),
         ("?", Command::Help),
@@ -27,7 +28,7 @@ fn every_word_is_its_command() {
         ("watch 0", Command::Watch(0)),
         ("watch 10000", Command::Watch(10_000)),
     ] {
-        assert_eq!(read(line), Ok(command), "{line}");
+        assert_eq!(parse_line(line), Ok(command), "{line}");
     }
     for (line, order) in [
         ("stop", Order::Stop),
@@ -42,37 +43,37 @@ fn every_word_is_its_command() {
         ("boot stand", Order::Boot(Boot::Gait(GaitId::STAND))),
         (
             "boot sway  left",
-            Order::Boot(Boot::Gait(Sample::odd().id("sway left"))),
+            Order::Boot(Boot::Gait(Sample::odd().gait_id("sway left"))),
         ),
         ("deadman 0", Order::Deadman(0)),
         ("deadman 60000", Order::Deadman(60_000)),
     ] {
-        assert_eq!(read(line), Ok(Command::Order(order)), "{line}");
+        assert_eq!(parse_line(line), Ok(Command::Order(order)), "{line}");
     }
 }
 
-/// Parses a line in three consoles, in which gaits have priority over every word, over the words from
-/// `cal` on, and over no word.
-fn parse_by_priority(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
-    const CAL: usize = Word::Cal as usize;
-    const NONE: usize = Word::ALL.len();
+/// Parses a line for three consoles: in the first, gaits have priority over every word; in the second, over the words
+/// from `cal` on; in the third, over no word.
+fn parse_with_three_priorities(line: &str, robot: &Robot) -> [Result<Command, LineError>; 3] {
+    const CAL_INDEX: usize = Word::Cal as usize;
+    const WORD_COUNT: usize = Word::ALL.len();
     let line = line.as_bytes();
     [
-        parse_among::<0>(line, robot),
-        parse_among::<CAL>(line, robot),
-        parse_among::<NONE>(line, robot),
+        parse_with_priority::<0>(line, robot),
+        parse_with_priority::<CAL_INDEX>(line, robot),
+        parse_with_priority::<WORD_COUNT>(line, robot),
     ]
 }
 
 #[test]
 fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
     let robot = Sample::paper();
-    for (number, word) in Word::ALL.iter().enumerate() {
+    for (word_index, word) in Word::ALL.iter().enumerate() {
         let (text, example) = (word.text(), word.example());
         let command = parse(example.as_bytes(), &robot);
         assert!(command.is_ok(), "{example}");
         assert_eq!(
-            parse_by_priority(example, &robot),
+            parse_with_three_priorities(example, &robot),
             [command; 3],
             "{example}"
         );
@@ -80,42 +81,42 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         let longer_name = std::format!("{text} on");
         let robot_with_longer = Sample::paper().with_gait(&longer_name);
         assert_eq!(
-            parse_by_priority(example, &robot_with_longer),
+            parse_with_three_priorities(example, &robot_with_longer),
             [command; 3],
             "{example}"
         );
 
         let robot_with_both = Sample::paper().with_gait(text).with_gait(&longer_name);
-        let first_yielding = [0, Word::Cal as usize, Word::ALL.len()];
+        let first_yielding_indices = [0, Word::Cal as usize, Word::ALL.len()];
         for (line, gait_result) in [
-            (text, Ok(command_of_gait(robot_with_both.id(text)))),
+            (text, Ok(command_of_gait(robot_with_both.gait_id(text)))),
             (
                 &*longer_name,
-                Ok(command_of_gait(robot_with_both.id(&longer_name))),
+                Ok(command_of_gait(robot_with_both.gait_id(&longer_name))),
             ),
             (
                 &std::format!("{text} 1 2"),
-                Err(Misread::WrongArguments(Text::CountWants)),
+                Err(LineError::WrongArguments(Text::CountUsage)),
             ),
         ] {
             let word_result = parse(line.as_bytes(), &robot);
-            let expected = first_yielding.map(|first| {
-                if number < first {
+            let expected_results = first_yielding_indices.map(|first_yielding_index| {
+                if word_index < first_yielding_index {
                     word_result
                 } else {
                     gait_result
                 }
             });
             assert_eq!(
-                parse_by_priority(line, &robot_with_both),
-                expected,
+                parse_with_three_priorities(line, &robot_with_both),
+                expected_results,
                 "{line}"
             );
         }
     }
 }
 
-/// An angle as the console reads it.
+/// The angle that the console reads from these degrees.
 fn angle_of(degrees: f64) -> Angle {
     Angle::from_centideg((degrees * 100.0).round() as i32)
 }
@@ -139,41 +140,45 @@ fn every_setting_is_read_with_its_servo() {
         ("scale 1 10.2", A1, Setting::Scale(1020)),
     ] {
         let order = Order::Set(servo, setting);
-        assert_eq!(read(line), Ok(Command::Order(order)), "{line}");
+        assert_eq!(parse_line(line), Ok(Command::Order(order)), "{line}");
     }
 }
 
 #[test]
-fn a_missing_malformed_or_surplus_argument_is_answered_by_the_syntax() {
+fn a_missing_malformed_or_surplus_argument_is_answered_by_the_usage() {
     for (usage, lines) in [
         (
-            Text::TrimWants,
+            Text::TrimUsage,
             "trim|trim 1|trim 0 1|trim 5 1|trim 11 1|trim a 1",
         ),
-        (Text::TrimWants, "trim 1 x|trim 1 1.234|trim 1 2 3"),
+        (Text::TrimUsage, "trim 1 x|trim 1 1.234|trim 1 2 3"),
         (
-            Text::LimitWants,
+            Text::LimitUsage,
             "limit|limit 1|limit 1 2|limit 1 2 3 4|limit 9 2 3|limit 1 a 3",
         ),
         (
-            Text::DirWants,
+            Text::DirUsage,
             "dir|dir 1|dir 1 1|dir 1 ++|dir + 1|dir 1 + +",
         ),
         (
-            Text::ScaleWants,
+            Text::ScaleUsage,
             "scale|scale 1|scale 1 ten|scale 1 10 10|scale 0 10|scale 1 10.001",
         ),
         (
-            Text::BootWants,
+            Text::BootUsage,
             "boot|boot 3|boot sway 1|boot dance|boot sway lef|boot rest now|boot stop",
         ),
         (
-            Text::DeadmanWants,
+            Text::DeadmanUsage,
             "deadman|deadman -1|deadman 1.5|deadman 1 2",
         ),
     ] {
         for line in lines.split('|') {
-            assert_eq!(read(line), Err(Misread::WrongArguments(usage)), "{line}");
+            assert_eq!(
+                parse_line(line),
+                Err(LineError::WrongArguments(usage)),
+                "{line}"
+            );
         }
     }
 }
@@ -199,16 +204,20 @@ fn a_setting_out_of_range_is_answered_by_the_range() {
         ),
     ] {
         for line in lines.split('|') {
-            assert_eq!(read(line), Err(Misread::OutOfRange(range)), "{line}");
+            assert_eq!(
+                parse_line(line),
+                Err(LineError::OutOfRange(range)),
+                "{line}"
+            );
         }
     }
 }
 
 #[test]
-fn every_gait_is_a_command_and_any_blanks_between_its_words_will_do() {
+fn every_gait_is_a_command_with_any_blanks_between_its_words() {
     let robot = Sample::odd();
-    for name in GAITS {
-        let command = Ok(command_of_gait(robot.id(name)));
+    for name in GAIT_NAMES {
+        let command = Ok(command_of_gait(robot.gait_id(name)));
         for blank in [" ", "   ", "\t", " \t "] {
             let line = name.replace(' ', blank);
             assert_eq!(parse(line.as_bytes(), &robot), command, "{line:?}");
@@ -217,64 +226,67 @@ fn every_gait_is_a_command_and_any_blanks_between_its_words_will_do() {
 }
 
 #[test]
-fn a_name_that_is_too_short_or_too_long_is_not_recognised() {
+fn a_line_that_only_resembles_the_name_of_a_gait_is_an_error() {
     // `sway` is a gait, and so is `sway left`.
-    for (misread, lines) in [
+    for (line_error, lines) in [
         (
-            Misread::WrongArguments(Text::CountWants),
+            LineError::WrongArguments(Text::CountUsage),
             "sway lef|sway leftt|sway left now|sway sway|stand up",
         ),
         (
-            Misread::UnknownCommand,
+            LineError::UnknownCommand,
             "swayleft|sway-left|sways|swa|left|s",
         ),
     ] {
         for line in lines.split('|') {
-            assert_eq!(read(line), Err(misread), "{line}");
+            assert_eq!(parse_line(line), Err(line_error), "{line}");
         }
     }
 }
 
 #[test]
-fn the_first_words_of_a_longer_name_are_incomplete() {
+fn the_first_words_of_a_gaits_name_alone_are_an_incomplete_name() {
     let robot = Sample::odd().with_gait("arc to left");
     let read = |line: &str| parse(line.as_bytes(), &robot);
-    assert_eq!(read("arc"), Err(Misread::IncompleteName));
-    assert_eq!(read("arc to"), Err(Misread::IncompleteName));
+    assert_eq!(read("arc"), Err(LineError::IncompleteName));
+    assert_eq!(read("arc to"), Err(LineError::IncompleteName));
     assert_eq!(
         read("arc  to\tleft"),
-        Ok(command_of_gait(robot.id("arc to left")))
+        Ok(command_of_gait(robot.gait_id("arc to left")))
     );
-    assert_eq!(read("arc t"), Err(Misread::UnknownCommand));
-    assert_eq!(read("arc left"), Err(Misread::UnknownCommand));
-    let count_error = Err(Misread::WrongArguments(Text::CountWants));
+    assert_eq!(read("arc t"), Err(LineError::UnknownCommand));
+    assert_eq!(read("arc left"), Err(LineError::UnknownCommand));
+    let count_error = Err(LineError::WrongArguments(Text::CountUsage));
     assert_eq!(read("arc to left too"), count_error);
 }
 
 #[test]
 fn every_gait_takes_every_count_from_1_to_999_and_no_other() {
     let robot = Sample::odd();
-    for name in GAITS {
+    for name in GAIT_NAMES {
         let read = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);
         for count in (0..=70_000u32).chain([655_360, 655_361, 99_999_999]) {
             let expected = match count {
-                1..=999 => Ok(Command::Order(Order::Gait(robot.id(name), count as u16))),
-                _ => Err(Misread::WrongArguments(Text::CountWants)),
+                1..=999 => Ok(Command::Order(Order::Gait(
+                    robot.gait_id(name),
+                    count as u16,
+                ))),
+                _ => Err(LineError::WrongArguments(Text::CountUsage)),
             };
             assert_eq!(read(&count.to_string()), expected, "{name} {count}");
         }
         for count in ["-1", "+1", "1.0", "1,", "x", "1 1", "0x1", "1s"] {
-            let count_error = Err(Misread::WrongArguments(Text::CountWants));
+            let count_error = Err(LineError::WrongArguments(Text::CountUsage));
             assert_eq!(read(count), count_error, "{name} {count}");
         }
     }
 }
 
 #[test]
-fn a_gait_whose_name_is_anothers_with_a_number_comes_before_the_others_count() {
+fn a_gait_named_step_2_has_priority_over_two_cycles_of_a_gait_named_step() {
     let robot = Sample::paper().with_gait("step 2").with_gait("step");
     let read = |line: &str| parse(line.as_bytes(), &robot);
-    let gait_command = |name, cycles| Ok(Command::Order(Order::Gait(robot.id(name), cycles)));
+    let gait_command = |name, cycles| Ok(Command::Order(Order::Gait(robot.gait_id(name), cycles)));
     assert_eq!(read("step  2"), gait_command("step 2", 0));
     assert_eq!(read("step 02"), gait_command("step", 2));
     assert_eq!(read("step 3"), gait_command("step", 3));
@@ -282,62 +294,66 @@ fn a_gait_whose_name_is_anothers_with_a_number_comes_before_the_others_count() {
 }
 
 #[test]
-fn any_other_line_is_an_unknown_command() {
+fn a_line_that_begins_with_no_word_and_no_gait_is_an_unknown_command() {
     for line in [
         "dance", "halt", "??", "-", "speed10", "watch0", "pose1", "stop.", "\0", "\u{e9}", "12",
         "helpp", "hel", "statu",
     ] {
-        assert_eq!(read(line), Err(Misread::UnknownCommand), "{line:?}");
+        assert_eq!(parse_line(line), Err(LineError::UnknownCommand), "{line:?}");
     }
 }
 
 #[test]
-fn a_command_without_arguments_takes_none() {
+fn a_command_that_takes_no_argument_refuses_one() {
     let lines = "stop now|rest 5|help me|? ?|status all|cal 1|save it|load 1|factory reset";
     for line in lines.split('|') {
-        assert_eq!(read(line), Err(Misread::UnexpectedArgument), "{line}");
+        assert_eq!(
+            parse_line(line),
+            Err(LineError::UnexpectedArgument),
+            "{line}"
+        );
     }
 }
 
 #[test]
-fn speed_and_watch_want_one_whole_number() {
+fn speed_and_watch_require_one_whole_number() {
     for argument in [
         "", " fast", " 5o", " 50%", " 50.5", " -50", " +50", " 50 60", " 0x20", " 5 0",
     ] {
-        for (word, usage) in [("speed", Text::SpeedWants), ("watch", Text::WatchWants)] {
+        for (word, usage) in [("speed", Text::SpeedUsage), ("watch", Text::WatchUsage)] {
             assert_eq!(
-                read(&format!("{word}{argument}")),
-                Err(Misread::WrongArguments(usage))
+                parse_line(&format!("{word}{argument}")),
+                Err(LineError::WrongArguments(usage))
             );
         }
     }
 }
 
 #[test]
-fn every_speed_and_every_watch_is_read_and_no_other() {
+fn every_speed_and_watch_interval_in_range_is_accepted_and_no_other() {
     for number in (0..=70_000).chain([655_350, 99_999_999]) {
         let expected_speed = match number {
             10..=100 => Ok(Command::Order(Order::Speed(number as u8))),
-            _ => Err(Misread::OutOfRange(Text::SpeedRange)),
+            _ => Err(LineError::OutOfRange(Text::SpeedRange)),
         };
-        assert_eq!(read_number("speed", number), expected_speed);
+        assert_eq!(parse_with_number("speed", number), expected_speed);
         let expected_watch = match number {
             0..=10_000 => Ok(Command::Watch(number as u16)),
-            _ => Err(Misread::OutOfRange(Text::WatchRange)),
+            _ => Err(LineError::OutOfRange(Text::WatchRange)),
         };
-        assert_eq!(read_number("watch", number), expected_watch);
+        assert_eq!(parse_with_number("watch", number), expected_watch);
     }
     assert_eq!(
-        read("speed 99999999999999999999"),
-        Err(Misread::OutOfRange(Text::SpeedRange))
+        parse_line("speed 99999999999999999999"),
+        Err(LineError::OutOfRange(Text::SpeedRange))
     );
 }
 
-fn read_number(word: &str, number: u32) -> Result<Command, Misread> {
+fn parse_with_number(word: &str, number: u32) -> Result<Command, LineError> {
     with_shared_robot(|robot| parse(format!("{word} {number}").as_bytes(), robot))
 }
 
-/// Calls a function with a shared robot, since making one takes longer than reading a line.
+/// Calls a function with a shared robot, since making a robot takes longer than parsing a line.
 fn with_shared_robot<T>(call: impl FnOnce(&Sample) -> T) -> T {
     std::thread_local!(static ROBOT: Sample = Sample::odd());
     ROBOT.with(call)

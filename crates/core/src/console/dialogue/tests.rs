@@ -1,4 +1,4 @@
-//! Tests of the console through its serial line: commands go in, printed lines come out.
+//! Tests of the console through its serial line: commands are sent, and the printed lines are checked.
 
 use std::format;
 use std::string::{String, ToString};
@@ -24,14 +24,17 @@ use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::Settings;
 use crate::motion::Activity;
 use crate::numbers::pose::{Pose, Pulses};
-use crate::numbers::units::Width;
-use crate::sample::{GAITS, SLOW_PACE, Sample};
+use crate::numbers::units::PulseWidth;
+use crate::sample::{GAIT_NAMES, SLOW_PACE, Sample};
 use crate::step::Step;
-use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
-use dialogue::{Dialogue, neutral, pairs, supply, wake_odd_robot, wake_robot, widths};
+use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
+use dialogue::{
+    Dialogue, neutral_pose_text, parse_pairs, run_frame_and_read_widths, set_supply,
+    wake_odd_robot, wake_robot,
+};
 
 /// The command for the neutral pose of [`Sample::odd`].
-const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
+const NEUTRAL_COMMAND: &str = "pose 132.37 47.91 309.64 226.18";
 
 #[test]
 fn the_banner_names_version_and_robot_once() {
@@ -55,9 +58,9 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
         "speed 100",
         "watch 3",
         "watch 0",
-        NEUTRAL,
+        NEUTRAL_COMMAND,
     ];
-    for command in commands.into_iter().chain(GAITS) {
+    for command in commands.into_iter().chain(GAIT_NAMES) {
         assert_eq!(wake_odd_robot().send_line(command), format!("ok {command}"));
         let upper_case_line = format!("  {}\t", command.to_uppercase());
         assert_eq!(
@@ -71,7 +74,7 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
 fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
     let mut dialogue = wake_odd_robot();
     let printed_lines = dialogue.send(b"help\r");
-    let gaits_line = format!("# gaits: {}", GAITS.join("|"));
+    let gaits_line = format!("# gaits: {}", GAIT_NAMES.join("|"));
     let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
     let words_line = format!("# others: {}", words.join("|"));
     let expected = [
@@ -85,7 +88,7 @@ fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
 }
 
 #[test]
-fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
+fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
     for (count, length) in [
         (4, 48),
         (40, 5),
@@ -100,29 +103,29 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
             robot = robot.with_gait(&format!("{number:x>length$}")[..length]);
         }
         let names: Vec<String> = crate::numbers::gaits::GaitId::all(robot.gait_count())
-            .map(|id| robot.name(id).map(char::from).collect())
+            .map(|id| robot.gait_name(id).map(char::from).collect())
             .collect();
         let printed_lines = wake_robot(robot).send(b"help\r");
         let lines: Vec<&str> = printed_lines
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "))
             .collect();
-        let listed: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
-        assert_eq!(listed, names);
-        // A line ends only where the prefix, its names, a bar and the next name would be too long.
+        let listed_names: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
+        assert_eq!(listed_names, names);
+        // A line ends only where the prefix, its names, a bar and the next name would exceed the limit.
         for pair in lines.windows(2) {
-            let next_name = pair[1].split('|').next().expect("a name");
+            let next_name = pair[1].split('|').next().expect("a line has a name");
             let joined_length = "# gaits: ".len() + pair[0].len() + 1 + next_name.len();
             assert!(
-                joined_length > usize::from(print::LONGEST_NAMES),
+                joined_length > usize::from(print::MAX_GAITS_LINE_BYTES),
                 "{pair:?}"
             );
         }
     }
 }
 
-/// A robot that the guard has just stopped, and whose output has not been read since.
-fn run_until_guarded() -> Dialogue {
+/// Runs a robot until the guard holds it; its output has not been read since.
+fn run_until_guard_holds() -> Dialogue {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("stray");
     for _ in 0..200 {
@@ -131,12 +134,12 @@ fn run_until_guarded() -> Dialogue {
             return dialogue;
         }
     }
-    panic!("stray is safe");
+    panic!("the guard does not stop the gait `stray`");
 }
 
 #[test]
-fn the_guards_reason_is_printed_once_and_stays_in_status() {
-    let mut dialogue = run_until_guarded();
+fn each_hold_is_reported_once_and_shown_by_status_until_the_robot_moves_again() {
+    let mut dialogue = run_until_guard_holds();
     let printed_lines = dialogue.read_lines();
     assert_eq!(printed_lines.len(), 1);
     assert!(
@@ -147,24 +150,24 @@ fn the_guards_reason_is_printed_once_and_stays_in_status() {
         printed_lines[0].contains(" margin of ") || printed_lines[0].contains(" slider is at ")
     );
     assert!(dialogue.run_frames(100).is_empty());
-    assert_eq!(dialogue.status("guard"), "held");
-    assert_eq!(dialogue.status("fault"), "guard");
+    assert_eq!(dialogue.status_value("guard"), "held");
+    assert_eq!(dialogue.status_value("fault"), "guard");
     dialogue.send_line("stand");
     dialogue.run_frames(1);
-    assert_eq!(dialogue.status("guard"), "clear");
-    assert_eq!(dialogue.status("fault"), "none");
+    assert_eq!(dialogue.status_value("guard"), "clear");
+    assert_eq!(dialogue.status_value("fault"), "none");
     dialogue.run_frames(100);
     dialogue.send_line("stray");
     assert_eq!(
         dialogue.run_frames(200).len(),
         1,
-        "and again, when it happens again"
+        "a second hold is reported again"
     );
 }
 
 #[test]
-fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
-    let mut dialogue = run_until_guarded();
+fn the_reason_of_a_hold_is_printed_even_if_stand_arrives_before_it_is_written() {
+    let mut dialogue = run_until_guard_holds();
     dialogue.board.send(b"stand\r");
     dialogue.run_without_reader(3);
     let printed_lines = dialogue.read_lines();
@@ -173,32 +176,32 @@ fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
     assert_eq!(printed_lines[1], "ok stand");
     assert!(!dialogue.has_output());
     dialogue.run_frames(3);
-    assert_eq!(dialogue.status("guard"), "clear");
+    assert_eq!(dialogue.status_value("guard"), "clear");
 }
 
 #[test]
-fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
+fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
     // Every line is read as soon as it is written, until the first line of the help.
     let mut printed_lines = Vec::new();
-    let mut reads_gaits_line = |dialogue: &mut Dialogue| {
+    let mut read_line_and_match_gaits = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
             assert_eq!(dialogue.main.step(&mut dialogue.board), Step::Worked);
         }
         printed_lines.push(core::mem::take(&mut dialogue.board.transmitter.text));
         printed_lines
             .last()
-            .expect("a line")
+            .expect("a line has been read")
             .starts_with("# gaits: ")
     };
-    while !reads_gaits_line(&mut dialogue) {}
-    // From here nobody reads. Meanwhile the guard stops the robot, an edge comes late, and a report is due.
+    while !read_line_and_match_gaits(&mut dialogue) {}
+    // From here on, nobody reads. Meanwhile the guard stops the robot, a pulse edge comes late, and a report is due.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late_edges = 1;
     dialogue.run_without_reader(1);
-    let later_lines = dialogue.read_lines();
+    let remaining_lines = dialogue.read_lines();
     let expected_starts = [
         "# lizard ",
         "# calibration: ",
@@ -212,7 +215,7 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
         "# held ",
         "# t=200 pose=",
     ];
-    printed_lines.extend(later_lines);
+    printed_lines.extend(remaining_lines);
     assert_eq!(
         printed_lines.len(),
         expected_starts.len(),
@@ -226,15 +229,15 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
 #[test]
 fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
     let unsafe_pose = "pose 95 90 309.64 226.18";
-    for line in ["sway", "sway left", "stop", NEUTRAL, unsafe_pose] {
+    for line in ["sway", "sway left", "stop", NEUTRAL_COMMAND, unsafe_pose] {
         let mut dialogue = wake_odd_robot();
         dialogue.expect_accepted("rest");
         dialogue.expect_refused(line, "7 servos are resting, send stand first");
         for _ in 0..50 {
-            assert_eq!(dialogue.frame(), Pulses::default(), "{line}");
+            assert_eq!(dialogue.run_frame(), Pulses::default(), "{line}");
         }
-        assert_eq!(dialogue.status("gait"), "rest");
-        // Commands that move nothing are still obeyed, and errors are still reported.
+        assert_eq!(dialogue.status_value("gait"), "rest");
+        // Commands that move no servo are still obeyed, and errors are still reported.
         for line in ["speed 50", "watch 0", "rest", "help"] {
             dialogue.expect_accepted(line);
         }
@@ -242,12 +245,18 @@ fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
         dialogue.expect_refused("dance", "1 ");
         dialogue.expect_accepted("stand");
         dialogue.run_frames(25);
-        assert!(dialogue.frame().0.iter().all(|width| *width > Width(0)));
+        assert!(
+            dialogue
+                .run_frame()
+                .0
+                .iter()
+                .all(|width| *width > PulseWidth(0))
+        );
     }
 }
 
 #[test]
-fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
+fn the_travel_of_a_pose_is_checked_before_its_margins() {
     let mut dialogue = wake_odd_robot();
     dialogue.expect_refused("pose 400 1 1 1", "3 A1 reaches 61.37..215.36");
     dialogue.expect_refused("pose 132 47 200 226", "3 A3 reaches 235.64..18.64");
@@ -256,16 +265,16 @@ fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
         message.starts_with("err 4 ") || message.starts_with("err 5 "),
         "{message}"
     );
-    assert_eq!(dialogue.status("gait"), "stand");
+    assert_eq!(dialogue.status_value("gait"), "stand");
 }
 
 #[test]
-fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
+fn an_accepted_pose_is_reached_and_reported_to_a_hundredth_of_a_degree() {
     let mut dialogue = wake_odd_robot();
     for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
         let line = format!("pose {pose}");
         dialogue.expect_accepted(&line);
         dialogue.run_frames(120);
-        assert_eq!(dialogue.status("pose"), pose.replace(' ', ","));
+        assert_eq!(dialogue.status_value("pose"), pose.replace(' ', ","));
     }
 }

@@ -1,5 +1,5 @@
-//! Simulates every command sent at one rate and read at another, to find the lines that the robot would misread
-//! as commands.
+//! Simulates every command sent at one baud rate and read at another, to find the lines that the robot would misread
+//! as other commands.
 //!
 //! The serial line is modelled bit by bit: a receiver starts at a falling edge and samples the middle of each
 //! of its own bits. The search visits every state that sender and receiver can reach together, so it covers
@@ -12,31 +12,31 @@ use std::string::String;
 use std::vec::Vec;
 use std::{println, vec};
 
-use automaton::{GAITS, LineAutomaton};
+use automaton::{GAIT_NAMES, LineAutomaton};
 
 use super::MIN_COMMAND_BYTES;
 use crate::console::word::Word;
-use crate::numbers::rate::Rate;
+use crate::numbers::rate::BaudRate;
 
-/// Largest error of the sender's clock, as a share.
-const CLOCK_ERROR: f64 = 0.02;
+/// The largest relative error of the sender's clock.
+const MAX_CLOCK_ERROR: f64 = 0.02;
 
-/// Earliest and latest point, as shares of a bit, at which a receiver with eight samples per bit reads it: the
-/// start bit is detected up to one sample late, and the majority of the samples 4, 5 and 6 counts.
-const BIT_MIDDLE: [f64; 2] = [0.5, 0.625];
+/// The earliest and the latest sample point, as fractions of a bit, of a receiver with eight samples per bit: it
+/// detects the start bit up to one sample late, and reads the majority of the samples 4, 5 and 6.
+const SAMPLE_POINT_RANGE: [f64; 2] = [0.5, 0.625];
 
-/// A receiver's reading of a line so far.
+/// A receiver's reading of a line so far. The states are those of the automaton of accepted lines.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum LineReading {
-    /// The beginning of a command, or all of it.
+    /// A command, or the beginning of one, that leads to this state.
     CommandPrefix(usize),
-    /// The beginning of a command in this state, followed by this many bytes that continue no command.
+    /// The beginning of a command that leads to this state, followed by this many bytes that continue no command.
     Mismatch(usize, u8),
     /// A line with a garbled byte.
     Garbled,
-    /// A line of unknown content: a backspace deleted a byte, and the state before that byte is ambiguous.
+    /// A line of unknown content: a backspace has deleted a byte, and the state before that byte is ambiguous.
     Deleted,
-    /// A command with its line end, in this state; `usize::MAX` if its content is unknown.
+    /// A command with its line end; the state before the line end, or `usize::MAX` if the content is unknown.
     CompleteCommand(usize),
 }
 
@@ -69,17 +69,19 @@ impl LineReading {
     }
 }
 
-/// A graph of the bits that a sender may send: the line's level at each, and the bits that may follow it. Bit 0 is
-/// the idle line; each byte of the text has ten bits, a start bit first.
+/// A graph of the bits that a sender may send. Bit 0 is the idle line; each byte of the text has ten bits, a start bit
+/// first.
 struct BitGraph {
+    /// The level of the serial line during each bit; true is high, as when idle.
     levels: Vec<bool>,
-    next: Vec<Vec<usize>>,
+    /// The bits that may follow each bit.
+    successors: Vec<Vec<usize>>,
     /// The start bits of the bytes with which a text may begin.
     first_start_bits: Vec<usize>,
 }
 
 impl BitGraph {
-    /// The bits of a text sent without pauses, and silence after its end.
+    /// The bits of a line that the automaton accepts, sent without pauses, and the idle line after its end.
     fn of(automaton: &LineAutomaton) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
         for (state, transitions) in automaton.transitions.iter().enumerate() {
@@ -90,26 +92,26 @@ impl BitGraph {
             );
         }
         // CR, LF, or both.
-        let return_state = automaton.transitions.len();
+        let state_after_cr = automaton.transitions.len();
         for end_state in &automaton.accepting_states {
             bytes.extend([
                 (*end_state, b'\n', None),
                 (*end_state, b'\r', None),
-                (*end_state, b'\r', Some(return_state)),
+                (*end_state, b'\r', Some(state_after_cr)),
             ]);
         }
-        bytes.push((return_state, b'\n', None));
+        bytes.push((state_after_cr, b'\n', None));
         let mut graph = Self {
             levels: vec![true],
-            next: vec![vec![0]],
+            successors: vec![vec![0]],
             first_start_bits: Vec::new(),
         };
         let start_bit_of = |index: usize| 1 + 10 * index;
-        let followers_of = |state: usize| {
+        let start_bits_after = |state: usize| {
             let following_bytes = bytes
                 .iter()
                 .enumerate()
-                .filter(move |(_, byte)| byte.0 == state);
+                .filter(move |(_, (from_state, ..))| *from_state == state);
             following_bytes
                 .map(|(index, _)| start_bit_of(index))
                 .collect::<Vec<_>>()
@@ -120,58 +122,61 @@ impl BitGraph {
                 .levels
                 .extend((0..10).map(|bit| frame_bits >> bit & 1 == 1));
             graph
-                .next
+                .successors
                 .extend((1..10).map(|bit| vec![start_bit_of(index) + bit]));
-            graph.next.push(next_state.map_or(vec![0], followers_of));
+            graph
+                .successors
+                .push(next_state.map_or(vec![0], start_bits_after));
         }
-        graph.first_start_bits = followers_of(LineAutomaton::START);
+        graph.first_start_bits = start_bits_after(LineAutomaton::START);
         graph
     }
 
-    /// The bits of any 7-bit bytes in any order, with or without pauses.
+    /// The bits of any sequence of 7-bit bytes, with or without pauses between them.
     fn with_any_bytes() -> Self {
         let mut automaton = LineAutomaton::new();
         automaton.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
         let mut graph = Self::of(&automaton);
-        graph.next[0].extend(graph.first_start_bits.clone());
+        graph.successors[0].extend(graph.first_start_bits.clone());
         for index in 0..0x80 {
-            graph.next[10 + 10 * index].push(0);
+            graph.successors[10 + 10 * index].push(0);
         }
         graph
     }
 }
 
-/// The bits of the sender that a receiver samples, counted from the start edge: for every difference of the
-/// clocks and every position of the middle.
-fn sampled_bits(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
-    // The rate that the chip's divider can produce, as in src/board/serial.rs.
+/// The times at which a receiver may sample the ten bits of a byte, in whole bits of the sender after the start edge:
+/// one array for each clock error and each sample point.
+fn possible_sample_times(sender: BaudRate, receiver: BaudRate) -> BTreeSet<[usize; 10]> {
+    // The nearest rate that the chip's divider can produce, as in src/board/serial.rs.
     let chip_baud = 2e6 / (2e6 / f64::from(receiver.baud())).round();
     let ratio = f64::from(sender.baud()) / chip_baud;
-    let mut samples = BTreeSet::new();
+    let mut sample_times = BTreeSet::new();
     for clock_step in 0..=400 {
-        let ratio = ratio * (1.0 + CLOCK_ERROR * (f64::from(clock_step) / 200.0 - 1.0));
-        for middle_step in 0..=32 {
-            let middle =
-                BIT_MIDDLE[0] + (BIT_MIDDLE[1] - BIT_MIDDLE[0]) * f64::from(middle_step) / 32.0;
-            samples.insert(core::array::from_fn(|bit| {
-                ((bit as f64 + middle) * ratio) as usize
+        let ratio = ratio * (1.0 + MAX_CLOCK_ERROR * (f64::from(clock_step) / 200.0 - 1.0));
+        for sample_point_step in 0..=32 {
+            let sample_point = SAMPLE_POINT_RANGE[0]
+                + (SAMPLE_POINT_RANGE[1] - SAMPLE_POINT_RANGE[0]) * f64::from(sample_point_step)
+                    / 32.0;
+            sample_times.insert(core::array::from_fn(|bit| {
+                ((bit as f64 + sample_point) * ratio) as usize
             }));
         }
     }
-    samples
+    sample_times
 }
 
-/// A receiver's reading, and the bit that the sender sends at that time.
+/// A receiver's reading, and the bit of the graph that the sender is sending.
 type ReceiverState = (LineReading, usize);
 
-/// Reads a byte from each of these start edges; returns the states after it.
+/// Reads a byte from each of these start edges; returns all possible states after it.
 fn read_byte(
-    edges: &BTreeSet<ReceiverState>,
+    start_edges: &BTreeSet<ReceiverState>,
     graph: &BitGraph,
     automaton: &LineAutomaton,
     sample_times: [usize; 10],
 ) -> BTreeSet<ReceiverState> {
-    let mut current: BTreeSet<(LineReading, usize, u16)> = edges
+    let mut current_states: BTreeSet<(LineReading, usize, u16)> = start_edges
         .iter()
         .map(|(reading, bit_index)| (*reading, *bit_index, 0))
         .collect();
@@ -181,11 +186,11 @@ fn read_byte(
             time += 1;
             let advance = |(reading, bit_index, level_bits): &(LineReading, usize, u16)| {
                 let (reading, level_bits) = (*reading, *level_bits);
-                graph.next[*bit_index]
+                graph.successors[*bit_index]
                     .iter()
-                    .map(move |next| (reading, *next, level_bits))
+                    .map(move |next_bit| (reading, *next_bit, level_bits))
             };
-            current = current.iter().flat_map(advance).collect();
+            current_states = current_states.iter().flat_map(advance).collect();
         }
         let sample = |(reading, bit_index, level_bits)| {
             (
@@ -194,7 +199,7 @@ fn read_byte(
                 level_bits | u16::from(graph.levels[bit_index]) << bit,
             )
         };
-        current = current
+        current_states = current_states
             .into_iter()
             .map(sample)
             .filter(|(.., level_bits)| level_bits & 1 == 0)
@@ -209,30 +214,31 @@ fn read_byte(
         };
         (reading.after_byte(byte, automaton), bit_index)
     };
-    current.into_iter().map(finish_byte).collect()
+    current_states.into_iter().map(finish_byte).collect()
 }
 
 /// The start edges that can follow these states.
-fn edges_from(states: BTreeSet<ReceiverState>, graph: &BitGraph) -> BTreeSet<ReceiverState> {
-    let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
+fn start_edges_after(states: BTreeSet<ReceiverState>, graph: &BitGraph) -> BTreeSet<ReceiverState> {
+    let (mut visited, mut start_edges) = (BTreeSet::new(), BTreeSet::new());
     let mut to_visit: Vec<ReceiverState> = states.into_iter().collect();
     while let Some((reading, bit_index)) = to_visit.pop() {
         if !visited.insert((reading, bit_index)) {
             continue;
         }
-        for next in &graph.next[bit_index] {
-            if graph.levels[bit_index] && !graph.levels[*next] {
-                edges.insert((reading, *next));
+        for next_bit in &graph.successors[bit_index] {
+            if graph.levels[bit_index] && !graph.levels[*next_bit] {
+                start_edges.insert((reading, *next_bit));
             } else {
-                to_visit.push((reading, *next));
+                to_visit.push((reading, *next_bit));
             }
         }
     }
-    edges
+    start_edges
 }
 
-/// The commands that a receiver can read at another rate, over all states that it can reach.
-fn find_readable_commands(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
+/// Finds the commands that a receiver can read from a sender, over all states that both can reach together. Each
+/// command is given by its last state.
+fn find_readable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usize> {
     let (graph, automaton) = (
         BitGraph::of(&LineAutomaton::all_commands()),
         LineAutomaton::accepted_lines(),
@@ -248,7 +254,7 @@ fn find_readable_commands(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
     let (mut visited, mut commands) = (to_visit.clone(), BTreeSet::new());
     while !to_visit.is_empty() {
         let mut end_states = BTreeSet::new();
-        for sample_times in sampled_bits(sender, receiver) {
+        for sample_times in possible_sample_times(sender, receiver) {
             end_states.extend(read_byte(&to_visit, &graph, &automaton, sample_times));
         }
         end_states.retain(|(reading, _)| match reading {
@@ -258,7 +264,7 @@ fn find_readable_commands(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
             }
             _ => true,
         });
-        to_visit = edges_from(end_states, &graph);
+        to_visit = start_edges_after(end_states, &graph);
         to_visit.retain(|state| visited.insert(*state));
     }
     println!(
@@ -270,33 +276,33 @@ fn find_readable_commands(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
     commands
 }
 
-/// The pairs (sender, receiver) of different rates whose sender is the faster one, or the slower one if `is_faster`
-/// is false.
-fn rate_pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
-    let senders = Rate::ALL.into_iter();
-    let pairs = senders.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));
+/// The pairs (sender, receiver) of different rates whose sender is the faster one if `is_sender_faster` is true, and
+/// the slower one otherwise.
+fn rate_pairs(is_sender_faster: bool) -> impl Iterator<Item = (BaudRate, BaudRate)> {
+    let senders = BaudRate::ALL.into_iter();
+    let pairs = senders.flat_map(|sender| BaudRate::ALL.map(|receiver| (sender, receiver)));
     pairs.filter(move |(sender, receiver)| {
-        sender != receiver && (sender.baud() > receiver.baud()) == is_faster
+        sender != receiver && (sender.baud() > receiver.baud()) == is_sender_faster
     })
 }
 
 #[test]
-fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
+fn a_receiver_faster_than_the_sender_reads_no_line_end_in_any_bytes() {
     let graph = BitGraph::with_any_bytes();
     let automaton = LineAutomaton::accepted_lines();
     for (sender, receiver) in rate_pairs(false) {
-        let edges: BTreeSet<ReceiverState> = (0..graph.levels.len())
+        let start_edges: BTreeSet<ReceiverState> = (0..graph.levels.len())
             .filter(|state| graph.levels[*state])
             .flat_map(|state| {
-                graph.next[state]
+                graph.successors[state]
                     .iter()
-                    .filter(|next| !graph.levels[**next])
+                    .filter(|next_bit| !graph.levels[**next_bit])
             })
             .map(|state| (LineReading::Garbled, *state))
             .collect();
-        assert!(edges.len() > 128);
-        for sample_times in sampled_bits(sender, receiver) {
-            let end_states = read_byte(&edges, &graph, &automaton, sample_times);
+        assert!(start_edges.len() > 128);
+        for sample_times in possible_sample_times(sender, receiver) {
+            let end_states = read_byte(&start_edges, &graph, &automaton, sample_times);
             let is_line_end_read = end_states
                 .iter()
                 .any(|(reading, _)| *reading == LineReading::CommandPrefix(LineAutomaton::START));
@@ -306,7 +312,7 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
 }
 
 #[test]
-fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
+fn a_receiver_slower_than_the_sender_misreads_lines_only_as_words_too_short_to_be_obeyed() {
     let mut automaton = LineAutomaton::accepted_lines();
     let words = Word::ALL.iter().map(|word| word.text());
     let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
@@ -326,10 +332,10 @@ fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
 #[test]
 fn every_command_is_read_at_its_own_rate() {
     let mut automaton = LineAutomaton::accepted_lines();
-    for rate in Rate::ALL {
+    for rate in BaudRate::ALL {
         let commands = find_readable_commands(rate, rate);
         let words = Word::ALL.iter().map(|word| word.text());
-        for word in GAITS.iter().map(String::as_str).chain(words) {
+        for word in GAIT_NAMES.iter().map(String::as_str).chain(words) {
             let end_state = automaton.add_word(word);
             let argument_state = automaton.transitions[end_state][&b' '];
             let is_read = commands.contains(&end_state) || commands.contains(&argument_state);

@@ -1,32 +1,32 @@
-//! Wrong bytes, commands and pauses, in all orders.
+//! Tests of the rate finder with wrong bytes, commands and pauses.
 
 use super::*;
-use crate::console::line::GARBLED;
+use crate::console::line::GARBLED_BYTE;
 
-/// Gives a finder these bytes and a pause; returns the rate it changes to, if any.
-fn feed_and_pause(finder: &mut RateFinder, bytes: &[u8]) -> Option<Rate> {
+/// Gives a finder these bytes and then a pause; returns the rate to which it changes, if any.
+fn feed_and_pause(finder: &mut RateFinder, bytes: &[u8]) -> Option<BaudRate> {
     for byte in bytes {
         finder.note_byte(*byte);
-        // A frame in which a byte came is no pause.
+        // A frame in which a byte arrives is no pause.
         assert_eq!(finder.end_frame(), None);
     }
     finder.end_frame()
 }
 
 #[test]
-fn wrong_bytes_lead_through_all_rates_and_back_to_that_of_usb() {
-    let mut finder = RateFinder::new(Rate::Fastest);
+fn wrong_bytes_lead_through_all_rates_in_a_cycle() {
+    let mut finder = RateFinder::new(BaudRate::Fastest);
     let mut tried_rates = std::vec::Vec::new();
     for _ in 0..5 {
-        assert_eq!(feed_and_pause(&mut finder, &[GARBLED; 3]), None);
-        tried_rates.extend(feed_and_pause(&mut finder, &[0x80]).map(Rate::baud));
+        assert_eq!(feed_and_pause(&mut finder, &[GARBLED_BYTE; 3]), None);
+        tried_rates.extend(feed_and_pause(&mut finder, &[0x80]).map(BaudRate::baud));
     }
     assert_eq!(tried_rates, [57_600, 38_400, 9_600, 115_200, 57_600]);
 }
 
 #[test]
-fn text_of_any_kind_and_length_changes_no_rate() {
-    let mut finder = RateFinder::new(Rate::Third);
+fn ascii_text_of_any_length_never_changes_the_rate() {
+    let mut finder = RateFinder::new(BaudRate::Third);
     for _ in 0..1000 {
         let text: std::vec::Vec<u8> = (0..0x80).collect();
         assert_eq!(feed_and_pause(&mut finder, &text), None);
@@ -35,39 +35,46 @@ fn text_of_any_kind_and_length_changes_no_rate() {
 
 #[test]
 fn a_rate_that_has_carried_a_command_survives_31_wrong_bytes() {
-    let mut finder = RateFinder::new(Rate::Slowest);
+    let mut finder = RateFinder::new(BaudRate::Slowest);
     for _ in 0..100 {
         assert!(finder.note_command(4));
-        assert_eq!(feed_and_pause(&mut finder, &[GARBLED; 31]), None);
+        assert_eq!(feed_and_pause(&mut finder, &[GARBLED_BYTE; 31]), None);
     }
-    assert_eq!(feed_and_pause(&mut finder, &[GARBLED]), Some(Rate::Fastest));
     assert_eq!(
-        feed_and_pause(&mut finder, &[GARBLED; 4]),
-        Some(Rate::Half),
-        "a guess stands 3"
+        feed_and_pause(&mut finder, &[GARBLED_BYTE]),
+        Some(BaudRate::Fastest)
+    );
+    assert_eq!(
+        feed_and_pause(&mut finder, &[GARBLED_BYTE; 4]),
+        Some(BaudRate::Half),
+        "a guessed rate survives only 3 wrong bytes"
     );
 }
 
 #[test]
-fn noise_without_a_pause_changes_the_rate_once_it_pauses() {
-    let mut finder = RateFinder::new(Rate::Fastest);
+fn long_noise_changes_the_rate_once_in_the_pause_after_it() {
+    let mut finder = RateFinder::new(BaudRate::Fastest);
     assert_eq!(
-        feed_and_pause(&mut finder, &[GARBLED; 10_000]),
-        Some(Rate::Half)
+        feed_and_pause(&mut finder, &[GARBLED_BYTE; 10_000]),
+        Some(BaudRate::Half)
     );
-    assert_eq!(feed_and_pause(&mut finder, &[]), None, "and once only");
+    assert_eq!(
+        feed_and_pause(&mut finder, &[]),
+        None,
+        "the rate changes only once"
+    );
 }
 
 #[test]
-fn a_guessed_rate_is_not_confirmed_by_a_word_of_three_letters() {
-    for rate in Rate::ALL {
+fn a_guessed_rate_is_not_confirmed_by_a_command_of_three_bytes() {
+    for rate in BaudRate::ALL {
         let mut finder = RateFinder::new(rate);
-        let is_of_usb = rate == Rate::Fastest;
-        assert_eq!(finder.note_command(3), is_of_usb, "{rate:?}");
+        let is_usb_rate = rate == BaudRate::Fastest;
+        assert_eq!(finder.note_command(3), is_usb_rate, "{rate:?}");
         assert!(finder.note_command(4));
         for _ in 0..3 {
-            // Noise that does not change the rate does not make it a guess again.
-            assert_eq!(feed_and_pause(&mut finder, &[GARBLED; 31]), None);
+            // Noise that does not change the rate does not turn it into a guess again.
+            assert_eq!(feed_and_pause(&mut finder, &[GARBLED_BYTE; 31]), None);
             assert!(finder.note_command(1), "{rate:?} has carried a command");
         }
     }

@@ -1,5 +1,5 @@
-//! Changes the settings of the servos. A change takes effect at once. It is refused if the robot could
-//! no longer walk all gaits, or no longer keep its present pose or target.
+//! Changes of the servos' settings. A change takes effect at once. It is refused if some gait, the present pose or the
+//! target would then be outside a servo's travel.
 
 use super::Control;
 use crate::control::order::Setting;
@@ -9,39 +9,39 @@ use crate::numbers::calibration::Calibration;
 use crate::numbers::part::Servo;
 
 impl Control {
-    /// Changes a setting of a servo.
+    /// Changes a setting of a servo, or refuses to and changes nothing.
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
         let mut settings = self.settings;
-        let mut adjustment = settings.servo(servo);
+        let mut adjustment = settings.adjustment(servo);
         match setting {
             Setting::Trim(trim) => adjustment.trim = trim,
             Setting::Direction(is_direct) => adjustment.set_direct(is_direct),
             Setting::Scale(scale) => adjustment.set_scale(scale),
             Setting::Limit(clockwise, counter_clockwise) => {
-                let neutral = self.motion.robot().neutral_of(servo);
-                adjustment.min = neutral.sweep_to(clockwise);
-                adjustment.max = neutral.sweep_to(counter_clockwise);
+                let neutral = self.motion.robot().neutral_angle_of(servo);
+                adjustment.travel_min = neutral.sweep_to(clockwise);
+                adjustment.travel_max = neutral.sweep_to(counter_clockwise);
             }
         }
-        settings.set_servo(servo, adjustment);
+        settings.set_adjustment(servo, adjustment);
         self.replace_settings(&settings)
     }
 
-    /// Replaces all settings.
+    /// Replaces all settings, or refuses to and changes nothing.
     #[inline(never)]
     pub(super) fn replace_settings(&mut self, settings: &Settings) -> Result<(), Refusal> {
-        let mut calibration = *self.motion.calibration();
+        let mut calibrations = *self.motion.calibration();
         for servo in Servo::all() {
-            let new_calibration = servo.of_mut(&mut calibration);
+            let new_calibration = servo.of_mut(&mut calibrations);
             *new_calibration = settings.calibration(servo, self.motion.robot());
             self.check_gaits(servo, new_calibration)?;
         }
         for servo in Servo::all() {
-            self.check_poses(servo, servo.of(&calibration))?;
+            self.check_poses(servo, servo.of(&calibrations))?;
         }
         self.settings = *settings;
-        self.motion.calibrate_all(&calibration);
+        self.motion.calibrate_all(&calibrations);
         self.motion.settle();
         Ok(())
     }
@@ -49,7 +49,12 @@ impl Control {
     /// Checks that no gait leaves a servo's travel.
     #[inline(never)]
     fn check_gaits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
-        match self.motion.robot().reach(servo).is_within(calibration) {
+        match self
+            .motion
+            .robot()
+            .needed_travel(servo)
+            .is_within(calibration)
+        {
             true => Ok(()),
             false => Err(Refusal::TravelTooNarrow(servo)),
         }
@@ -58,7 +63,7 @@ impl Control {
     /// Checks that the present pose and the target stay within a servo's travel.
     #[inline(never)]
     fn check_poses(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
-        match self.motion.goes_beyond(servo, calibration) {
+        match self.motion.exceeds_travel(servo, calibration) {
             false => Ok(()),
             true => Err(Refusal::PoseOutsideTravel(servo)),
         }

@@ -1,4 +1,4 @@
-//! The state of the robot, as a console reads it.
+//! The state of the robot, as a console reports it.
 
 use super::Control;
 use crate::control::fault::Fault;
@@ -8,7 +8,7 @@ use crate::memory::restart::Cause;
 use crate::memory::settings::Settings;
 use crate::motion::Motion;
 use crate::numbers::gaits::Input;
-use crate::numbers::section::Damage;
+use crate::numbers::section::SectionError;
 
 impl Control {
     /// The robot's motion.
@@ -22,17 +22,17 @@ impl Control {
     }
 
     /// The reason why the flash holds no usable robot; `None` if it holds one.
-    pub const fn damage(&self) -> Option<Damage> {
+    pub const fn damage(&self) -> Option<SectionError> {
         self.damage
     }
 
     /// The state of the saved settings at power-on.
-    pub const fn saved_settings(&self) -> SavedState {
-        self.saved_settings
+    pub const fn saved_state(&self) -> SavedState {
+        self.saved_state
     }
 
-    /// The input that the last step of a routine waited for.
-    pub const fn input(&self) -> Input {
+    /// The input whose contact may end the latest step of a routine.
+    pub const fn awaited_input(&self) -> Input {
         self.contact.input
     }
 
@@ -42,13 +42,13 @@ impl Control {
     }
 
     /// The cause of the last reset.
-    pub const fn cause(&self) -> Cause {
-        self.cause
+    pub const fn reset_cause(&self) -> Cause {
+        self.reset_cause
     }
 
-    /// Resets since power-on; stays at 255.
-    pub const fn resets(&self) -> u8 {
-        self.restarts
+    /// Resets since power-on, at most 255.
+    pub const fn reset_count(&self) -> u8 {
+        self.reset_count
     }
 
     /// The present fault: [`Fault::Guard`] while the guard holds the robot, otherwise the fault of [`Safety`].

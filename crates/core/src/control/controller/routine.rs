@@ -1,4 +1,4 @@
-//! The running routine: steps of robot.toml, one after another, without a person.
+//! The running routine: a sequence of steps from robot.toml that the robot carries out by itself.
 //!
 //! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it earlier.
 //! Every stop and every other motion ends the routine; only an order or `boot` begins one.
@@ -13,23 +13,25 @@ use crate::numbers::gaits::{GaitId, Input, Step};
 pub(super) struct Routine {
     /// The routine's index; the index of `stand` while no routine runs.
     pub id: GaitId,
-    /// The number of the next step.
-    step: u8,
-    /// Rounds that are not over yet, including the present one; 0 for a routine without an end.
+    /// The index of the next step.
+    next_step: u8,
+    /// Rounds that are not complete yet, including the present one; 0 for a routine without an end.
     rounds_left: u16,
-    /// Frames until the step is over; 0 if the end of a gait's count is awaited,
-    /// [`Step::ENDLESS`] if only a contact ends it.
+    /// Frames until the present step ends; 0 if it ends when its gait has completed its cycles, [`Step::ENDLESS`] if
+    /// only a contact ends it.
     frames_left: u16,
 }
 
 impl Routine {
+    /// No running routine.
     pub const NONE: Self = Self {
         id: GaitId::STAND,
-        step: 0,
+        next_step: 0,
         rounds_left: 0,
         frames_left: 0,
     };
 
+    /// True while a routine runs.
     pub fn is_under_way(&self) -> bool {
         self.id != GaitId::STAND
     }
@@ -39,20 +41,25 @@ impl Control {
     /// Begins a gait for `count` cycles, 0 for no limit; or a routine for `count` rounds, 0 for the number in
     /// robot.toml.
     #[inline(never)]
-    pub(super) fn start(&mut self, id: GaitId, count: u16) {
+    pub(super) fn start_gait(&mut self, id: GaitId, count: u16) {
         let gait = self.motion.robot().gait(id);
         self.routine = Routine::NONE;
         if gait.is_routine() {
-            let [_, _, rounds, _] = gait.channels;
+            // A routine stores this number in place of a channel's offset.
+            let [_, _, round_count, _] = gait.channels;
             self.routine.id = id;
-            self.routine.rounds_left = if count == 0 { rounds.offset } else { count };
+            self.routine.rounds_left = if count == 0 {
+                round_count.offset
+            } else {
+                count
+            };
             self.begin_next_step();
         } else {
             self.motion.start_gait(id, count);
         }
     }
 
-    /// Continues the routine after a frame in which the awaited contact had this level.
+    /// Continues the routine after a frame. `is_closed` is the level of the contact that may end the present step.
     #[inline(never)]
     pub(super) fn advance_routine(&mut self, is_closed: bool) {
         if self.motion.hazard().is_some() {
@@ -60,26 +67,28 @@ impl Control {
             return;
         }
         let is_over = match self.routine.frames_left {
-            0 => self.motion.has_ended(),
+            0 => self.motion.has_come_to_standstill(),
             Step::ENDLESS => false,
             _ => {
                 self.routine.frames_left -= 1;
                 self.routine.frames_left == 0
             }
         };
-        if self.contact.count_frame(is_closed) || is_over {
+        if self.contact.add_level(is_closed) || is_over {
             self.begin_next_step();
         }
     }
 
+    /// Begins the next step, or ends the routine after its last round.
     #[inline(never)]
     fn begin_next_step(&mut self) {
         let robot = *self.motion.robot();
         let gait = robot.gait(self.routine.id);
-        let [_, steps, _, first_of_round] = &gait.channels;
-        let mut number = u16::from(self.routine.step);
-        if number >= steps.offset {
-            number = first_of_round.offset;
+        // A routine stores these numbers in place of the channels' offsets.
+        let [_, step_count, _, first_step_of_round] = &gait.channels;
+        let mut step_index = u16::from(self.routine.next_step);
+        if step_index >= step_count.offset {
+            step_index = first_step_of_round.offset;
             if self.routine.rounds_left == 1 {
                 self.routine = Routine::NONE;
                 // The pose of the routine's last rest has to survive a loss of power.
@@ -87,27 +96,27 @@ impl Control {
                     self.rest();
                 }
                 // A gait that is still under way brakes first.
-                if !self.motion.end_gait() {
+                if !self.motion.brake_to_standstill() {
                     self.safety.notify(Notice::Done);
                 }
                 return;
             }
             self.routine.rounds_left = self.routine.rounds_left.saturating_sub(1);
         }
-        let mut step = robot.step(&gait, number);
+        let mut step = robot.step(&gait, step_index);
         let mut input = Input::NONE;
         if step.kind == Step::UNTIL {
             input = robot.input(&step);
-            number += 1;
-            step = robot.step(&gait, number);
+            step_index += 1;
+            step = robot.step(&gait, step_index);
             self.safety.notify(Notice::Waiting);
         }
         let Step {
             kind,
-            gait: index,
+            gait: gait_index,
             count,
         } = step;
-        self.routine.step = number as u8 + 1;
+        self.routine.next_step = step_index as u8 + 1;
         self.routine.frames_left = if kind == Step::CYCLES { 0 } else { count };
         self.contact = if kind == Step::WAIT {
             Contact::waiting_to_close(input)
@@ -117,11 +126,11 @@ impl Control {
         match kind {
             Step::REST => self.motion.rest(),
             Step::WAIT => {
-                self.motion.end_gait();
+                self.motion.brake_to_standstill();
             }
             _ => {
                 let cycles = if kind == Step::CYCLES { count } else { 0 };
-                self.motion.start_gait(GaitId::at(index), cycles);
+                self.motion.start_gait(GaitId::at(gait_index), cycles);
             }
         }
     }

@@ -1,7 +1,7 @@
-//! Every fault, alone and with others.
+//! Tests of every fault, alone and together with others.
 
 use super::*;
-use crate::sample::{HEALTHY, Sample};
+use crate::sample::{HEALTHY_BOARD, Sample};
 
 fn odd_supplies() -> Supplies {
     Sample::odd().supplies()
@@ -14,25 +14,26 @@ fn safety_without_boot() -> Safety {
     safety
 }
 
+/// Checks a frame of a robot that stands still, without a `deadman` time.
 fn check_still_frame(safety: &mut Safety, health: &Health) -> Reaction {
     safety.check_frame(health, &odd_supplies(), State::Still, 0)
 }
 
-/// The health of a board whose chip has a supply of this many volts and whose rail has 6 V.
+/// The health of a board with this supply voltage of the chip, and 6 V at the servos' rail.
 fn health_at(volts: f64) -> Health {
     Health {
         supply: Reading {
             reference: (1.08 / volts * 1024.0) as u16,
             rail: (6.0 / 3.378 * 1.08 / volts * 1024.0) as u16,
         },
-        ..HEALTHY
+        ..HEALTHY_BOARD
     }
 }
 
 /// Takes all pending notices.
 fn take_notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
     let mut notices = std::vec::Vec::new();
-    while let Some(notice) = safety.notice() {
+    while let Some(notice) = safety.next_notice() {
         safety.note_printed(notice);
         notices.push(notice);
     }
@@ -40,13 +41,16 @@ fn take_notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
 }
 
 #[test]
-fn while_all_is_well_no_reaction_and_no_notice_follows() {
+fn a_healthy_board_causes_no_reaction_and_no_notice() {
     let mut safety = safety_without_boot();
     for _ in 0..1000 {
-        assert_eq!(check_still_frame(&mut safety, &HEALTHY), Reaction::None);
+        assert_eq!(
+            check_still_frame(&mut safety, &HEALTHY_BOARD),
+            Reaction::None
+        );
     }
     assert_eq!(safety.fault(), None);
-    assert_eq!(safety.notice(), None);
+    assert_eq!(safety.next_notice(), None);
     assert!(!safety.is_slow() && safety.allows_writing());
 }
 
@@ -59,30 +63,30 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
         assert_eq!(
             safety.response(Event::Save, State::Still),
             Response::Obey,
-            "it waits"
+            "the write waits for the measurement"
         );
         assert_eq!(safety.response(Event::Move, State::Still), Response::Obey);
     }
-    // Here, too, a single reading decides nothing: it takes six.
+    // Writing is allowed after six readings.
     for _ in 0..5 {
-        check_still_frame(&mut safety, &HEALTHY);
+        check_still_frame(&mut safety, &HEALTHY_BOARD);
         assert!(!safety.allows_writing());
     }
-    check_still_frame(&mut safety, &HEALTHY);
+    check_still_frame(&mut safety, &HEALTHY_BOARD);
     assert!(safety.allows_writing());
 }
 
 #[test]
 fn boot_is_requested_once_three_seconds_after_power_on() {
     let mut safety = Safety::default();
-    for number in 1..=1000 {
-        let reaction = check_still_frame(&mut safety, &HEALTHY);
-        let expected = if number == 150 {
+    for frame in 1..=1000 {
+        let reaction = check_still_frame(&mut safety, &HEALTHY_BOARD);
+        let expected_reaction = if frame == 150 {
             Reaction::Boot
         } else {
             Reaction::None
         };
-        assert_eq!(reaction, expected, "{number}");
+        assert_eq!(reaction, expected_reaction, "{frame}");
     }
 }
 
@@ -91,9 +95,9 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
     let boots_after = |disturb: fn(&mut Safety)| {
         let mut safety = Safety::default();
         let mut has_booted = false;
-        for number in 1..=400 {
-            has_booted |= check_still_frame(&mut safety, &HEALTHY) == Reaction::Boot;
-            if number == 100 {
+        for frame in 1..=400 {
+            has_booted |= check_still_frame(&mut safety, &HEALTHY_BOARD) == Reaction::Boot;
+            if frame == 100 {
                 disturb(&mut safety);
             }
         }
@@ -101,7 +105,7 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
     };
     assert!(boots_after(|_| {}));
     assert!(!boots_after(Safety::note_byte));
-    assert!(!boots_after(|safety| safety.record_fault(Fault::Late)));
+    assert!(!boots_after(|safety| safety.record_fault(Fault::LateEdge)));
     assert!(!boots_after(|safety| {
         for _ in 0..6 {
             check_still_frame(safety, &health_at(4.2));
@@ -111,14 +115,14 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
 }
 
 #[test]
-fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner() {
+fn a_gait_ends_once_no_command_has_come_for_the_time_of_deadman_and_no_sooner() {
     let supplies = odd_supplies();
     for deadman_ms in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = safety_without_boot();
         for _ in 0..10 {
             safety.note_command();
             let mut frames = 0;
-            while safety.check_frame(&HEALTHY, &supplies, State::Walking, deadman_ms)
+            while safety.check_frame(&HEALTHY_BOARD, &supplies, State::Walking, deadman_ms)
                 == Reaction::None
             {
                 frames += 1;
@@ -146,35 +150,37 @@ fn without_deadman_or_gait_silence_is_no_fault() {
             (State::Still, 20),
             (State::Resting, 20),
         ] {
-            let reaction = safety.check_frame(&HEALTHY, &supplies, state, deadman_ms);
+            let reaction = safety.check_frame(&HEALTHY_BOARD, &supplies, state, deadman_ms);
             assert_eq!(reaction, Reaction::None);
         }
     }
 }
 
 #[test]
-fn boot_begins_a_gait_that_no_line_ends_before_deadman_has_passed() {
+fn a_gait_that_boot_begins_ends_only_after_the_time_of_deadman() {
     let mut safety = Safety::default();
     let mut state = State::Still;
     let mut boot_frame = 0;
-    for number in 1..400 {
-        match safety.check_frame(&HEALTHY, &odd_supplies(), state, 1000) {
-            Reaction::Boot => (state, boot_frame) = (State::Walking, number),
+    for frame in 1..400 {
+        match safety.check_frame(&HEALTHY_BOARD, &odd_supplies(), state, 1000) {
+            Reaction::Boot => (state, boot_frame) = (State::Walking, frame),
             Reaction::None => {}
             reaction => {
                 assert_eq!(reaction, Reaction::Freeze);
-                assert_eq!((boot_frame, number), (150, 150 + 51));
+                assert_eq!((boot_frame, frame), (150, 150 + 51));
                 return;
             }
         }
     }
-    panic!("it never ends");
+    panic!("the gait never ends");
 }
 
 #[test]
-fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
+fn a_falling_supply_first_forbids_writing_then_stops_the_robot_then_ends_the_pulses() {
     let mut safety = safety_without_boot();
-    let mut run_at = |volts| {
+    // Returns the reaction and the fault after six frames, true if the robot may move, true if the EEPROM may be
+    // written, and the number of notices.
+    let mut observe_at = |volts| {
         let reactions = [(); 6].map(|()| check_still_frame(&mut safety, &health_at(volts)));
         (
             reactions[5],
@@ -185,13 +191,13 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
         )
     };
     let supply_fault = Some(Fault::Supply);
-    assert_eq!(run_at(4.4), (Reaction::None, None, true, false, 1));
+    assert_eq!(observe_at(4.4), (Reaction::None, None, true, false, 1));
     assert_eq!(
-        run_at(4.2),
+        observe_at(4.2),
         (Reaction::Freeze, supply_fault, false, false, 2)
     );
     assert_eq!(
-        run_at(4.0),
+        observe_at(4.0),
         (Reaction::EndPulses, supply_fault, false, false, 2)
     );
 }
@@ -202,25 +208,25 @@ fn each_late_edge_stops_the_robot_and_is_reported() {
     for late_edges in [1, 2, 7, 65_535] {
         let health = Health {
             late_edges,
-            ..HEALTHY
+            ..HEALTHY_BOARD
         };
         assert_eq!(check_still_frame(&mut safety, &health), Reaction::Freeze);
-        assert_eq!(safety.fault(), Some(Fault::Late));
+        assert_eq!(safety.fault(), Some(Fault::LateEdge));
         assert_eq!(take_notices(&mut safety), [Notice::Fault]);
         assert_eq!(
             check_still_frame(&mut safety, &health),
             Reaction::None,
-            "once"
+            "each edge is handled once"
         );
     }
 }
 
 #[test]
-fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
+fn a_stack_in_the_data_stops_the_robot_again_after_every_cleared_fault() {
     let mut safety = safety_without_boot();
     let health = Health {
         is_stack_intact: false,
-        ..HEALTHY
+        ..HEALTHY_BOARD
     };
     for _ in 0..3 {
         assert_eq!(check_still_frame(&mut safety, &health), Reaction::Freeze);
@@ -250,20 +256,20 @@ fn notices_come_once_each_and_in_a_fixed_order() {
     let mut safety = safety_without_boot();
     for notice in [
         Notice::Boot,
-        Notice::Memory,
+        Notice::SavedSettings,
         Notice::Supply,
         Notice::Fault,
-        Notice::NotKept,
+        Notice::RestPoseNotKept,
         Notice::Boot,
     ] {
         safety.notify(notice);
     }
-    let expected = [
-        Notice::Memory,
-        Notice::NotKept,
+    let expected_notices = [
+        Notice::SavedSettings,
+        Notice::RestPoseNotKept,
         Notice::Fault,
         Notice::Supply,
         Notice::Boot,
     ];
-    assert_eq!(take_notices(&mut safety), expected);
+    assert_eq!(take_notices(&mut safety), expected_notices);
 }

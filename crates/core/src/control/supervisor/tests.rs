@@ -1,4 +1,4 @@
-//! The tables as docs/faults.md prints them, and the rules that hold for all their entries.
+//! Tests that docs/faults.md prints the tables, and that all entries of the tables obey some rules.
 
 use std::format;
 use std::string::String;
@@ -6,9 +6,9 @@ use std::vec::Vec;
 
 use super::*;
 
-const DOCS: &str = include_str!("../../../../../docs/faults.md");
+const FAULTS_PAGE: &str = include_str!("../../../../../docs/faults.md");
 
-const SUPPLIES: [(Option<Level>, &str); 5] = [
+const SUPPLY_LEVELS: [(Option<Level>, &str); 5] = [
     (Some(Level::Good), "good"),
     (None, "not measured yet"),
     (Some(Level::Slow), "low"),
@@ -25,10 +25,10 @@ const fn event_text(event: Event) -> &'static str {
         Event::Save => "`save`",
         Event::Boot => "the time of `boot` has come",
         Event::Silence => "no line for as long as `deadman` says",
-        Event::TooLow => "the supply gets too low to move",
-        Event::Empty => "the supply gets too low to hold",
+        Event::TooLowToMove => "the supply gets too low to move",
+        Event::TooLowToHold => "the supply gets too low to hold",
         Event::LateEdge => "an edge of a pulse is late",
-        Event::Stack => "the stack reaches the data",
+        Event::StackOverflow => "the stack reaches the data",
         Event::Unsafe => "the next pose would not be safe",
     }
 }
@@ -47,14 +47,14 @@ fn response_text(response: Response, state: State) -> String {
     }
 }
 
-/// The rows of an event in the table of events: one for each set of supplies with equal reactions.
+/// The rows of an event in the table of events: one for each set of supply levels with equal responses.
 fn rows_of(event: Event) -> Vec<String> {
     let cells_of = |supply| {
         let text_of = |state| response_text(response(event, supply, state), state);
         State::ALL.map(text_of).join(" | ")
     };
     let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
-    for (supply, name) in SUPPLIES {
+    for (supply, name) in SUPPLY_LEVELS {
         let cells = cells_of(supply);
         match groups
             .iter_mut()
@@ -65,7 +65,7 @@ fn rows_of(event: Event) -> Vec<String> {
         }
     }
     let row_of = |(names, cells): &(Vec<&str>, String)| {
-        let supply = if names.len() == SUPPLIES.len() {
+        let supply = if names.len() == SUPPLY_LEVELS.len() {
             "any".into()
         } else {
             names.join(", ")
@@ -81,11 +81,14 @@ fn the_docs_print_the_table_of_events() {
     let header =
         "| what happens | supply | resting | standing, holding, moving to a pose | walking |";
     let table = format!("{header}\n|---|---|---|---|---|\n{}\n", rows.join("\n"));
-    assert!(DOCS.contains(&table), "docs/faults.md wants:\n{table}");
+    assert!(
+        FAULTS_PAGE.contains(&table),
+        "docs/faults.md must contain:\n{table}"
+    );
 }
 
 #[test]
-fn the_docs_print_the_table_of_restarts() {
+fn the_docs_print_the_table_of_resets() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
         for (brown_outs, frequency) in [
@@ -123,13 +126,16 @@ fn the_docs_print_the_table_of_restarts() {
     }
     let header = "| reset | maybe by the supply | nothing known | rested | held | fault |";
     let table = format!("{header}\n|---|---|---|---|---|---|\n{}\n", rows.join("\n"));
-    assert!(DOCS.contains(&table), "docs/faults.md wants:\n{table}");
+    assert!(
+        FAULTS_PAGE.contains(&table),
+        "docs/faults.md must contain:\n{table}"
+    );
 }
 
 #[test]
-fn only_stand_and_boot_give_a_robot_without_pulses_any() {
+fn only_stand_and_boot_give_pulses_to_a_resting_robot() {
     for event in Event::ALL {
-        for (supply, _) in SUPPLIES {
+        for (supply, _) in SUPPLY_LEVELS {
             // `save` is obeyed, too, but moves nothing.
             if response(event, supply, State::Resting) == Response::Obey {
                 assert!(matches!(event, Event::Stand | Event::Boot | Event::Save));
@@ -139,11 +145,17 @@ fn only_stand_and_boot_give_a_robot_without_pulses_any() {
 }
 
 #[test]
-fn the_reaction_never_relaxes_as_the_supply_sinks() {
+fn a_falling_supply_never_allows_what_it_refused_before() {
     for event in [Event::Stand, Event::Move, Event::Save, Event::Boot] {
         for state in State::ALL {
             let is_obeyed = |(supply, _)| response(event, supply, state) == Response::Obey;
-            let are_obeyed = [SUPPLIES[0], SUPPLIES[2], SUPPLIES[3], SUPPLIES[4]].map(is_obeyed);
+            let are_obeyed = [
+                SUPPLY_LEVELS[0],
+                SUPPLY_LEVELS[2],
+                SUPPLY_LEVELS[3],
+                SUPPLY_LEVELS[4],
+            ]
+            .map(is_obeyed);
             assert!(
                 are_obeyed.is_sorted_by(|higher, lower| higher >= lower),
                 "{event:?}"
@@ -153,7 +165,7 @@ fn the_reaction_never_relaxes_as_the_supply_sinks() {
 }
 
 #[test]
-fn servos_wake_only_if_nothing_held_them_and_are_taken_over_only_if_held() {
+fn servos_wake_only_after_power_on_or_an_unknown_state_and_are_taken_over_only_if_held() {
     for cause in Cause::ALL {
         for brown_outs in 0..=BROWN_OUTS_TO_REST {
             for servos_before in ServosBefore::ALL {

@@ -1,4 +1,4 @@
-//! Levels of the supply from readings, frame by frame.
+//! Tests of the supply's level, which follows from the readings frame by frame.
 
 use std::vec::Vec;
 
@@ -7,23 +7,27 @@ use proptest::prelude::*;
 use super::*;
 
 const fn thresholds([slow, stop, rest]: [u16; 3]) -> Thresholds {
-    Thresholds { slow, stop, rest }
+    Thresholds {
+        slow_mv: slow,
+        stop_mv: stop,
+        rest_mv: rest,
+    }
 }
 
 const SUPPLIES: Supplies = Supplies {
-    reference: 1100,
+    reference_mv: 1100,
     board: thresholds([4500, 4300, 4100]),
-    rail_reference: 0,
+    rail_reference_mv: 0,
     rail: thresholds([0; 3]),
 };
 
 const SUPPLIES_WITH_RAIL: Supplies = Supplies {
-    rail_reference: 2200,
+    rail_reference_mv: 2200,
     rail: thresholds([6400, 6200, 6000]),
     ..SUPPLIES
 };
 
-/// The converter's reading of a board at `volts` with a rail at `rail_volts` volts.
+/// The converter's reading if the board has `volts` and the rail has `rail_volts`.
 fn reading_at(volts: f64, rail_volts: f64) -> Reading {
     Reading {
         reference: (1.1 / volts * 1024.0) as u16,
@@ -31,20 +35,21 @@ fn reading_at(volts: f64, rail_volts: f64) -> Reading {
     }
 }
 
-/// Measures a board without a measured rail until its level changes; returns the number of frames, 0 if it has not
-/// changed after 200, and the level.
+/// Adds readings of a board without a measured rail until the level changes. Returns the number of frames, 0 if the
+/// level has not changed after 200 frames, and the level.
 fn measure_board_until_change(supply: &mut Supply, volts: f64) -> (usize, Level) {
     measure_until_change(supply, reading_at(volts, 0.0), &SUPPLIES)
 }
 
-/// Measures until the level changes; returns the number of frames, 0 if it has not changed after 200, and the level.
+/// Adds the same reading until the level changes. Returns the number of frames, 0 if the level has not changed after
+/// 200 frames, and the level.
 fn measure_until_change(
     supply: &mut Supply,
     reading: Reading,
     supplies: &Supplies,
 ) -> (usize, Level) {
     for frame in 1..=200 {
-        if supply.measure(reading, supplies) {
+        if supply.add_reading(reading, supplies) {
             return (frame, supply.level());
         }
     }
@@ -52,31 +57,34 @@ fn measure_until_change(
 }
 
 #[test]
-fn every_voltage_is_printed_with_two_decimals() {
+fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
     for reference in 1..=1023u16 {
         for reference_mv in [1000, 1080, 1100, 1200] {
             let supplies = Supplies {
-                reference: reference_mv,
+                reference_mv,
                 ..SUPPLIES
             };
             let rail = 700;
             let reading = Reading { reference, rail };
-            let exact = 1024.0 * f64::from(reference_mv) / f64::from(reference) / 10.0;
-            let hundredths = Voltage::of_board(reading, &supplies).hundredths();
-            // Higher voltages are printed as 81.91 V.
-            let expected = exact.floor().min(8191.0);
+            let exact_centivolts = 1024.0 * f64::from(reference_mv) / f64::from(reference) / 10.0;
+            let centivolts = Voltage::of_board(reading, &supplies).centivolts();
+            // Higher voltages become 81.91 V.
+            let expected_centivolts = exact_centivolts.floor().min(8191.0);
             assert_eq!(
-                f64::from(hundredths),
-                expected,
+                f64::from(centivolts),
+                expected_centivolts,
                 "{reference} {reference_mv}"
             );
-            let rail_hundredths = Voltage::of_rail(reading, &SUPPLIES_WITH_RAIL).hundredths();
-            let exact = 700.0 * 2200.0 / f64::from(reference) / 10.0;
-            assert_eq!(f64::from(rail_hundredths), exact.floor().min(8191.0));
+            let rail_centivolts = Voltage::of_rail(reading, &SUPPLIES_WITH_RAIL).centivolts();
+            let exact_rail_centivolts = 700.0 * 2200.0 / f64::from(reference) / 10.0;
+            assert_eq!(
+                f64::from(rail_centivolts),
+                exact_rail_centivolts.floor().min(8191.0)
+            );
         }
     }
     let unknown_voltage = Voltage::of_board(Reading::default(), &SUPPLIES);
-    assert_eq!(unknown_voltage.hundredths(), 0);
+    assert_eq!(unknown_voltage.centivolts(), 0);
 }
 
 proptest! {
@@ -101,12 +109,16 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
     }
     let mut supply = Supply::default();
     let change = measure_board_until_change(&mut supply, 3.9);
-    assert_eq!(change, (6, Level::Rest), "all at once, if it falls at once");
+    assert_eq!(
+        change,
+        (6, Level::Rest),
+        "a fall through all levels also takes six frames"
+    );
 }
 
 #[test]
-fn one_reading_decides_nothing_and_six_frames_do() {
-    for (other_volts, odd_volts, level) in [
+fn after_six_worse_readings_the_level_nearest_to_the_present_one_counts() {
+    for (usual_volts, odd_volts, level) in [
         (4.45, 3.5, Level::Slow),
         (4.25, 3.5, Level::Stop),
         (3.5, 4.45, Level::Slow),
@@ -117,9 +129,9 @@ fn one_reading_decides_nothing_and_six_frames_do() {
                 let volts = if frame == odd_frame {
                     odd_volts
                 } else {
-                    other_volts
+                    usual_volts
                 };
-                supply.measure(reading_at(volts, 0.0), &SUPPLIES);
+                supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
             }
             assert_eq!(supply.level(), level, "{odd_volts} V in frame {odd_frame}");
         }
@@ -127,13 +139,13 @@ fn one_reading_decides_nothing_and_six_frames_do() {
 }
 
 #[test]
-fn one_reading_does_not_recover_a_supply_either() {
+fn after_fifty_better_readings_the_level_nearest_to_the_present_one_counts() {
     for odd_frame in 0..50 {
         let mut supply = Supply::default();
         measure_board_until_change(&mut supply, 4.2);
         for frame in 0..50 {
             let volts = if frame == odd_frame { 4.5 } else { 5.0 };
-            supply.measure(reading_at(volts, 0.0), &SUPPLIES);
+            supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
         }
         assert_eq!(supply.level(), Level::Slow, "4.5 V in frame {odd_frame}");
     }
@@ -144,7 +156,7 @@ fn a_short_dip_changes_nothing() {
     let mut supply = Supply::default();
     for _ in 0..100 {
         for volts in [4.0, 4.0, 4.0, 4.0, 4.0, 5.0] {
-            assert!(!supply.measure(reading_at(volts, 0.0), &SUPPLIES));
+            assert!(!supply.add_reading(reading_at(volts, 0.0), &SUPPLIES));
         }
     }
     assert_eq!(supply.level(), Level::Good);
@@ -165,12 +177,12 @@ fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold()
 }
 
 #[test]
-fn a_supply_that_wavers_around_a_threshold_changes_once() {
+fn a_supply_that_wavers_around_a_threshold_changes_its_level_once() {
     let mut supply = Supply::default();
     let mut levels = Vec::new();
     for frame in 0..2000 {
         let volts = if frame % 20 < 10 { 4.47 } else { 4.60 };
-        if supply.measure(reading_at(volts, 0.0), &SUPPLIES) {
+        if supply.add_reading(reading_at(volts, 0.0), &SUPPLIES) {
             levels.push(supply.level());
         }
     }
@@ -180,7 +192,7 @@ fn a_supply_that_wavers_around_a_threshold_changes_once() {
 #[test]
 fn the_worse_of_two_supplies_counts_and_is_reported() {
     let supplies = SUPPLIES_WITH_RAIL;
-    for (board_volts, rail_volts, level, worst_volts) in [
+    for (board_volts, rail_volts, level, worse_volts) in [
         (5.0, 6.6, Level::Good, 5.0),
         (5.0, 6.3, Level::Slow, 6.3),
         (4.25, 6.3, Level::Stop, 4.25),
@@ -189,10 +201,10 @@ fn the_worse_of_two_supplies_counts_and_is_reported() {
         let mut supply = Supply::default();
         measure_until_change(&mut supply, reading_at(board_volts, rail_volts), &supplies);
         assert_eq!(supply.level(), level);
-        let reported_volts = f64::from(supply.worst_voltage(&supplies).hundredths()) / 100.0;
+        let reported_volts = f64::from(supply.worst_voltage(&supplies).centivolts()) / 100.0;
         assert!(
-            (reported_volts - worst_volts).abs() < 0.05,
-            "{reported_volts} {worst_volts}"
+            (reported_volts - worse_volts).abs() < 0.05,
+            "{reported_volts} {worse_volts}"
         );
     }
 }

@@ -1,27 +1,27 @@
-//! Intact sections that would harm a servo or the board: one wrong number at a time, each
-//! next to the nearest harmless one.
+//! Sections with a correct CRC that would harm a servo or the board. One number at a time is wrong; the nearest
+//! harmless value of it is tested, too.
 
 use std::vec::Vec;
 
 use super::*;
-use crate::numbers::calibration::Reach;
-use crate::numbers::section::seal;
+use crate::numbers::calibration::NeededTravel;
+use crate::numbers::section::write_checksum;
 use crate::sample::Sample;
 
-/// A section of the odd robot with changed numbers.
+/// The section of [`Sample::odd`] with changed numbers.
 struct ChangedSection(Vec<u8>);
 
 impl ChangedSection {
     fn new() -> Self {
-        Self(Sample::odd().content.section())
+        Self(Sample::odd().content.section_bytes())
     }
 
-    fn put(mut self, offset: u16, word: u16) -> Self {
+    fn with_word(mut self, offset: u16, word: u16) -> Self {
         self.0[usize::from(offset)..][..2].copy_from_slice(&word.to_le_bytes());
         self
     }
 
-    fn put_byte(mut self, offset: u16, byte: u8) -> Self {
+    fn with_byte(mut self, offset: u16, byte: u8) -> Self {
         self.0[usize::from(offset)] = byte;
         self
     }
@@ -29,97 +29,101 @@ impl ChangedSection {
     /// True if the guard accepts the section.
     fn is_accepted(&self) -> bool {
         let mut section = self.0.clone();
-        seal(&mut section);
+        write_checksum(&mut section);
         match Robot::open(Region::new(&section)) {
             Ok(_) => true,
-            Err(damage) => {
-                assert_eq!(damage, Damage::Impossible);
+            Err(error) => {
+                assert_eq!(error, SectionError::Impossible);
                 false
             }
         }
     }
 }
 
-/// True if the odd robot's section still opens with this word at that offset.
+/// True if the guard accepts the section of [`Sample::odd`] with this word at that offset.
 fn is_accepted_with(offset: u16, word: u16) -> bool {
-    ChangedSection::new().put(offset, word).is_accepted()
+    ChangedSection::new().with_word(offset, word).is_accepted()
 }
 
 #[test]
-fn a_pin_is_free_used_once_and_not_the_rails() {
+fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
     // D0 and D1 are the serial line, D13 is the LED.
-    let is_free = |pin: u8| (2..=12).contains(&pin) || (14..=19).contains(&pin);
+    let is_usable_pin = |pin: u8| (2..=12).contains(&pin) || (14..=19).contains(&pin);
     let other_pins_of = |servo: u16| {
         let pins = Sample::odd().content.pins;
         (0..4)
             .filter(move |index| *index != usize::from(servo))
             .map(move |index| pins[index])
     };
-    for rail in [0, 14, 19] {
+    for rail_pin in [0, 14, 19] {
         for servo in 0..4 {
             for pin in 0..=u8::MAX {
-                let section = ChangedSection::new().put(offset!(rail), rail);
-                let is_accepted = section.put_byte(offset!(pins) + servo, pin).is_accepted();
+                let section = ChangedSection::new().with_word(offset!(rail_pin), rail_pin);
+                let is_accepted = section.with_byte(offset!(pins) + servo, pin).is_accepted();
                 let is_used = other_pins_of(servo)
-                    .chain([rail as u8])
+                    .chain([rail_pin as u8])
                     .any(|other_pin| other_pin == pin);
                 let is_rail_unused =
-                    other_pins_of(servo).all(|other_pin| u16::from(other_pin) != rail);
-                let expected = is_free(pin) && !is_used && is_rail_unused;
+                    other_pins_of(servo).all(|other_pin| u16::from(other_pin) != rail_pin);
+                let is_valid_pin = is_usable_pin(pin) && !is_used && is_rail_unused;
                 assert_eq!(
                     is_accepted,
-                    expected,
-                    "A{} on {pin}, the rail on {rail}",
+                    is_valid_pin,
+                    "A{} on {pin}, the rail on {rail_pin}",
                     servo + 1
                 );
             }
         }
     }
     let pins = Sample::odd().content.pins;
-    for rail in 0..=u8::MAX {
-        let is_valid_rail = (14..=19).contains(&rail) && !pins.contains(&rail);
+    for rail_pin in 0..=u8::MAX {
+        let is_valid_rail = (14..=19).contains(&rail_pin) && !pins.contains(&rail_pin);
         assert_eq!(
-            is_accepted_with(offset!(rail), rail.into()),
-            rail == 0 || is_valid_rail,
-            "{rail}"
+            is_accepted_with(offset!(rail_pin), rail_pin.into()),
+            rail_pin == 0 || is_valid_rail,
+            "{rail_pin}"
         );
     }
 }
 
 #[test]
-fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
+fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits() {
     for servo in 0..4 {
         let is_accepted_with_change = |change: &dyn Fn(&mut Calibration)| {
             let mut content = Sample::odd().content.clone();
             let calibration = &mut content.calibration[servo];
             calibration.gain = 11_395;
-            (calibration.min, calibration.max) = (Sweep(-9_000), Sweep(9_000));
+            (calibration.travel_min, calibration.travel_max) = (Sweep(-9_000), Sweep(9_000));
             change(calibration);
-            ChangedSection(content.section()).is_accepted()
+            ChangedSection(content.section_bytes()).is_accepted()
         };
         assert!(is_accepted_with_change(&|_| {}));
         for min_pulse in [7_999, 8_000] {
             // The shortest pulse is that of the travel's clockwise limit.
-            let move_to_end = |calibration: &mut Calibration| {
+            let set_shortest_pulse = |calibration: &mut Calibration| {
                 let pulse_below_neutral =
-                    calibration.neutral.0 - calibration.pulse(calibration.min);
-                calibration.neutral.0 = min_pulse + pulse_below_neutral;
+                    calibration.neutral_width.0 - calibration.clamped_width(calibration.travel_min);
+                calibration.neutral_width.0 = min_pulse + pulse_below_neutral;
             };
-            assert!(is_accepted_with_change(&move_to_end), "{servo} {min_pulse}");
+            assert!(
+                is_accepted_with_change(&set_shortest_pulse),
+                "{servo} {min_pulse}"
+            );
         }
-        let shorten_too_far = |calibration: &mut Calibration| {
-            let pulse_below_neutral = calibration.neutral.0 - calibration.pulse(calibration.min);
-            calibration.neutral.0 = 7_998 + pulse_below_neutral;
+        let set_too_short_pulse = |calibration: &mut Calibration| {
+            let pulse_below_neutral =
+                calibration.neutral_width.0 - calibration.clamped_width(calibration.travel_min);
+            calibration.neutral_width.0 = 7_998 + pulse_below_neutral;
         };
-        assert!(!is_accepted_with_change(&shorten_too_far), "{servo}");
+        assert!(!is_accepted_with_change(&set_too_short_pulse), "{servo}");
         for (max_pulse, is_tolerated) in [(40_001, true), (40_002, false)] {
-            let move_to_end = |calibration: &mut Calibration| {
+            let set_longest_pulse = |calibration: &mut Calibration| {
                 let pulse_above_neutral =
-                    calibration.pulse(calibration.max) - calibration.neutral.0;
-                calibration.neutral.0 = max_pulse - pulse_above_neutral;
+                    calibration.clamped_width(calibration.travel_max) - calibration.neutral_width.0;
+                calibration.neutral_width.0 = max_pulse - pulse_above_neutral;
             };
             assert_eq!(
-                is_accepted_with_change(&move_to_end),
+                is_accepted_with_change(&set_longest_pulse),
                 is_tolerated,
                 "{servo} {max_pulse}"
             );
@@ -129,22 +133,26 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
             let mut content = Sample::odd().content.clone();
             let [min, max] = travel.map(Sweep);
             let calibration = &mut content.calibration[servo];
-            (calibration.min, calibration.max) = (min, max);
-            content.reach[servo] = Reach { min, max };
+            (calibration.travel_min, calibration.travel_max) = (min, max);
+            content.needed_travel[servo] = NeededTravel { min, max };
             assert_eq!(
-                ChangedSection(content.section()).is_accepted(),
+                ChangedSection(content.section_bytes()).is_accepted(),
                 has_neutral,
                 "{travel:?}"
             );
         }
-        let reach = Sample::odd().content.reach[servo];
+        let reach = Sample::odd().content.needed_travel[servo];
         for (excess, is_within) in [(0, true), (1, false)] {
             assert_eq!(
-                is_accepted_with_change(&|calibration| calibration.min.0 = reach.min.0 + excess),
+                is_accepted_with_change(
+                    &|calibration| calibration.travel_min.0 = reach.min.0 + excess
+                ),
                 is_within
             );
             assert_eq!(
-                is_accepted_with_change(&|calibration| calibration.max.0 = reach.max.0 - excess),
+                is_accepted_with_change(
+                    &|calibration| calibration.travel_max.0 = reach.max.0 - excess
+                ),
                 is_within
             );
         }
@@ -152,15 +160,18 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
 }
 
 #[test]
-fn the_guard_accepts_the_neutral_pose() {
+fn a_section_whose_neutral_pose_is_unsafe_is_refused() {
     for change in 0..3 {
         let mut content = Sample::odd().content.clone();
-        assert!(ChangedSection(content.section()).is_accepted());
+        assert!(ChangedSection(content.section_bytes()).is_accepted());
         match change {
             0 => content.limits.leg.0 = i16::MAX,
             1 => content.limits.type1.0 = i16::MAX,
             _ => content.limits.type2.0 = i16::MAX,
         }
-        assert!(!ChangedSection(content.section()).is_accepted(), "{change}");
+        assert!(
+            !ChangedSection(content.section_bytes()).is_accepted(),
+            "{change}"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Compares the guard's integers with floating point, on random robots at random poses; checks the hazard that
-//! is named at each limit.
+//! Compares the guard's integers with floating point, for random robots in random poses, and checks the hazard that is
+//! reported at each limit.
 
 use std::vec::Vec;
 
@@ -12,34 +12,33 @@ use super::*;
 use crate::numbers::limits::Limits;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Sweep;
-use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15};
-use crate::sample::{Measures, Sample, per_mm, sine};
+use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
+use crate::sample::{Measurements, Sample, sine, steps_per_mm};
 
-/// Random robots, each with several poses, since a robot takes longer to make than to
-/// test.
+/// Random robots, each with several poses, since making a robot takes longer than testing it.
 fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     Sample::random().prop_flat_map(|robot| {
-        let poses = [(); 8].map(|()| robot.pose());
+        let poses = [(); 8].map(|()| robot.any_pose());
         (Just(robot), poses)
     })
 }
 
-/// The largest errors of the integers at a pose.
+/// Upper bounds of the integers' errors at a pose.
 struct Bounds {
     ends: [bounds::EndErrors; 2],
-    /// Errors of the sliders, mm.
+    /// The errors of the slider lengths, mm.
     sliders: [f64; 2],
 }
 
 impl Bounds {
     fn of(robot: &Sample, pose: &Pose) -> Self {
         let [a1, a2, a3, a4] = robot.degrees(pose);
-        let lizard = robot.measures.lizard;
+        let lizard = robot.measurements.lizard;
         let end_errors_of = |index: usize, end, angles| {
             bounds::EndErrors::of(&lizard.end(end), &robot.ends[index], angles)
         };
         let slider_error_of = |index: usize, side| {
-            bounds::slider_error(&lizard.side(side), &robot.content.sides[index])
+            bounds::slider_error(&lizard.side(side), &robot.content.sliders[index])
         };
         Self {
             ends: [
@@ -54,37 +53,40 @@ impl Bounds {
         }
     }
 
-    fn max_of_ends(&self, error_of: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
+    fn max_end_error(&self, error_of: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
         error_of(&self.ends[0]).max(error_of(&self.ends[1]))
     }
 }
 
-/// `Some(true)` if the exact pose keeps all limits by more than the errors, `Some(false)` if it breaks
-/// one by more than the errors, `None` if the errors may change the decision.
+/// Decides in floating point if a pose is safe. Returns `Some(true)` if the pose keeps all limits by more than the
+/// errors, `Some(false)` if it breaks one by more than the errors, and `None` if the errors may change the decision.
 fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
-        // A loop that just fails to close may get a margin from the integers, up to the error's bound.
-        return (bounds.max_of_ends(|end| end.type2) < robot.measures.limits.type2)
+        // For a loop that just fails to close, the integers may return a margin, up to the bound of the error.
+        return (bounds.max_end_error(|end| end.type2) < robot.measurements.limits.type2)
             .then_some(false);
     };
     let exact_poses = [&solution.head, &solution.tail];
-    let is_crossing = |(exact_pose, bound): (&&kinematics::FiveBarPose, &bounds::EndErrors)| {
-        exact_pose.gap.x.abs() <= bound.along
+    let may_be_crossed = |(exact_pose, bound): (&&kinematics::FiveBarPose, &bounds::EndErrors)| {
+        exact_pose.gap.x.abs() <= bound.gap_x
     };
-    if exact_poses.iter().zip(&bounds.ends).any(is_crossing) {
+    if exact_poses.iter().zip(&bounds.ends).any(may_be_crossed) {
         return None;
     }
     // Limits are rounded up to a step, strokes inwards.
-    let step = 1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
+    let step = 1.0
+        / steps_per_mm(robot.content.sliders[0].scale)
+            .min(steps_per_mm(robot.content.sliders[1].scale));
     let shifted_limits = |sign: f64| kinematics::Limits {
-        type2: robot.measures.limits.type2 + sign * (bounds.max_of_ends(|end| end.type2) + Q15),
-        type1: robot.measures.limits.type1
-            + sign * (bounds.max_of_ends(bounds::EndErrors::type1) + Q15),
-        leg: robot.measures.limits.leg + sign * (MAX_DIRECTION_ERROR + Q15),
-        stroke_min: robot.measures.limits.stroke_min
+        type2: robot.measurements.limits.type2
+            + sign * (bounds.max_end_error(|end| end.type2) + Q15_STEP),
+        type1: robot.measurements.limits.type1
+            + sign * (bounds.max_end_error(bounds::EndErrors::type1) + Q15_STEP),
+        leg: robot.measurements.limits.leg + sign * (MAX_DIRECTION_ERROR + Q15_STEP),
+        stroke_min: robot.measurements.limits.stroke_min
             + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
-        stroke_max: robot.measures.limits.stroke_max
+        stroke_max: robot.measurements.limits.stroke_max
             - sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
     };
     if shifted_limits(1.0).is_safe(&solution) {
@@ -111,10 +113,10 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let bars = [&solution.head, &solution.tail][end];
         let bound = &bounds.ends[end];
         let is_leg = index >= 6;
-        if !is_leg && !bound.is_known {
+        if !is_leg && !bound.are_margins_known {
             continue;
         }
-        if index < 2 && bars.gap.x.abs() <= bound.along {
+        if index < 2 && bars.gap.x.abs() <= bound.gap_x {
             continue;
         }
         let exact = if index < 2 && bars.gap.x < 0.0 {
@@ -135,8 +137,8 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         );
     }
     for (index, exact) in [solution.left.d, solution.right.d].into_iter().enumerate() {
-        let length = f64::from(clearance.sliders_sq[index]).sqrt();
-        let error = length / per_mm(robot.content.sides[index].scale) - exact;
+        let length = f64::from(clearance.slider_lengths_sq[index]).sqrt();
+        let error = length / steps_per_mm(robot.content.sliders[index].scale) - exact;
         let max_error = bounds.sliders[index];
         prop_assert!(
             error.abs() <= max_error,
@@ -150,7 +152,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(5_000))]
 
     #[test]
-    fn every_margin_and_slider_uses_its_own_bars_and_servos(
+    fn every_margin_and_slider_length_is_within_its_error_bound(
         (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
@@ -159,7 +161,7 @@ proptest! {
     }
 
     #[test]
-    fn the_decision_is_that_of_floating_point(
+    fn the_decision_is_that_of_floating_point_unless_the_errors_may_change_it(
         (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
@@ -178,7 +180,7 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     for _ in 0..250 {
         let (robot, poses) = robots_with_poses()
             .new_tree(&mut runner)
-            .expect("a pose")
+            .expect("the strategy yields a robot with poses")
             .current();
         let decided_poses = poses
             .iter()
@@ -186,8 +188,8 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
         decided_count += decided_poses.count();
         let standing_bounds = Bounds::of(&robot, &Pose::NEUTRAL);
         let (type2, type1) = (
-            standing_bounds.max_of_ends(|end| end.type2),
-            standing_bounds.max_of_ends(bounds::EndErrors::type1),
+            standing_bounds.max_end_error(|end| end.type2),
+            standing_bounds.max_end_error(bounds::EndErrors::type1),
         );
         assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
         assert!(
@@ -199,20 +201,22 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     assert!(decided_count > 1900, "{decided_count} of 2000");
 }
 
-/// Floating point calls this sample safe, the integers do not: a stroke that ends where the
-/// slider stands is rounded inwards.
+/// In floating point the sample is safe, in integers it is not: its stroke ends just beyond the length at which the
+/// slider stands, and the ends of a stroke are rounded inwards.
 #[test]
-fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
-    let mut measures = Measures::paper();
-    let robot = Sample::new(measures);
+fn a_sample_that_is_safe_only_in_floating_point_does_not_stand_safely() {
+    let mut measurements = Measurements::paper();
+    let robot = Sample::new(measurements);
     assert!(robot.stands_safely());
-    let solution = robot.solve(&Pose::NEUTRAL).expect("it stands");
-    measures.limits.stroke_max = solution.left.s.max(solution.right.s) + 1e-9;
-    assert!(measures.limits.is_safe(&solution));
-    assert!(!Sample::new(measures).stands_safely());
+    let solution = robot
+        .solve(&Pose::NEUTRAL)
+        .expect("the sample has a neutral pose");
+    measurements.limits.stroke_max = solution.left.s.max(solution.right.s) + 1e-9;
+    assert!(measurements.limits.is_safe(&solution));
+    assert!(!Sample::new(measurements).stands_safely());
 }
 
-/// A robot and a clearance far from every limit.
+/// Returns a robot and the clearance of its neutral pose, which is far from every limit.
 fn measure_safe_robot() -> (Sample, Clearance) {
     let robot = Sample::odd();
     let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
@@ -220,7 +224,7 @@ fn measure_safe_robot() -> (Sample, Clearance) {
     (robot, clearance)
 }
 
-/// The ten margins by name and limit, in the order in which they are checked.
+/// The ten margins with their limits, in the order in which they are checked.
 fn margins_with_limits(limits: &Limits) -> [(Margin, Sine); 10] {
     use Servo::{A1, A2, A3, A4};
     [
@@ -257,12 +261,16 @@ fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
 fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
     let (robot, safe_clearance) = measure_safe_robot();
     for (index, side) in Side::ALL.into_iter().enumerate() {
-        let Slider { min, max, .. } = robot.content.sides[index];
+        let Slider {
+            stroke_min: min,
+            stroke_max: max,
+            ..
+        } = robot.content.sliders[index];
         for (length, is_allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
             let mut end_clearance = safe_clearance;
-            end_clearance.sliders_sq[index] = u32::from(length) * u32::from(length);
-            let expected = (!is_allowed).then_some(Hazard::Stroke { side, length });
-            assert_eq!(end_clearance.first_hazard(&robot), expected);
+            end_clearance.slider_lengths_sq[index] = u32::from(length) * u32::from(length);
+            let expected_hazard = (!is_allowed).then_some(Hazard::Stroke { side, length });
+            assert_eq!(end_clearance.first_hazard(&robot), expected_hazard);
         }
     }
 }
@@ -270,11 +278,14 @@ fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
 #[test]
 fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
     let (robot, mut clearance) = measure_safe_robot();
-    let mut expected: Vec<Hazard> = Vec::new();
+    let mut expected_hazards: Vec<Hazard> = Vec::new();
     for (index, side) in Side::ALL.into_iter().enumerate().rev() {
-        clearance.sliders_sq[index] = 100;
-        expected.push(Hazard::Stroke { side, length: 10 });
-        assert_eq!(clearance.first_hazard(&robot).as_ref(), expected.last());
+        clearance.slider_lengths_sq[index] = 100;
+        expected_hazards.push(Hazard::Stroke { side, length: 10 });
+        assert_eq!(
+            clearance.first_hazard(&robot).as_ref(),
+            expected_hazards.last()
+        );
     }
     for (index, (margin, _)) in margins_with_limits(&robot.limits())
         .into_iter()
@@ -283,8 +294,11 @@ fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
     {
         let value = Sine(-1);
         clearance.margins[index] = value;
-        expected.push(Hazard::Margin { margin, value });
-        assert_eq!(clearance.first_hazard(&robot).as_ref(), expected.last());
+        expected_hazards.push(Hazard::Margin { margin, value });
+        assert_eq!(
+            clearance.first_hazard(&robot).as_ref(),
+            expected_hazards.last()
+        );
     }
 }
 
@@ -302,8 +316,9 @@ fn the_smallest_margin_is_found_at_every_index() {
 fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
     let robot = Sample::odd();
     for servo in 0..4 {
-        // Beyond the x axis of the chassis, y is negative in the frame of the leg's five-bar.
-        let neutral_deg = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
+        // The change point is on the x axis of the chassis. Beyond it, the crank's y is negative in the frame of the
+        // leg's five-bar.
+        let neutral_deg = f64::from(robot.neutral_angles()[servo].0) * 360.0 / 65536.0;
         let axis_deg = if (90.0..270.0).contains(&neutral_deg) {
             180.0
         } else {

@@ -1,4 +1,4 @@
-//! Compares the five-bar in integers with the closed form in floating point.
+//! Compares the five-bar's margins in integers with the closed form in floating point.
 
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
@@ -21,46 +21,48 @@ fn any_bars() -> impl Strategy<Value = kinematics::FiveBar> {
         .prop_map(
             |(base, crank_left, coupler_left, coupler_right, crank_right)| kinematics::FiveBar {
                 base,
-                crank_left,
-                coupler_left,
-                coupler_right,
-                crank_right,
+                left_crank_length: crank_left,
+                left_coupler_length: coupler_left,
+                right_coupler_length: coupler_right,
+                right_crank_length: crank_right,
             },
         );
     (unequal_bars, 0u8..3)
         .prop_map(|(bars, variant)| {
             let coupler_right = match variant {
-                0 => bars.coupler_left,
-                1 => bars.coupler_left + bars.base / 500.0,
-                _ => bars.coupler_right,
+                0 => bars.left_coupler_length,
+                1 => bars.left_coupler_length + bars.base / 500.0,
+                _ => bars.right_coupler_length,
             };
             kinematics::FiveBar {
-                coupler_right,
+                right_coupler_length: coupler_right,
                 ..bars
             }
         })
-        .prop_filter("long couplers", |bars| SampleFiveBar::new(bars).is_some())
+        .prop_filter("the couplers are long enough", |bars| {
+            SampleFiveBar::new(bars).is_some()
+        })
 }
 
-fn margins_of(bars: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
+fn margins_of(sample: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
     let [left, right] = [left, right].map(Direction::of);
-    bars.five_bar().margins(&left, &right)
+    sample.five_bar().margins(&left, &right)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn the_margins_are_those_of_the_real_linkage_for_any_bars(
+    fn the_margins_of_any_bars_are_within_their_error_bounds(
         bars in any_bars(),
         left: u16,
         right: u16,
     ) {
         let [left, right] = [left, right].map(Angle);
-        let integers = SampleFiveBar::new(&bars).expect("fits");
-        let actual = margins_of(&integers, left, right);
+        let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
+        let actual = margins_of(&sample, left, right);
         let angles = [left, right].map(degrees);
-        let bound = bounds::EndErrors::of(&bars, &integers, angles);
+        let bound = bounds::EndErrors::of(&bars, &sample, angles);
         let Ok(pose) = bars.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
@@ -70,15 +72,15 @@ proptest! {
         prop_assert!(error <= bound.type2, "type-2 off by {error}: {bound:?}");
         if actual == EndMargins::default() {
             // Margins of zero are reported as "below 0.1", so the true type-2 margin has to be below that.
-            prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
+            prop_assert!(pose.type2 < 0.1, "no margins at a type-2 margin of {}", pose.type2);
         }
-        if !bound.is_known {
+        if !bound.are_margins_known {
             // The tables may have no value here. Then the margin may be too small, or all margins zero.
             return Ok(());
         }
         prop_assert_ne!(actual, EndMargins::default());
         prop_assert!(-error <= bound.type2, "type-2 off by {error}: {bound:?}");
-        if pose.gap.x.abs() > bound.along && pose.type2 > bound.type2 {
+        if pose.gap.x.abs() > bound.gap_x && pose.type2 > bound.type2 {
             prop_assert_eq!(actual.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", actual, pose);
         }
         for (side, actual, exact, bound) in [
@@ -91,10 +93,10 @@ proptest! {
     }
 }
 
-/// Bars with short couplers at a small type-2 margin, where rounding a length by one step turns the couplers most.
-/// A search over random bars found them; their errors exceeded an earlier bound, a guess from trials.
+/// The bars have short couplers at a small type-2 margin, where rounding a length by one step turns the couplers most.
+/// A search over random bars found them; their errors exceeded an earlier bound, which was a guess from trials.
 #[test]
-fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
+fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
     for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, known_error) in [
         (
             [
@@ -121,17 +123,17 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
     ] {
         let bars = kinematics::FiveBar {
             base,
-            crank_left,
-            coupler_left,
-            coupler_right,
-            crank_right,
+            left_crank_length: crank_left,
+            left_coupler_length: coupler_left,
+            right_coupler_length: coupler_right,
+            right_crank_length: crank_right,
         };
-        let integers = SampleFiveBar::new(&bars).expect("fits");
+        let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
         let angles = angles.map(Angle);
-        let actual = margins_of(&integers, angles[0], angles[1]);
+        let actual = margins_of(&sample, angles[0], angles[1]);
         let angles = angles.map(degrees);
-        let bound = bounds::EndErrors::of(&bars, &integers, angles);
-        let pose = bars.forward(angles[0], angles[1]).expect("closes");
+        let bound = bounds::EndErrors::of(&bars, &sample, angles);
+        let pose = bars.forward(angles[0], angles[1]).expect("the loop closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
         // The case still has the error for which it was chosen.
         assert!(error > known_error && pose.type2 > 0.1, "{error}");
@@ -143,43 +145,46 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
 }
 
 #[test]
-fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
-    // Close crank tips and long couplers: their squared distance is small, and its rounding step relatively large.
+fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
+    // The crank tips are close and the couplers long, so the squared distance is small and its rounding relatively
+    // large.
     let bars = kinematics::FiveBar {
         base: 20.0,
-        crank_left: 30.0,
-        coupler_left: 126.0,
-        coupler_right: 126.0,
-        crank_right: 30.0,
+        left_crank_length: 30.0,
+        left_coupler_length: 126.0,
+        right_coupler_length: 126.0,
+        right_crank_length: 30.0,
     };
-    let integers = SampleFiveBar::new(&bars).expect("fits");
-    let (mut sum, mut count) = (0.0, 0.0);
+    let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
+    let (mut error_sum, mut count) = (0.0, 0.0);
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
-        let pose = bars.forward(degrees(left), degrees(right)).expect("closes");
-        let actual = sine(margins_of(&integers, left, right).type2);
+        let pose = bars
+            .forward(degrees(left), degrees(right))
+            .expect("the loop closes");
+        let actual = sine(margins_of(&sample, left, right).type2);
         if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
-            sum += actual - pose.type2;
+            error_sum += actual - pose.type2;
             count += 1.0;
         }
     }
     assert!(count > 100.0);
-    assert!(f64::abs(sum / count) < 3e-4, "{}", sum / count);
+    assert!(f64::abs(error_sum / count) < 3e-4, "{}", error_sum / count);
 }
 
 #[test]
 fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
     let bars = kinematics::FiveBar {
         base: 20.0,
-        crank_left: 30.0,
-        coupler_left: 40.0,
-        coupler_right: 35.0,
-        crank_right: 30.0,
+        left_crank_length: 30.0,
+        left_coupler_length: 40.0,
+        right_coupler_length: 35.0,
+        right_crank_length: 30.0,
     };
-    let bars = SampleFiveBar::new(&bars).expect("fits");
+    let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
     let margins_at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
-        margins_of(&bars, left, right)
+        margins_of(&sample, left, right)
     };
     // Both cranks point outward: their tips are 80 mm apart, more than the couplers reach.
     assert_eq!(margins_at(18_000, 0), EndMargins::default());

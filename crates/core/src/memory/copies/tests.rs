@@ -1,4 +1,4 @@
-//! Saved settings whose writes were cut off or torn, and whose bits flipped.
+//! Tests of saved settings after power cuts, torn bytes and flipped bits.
 
 use std::vec::Vec;
 
@@ -15,52 +15,53 @@ fn odd_robot() -> Sample {
     Sample::odd()
 }
 
-/// The `n`-th of several settings that differ in everything.
+/// Settings that differ in everything for each `n`.
 fn make_settings(robot: &Sample, n: i16) -> Settings {
     let mut settings = Settings::of(robot);
     for servo in Servo::ALL {
-        let mut adjustment = settings.servo(servo);
+        let mut adjustment = settings.adjustment(servo);
         adjustment.trim = Sweep(37 * n - 5 * servo as i16);
-        adjustment.min.0 += n;
-        adjustment.max.0 -= 2 * n;
-        settings.set_servo(servo, adjustment);
+        adjustment.travel_min.0 += n;
+        adjustment.travel_max.0 -= 2 * n;
+        settings.set_adjustment(servo, adjustment);
     }
-    settings.set_deadman(1000 + n as u16);
-    settings.set_boot(Boot::Gait(robot.id("sway left")), robot);
+    settings.set_deadman_ms(1000 + n as u16);
+    settings.set_boot(Boot::Gait(robot.gait_id("sway left")), robot);
     assert_eq!(settings.first_unfit_servo(robot), None);
     settings
 }
 
-/// Saves settings as the console does.
-fn save_all(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
+/// Saves settings as the console does, and returns them with their save number.
+fn save_settings(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     let mut saved_settings = *settings;
-    if let Some(mut writing) = save(&mut saved_settings, eeprom) {
+    if let Some(mut record_write) = save(&mut saved_settings, eeprom) {
         loop {
-            match writing.step(saved_settings.bytes(), eeprom) {
+            match record_write.advance(saved_settings.bytes(), eeprom) {
                 Progress::InProgress => {}
                 Progress::Done => break,
-                Progress::Failed => panic!("worn"),
+                Progress::Failed => panic!("the EEPROM is worn"),
             }
         }
     }
     saved_settings
 }
 
+/// Loads the settings to use, and the state of the saved ones.
 fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot);
-    let outcome = load(robot, eeprom, &mut settings);
-    (settings, outcome)
+    let state = load(robot, eeprom, &mut settings);
+    (settings, state)
 }
 
 /// The settings with save number 0, so that settings of different saves can be compared.
 fn clear_save_number(settings: &Settings) -> Settings {
-    let mut copy = *settings;
-    copy.set_save_number(0);
-    copy
+    let mut comparable_settings = *settings;
+    comparable_settings.set_save_number(0);
+    comparable_settings
 }
 
 #[test]
-fn the_last_of_a_thousand_saves_is_loaded() {
+fn each_of_a_thousand_saves_is_loaded_again() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(
@@ -69,7 +70,7 @@ fn the_last_of_a_thousand_saves_is_loaded() {
     );
     for n in 0..1000 {
         let new_settings = make_settings(&robot, n % 70);
-        let saved_settings = save_all(&new_settings, &mut eeprom);
+        let saved_settings = save_settings(&new_settings, &mut eeprom);
         assert_eq!(
             clear_save_number(&saved_settings),
             clear_save_number(&new_settings)
@@ -86,20 +87,20 @@ fn the_last_of_a_thousand_saves_is_loaded() {
 fn unchanged_bytes_are_not_written_again() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&make_settings(&robot, 3), &mut eeprom);
+    save_settings(&make_settings(&robot, 3), &mut eeprom);
     eeprom.log.clear();
-    save_all(&make_settings(&robot, 3), &mut eeprom);
+    save_settings(&make_settings(&robot, 3), &mut eeprom);
     assert!(eeprom.log.is_empty());
     // A save writes only the bytes that differ from the older copy, which it overwrites.
-    save_all(&make_settings(&robot, 4), &mut eeprom);
+    save_settings(&make_settings(&robot, 4), &mut eeprom);
     eeprom.log.clear();
-    save_all(&make_settings(&robot, 5), &mut eeprom);
+    save_settings(&make_settings(&robot, 5), &mut eeprom);
     assert!(eeprom.log.len() < usize::from(RECORD_BYTES));
     assert!(eeprom.log.iter().all(|(_, old, new)| old != new));
 }
 
-/// The values of a byte after power failed during its write: the erase has raised
-/// some of its bits, or the write lowered some of the erased ones.
+/// The values that a byte may have after a power cut during its write: the erase has set some bits of the old value, or
+/// the write has not cleared all bits of the new one.
 fn torn_values(old: u8, new: u8) -> impl Iterator<Item = u8> {
     (0..=255u8).flat_map(move |ones| [old | ones, new | ones])
 }
@@ -109,14 +110,14 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
     let robot = odd_robot();
     for save_count in 0..4 {
         let mut eeprom = Eeprom::blank();
-        let mut old_outcome = (Settings::of(&robot), SavedState::Blank);
+        let mut old_settings = Settings::of(&robot);
         for n in 0..save_count {
-            save_all(&make_settings(&robot, 10 + n), &mut eeprom);
-            old_outcome = load_settings(&robot, &eeprom);
+            save_settings(&make_settings(&robot, 10 + n), &mut eeprom);
+            (old_settings, _) = load_settings(&robot, &eeprom);
         }
         let bytes_before = *eeprom.bytes();
         eeprom.log.clear();
-        let new_settings = save_all(&make_settings(&robot, 60), &mut eeprom);
+        let new_settings = save_settings(&make_settings(&robot, 60), &mut eeprom);
         assert!(eeprom.log.len() > 10);
         let mut old_count = 0;
         for (write_count, (address, old_byte, new_byte)) in eeprom.log.iter().enumerate() {
@@ -126,13 +127,13 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
             }
             for byte in torn_values(*old_byte, *new_byte) {
                 bytes[usize::from(*address)] = byte;
-                let (settings, outcome) = load_settings(&robot, &Eeprom::with(bytes));
-                if settings == old_outcome.0 {
+                let (settings, state) = load_settings(&robot, &Eeprom::with_bytes(bytes));
+                if settings == old_settings {
                     old_count += 1;
                 } else {
                     assert_eq!(
                         settings, new_settings,
-                        "cut in write {write_count}: {outcome:?}"
+                        "cut in write {write_count}: {state:?}"
                     );
                 }
             }
@@ -145,37 +146,37 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
 fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&make_settings(&robot, 1), &mut eeprom);
-    save_all(&make_settings(&robot, 2), &mut eeprom);
+    save_settings(&make_settings(&robot, 1), &mut eeprom);
+    save_settings(&make_settings(&robot, 2), &mut eeprom);
     let bytes_before = *eeprom.bytes();
     eeprom.log.clear();
-    save_all(&make_settings(&robot, 3), &mut eeprom);
+    save_settings(&make_settings(&robot, 3), &mut eeprom);
     for write_count in 0..eeprom.log.len() {
-        let mut cut_eeprom = Eeprom::with(bytes_before);
+        let mut cut_eeprom = Eeprom::with_bytes(bytes_before);
         for (address, _, byte) in &eeprom.log[..write_count] {
             cut_eeprom.bytes_mut()[usize::from(*address)] = *byte;
         }
-        let new_settings = save_all(&make_settings(&robot, 4), &mut cut_eeprom);
+        let new_settings = save_settings(&make_settings(&robot, 4), &mut cut_eeprom);
         assert_eq!(load_settings(&robot, &cut_eeprom).0, new_settings);
     }
 }
 
 #[test]
-fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
+fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let previous_settings = save_all(&make_settings(&robot, 1), &mut eeprom);
-    let last_settings = save_all(&make_settings(&robot, 2), &mut eeprom);
+    let previous_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
+    let last_settings = save_settings(&make_settings(&robot, 2), &mut eeprom);
     let (mut last_count, mut previous_count) = (0, 0);
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = load_settings(&robot, &Eeprom::with(bytes));
+        let (settings, state) = load_settings(&robot, &Eeprom::with_bytes(bytes));
         if settings == last_settings {
             last_count += 1;
         } else {
             assert_eq!(
-                (settings, outcome),
+                (settings, state),
                 (previous_settings, SavedState::OneCopy),
                 "bit {bit}"
             );
@@ -187,22 +188,22 @@ fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
 }
 
 #[test]
-fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
+fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let only_settings = save_all(&make_settings(&robot, 1), &mut eeprom);
+    let only_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let outcome = load_settings(&robot, &Eeprom::with(bytes));
+        let loaded = load_settings(&robot, &Eeprom::with_bytes(bytes));
         let is_in_content = bit / 8 < 45;
         let is_in_other_copy = (64..109).contains(&(bit / 8));
-        let expected = match (is_in_content, is_in_other_copy) {
+        let expected_loaded = match (is_in_content, is_in_other_copy) {
             (true, _) => (Settings::of(&robot), SavedState::Damaged),
             (_, true) => (only_settings, SavedState::OneCopy),
             _ => (only_settings, SavedState::Latest),
         };
-        assert_eq!(outcome, expected, "bit {bit}");
+        assert_eq!(loaded, expected_loaded, "bit {bit}");
     }
 }
 
@@ -210,29 +211,31 @@ fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
 fn settings_for_other_servos_or_of_another_format_are_not_used() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&make_settings(&robot, 1), &mut eeprom);
+    save_settings(&make_settings(&robot, 1), &mut eeprom);
     let other_robot = robot
         .clone()
-        .with(|content| content.servo_hash ^= 0x0001_0000);
-    let outcome = load_settings(&other_robot, &eeprom);
-    assert_eq!(outcome, (Settings::of(&other_robot), SavedState::Foreign));
+        .with_changes(|content| content.servo_hash ^= 0x0001_0000);
+    let loaded = load_settings(&other_robot, &eeprom);
+    assert_eq!(loaded, (Settings::of(&other_robot), SavedState::Foreign));
     let mut foreign_bytes = *make_settings(&robot, 1).bytes();
     foreign_bytes[0] = 2;
-    save_all(&Settings::from_bytes(foreign_bytes), &mut eeprom);
+    save_settings(&Settings::from_bytes(foreign_bytes), &mut eeprom);
     assert_eq!(load_settings(&robot, &eeprom).1, SavedState::Foreign);
     // Settings saved after that are used.
-    let own_settings = save_all(&make_settings(&other_robot, 5), &mut eeprom);
+    let new_settings = save_settings(&make_settings(&other_robot, 5), &mut eeprom);
     let (loaded_settings, _) = load_settings(&other_robot, &eeprom);
-    assert_eq!(loaded_settings, own_settings);
+    assert_eq!(loaded_settings, new_settings);
 }
 
 #[test]
-fn every_bit_of_the_servos_hash_tells_other_servos() {
+fn every_bit_of_the_servos_hash_distinguishes_other_servos() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    save_all(&make_settings(&robot, 1), &mut eeprom);
+    save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
-        let other_robot = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
+        let other_robot = robot
+            .clone()
+            .with_changes(|content| content.servo_hash ^= 1 << bit);
         assert_eq!(
             load_settings(&other_robot, &eeprom).1,
             SavedState::Foreign,
@@ -243,35 +246,38 @@ fn every_bit_of_the_servos_hash_tells_other_servos() {
 }
 
 #[test]
-fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
+fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
     let mut narrow_settings = make_settings(&robot, 1);
-    let mut adjustment = narrow_settings.servo(Servo::A3);
-    adjustment.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
-    narrow_settings.set_servo(Servo::A3, adjustment);
-    save_all(&narrow_settings, &mut eeprom);
-    let outcome = load_settings(&robot, &eeprom);
-    assert_eq!(outcome, (Settings::of(&robot), SavedState::Unfit));
+    let mut adjustment = narrow_settings.adjustment(Servo::A3);
+    adjustment.travel_max = Sweep(robot.needed_travel(Servo::A3).max.0 - 1);
+    narrow_settings.set_adjustment(Servo::A3, adjustment);
+    save_settings(&narrow_settings, &mut eeprom);
+    let loaded = load_settings(&robot, &eeprom);
+    assert_eq!(loaded, (Settings::of(&robot), SavedState::Unfit));
 }
 
 #[test]
-fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
+fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
-    let saved_settings = save_all(&make_settings(&robot, 1), &mut eeprom);
+    let saved_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     assert_eq!(
         saved_settings.boot(&robot),
-        Boot::Gait(robot.id("sway left"))
+        Boot::Gait(robot.gait_id("sway left"))
     );
-    let robot_with_fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
+    let robot_with_fewer_gaits = robot
+        .clone()
+        .with_changes(|content| _ = content.gaits.remove(1));
     assert_eq!(
-        saved_settings.boot(&robot_with_fewer),
-        Boot::Gait(robot_with_fewer.id("sway left"))
+        saved_settings.boot(&robot_with_fewer_gaits),
+        Boot::Gait(robot_with_fewer_gaits.gait_id("sway left"))
     );
-    let robot_with_fewer = robot_with_fewer.with(|content| _ = content.gaits.remove(1));
+    let robot_with_fewest_gaits =
+        robot_with_fewer_gaits.with_changes(|content| _ = content.gaits.remove(1));
     assert_eq!(
-        saved_settings.boot(&robot_with_fewer),
+        saved_settings.boot(&robot_with_fewest_gaits),
         Boot::Gait(GaitId::STAND)
     );
     let mut rest_settings = saved_settings;
@@ -280,21 +286,21 @@ fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
 }
 
 #[test]
-fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
+fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
     let robot = odd_robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
         let saved_settings = Settings::of_pose(&rest_pose, &robot);
-        let mut writing = REST_POSE.start_write();
-        while writing.step(saved_settings.bytes(), &mut eeprom) == Progress::InProgress {}
+        let mut record_write = REST_POSE_ADDRESS.start_write();
+        while record_write.advance(saved_settings.bytes(), &mut eeprom) == Progress::InProgress {}
         assert_eq!(last_rest_pose(&robot, &eeprom), Some(rest_pose));
-        let other_robot = robot.clone().with(|content| content.servo_hash = 7);
+        let other_robot = robot.clone().with_changes(|content| content.servo_hash = 7);
         assert_eq!(last_rest_pose(&other_robot, &eeprom), None);
     }
-    let mut writing = REST_POSE.start_invalidation();
-    while writing.step(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
+    let mut record_write = REST_POSE_ADDRESS.start_invalidation();
+    while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     let is_outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
     let touched_addresses: Vec<u16> = eeprom
@@ -321,7 +327,7 @@ fn random_bytes_in_the_memory_are_not_read_as_settings() {
                 (state >> 24) as u8
             }
         });
-        let outcome = load_settings(&robot, &Eeprom::with(bytes));
-        assert_eq!(outcome, (Settings::of(&robot), SavedState::Damaged));
+        let loaded = load_settings(&robot, &Eeprom::with_bytes(bytes));
+        assert_eq!(loaded, (Settings::of(&robot), SavedState::Damaged));
     }
 }

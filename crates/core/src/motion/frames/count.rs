@@ -1,45 +1,45 @@
-//! Counts a gait's cycles, and brakes the gait at the end of the last one.
+//! The count of a gait's cycles, and the braking of the gait at the end of the last one.
 //!
-//! Braking takes at most seven frames, in which the gait covers as much phase as in three frames at full pace, or
-//! less if it was slower. So it begins to brake three frames before the end of its last cycle, and stops within
-//! two frames of that end.
+//! Braking takes at most seven frames. Meanwhile the gait covers as much phase as in three frames at full pace, or less
+//! if it was slower. So the gait begins to brake three frames before the end of its last cycle, and stops within two
+//! frames of that end.
 
 use super::Motion;
 use crate::motion::state::{State, Target};
 use crate::numbers::units::phase16;
 
-/// The state of a gait's count. A phase is in 1/65536 cycle, so that it wraps at the end of a cycle.
+/// The count of a gait's cycles. A phase is in 1/65536 cycle, so it wraps at the end of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Count {
+pub(super) struct CycleCount {
     /// Cycles left, including the present one; 0 if the gait has no count.
     pub cycles_left: u16,
     /// The phase covered since the count began, modulo one cycle.
     pub phase_covered: u16,
     /// The gait's phase in the last frame.
-    pub phase: u16,
+    pub last_phase: u16,
 }
 
-impl Count {
-    /// No count: the gait goes on until an order or a fault ends it.
+impl CycleCount {
+    /// No count: the gait goes on until a command or a fault ends it.
     pub const NONE: Self = Self {
         cycles_left: 0,
         phase_covered: 0,
-        phase: 0,
+        last_phase: 0,
     };
 }
 
 impl Motion {
-    /// Counts the phase that the last frame covered, and makes the gait brake shortly before the count ends.
+    /// Adds the phase that the last frame covered, and makes the gait brake shortly before the count ends.
     #[inline(never)]
-    pub(super) fn count(&mut self) {
+    pub(super) fn count_cycles(&mut self) {
         let State::Cycling { gait, phase, .. } = &self.state else {
             return;
         };
-        let count = &mut self.count;
-        let phase_now = phase16(*phase);
-        let mut advance = phase_now.wrapping_sub(count.phase);
-        count.phase = phase_now;
-        if count.cycles_left == 0 || self.next.is_some() {
+        let count = &mut self.cycle_count;
+        let phase = phase16(*phase);
+        let mut advance = phase.wrapping_sub(count.last_phase);
+        count.last_phase = phase;
+        if count.cycles_left == 0 || self.next_target.is_some() {
             return;
         }
         if gait.increment < 0 {
@@ -51,7 +51,7 @@ impl Motion {
         if is_over {
             count.cycles_left -= 1;
             if count.cycles_left == 0 {
-                self.next = Some(Target::End);
+                self.next_target = Some(Target::Standstill);
             }
         }
     }

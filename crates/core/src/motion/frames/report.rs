@@ -1,4 +1,4 @@
-//! The state of a motion, as other modules read it.
+//! The methods by which other modules read the state of a motion.
 
 use super::Motion;
 use crate::guard::hazard::Hazard;
@@ -6,7 +6,7 @@ use crate::motion::state::State;
 use crate::numbers::pose::{Pose, Pulses};
 
 impl Motion {
-    /// Phase of the gait, 1/2^24 cycle; 0 if no gait runs.
+    /// The phase of the gait, 1/2^24 cycle; 0 if no gait runs.
     pub const fn phase(&self) -> u32 {
         match self.state {
             State::Cycling { phase, .. } => phase,
@@ -25,21 +25,22 @@ impl Motion {
     }
 
     /// The pulses of the last frame, including those of servos that sleep.
-    pub const fn sent(&self) -> &Pulses {
-        &self.stance.sent
+    pub const fn sent_pulses(&self) -> &Pulses {
+        &self.stance.sent_pulses
     }
 
-    /// Speed of gaits in percent.
-    pub const fn speed(&self) -> u8 {
-        self.speed
+    /// The pace of gaits that was set, in percent of their own.
+    pub const fn speed_percent(&self) -> u8 {
+        self.speed_percent
     }
 
     /// Frames since power-on.
-    pub const fn frames(&self) -> u32 {
-        self.frames
+    pub const fn frame_count(&self) -> u32 {
+        self.frame_count
     }
 
-    /// The reason why the guard stopped the robot; `None` if it has not, or once the next motion has begun.
+    /// The hazard for which the guard stopped the robot; `None` if the guard has not stopped it, or once another motion
+    /// has begun.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
     }

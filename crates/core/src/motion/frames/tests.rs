@@ -1,12 +1,12 @@
-//! Tests of the transition table in the module's documentation, row by row, and of the invariants of every frame.
+//! Tests of the state table in the module's documentation, row by row, and of the invariants of every frame.
 
 use std::vec::Vec;
 
 use super::*;
 use crate::guard::clearance::Clearance;
-use crate::numbers::units::Width;
+use crate::numbers::units::PulseWidth;
 use crate::numbers::units::{CYCLE, Sweep};
-use crate::sample::{GAITS, Sample};
+use crate::sample::{GAIT_NAMES, Sample};
 
 mod any_order;
 mod counted;
@@ -15,10 +15,10 @@ mod settling;
 mod waking;
 
 /// Frames until all servos are awake.
-const WAKING: u32 = 20;
+const FRAMES_TO_WAKE: u32 = 20;
 
-/// Frames that suffice for braking, the longest move of these tests, and reaching full pace.
-const LONG_ENOUGH: u32 = 150;
+/// Frames that suffice for braking, for the longest move of these tests, and for reaching full pace.
+const TRANSITION_FRAMES: u32 = 150;
 
 impl Motion {
     /// The motion of [`Sample::odd`], awake and in `stand` at full pace.
@@ -26,13 +26,14 @@ impl Motion {
         Self::awake(Sample::odd())
     }
 
+    /// The motion of a robot that is awake and in `stand` at full pace.
     fn awake(robot: Sample) -> Self {
         let mut motion = Self::new(*robot);
-        motion.run(WAKING + 7);
+        motion.run(FRAMES_TO_WAKE + 7);
         motion
     }
 
-    /// A motion in a gait, some frames after the gait was ordered.
+    /// A motion `frames` frames after the command for a gait.
     fn in_gait(name: &str, frames: u32) -> Self {
         let mut motion = Self::standing();
         motion.start(name);
@@ -47,16 +48,16 @@ impl Motion {
     }
 
     fn start(&mut self, name: &str) {
-        self.start_gait(self.robot.id(name), 0);
+        self.start_gait(self.robot.gait_id(name), 0);
     }
 
     fn start_for(&mut self, name: &str, cycles: u16) {
-        self.start_gait(self.robot.id(name), cycles);
+        self.start_gait(self.robot.gait_id(name), cycles);
     }
 
-    fn head_for_pose(&mut self, sweeps: [i16; 4]) {
+    fn go_to_sweeps(&mut self, sweeps: [i16; 4]) {
         let pose = Pose(sweeps.map(Sweep));
-        self.go_to(&pose).expect("a safe pose");
+        self.go_to(&pose).expect("the pose is safe");
     }
 
     fn is_moving(&self) -> bool {
@@ -67,9 +68,9 @@ impl Motion {
         matches!(self.state, State::Cycling { .. })
     }
 
-    fn gait(&self) -> Option<&'static str> {
+    fn gait_name(&self) -> Option<&'static str> {
         match self.activity() {
-            Activity::Gait(id) => Some(GAITS[id.index()]),
+            Activity::Gait(id) => Some(GAIT_NAMES[id.index()]),
             _ => None,
         }
     }
@@ -81,17 +82,19 @@ impl Motion {
         }
     }
 
-    /// The pulses of the pose that is held.
-    fn held(&self) -> Pulses {
+    /// The pulses of the present pose.
+    fn held_pulses(&self) -> Pulses {
         self.stance.pose.pulses(&self.calibration)
     }
 }
 
-const THERE: [i16; 4] = [900, -700, 800, -1100];
-const BACK: [i16; 4] = [-600, 500, -800, 700];
+/// The sweeps of a safe pose, in 1/65536 turn.
+const SWEEPS: [i16; 4] = [900, -700, 800, -1100];
+/// The sweeps of another safe pose: each servo turns the other way.
+const OPPOSITE_SWEEPS: [i16; 4] = [-600, 500, -800, 700];
 
-/// Checks that two motions are the same for some frames.
-fn assert_same(mut first: Motion, mut second: Motion) {
+/// Checks that two motions are the same for 100 frames.
+fn assert_same_motion(mut first: Motion, mut second: Motion) {
     for _ in 0..100 {
         assert_eq!(first.tick(), second.tick());
         assert_eq!(first.activity(), second.activity());
@@ -100,9 +103,9 @@ fn assert_same(mut first: Motion, mut second: Motion) {
     }
 }
 
-// Resting.
+// Resting and holding.
 
-fn resting() -> Motion {
+fn resting_motion() -> Motion {
     let mut motion = Motion::in_gait("sway", 90);
     motion.rest();
     motion.run(10);
@@ -114,13 +117,13 @@ fn a_held_pose_stays_and_its_activity_is_pose_if_it_was_ordered_else_stop() {
     let mut stopped_motion = Motion::in_gait("sway", 90);
     stopped_motion.stop();
     let mut posed_motion = Motion::standing();
-    posed_motion.head_for_pose(THERE);
-    posed_motion.run(LONG_ENOUGH);
+    posed_motion.go_to_sweeps(SWEEPS);
+    posed_motion.run(TRANSITION_FRAMES);
     for (mut motion, activity) in [
         (stopped_motion, Activity::Stop),
         (posed_motion, Activity::Pose),
     ] {
-        let held_pulses = motion.held();
+        let held_pulses = motion.held_pulses();
         for _ in 0..50 {
             assert_eq!(motion.tick(), held_pulses);
             assert_eq!(motion.activity(), activity);
@@ -138,7 +141,7 @@ fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
         if is_gait {
             motion.start("sway");
         } else {
-            motion.head_for_pose(THERE);
+            motion.go_to_sweeps(SWEEPS);
         }
         motion.tick();
         assert!(motion.is_moving());
@@ -151,19 +154,19 @@ fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
 #[test]
 fn a_move_that_arrives_at_a_pose_holds_it() {
     let mut motion = Motion::standing();
-    motion.head_for_pose(THERE);
-    motion.run(LONG_ENOUGH);
-    assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
+    motion.go_to_sweeps(SWEEPS);
+    motion.run(TRANSITION_FRAMES);
+    assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));
     assert_eq!(motion.state, State::Holding { is_ordered: true });
 }
 
 #[test]
-fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gathers_pace() {
-    for name in GAITS {
+fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gains_pace() {
+    for name in GAIT_NAMES {
         let mut motion = Motion::in_gait("swing", 90);
         motion.stop();
         motion.start(name);
-        let id = motion.robot.id(name);
+        let id = motion.robot.gait_id(name);
         let gait = motion.robot.gait(id);
         motion.tick();
         while motion.is_moving() {
@@ -183,64 +186,64 @@ fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gathers_pace() {
 }
 
 #[test]
-fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
-    // First `stand` brakes for seven frames. The move takes 24, and its braking at most seven.
-    const FAR: [i16; 4] = [2900, -2400, 2600, -3300];
+fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
+    // First `stand` brakes for seven frames. The move takes 24 frames, its braking at most seven.
+    const FAR_SWEEPS: [i16; 4] = [2900, -2400, 2600, -3300];
     for frames in 8..24 {
         let mut motion = Motion::standing();
-        motion.head_for_pose(FAR);
+        motion.go_to_sweeps(FAR_SWEEPS);
         motion.run(frames);
-        motion.head_for_pose(BACK);
+        motion.go_to_sweeps(OPPOSITE_SWEEPS);
         assert_eq!(motion.activity(), Activity::Pose);
         let mut pace = motion.pace();
         while pace > 0 {
             motion.tick();
             pace = pace.saturating_sub(147);
-            assert!(motion.is_moving() && motion.next.is_some());
+            assert!(motion.is_moving() && motion.next_target.is_some());
             assert_eq!(motion.pace(), pace);
-            // Still on the line: every servo has covered the same share of its distance.
-            let share_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
+            // The pose is still on the line if every servo has covered the same share of its distance.
+            let share_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR_SWEEPS[n]);
             assert!((share_of(0) - share_of(3)).abs() < 0.002);
         }
         motion.tick();
-        assert!(motion.next.is_none());
-        motion.run(LONG_ENOUGH);
-        assert_eq!(motion.pose(), &Pose(BACK.map(Sweep)));
+        assert!(motion.next_target.is_none());
+        motion.run(TRANSITION_FRAMES);
+        assert_eq!(motion.pose(), &Pose(OPPOSITE_SWEEPS.map(Sweep)));
     }
 }
 
 #[test]
 fn a_move_to_a_gait_goes_on_when_that_gait_is_ordered_again() {
-    let build = || {
+    let build_motion = || {
         let mut motion = Motion::standing();
-        motion.head_for_pose(THERE);
-        motion.run(LONG_ENOUGH);
+        motion.go_to_sweeps(SWEEPS);
+        motion.run(TRANSITION_FRAMES);
         motion.start("sway");
         motion.run(4);
         assert!(motion.is_moving());
         motion
     };
-    let mut repeated_motion = build();
+    let mut repeated_motion = build_motion();
     repeated_motion.start("sway");
-    assert_same(repeated_motion, build());
+    assert_same_motion(repeated_motion, build_motion());
 }
 
 // Cycling.
 
 #[test]
 fn the_same_gait_ordered_again_goes_on_in_the_middle_of_its_cycle() {
-    for name in GAITS.into_iter().filter(|name| *name != "stray") {
-        let build = || Motion::in_gait(name, 60);
-        let mut repeated_motion = build();
+    for name in GAIT_NAMES.into_iter().filter(|name| *name != "stray") {
+        let build_motion = || Motion::in_gait(name, 60);
+        let mut repeated_motion = build_motion();
         repeated_motion.start(name);
-        assert_same(repeated_motion, build());
+        assert_same_motion(repeated_motion, build_motion());
     }
 }
 
 #[test]
-fn another_gait_lets_the_old_one_brake_along_its_cycle_first() {
+fn a_gait_brakes_along_its_cycle_before_the_move_to_another_gait_begins() {
     let mut motion = Motion::in_gait("sway", 90);
-    let gait = motion.robot.gait(motion.robot.id("sway"));
+    let gait = motion.robot.gait(motion.robot.gait_id("sway"));
     motion.start("swing");
     let mut phase = motion.phase();
     for pace in [877, 730, 583, 436, 289, 142, 0] {
@@ -248,13 +251,17 @@ fn another_gait_lets_the_old_one_brake_along_its_cycle_first() {
         phase = gait.advance(phase, pace);
         assert_eq!((motion.pace(), motion.phase()), (pace, phase));
         assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
-        assert_eq!(motion.gait(), Some("swing"), "where it is heading");
+        assert_eq!(
+            motion.gait_name(),
+            Some("swing"),
+            "the activity is that of the next target"
+        );
     }
     motion.tick();
     assert!(motion.is_moving());
-    motion.run(LONG_ENOUGH);
+    motion.run(TRANSITION_FRAMES);
     assert!(motion.is_cycling());
-    assert_eq!(motion.gait(), Some("swing"));
+    assert_eq!(motion.gait_name(), Some("swing"));
 }
 
 #[test]
@@ -262,31 +269,31 @@ fn the_last_of_several_commands_counts() {
     let mut motion = Motion::in_gait("sway", 90);
     motion.start("swing");
     motion.run(2);
-    motion.head_for_pose(THERE);
+    motion.go_to_sweeps(SWEEPS);
     motion.run(2);
     motion.start("back");
-    motion.run(LONG_ENOUGH);
-    assert_eq!(motion.gait(), Some("back"));
+    motion.run(TRANSITION_FRAMES);
+    assert_eq!(motion.gait_name(), Some("back"));
     assert!(motion.is_cycling());
 }
 
 #[test]
 fn a_gait_that_is_ordered_again_while_it_brakes_for_another_motion_restarts() {
     let mut motion = Motion::in_gait("sway", 90);
-    motion.head_for_pose(THERE);
+    motion.go_to_sweeps(SWEEPS);
     motion.run(2);
     motion.start("sway");
     motion.run(6);
     assert!(motion.is_moving());
-    motion.run(LONG_ENOUGH);
-    assert_eq!(motion.gait(), Some("sway"));
+    motion.run(TRANSITION_FRAMES);
+    assert_eq!(motion.gait_name(), Some("sway"));
 }
 
 #[test]
-fn a_speed_is_gathered_and_lost_as_pace() {
+fn a_new_speed_changes_the_pace_step_by_step() {
     let mut motion = Motion::in_gait("sway", 90);
     motion.set_speed(50);
-    assert_eq!(motion.speed(), 50);
+    assert_eq!(motion.speed_percent(), 50);
     let mut paces = Vec::new();
     for _ in 0..5 {
         motion.tick();
@@ -301,10 +308,8 @@ fn a_speed_is_gathered_and_lost_as_pace() {
 // `stop` and `rest` in any state.
 
 #[test]
-fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_every_move() {
-    for name in GAITS {
-        let mut moving_motion = Motion::standing();
-        moving_motion.start(name);
+fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_of_the_move_to_it() {
+    for name in GAIT_NAMES {
         for frames in 0..140 {
             let mut motion = Motion::in_gait(name, frames);
             let pose = *motion.pose();
@@ -313,14 +318,14 @@ fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_every_move() {
             motion.run(20);
             assert_eq!(motion.activity(), Activity::Stop);
             assert_eq!(motion.pose(), &pose, "{name}, frame {frames}");
-            assert_eq!(motion.tick(), motion.held());
+            assert_eq!(motion.tick(), motion.held_pulses());
         }
     }
 }
 
 #[test]
 fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
-    for name in GAITS {
+    for name in GAIT_NAMES {
         for frames in 0..140 {
             let mut motion = Motion::in_gait(name, frames);
             let pose = *motion.pose();
@@ -332,14 +337,14 @@ fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
 }
 
 #[test]
-fn stop_and_rest_drop_the_next_motion() {
+fn stop_and_rest_cancel_the_next_motion() {
     for order in [Motion::stop, Motion::rest] {
         let mut motion = Motion::in_gait("sway", 90);
-        motion.head_for_pose(THERE);
+        motion.go_to_sweeps(SWEEPS);
         motion.run(3);
         let pose = *motion.pose();
         order(&mut motion);
-        motion.run(LONG_ENOUGH);
+        motion.run(TRANSITION_FRAMES);
         assert_eq!(motion.pose(), &pose);
     }
 }
@@ -357,16 +362,16 @@ fn a_stopped_gait_restarts_at_its_first_pose() {
     }
     let first_pose = motion
         .robot
-        .gait(motion.robot.id("sway"))
+        .gait(motion.robot.gait_id("sway"))
         .pose(motion.robot.waves(), 0);
     assert_eq!((motion.pose(), motion.phase()), (&first_pose, 0));
 }
 
 #[test]
-fn frames_are_counted_from_power_on_also_while_it_rests() {
+fn frames_are_counted_from_power_on_even_while_the_robot_rests() {
     let mut motion = Motion::new(*Sample::odd());
     motion.run(30);
     motion.rest();
     motion.run(12);
-    assert_eq!(motion.frames(), 42);
+    assert_eq!(motion.frame_count(), 42);
 }

@@ -1,4 +1,4 @@
-//! The content of a section, and its bytes, made by a host.
+//! The content of a section, from which a host makes the section's bytes.
 
 use std::string::String;
 use std::vec::Vec;
@@ -8,12 +8,12 @@ use lizard_avr::{Flash, Plain};
 
 use super::seal::add_seal;
 use super::{
-    AFTER_NUMBERS, CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers, Part,
-    PartRange,
+    AFTER_NUMBERS_OFFSET, CURVE_COUNT, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers,
+    Part, PartRange,
 };
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::Reach;
+use crate::numbers::calibration::NeededTravel;
 use crate::numbers::cells::Cells;
 use crate::numbers::couplers::{self, Couplers};
 use crate::numbers::curve::Table;
@@ -24,28 +24,28 @@ use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
 use crate::numbers::units::{Angle, Scale};
 
-/// The algorithm of the hash that identifies a robot.
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+/// The hash function whose result identifies a robot.
+static ROBOT_HASH: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// The numbers of a robot, from which a section is made.
+/// The data of a robot, from which a section is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
     /// The robot's name, at most [`MAX_NAME_BYTES`] characters.
     pub name: String,
-    /// The hash that tells if saved settings belong to these servos.
+    /// The hash of the servos' pins, pulses and neutral angles; saved settings belong to it.
     pub servo_hash: u32,
     /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
-    /// The Arduino number of the pin where the servos' rail is measured.
-    pub rail: Option<u8>,
+    /// The Arduino number of the pin where the servos' rail is measured; `None` if it is not measured.
+    pub rail_pin: Option<u8>,
     /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
     pub slow_pace: u8,
     /// The servos' angles in the neutral pose.
-    pub neutral: [Angle; 4],
+    pub neutral_angles: [Angle; 4],
     /// The pulse widths and the travel of the servos.
     pub calibration: [Calibration; 4],
     /// The range of sweeps that the gaits need of each servo.
-    pub reach: [Reach; 4],
+    pub needed_travel: [NeededTravel; 4],
     /// The smallest margins that are allowed.
     pub limits: Limits,
     /// The slew limit of a move.
@@ -53,10 +53,10 @@ pub struct Content {
     /// The supplies and their thresholds.
     pub supplies: Supplies,
     /// The bars of head and tail.
-    pub ends: [Loop; 2],
+    pub ends: [FiveBarLengths; 2],
     /// The sliders left and right.
-    pub sides: [Slider; 2],
-    /// The gaits, `stand` first, then the routines; a routine refers to its first step by its index in `steps`.
+    pub sliders: [Slider; 2],
+    /// The gaits, `stand` first, then the routines. A routine gives its first step by the index in `steps`.
     pub gaits: Vec<Gait>,
     /// The steps of the routines.
     pub steps: Vec<Step>,
@@ -68,26 +68,26 @@ pub struct Content {
     pub maps: [Map; 4],
 }
 
-/// The bars of the five-bar of head or tail, in steps of their scale.
+/// The lengths of the five-bar of head or tail, in steps of their scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Loop {
+pub struct FiveBarLengths {
     /// The scale of the lengths; the margins do not depend on it.
     pub scale: Scale,
-    /// Distance between the shafts.
+    /// The distance between the shafts.
     pub base: i16,
     /// The left and the right crank.
     pub cranks: [i16; 2],
     /// The left and the right coupler.
     pub couplers: [i16; 2],
-    /// True if the crank tips can be so far apart that the couplers are nearly stretched.
-    pub is_near_stretched: bool,
+    /// True if the crank tips can be so far apart that [`Couplers::is_near_stretched`] is true.
+    pub can_nearly_stretch: bool,
 }
 
-/// A map of certified cells, see [`crate::numbers::cells::Cells`].
+/// A map of certified cells, see [`Cells::from_rows`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Map {
-    /// The number of the first row.
-    pub first: i8,
+    /// The row number of the first row.
+    pub first_row: i8,
     /// The first and the last column of each row; in a row without certified cells, the first is greater than the
     /// last.
     pub rows: Vec<[i8; 2]>,
@@ -96,38 +96,38 @@ pub struct Map {
 impl Map {
     /// The map in the form that the guard reads.
     pub fn cells(&self) -> Cells<'_> {
-        Cells::new(self.first, Flash::from(self.rows.as_slice()))
+        Cells::new(self.first_row, Flash::from(self.rows.as_slice()))
     }
 }
 
-impl Loop {
+impl FiveBarLengths {
     /// The bars, and the factors that follow from them.
     pub fn bars(&self) -> Bars {
         let [left, right] = self.cranks;
         Bars::new([self.base, left, right], self.couplers, self.scale)
     }
 
-    /// The tables that the couplers need: rise, stretched, folded, skew.
-    fn tables(&self) -> [Option<Table>; CURVES] {
+    /// The tables that the couplers need: rise, stretched rise, folded rise, skew.
+    fn tables(&self) -> [Option<Table>; CURVE_COUNT] {
         let [left, right] = self.couplers;
         [
-            Some(couplers::rise(left, right)),
-            self.is_near_stretched
-                .then(|| couplers::stretched(left, right)),
-            Couplers::differ_much(left, right).then(|| couplers::folded(left, right)),
-            (left != right).then(|| couplers::skew(left, right)),
+            Some(couplers::rise_table(left, right)),
+            self.can_nearly_stretch
+                .then(|| couplers::stretched_rise_table(left, right)),
+            Couplers::differ_much(left, right).then(|| couplers::folded_rise_table(left, right)),
+            (left != right).then(|| couplers::skew_table(left, right)),
         ]
     }
 }
 
 impl Content {
-    /// The size of the section in bytes, which may exceed the flash of a board. [`Content::section`] may append a
-    /// few bytes, see [`super::seal()`].
-    pub fn length(&self) -> usize {
+    /// The size of the section in bytes, which may exceed the flash of a board. [`Content::section_bytes`] may append a
+    /// few bytes, so that the checksum detects every likely change.
+    pub fn section_length(&self) -> usize {
         let mut curves = Vec::new();
-        self.curves(&mut curves);
+        self.append_curves(&mut curves);
         let rows: usize = self.maps.iter().map(|map| map.rows.len()).sum();
-        usize::from(AFTER_NUMBERS)
+        usize::from(AFTER_NUMBERS_OFFSET)
             + curves.len()
             + size_of_val(self.gaits.as_slice())
             + size_of_val(self.steps.as_slice())
@@ -136,74 +136,82 @@ impl Content {
             + rows * size_of::<[i8; 2]>()
     }
 
-    /// The bytes of the section, which may exceed the flash of a board: see [`super::SPACE`].
+    /// The bytes of the section, which may exceed the flash of a board, see [`super::SPACE_BYTES`].
     ///
     /// # Panics
     /// If a map has more than 255 rows, or the section more than 65 535 bytes.
-    pub fn section(&self) -> Vec<u8> {
+    pub fn section_bytes(&self) -> Vec<u8> {
         let [head, tail] = &self.ends;
-        let mut rest = Vec::new();
-        let curves = self.curves(&mut rest);
-        let to_u16 = |value: usize| u16::try_from(value).expect("at most 65535");
-        let steps_offset =
-            usize::from(AFTER_NUMBERS) + rest.len() + size_of_val(self.gaits.as_slice());
+        let mut bytes_after_numbers = Vec::new();
+        let curves = self.append_curves(&mut bytes_after_numbers);
+        let to_u16 =
+            |value: usize| u16::try_from(value).expect("a section has at most 65535 bytes");
+        let steps_offset = usize::from(AFTER_NUMBERS_OFFSET)
+            + bytes_after_numbers.len()
+            + size_of_val(self.gaits.as_slice());
         let mut gaits = self.gaits.clone();
         for routine in gaits.iter_mut().filter(|gait| gait.is_routine()) {
             let first_step = &mut routine.channels[0].offset;
             *first_step = to_u16(steps_offset + usize::from(*first_step) * size_of::<Step>());
         }
-        let gaits: Vec<u8> = gaits.iter().flat_map(Plain::bytes).copied().collect();
+        let gait_bytes: Vec<u8> = gaits.iter().flat_map(Plain::bytes).copied().collect();
         let steps = self.steps.iter().flat_map(Plain::bytes).copied();
-        let gaits: Vec<u8> = gaits.into_iter().chain(steps).collect();
+        let gait_and_step_bytes: Vec<u8> = gait_bytes.into_iter().chain(steps).collect();
         let mut append_part = |count: usize, bytes: &[u8]| {
-            let offset = usize::from(AFTER_NUMBERS) + rest.len();
-            rest.extend(bytes);
+            let offset = usize::from(AFTER_NUMBERS_OFFSET) + bytes_after_numbers.len();
+            bytes_after_numbers.extend(bytes);
             PartRange {
-                at: to_u16(offset),
+                address: to_u16(offset),
                 count: to_u16(count),
             }
         };
-        let waves: Vec<u8> = self.waves.iter().flat_map(Plain::bytes).copied().collect();
+        let wave_bytes: Vec<u8> = self.waves.iter().flat_map(Plain::bytes).copied().collect();
         let rows: Vec<[i8; 2]> = self.maps.iter().flat_map(|map| map.rows.clone()).collect();
-        let columns: Vec<u8> = rows
+        let row_bytes: Vec<u8> = rows
             .as_flattened()
             .iter()
             .map(|column| *column as u8)
             .collect();
         // The rows are the last part, because the hash does not cover them.
         let parts = [
-            append_part(self.gaits.len(), &gaits),
-            append_part(self.waves.len(), &waves),
+            append_part(self.gaits.len(), &gait_and_step_bytes),
+            append_part(self.waves.len(), &wave_bytes),
             append_part(self.names.len(), &self.names),
-            append_part(rows.len(), &columns),
+            append_part(rows.len(), &row_bytes),
         ];
         let numbers = Numbers {
             ends: [head.bars(), tail.bars()],
-            sides: self.sides,
-            neutral: self.neutral,
+            sliders: self.sliders,
+            neutral_angles: self.neutral_angles,
             calibration: self.calibration,
-            reach: self.reach,
+            needed_travel: self.needed_travel,
             limits: self.limits,
             slew: self.slew,
             supplies: self.supplies,
             curves,
             parts,
-            rail: self.rail.unwrap_or(0),
+            rail_pin: self.rail_pin.unwrap_or(0),
             slow_pace: self.slow_pace,
             pins: self.pins,
             maps: self.maps.each_ref().map(|map| MapHeader {
-                first: map.first,
-                rows: u8::try_from(map.rows.len()).expect("at most 255"),
+                first_row: map.first_row,
+                row_count: u8::try_from(map.rows.len()).expect("a map has at most 255 rows"),
             }),
         };
 
-        let mut digest = CRC.digest();
+        let mut digest = ROBOT_HASH.digest();
         // The hash does not include the maps: they only save time and change no decision.
         let mut without_maps = numbers;
-        without_maps.parts[Part::Rows as usize] = PartRange { at: 0, count: 0 };
-        without_maps.maps = [MapHeader { first: 0, rows: 0 }; 4];
+        without_maps.parts[Part::Rows as usize] = PartRange {
+            address: 0,
+            count: 0,
+        };
+        without_maps.maps = [MapHeader {
+            first_row: 0,
+            row_count: 0,
+        }; 4];
         digest.update(without_maps.bytes());
-        digest.update(&rest[..rest.len() - columns.len()]);
+        digest.update(&bytes_after_numbers[..bytes_after_numbers.len() - row_bytes.len()]);
         let mut name = [0; MAX_NAME_BYTES];
         name[..self.name.len()].copy_from_slice(self.name.as_bytes());
         let header = Header {
@@ -215,12 +223,12 @@ impl Content {
             servo_hash: self.servo_hash,
             name,
         };
-        add_seal([header.bytes(), numbers.bytes(), &rest].concat())
+        add_seal([header.bytes(), numbers.bytes(), &bytes_after_numbers].concat())
     }
 
-    /// Appends the tables of head and tail to `rest`, equal ones only once, and returns the address of each; 0 for a
-    /// table that is not needed.
-    fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
+    /// Appends the tables of head and tail to the bytes after the numbers, equal ones only once. Returns the address of
+    /// each; 0 for a table that is not needed.
+    fn append_curves(&self, bytes_after_numbers: &mut Vec<u8>) -> [[u16; CURVE_COUNT]; 2] {
         let mut written_tables: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {
             end.tables().map(|table| {
@@ -231,8 +239,8 @@ impl Content {
                 {
                     return *offset;
                 }
-                let offset = AFTER_NUMBERS + rest.len() as u16;
-                rest.extend(table.bytes());
+                let offset = AFTER_NUMBERS_OFFSET + bytes_after_numbers.len() as u16;
+                bytes_after_numbers.extend(table.bytes());
                 written_tables.push((table, offset));
                 offset
             })

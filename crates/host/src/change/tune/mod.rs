@@ -15,10 +15,10 @@ use crate::shared::progress::progress_bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::shared::suggestion::did_you_mean;
 
-/// Search a gait that walks faster with the same servo rate
+/// Search for a gait that walks faster with the same servo rate
 ///
 /// Takes a gait of robot.toml that goes straight ahead or turns on the spot, and searches
-/// a wave or a held gait that goes farther in a second while its fastest servo turns no
+/// for a wave or a held gait that goes farther in a second while its fastest servo turns no
 /// faster. Each candidate is checked against robot.toml's limits and judged by the
 /// contact model with SG-90 servos on random robots and floors: 95 % of them exceed its
 /// score. Finally the best one is compared with the given gait on other random robots,
@@ -31,7 +31,7 @@ use crate::shared::suggestion::did_you_mean;
   lizard tune --rate 200 --name gentle >> robot.toml
   lizard tune --rounds 60 --seed 2 --json
 
-In a terminal or a file, what is not the table is a comment, so the output may be appended to
+Without --json, everything except the table is a comment, so the output may be appended to
 a robot.toml as it is.")]
 pub struct Args {
     /// The gait to improve; it goes straight ahead or turns on the spot
@@ -76,18 +76,18 @@ impl Spreads for Args {
 /// Searches for a gait and prints it.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; no gait
-/// that the limits allow; an output that cannot be written.
+/// Fails for an invalid robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; a search
+/// that finds no gait within the limits; an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
-    let Some(report) = tune(&robot, &args)? else {
+    let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());
     };
     let mut out = io::stdout().lock();
     if args.json {
-        json::write_line(&mut out, &report)?;
+        json::write_line(&mut out, &comparison)?;
     } else {
-        report::print(&report, &mut out)?;
+        report::print(&comparison, &mut out)?;
     }
     Ok(out.flush()?)
 }
@@ -114,9 +114,10 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
     Ok(best.map(|best| tuning.compare(&best, args.robots as usize)))
 }
 
+/// Returns the gait of this name that the search has to surpass.
 fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     robot.gait(name).ok_or_else(|| {
-        let moving = robot.gaits().iter().filter(|gait| gait.moves());
+        let moving = robot.gaits().iter().filter(|gait| gait.has_movement());
         let gaits: Vec<&str> = moving.map(|gait| gait.name()).collect();
         Failure::Input(format!(
             "robot.toml has no gait `{name}` to surpass; --gait takes one of {}{}",
@@ -151,7 +152,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
         kind_count * trials(rounds),
         "{bar:40} {pos}/{len} gaits, {eta}",
     );
-    let search_one = |index: usize| -> Vec<(f64, Vec<f64>)> {
+    let search_kind = |index: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = Kind::ALL[index];
         let mut search = tuning.search(kind);
         for _ in 0..=rounds {
@@ -164,7 +165,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
         }
         search.found()
     };
-    let pieces = args.spread.all_pieces(args, Kind::ALL.len(), search_one)?;
+    let pieces = args.spread.all_pieces(args, Kind::ALL.len(), search_kind)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);
@@ -195,7 +196,7 @@ mod tests {
     use super::*;
 
     #[derive(clap::Parser)]
-    struct Line {
+    struct CommandLine {
         #[command(flatten)]
         args: Args,
     }
@@ -203,29 +204,36 @@ mod tests {
     const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
     fn run_tune(arguments: &str) -> Result<Comparison, String> {
-        let robot = Robot::parse(PAPER).expect("right");
-        let line =
-            Line::try_parse_from(std::iter::once("tune").chain(arguments.split_whitespace()));
+        let robot = Robot::parse(PAPER).expect("paper.toml is valid");
+        let line = CommandLine::try_parse_from(
+            std::iter::once("tune").chain(arguments.split_whitespace()),
+        );
         let args = line.map_err(|error| error.to_string())?.args;
-        let report = tune(&robot, &args).map_err(|failure| failure.to_string())?;
-        Ok(report.expect("all parts"))
+        let comparison = tune(&robot, &args).map_err(|failure| failure.to_string())?;
+        Ok(comparison.expect("one process computes all parts"))
     }
 
     /// Checks the figures of `lizard tune --rounds 1 --robot robots/paper.toml` in docs/twin.md.
     #[test]
-    fn a_short_search_surpasses_walk_at_the_same_rate_as_the_docs_say() {
-        let report = run_tune("--rounds 1").expect("it finds one");
-        let (walk, tuned) = (&report.gait, &report.tuned);
+    fn a_short_search_surpasses_walk_at_no_higher_rate_and_prints_what_the_docs_quote() {
+        let comparison = run_tune("--rounds 1").expect("the search finds a gait");
+        let (walk, tuned) = (&comparison.gait, &comparison.tuned);
         assert!(tuned.rate <= walk.rate, "{tuned:?}");
-        assert!(tuned.speeds[0] > 1.15 * walk.speeds[0], "{report:?}");
-        assert!(report.faster >= 195, "{report:?}");
+        assert!(tuned.speeds[0] > 1.15 * walk.speeds[0], "{comparison:?}");
+        assert!(comparison.faster >= 195, "{comparison:?}");
         // The printed text may be appended to a robot.toml, and its gait walks as predicted.
         let mut printed = Vec::new();
-        report::print(&report, &mut printed).expect("written");
-        let printed = String::from_utf8(printed).expect("text");
-        let robot = Robot::parse(&format!("{PAPER}\n{printed}")).expect("it builds");
-        let gait = robot.gait("tuned").expect("the gait");
-        let forward = robot.predict(gait).forward.expect("decided");
+        report::print(&comparison, &mut printed).expect("a vector takes it");
+        let printed = String::from_utf8(printed).expect("it is text");
+        let robot =
+            Robot::parse(&format!("{PAPER}\n{printed}")).expect("the printed gait is valid");
+        let gait = robot
+            .gait("tuned")
+            .expect("the printed gait is in the file");
+        let forward = robot
+            .predict(gait)
+            .forward
+            .expect("the contact model decides it");
         assert!(
             (forward / gait.period() - tuned.predicted).abs() < 0.01,
             "{forward}"
@@ -237,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gait_that_cannot_be_tuned_is_refused_with_the_reason() {
+    fn an_invalid_argument_is_refused_with_the_reason() {
         for (arguments, reason) in [
             (
                 "--gait run",

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use lizard_tune::{Comparison, SPREAD};
 
-/// Prints the comparison as a part of a robot.toml: everything except the table is a comment.
+/// Prints the comparison as a part of a robot.toml: everything except the gait's table is a comment.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -21,13 +21,13 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
         "# {unit} with servos of at most {:.1} deg/s; the last three on {robots} random robots and floors\n#",
         comparison.rate
     )?;
-    let width = [gait, tuned]
+    let name_width = [gait, tuned]
         .map(|name| name.len())
         .into_iter()
         .fold(8, usize::max);
     writeln!(
         out,
-        "# {:width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %",
+        "# {:name_width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %",
         "gait"
     )?;
     for row in [&comparison.gait, &comparison.tuned] {
@@ -35,7 +35,7 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
         let (margin, value) = row.margin;
         writeln!(
             out,
-            "# {:width$}  {:8.2}  {:6.1}  {value:.3} {margin:10}  {:9.1}  {:6.1}  {low:6.1}  {middle:6.1}  {high:6.1}",
+            "# {:name_width$}  {:8.2}  {:6.1}  {value:.3} {margin:10}  {:9.1}  {:6.1}  {low:6.1}  {middle:6.1}  {high:6.1}",
             row.name, row.period, row.rate, row.predicted, row.sg90
         )?;
     }

@@ -1,4 +1,4 @@
-//! `lizard calibrate backup` and `lizard calibrate restore`: a calibration kept in a file.
+//! `lizard calibrate backup` and `lizard calibrate restore`: keep a calibration in a file.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
@@ -7,7 +7,7 @@ use lizard_calibrate::{SendError, command, read, replace, send};
 use lizard_robot::Calibration;
 use pollster::block_on;
 
-use super::connect::Connect;
+use super::connect::ConnectionArgs;
 use super::link::{Link, LinkError};
 use crate::Failure;
 use crate::shared::files;
@@ -21,7 +21,7 @@ pub struct BackupArgs {
     /// The file to write; an existing file is replaced
     file: PathBuf,
     #[command(flatten)]
-    connect: Connect,
+    connect: ConnectionArgs,
 }
 
 /// Send a calibration from a file to the robot, and save it there
@@ -33,19 +33,19 @@ pub struct RestoreArgs {
     /// A file that `lizard calibrate backup` wrote
     file: PathBuf,
     #[command(flatten)]
-    connect: Connect,
+    connect: ConnectionArgs,
 }
 
 /// Runs `lizard calibrate backup`.
 ///
 /// # Errors
-/// Fails if there is no board, or the file cannot be written.
+/// Fails if there is no board, it does not answer, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
-    let finder = args.connect.finder("calibrate backup FILE")?;
+    let finder = args.connect.into_finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     let calibration =
         block_on(read(&mut board.link)).map_err(|error| board.failure(&error.into()))?;
-    files::write(&args.file, calibration.text().as_bytes())?;
+    files::write(&args.file, calibration.to_toml().as_bytes())?;
     println!(
         "the calibration of {} is in {}",
         board.name,
@@ -57,12 +57,12 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
 /// Runs `lizard calibrate restore`.
 ///
 /// # Errors
-/// Fails for a wrong file, without a board, or if the robot refuses.
+/// Fails if the file is not a calibration, there is no board, or the robot refuses the calibration.
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let text = files::read_text(&args.file)?;
     let calibration = Calibration::parse(&text, &args.file.display().to_string())
         .map_err(|error| Failure::Input(error.to_string()))?;
-    let finder = args.connect.finder("calibrate restore FILE")?;
+    let finder = args.connect.into_finder("calibrate restore FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     send_calibration(&calibration, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
@@ -74,18 +74,19 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Sends a calibration to a robot, reads it back and saves it; if that fails, sends the robot its old settings.
+/// Sends a calibration to a robot, reads it back and saves it; if that fails, sends the robot its old
+/// settings.
 ///
 /// # Errors
-/// Fails if the robot refuses the calibration or reports another one, or if the connection breaks.
+/// Fails if the robot refuses the calibration or reports a different one, or if the connection breaks.
 pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
 ) -> Result<(), SendError<LinkError>> {
-    let before = block_on(read(link)).map_err(SendError::Refused)?;
-    block_on(replace(link, &before, calibration))?;
+    let old_settings = block_on(read(link)).map_err(SendError::Refused)?;
+    block_on(replace(link, &old_settings, calibration))?;
     if let Err(error) = block_on(command(link, "save")) {
-        block_on(send(link, &before)).map_err(SendError::Mixed)?;
+        block_on(send(link, &old_settings)).map_err(SendError::Mixed)?;
         return Err(SendError::Refused(error));
     }
     Ok(())
@@ -102,16 +103,16 @@ mod tests {
         link.command("trim 3 -4.25").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
         let saved = calibration_of(&mut link);
-        let saved = Calibration::parse(&saved.text(), "a.toml").expect("it is a calibration");
+        let saved = Calibration::parse(&saved.to_toml(), "a.toml").expect("it is a calibration");
         link.command("factory").expect("it is accepted");
-        send_calibration(&saved, &mut link).expect("it is taken and saved");
+        send_calibration(&saved, &mut link).expect("it is accepted and saved");
         link.command("factory").expect("it is accepted");
         link.command("load").expect("something was saved");
-        assert!(calibration_of(&mut link).is_same(&saved));
+        assert!(calibration_of(&mut link).is_equivalent_to(&saved));
     }
 
     #[test]
-    fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
+    fn a_refused_calibration_keeps_the_active_settings_and_saves_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         let before = calibration_of(&mut link);
@@ -124,7 +125,7 @@ mod tests {
             "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \
              robot keeps its old settings"
         );
-        assert!(calibration_of(&mut link).is_same(&before));
+        assert!(calibration_of(&mut link).is_equivalent_to(&before));
         let load = link.ask("load").expect("it answers").answer;
         assert!(load.starts_with("err 9"), "{load}");
     }

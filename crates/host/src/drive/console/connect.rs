@@ -10,9 +10,9 @@ use super::port;
 use crate::shared::plain::escape_controls;
 use crate::{Failure, RobotFile};
 
-/// The board that a subcommand connects to.
+/// The arguments that say which board a subcommand connects to.
 #[derive(clap::Args, Debug)]
-pub struct Connect {
+pub struct ConnectionArgs {
     /// The board's serial port [default: the one that has a UNO, or the only one]
     port: Option<String>,
     /// Use a simulated UNO instead, in real time
@@ -32,13 +32,15 @@ pub struct Connect {
 /// a board that is plugged in again may get another port.
 #[derive(Debug)]
 pub struct BoardFinder {
+    /// The port that the user named, or that of the simulated board.
     port: Option<String>,
+    /// The subcommand with the arguments before the port, for messages.
     command: &'static str,
     #[cfg(all(feature = "simulator", target_os = "linux"))]
-    simulated: Option<simulated_uno::Background>,
+    simulated_board: Option<simulated_uno::BackgroundPort>,
 }
 
-/// An open port with a board at it.
+/// An open port, to which a board is connected.
 pub struct Connection {
     /// The serial link to the board.
     pub link: Link<Box<dyn SerialPort>>,
@@ -46,12 +48,13 @@ pub struct Connection {
     pub name: String,
 }
 
-impl Connect {
-    /// Makes the finder that these arguments ask for; starts the simulated UNO for `--sim`.
+impl ConnectionArgs {
+    /// Makes the finder that these arguments ask for; for `--sim`, also starts the simulated UNO. `command` is the
+    /// subcommand with the arguments before the port, for messages.
     ///
     /// # Errors
     /// Fails if the simulated UNO has no robot, firmware or pseudo terminal, or is not built in.
-    pub fn finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
+    pub fn into_finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
             let robot = RobotFile::from_path(self.robot);
             return simulate_board(self.elf.as_deref(), &robot, command);
@@ -60,7 +63,7 @@ impl Connect {
             port: self.port,
             command,
             #[cfg(all(feature = "simulator", target_os = "linux"))]
-            simulated: None,
+            simulated_board: None,
         })
     }
 }
@@ -68,12 +71,12 @@ impl Connect {
 #[cfg(all(feature = "simulator", target_os = "linux"))]
 fn simulate_board(
     elf: Option<&std::path::Path>,
-    file: &RobotFile,
+    robot_file: &RobotFile,
     command: &'static str,
 ) -> Result<BoardFinder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
-    let robot = file.load()?;
-    let image = crate::shared::firmware::select_firmware(elf, file, &robot)?.image;
+    let robot = robot_file.load()?;
+    let image = crate::shared::firmware::select_firmware(elf, robot_file, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     crate::simulate::sim::supplies::connect(&mut uno, &robot);
     let port = Port::new().map_err(|error| {
@@ -86,7 +89,7 @@ fn simulate_board(
     Ok(BoardFinder {
         port: Some(board.path().display().to_string()),
         command,
-        simulated: Some(board),
+        simulated_board: Some(board),
     })
 }
 
@@ -106,12 +109,12 @@ impl BoardFinder {
     /// Opens the port, which resets the board. [`Connection::greet`] comes next.
     ///
     /// # Errors
-    /// Fails if there is no board, more than one, or its port cannot be opened.
+    /// Fails if there is no board, there are several, or the port cannot be opened.
     pub fn open(&self) -> Result<Connection, Failure> {
         let (port, name) = match &self.port {
-            Some(port) => (port.clone(), self.name_of(port)),
+            Some(port) => (port.clone(), self.describe_port(port)),
             None => {
-                let port = find::choose(&find::usb_ports(), self.command)
+                let port = find::choose_port(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
                 // The product name comes from the board, so it is made safe to print.
                 (port.name.clone(), escape_controls(&port.to_string()))
@@ -123,7 +126,8 @@ impl BoardFinder {
         })
     }
 
-    /// Opens the port, prints its name on standard error, and waits for the banner.
+    /// Opens the port, prints its name on standard error, and waits for the banner. Returns the banner too; `None` if
+    /// the board was not reset.
     ///
     /// # Errors
     /// Fails as [`BoardFinder::open`] does, or if no lizard answers.
@@ -137,22 +141,22 @@ impl BoardFinder {
     /// True if the board is simulated, so that it ends with this program.
     pub fn is_simulated(&self) -> bool {
         #[cfg(all(feature = "simulator", target_os = "linux"))]
-        let is_simulated = self.simulated.is_some();
+        let is_simulated = self.simulated_board.is_some();
         #[cfg(not(all(feature = "simulator", target_os = "linux")))]
         let is_simulated = false;
         is_simulated
     }
 
     #[cfg(all(feature = "simulator", target_os = "linux"))]
-    fn name_of(&self, port: &str) -> String {
-        match self.simulated {
+    fn describe_port(&self, port: &str) -> String {
+        match self.simulated_board {
             Some(_) => format!("{port} (a simulated UNO)"),
             None => port.to_owned(),
         }
     }
 
     #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-    fn name_of(&self, port: &str) -> String {
+    fn describe_port(&self, port: &str) -> String {
         port.to_owned()
     }
 }
@@ -166,7 +170,7 @@ impl Connection {
         self.link.greet().map_err(|error| self.failure(&error))
     }
 
-    /// Converts the error to a failure whose message has the port's name.
+    /// Converts the error to a failure whose message names the port.
     pub fn failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))
     }

@@ -1,21 +1,21 @@
-//! Sets the robot's `deadman` while a person drives.
+//! The robot's `deadman` while a person drives.
 //!
 //! A robot that is out of reach would walk on. So while a person drives it, `deadman` is
-//! set: the robot ends a gait by itself when no line has come for that time. When the gait
+//! set: the robot ends a gait by itself if it has received no line for that time. When the gait
 //! has ended, and when the program ends, the robot gets its own setting back.
 
 use std::time::Duration;
 
 use lizard_core::console::word::Word;
 
-/// `deadman` while a person drives, ms. People set round numbers: a robot that has this one
-/// got it from a program that ended without restoring the setting.
-const DRIVEN_MS: u16 = 901;
-/// Time between two lines that keep the robot walking: short enough that two of three may be lost, even if the
-/// robot's own setting is somewhat shorter than [`DRIVEN_MS`].
+/// The `deadman` while a person drives, ms, unless the robot's own is shorter. People set round numbers: a robot that
+/// has this one got it from a program that ended without restoring the setting.
+const DRIVING_DEADMAN_MS: u16 = 901;
+/// Interval between the lines that keep the robot walking: short enough that two of three may be lost, even if the
+/// robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
 pub(super) const LINE_INTERVAL: Duration = Duration::from_millis(200);
 
-/// A line about `deadman`.
+/// A line that reads or sets `deadman`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DeadmanLine {
     /// Read the robot's own setting.
@@ -23,7 +23,7 @@ pub(super) enum DeadmanLine {
     /// Set `deadman` for driving.
     Set,
     /// Restore the robot's own setting for the next line only.
-    Lend,
+    RestoreForOneLine,
     /// Restore the robot's own setting.
     Restore,
 }
@@ -33,21 +33,24 @@ pub(super) enum DeadmanLine {
 pub(super) struct Deadman {
     /// The robot's own setting, ms, once it is read.
     own_ms: Option<u16>,
+    /// True while `deadman` has its value for driving, or is about to get it.
     pub(super) is_set: bool,
 }
 
 impl Deadman {
-    /// The steps before and after a line of the user.
-    pub(super) fn steps_around(
+    /// Returns the lines to send before and after a line of the user.
+    pub(super) fn lines_around(
         &mut self,
         line: &str,
     ) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
         if matches!(word, "cal" | "save") && self.is_set {
-            // The robot may have begun to walk since its last status.
-            return (&[DeadmanLine::Lend], &[DeadmanLine::Set]);
+            // `cal` shows and `save` keeps the robot's own setting, so it is restored for that line. It is set again
+            // afterwards, because the robot may have begun to walk since its last status.
+            return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
         }
+        // Only a gait or a routine makes the robot walk; their names are not among the console's words.
         if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_set {
             return (&[], &[]);
         }
@@ -58,14 +61,14 @@ impl Deadman {
         }
     }
 
-    /// The console's line for a step.
-    pub(super) fn line(&mut self, step: DeadmanLine) -> Option<String> {
+    /// Returns the text of a line.
+    pub(super) fn console_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
         let own_ms = self.own_ms.unwrap_or(0);
-        let ms = match step {
+        let ms = match deadman_line {
             DeadmanLine::Read => return Some("cal".to_owned()),
-            DeadmanLine::Set if own_ms == 0 => DRIVEN_MS,
-            DeadmanLine::Set => own_ms.min(DRIVEN_MS),
-            DeadmanLine::Lend => own_ms,
+            DeadmanLine::Set if own_ms == 0 => DRIVING_DEADMAN_MS,
+            DeadmanLine::Set => own_ms.min(DRIVING_DEADMAN_MS),
+            DeadmanLine::RestoreForOneLine => own_ms,
             DeadmanLine::Restore => {
                 self.is_set = false;
                 own_ms
@@ -74,13 +77,13 @@ impl Deadman {
         Some(format!("deadman {ms}"))
     }
 
-    /// Reads a line of the answer to `cal`; returns false if it is no such line.
+    /// Reads a line of the answer to `cal`; returns false if the line does not belong to one.
     pub(super) fn take_answer_line(&mut self, line: &str) -> bool {
         if let Some(ms) = line
             .strip_prefix("# deadman ")
             .and_then(|ms| ms.parse().ok())
         {
-            self.own_ms = Some(if ms == DRIVEN_MS { 0 } else { ms });
+            self.own_ms = Some(if ms == DRIVING_DEADMAN_MS { 0 } else { ms });
         }
         ["# A", "# boot ", "# deadman "]
             .iter()

@@ -1,4 +1,4 @@
-//! A test double: the firmware's own console behind a connection, without a chip. Time advances
+//! A test double of a board: the firmware's own console behind a connection, without a chip. Simulated time advances
 //! when there is nothing left to read, much faster than real time.
 
 use std::collections::VecDeque;
@@ -11,73 +11,74 @@ use pollster::block_on;
 
 use super::link::{Link, Timeouts};
 
-/// The core on a virtual board, and its output.
+/// The firmware's core on a virtual board, and its output.
 pub struct ConsoleDouble {
-    running: RunningRobot,
-    out: VecDeque<u8>,
+    running_robot: RunningRobot,
+    /// The robot's output that has not been read yet.
+    output: VecDeque<u8>,
     /// All text that the link has sent to the robot.
-    pub sent: String,
+    pub sent_text: String,
 }
 
-/// A connection to the paper's robot, its banner already read.
+/// Connects to the paper's robot and reads its banner.
 pub fn connect_paper_robot() -> Link<ConsoleDouble> {
-    connect_robot(PAPER)
+    connect_robot(PAPER_TOML)
 }
 
 /// The robot.toml of the paper's robot.
-pub const PAPER: &str = include_str!("../../../../../robots/paper.toml");
+pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
-/// A connection to the robot of this robot.toml, its banner already read.
-pub fn connect_robot(text: &str) -> Link<ConsoleDouble> {
-    let robot = Robot::parse(text).expect("its robot.toml is right");
-    let mut link = Link::new(ConsoleDouble::of(&robot), Timeouts::default());
+/// Connects to the robot of this robot.toml and reads its banner.
+pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
+    let robot = Robot::parse(robot_toml).expect("the robot.toml is valid");
+    let mut link = Link::new(ConsoleDouble::power_on(&robot), Timeouts::default());
     link.greet().expect("it has a banner");
     link
 }
 
-/// The settings of a connected robot.
+/// Returns the active calibration of a connected robot.
 pub fn calibration_of(link: &mut Link<ConsoleDouble>) -> Calibration {
     block_on(lizard_calibrate::read(link)).expect("it answers")
 }
 
 impl ConsoleDouble {
-    fn of(robot: &Robot) -> Self {
+    fn power_on(robot: &Robot) -> Self {
         Self {
-            running: RunningRobot::power_on(*robot.firmware()),
-            out: VecDeque::new(),
-            sent: String::new(),
+            running_robot: RunningRobot::power_on(*robot.firmware()),
+            output: VecDeque::new(),
+            sent_text: String::new(),
         }
     }
 
-    /// Moves the robot's pending output into `out`.
-    fn collect(&mut self) {
-        self.running.settle();
-        let text = &mut self.running.board.transmitter.text;
-        self.out
+    /// Moves the robot's pending output into `output`.
+    fn collect_output(&mut self) {
+        self.running_robot.settle();
+        let text = &mut self.running_robot.board.transmitter.text;
+        self.output
             .extend(text.drain(..).map(|character| character as u8));
     }
 }
 
 impl Read for ConsoleDouble {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if self.out.is_empty() {
-            self.running.frame();
-            self.collect();
+        if self.output.is_empty() {
+            self.running_robot.run_frame();
+            self.collect_output();
         }
-        if self.out.is_empty() {
+        if self.output.is_empty() {
             std::thread::sleep(Duration::from_micros(200));
             return Err(ErrorKind::TimedOut.into());
         }
-        self.out.read(buffer)
+        self.output.read(buffer)
     }
 }
 
 impl Write for ConsoleDouble {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.sent.push_str(&String::from_utf8_lossy(bytes));
+        self.sent_text.push_str(&String::from_utf8_lossy(bytes));
         for byte in bytes {
-            self.running.board.send(&[*byte]);
-            self.collect();
+            self.running_robot.board.send(&[*byte]);
+            self.collect_output();
         }
         Ok(bytes.len())
     }

@@ -2,7 +2,7 @@
 
 use serialport::{SerialPortInfo, SerialPortType};
 
-/// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and the one of WCH, the maker of the CH340.
+/// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and that of WCH, the maker of the CH340.
 const UNO_VENDOR_IDS: [u16; 3] = [ARDUINO_VENDOR_IDS[0], ARDUINO_VENDOR_IDS[1], 0x1a86];
 /// Arduino's USB vendor IDs.
 pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
@@ -12,12 +12,12 @@ pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
 pub struct UsbPort {
     /// The name of the port, such as /dev/ttyACM0 or COM3.
     pub name: String,
-    /// The USB vendor ID of its chip.
-    pub vendor: u16,
-    /// The USB product ID of its chip.
+    /// The vendor ID of its USB chip.
+    pub vendor_id: u16,
+    /// The product ID of its USB chip.
     pub product_id: u16,
     /// The product name that the chip reports.
-    pub product: Option<String>,
+    pub product_name: Option<String>,
 }
 
 /// The reason why no port could be chosen.
@@ -29,13 +29,13 @@ pub enum FindError {
          carries data (some only charge), or name its port: lizard {command} /dev/ttyACM0; \
          --sim takes a simulated UNO"
     )]
-    None {
+    NoPort {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
     },
     /// There is more than one port.
-    #[error("several boards found: {}. Say which one: lizard {command} {}", list(.ports), .ports[0].name)]
-    Several {
+    #[error("several boards found: {}. Say which one: lizard {command} {}", join_names(.ports), .ports[0].name)]
+    SeveralPorts {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
         /// The ports that may have the board.
@@ -43,8 +43,8 @@ pub enum FindError {
     },
 }
 
-/// The USB serial ports of this machine, sorted by name. Other ports, such as a mainboard's, are used only if the
-/// user names them.
+/// Returns the USB serial ports of this machine, sorted by name. Other ports, such as a mainboard's, are used only if
+/// the user names them.
 pub fn usb_ports() -> Vec<UsbPort> {
     let mut ports: Vec<UsbPort> = serialport::available_ports()
         .unwrap_or_default()
@@ -59,43 +59,43 @@ fn usb_port_of(port: SerialPortInfo) -> Option<UsbPort> {
     let SerialPortType::UsbPort(usb) = port.port_type else {
         return None;
     };
-    // macOS lists each port twice; opening this entry would wait for a modem's carrier.
+    // macOS lists each port twice; opening the one that begins with /dev/tty. would wait for a modem's carrier.
     if port.port_name.starts_with("/dev/tty.") {
         return None;
     }
     Some(UsbPort {
         name: port.port_name,
-        vendor: usb.vid,
+        vendor_id: usb.vid,
         product_id: usb.pid,
-        product: usb.product,
+        product_name: usb.product,
     })
 }
 
 impl UsbPort {
     /// True if the chip has one of Arduino's vendor IDs.
-    pub fn is_arduinos(&self) -> bool {
-        ARDUINO_VENDOR_IDS.contains(&self.vendor)
+    pub fn has_arduino_vendor_id(&self) -> bool {
+        ARDUINO_VENDOR_IDS.contains(&self.vendor_id)
     }
 }
 
-/// Chooses the one port with a UNO's USB chip, or else the only port.
+/// Chooses the only port with a UNO's USB chip; if no port has one, the only port.
 ///
 /// # Errors
-/// Fails if there is no port, or more than one.
-pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
+/// Fails if there is no such port, or more than one.
+pub fn choose_port(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
     let uno_ports = ports
         .iter()
-        .filter(|port| UNO_VENDOR_IDS.contains(&port.vendor));
+        .filter(|port| UNO_VENDOR_IDS.contains(&port.vendor_id));
     let uno_ports: Vec<&UsbPort> = uno_ports.collect();
     match (uno_ports.as_slice(), ports) {
         ([port], _) => Ok((*port).clone()),
         ([], [port]) => Ok(port.clone()),
-        ([], []) => Err(FindError::None { command }),
-        ([], several) => Err(FindError::Several {
+        ([], []) => Err(FindError::NoPort { command }),
+        ([], several) => Err(FindError::SeveralPorts {
             command,
             ports: several.to_vec(),
         }),
-        (several, _) => Err(FindError::Several {
+        (several, _) => Err(FindError::SeveralPorts {
             command,
             ports: several.iter().map(|port| (*port).clone()).collect(),
         }),
@@ -104,14 +104,14 @@ pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindE
 
 impl std::fmt::Display for UsbPort {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match &self.product {
+        match &self.product_name {
             Some(product) => write!(f, "{} ({})", self.name, product.replace('_', " ")),
             None => f.write_str(&self.name),
         }
     }
 }
 
-fn list(ports: &[UsbPort]) -> String {
+fn join_names(ports: &[UsbPort]) -> String {
     let names: Vec<String> = ports.iter().map(ToString::to_string).collect();
     names.join(", ")
 }
@@ -123,21 +123,21 @@ mod tests {
     fn port(name: &str, vendor: u16) -> UsbPort {
         UsbPort {
             name: format!("/dev/{name}"),
-            vendor,
+            vendor_id: vendor,
             product_id: 0x43,
-            product: (vendor == 0x2341).then(|| "Arduino_Uno".to_owned()),
+            product_name: (vendor == 0x2341).then(|| "Arduino_Uno".to_owned()),
         }
     }
 
     fn choose_from(ports: &[(&str, u16)]) -> Result<String, String> {
         let ports: Vec<UsbPort> = ports.iter().map(|(name, id)| port(name, *id)).collect();
-        choose(&ports, "console")
+        choose_port(&ports, "console")
             .map(|port| port.to_string())
             .map_err(|error| error.to_string())
     }
 
     #[test]
-    fn the_one_uno_is_taken_among_other_devices() {
+    fn the_only_uno_among_other_devices_is_chosen() {
         assert_eq!(
             choose_from(&[
                 ("ttyUSB0", 0x0403),
@@ -161,8 +161,8 @@ mod tests {
     }
 
     #[test]
-    fn none_and_several_are_reported_with_the_remedy() {
-        let message = choose_from(&[]).expect_err("there is none");
+    fn no_port_and_several_ports_are_reported_with_the_remedy() {
+        let message = choose_from(&[]).expect_err("there is no port");
         assert!(
             message.contains("carries data") && message.contains("lizard console /dev/ttyACM0")
         );

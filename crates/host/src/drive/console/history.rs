@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use crate::shared::files;
 
-/// The path `$XDG_STATE_HOME/lizard/history`, by default in ~/.local/state.
-fn path() -> Option<PathBuf> {
+/// Returns the path `$XDG_STATE_HOME/lizard/history`; `$XDG_STATE_HOME` is ~/.local/state by default.
+fn history_path() -> Option<PathBuf> {
     let folder = std::env::var_os("XDG_STATE_HOME").map(PathBuf::from);
     let default_folder = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".local/state"));
     let folder = folder
@@ -14,16 +14,16 @@ fn path() -> Option<PathBuf> {
     Some(folder.join("lizard/history"))
 }
 
-/// Loads the lines, the oldest first; an empty list if there is no such file.
+/// Loads the lines, the oldest first; returns an empty list if there is no such file.
 pub fn load() -> Vec<String> {
-    let text = path().and_then(|path| std::fs::read_to_string(path).ok());
+    let text = history_path().and_then(|path| std::fs::read_to_string(path).ok());
     let text = text.unwrap_or_default();
     text.lines().map(str::to_owned).collect()
 }
 
-/// Saves the lines. A failure is ignored.
+/// Saves the lines. A failure is ignored: a session does not depend on its history.
 pub fn save(lines: &[String]) {
-    let Some(path) = path() else {
+    let Some(path) = history_path() else {
         return;
     };
     let _ = files::write(&path, (lines.join("\n") + "\n").as_bytes());

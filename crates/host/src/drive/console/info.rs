@@ -6,12 +6,12 @@ use std::io::{Read, Write};
 use std::time::Duration;
 
 use lizard_calibrate::{BadReply, read};
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{Calibration, ServoSettings, Status};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::connect::Connect;
+use super::connect::ConnectionArgs;
 use super::link::{Link, LinkError};
 use crate::Failure;
 use crate::shared::json;
@@ -25,17 +25,17 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    connect: Connect,
+    connect: ConnectionArgs,
 }
 
-/// The answers of a board, under the names of `--json`.
+/// The answers of a board, with the field names of `--json`.
 #[derive(Debug, Serialize)]
-struct Board {
+struct BoardInfo {
     port: String,
     /// The firmware's version; null if the board was not reset and so has not sent its banner.
     firmware: Option<String>,
     /// The robot's name and hash; null if the board has no robot or has not sent its banner.
-    robot: Option<Robot>,
+    robot: Option<RobotIdentity>,
     gait: String,
     fault: Option<String>,
     /// Supply voltage of the board, V; null if it is not measured.
@@ -43,36 +43,39 @@ struct Board {
     /// Voltage of the servos' rail, V; null if it is not measured.
     rail: Option<f64>,
     /// Null on a board without a robot.
-    calibration: Option<Settings>,
+    calibration: Option<CalibrationInfo>,
 }
 
-/// A calibration under the names of its file.
+/// A calibration, with the field names of its file.
 #[derive(Debug, Serialize)]
-struct Settings {
+struct CalibrationInfo {
     boot: String,
+    /// The time without a line after which the robot ends its gait, ms; 0 for never.
     deadman: u16,
+    /// The settings of each servo, by its name.
     servo: BTreeMap<&'static str, ServoSettings>,
 }
 
-impl From<Calibration> for Settings {
+impl From<Calibration> for CalibrationInfo {
     fn from(calibration: Calibration) -> Self {
         Self {
             boot: calibration.boot,
             deadman: calibration.deadman,
-            servo: NAMES.into_iter().zip(calibration.servos).collect(),
+            servo: SERVO_NAMES.into_iter().zip(calibration.servos).collect(),
         }
     }
 }
 
-/// A robot as its board names it.
+/// The name and the hash by which a board identifies its robot.
 #[derive(Debug, PartialEq, Serialize)]
-pub(in crate::drive) struct Robot {
+pub(in crate::drive) struct RobotIdentity {
     pub(in crate::drive) name: String,
+    /// The hash of the robot's numbers, eight hexadecimal digits.
     pub(in crate::drive) hash: String,
 }
 
-impl Robot {
-    /// Names a robot as its board will.
+impl RobotIdentity {
+    /// Returns the identity that a board will report for a robot.
     pub(in crate::drive) fn of(robot: &lizard_core::numbers::robot::Robot) -> Self {
         let name = robot.robot_name().map(char::from).collect();
         let hash = format!("{:08x}", robot.hash());
@@ -80,19 +83,19 @@ impl Robot {
     }
 }
 
-/// Asks a board and prints its answers.
+/// Asks a board about itself and prints its answers.
 ///
 /// # Errors
 /// Fails if there is no board, or none that answers as a lizard does.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let finder = args.connect.finder("info")?;
+    let finder = args.connect.into_finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;
-    let result = Board::ask(board.name.clone(), banner.as_deref(), &mut board.link);
+    let result = BoardInfo::ask(board.name.clone(), banner.as_deref(), &mut board.link);
     let answers = result.map_err(|error| board.failure(&error))?;
     json::print_json_or(args.json, &answers, || answers.text())
 }
 
-impl Board {
+impl BoardInfo {
     fn ask<P: Read + Write>(
         port: String,
         banner: Option<&str>,
@@ -153,12 +156,12 @@ impl Board {
             write_row("boot", calibration.boot.clone());
             write_row("deadman", format!("{} ms", calibration.deadman));
             for (name, servo) in &calibration.servo {
-                let [from, to] = servo.limit;
+                let [min, max] = servo.limit;
                 let sign = servo.dir;
                 write_row(
                     name,
                     format!(
-                        "trim {:.2} deg, limits {from:.2} to {to:.2} deg, direction {sign}, \
+                        "trim {:.2} deg, limits {min:.2} to {max:.2} deg, direction {sign}, \
                          {:.2} us/deg",
                         servo.trim, servo.scale
                     ),
@@ -169,8 +172,8 @@ impl Board {
     }
 }
 
-/// Asks for the status. A robot that has just been reset reports no voltage until its converter has run, so it is
-/// asked again, for a second.
+/// Asks for the status. A robot that has just been reset reports no voltage until its analog-to-digital converter has
+/// run, so it is asked again for up to a second.
 fn wait_for_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
         let status = ask_status(link)?;
@@ -190,14 +193,14 @@ fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> 
     })
 }
 
-/// The version and the robot in the first line of a firmware.
-pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<Robot>) {
+/// Returns the version and the robot that a firmware's banner names.
+pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<RobotIdentity>) {
     let line = line.split(',').next().unwrap_or(line);
     let words: Vec<&str> = line.split(' ').collect();
     match words[..] {
         ["#", "lizard", version, "robot", name, hash] => {
             let [name, hash] = [name, hash].map(str::to_owned);
-            (Some(version.to_owned()), Some(Robot { name, hash }))
+            (Some(version.to_owned()), Some(RobotIdentity { name, hash }))
         }
         ["#", "lizard", version, ..] => (Some(version.to_owned()), None),
         _ => (None, None),
@@ -206,18 +209,19 @@ pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<Robo
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{PAPER, calibration_of, connect_paper_robot};
+    use super::super::double::{PAPER_TOML, calibration_of, connect_paper_robot};
     use super::*;
 
     #[test]
-    fn a_board_says_what_it_has_and_keeps_all_of_it() {
+    fn the_report_shows_firmware_robot_and_calibration_and_changes_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         let before = calibration_of(&mut link);
-        let paper = lizard_robot::Robot::parse(PAPER).expect("it is right");
+        let paper = lizard_robot::Robot::parse(PAPER_TOML).expect("paper.toml is valid");
         let hash = format!("{:08x}", paper.firmware().hash());
         let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
-        let board = Board::ask("COM3".to_owned(), Some(&banner), &mut link).expect("it answers");
+        let board =
+            BoardInfo::ask("COM3".to_owned(), Some(&banner), &mut link).expect("it answers");
         let text = board.text();
         for line in [
             "port        COM3\n".to_owned(),
@@ -230,14 +234,14 @@ mod tests {
             assert!(text.contains(&line), "{line:?} in {text}");
         }
         let after = calibration_of(&mut link);
-        assert!(after.is_same(&before), "nothing was changed");
+        assert!(after.is_equivalent_to(&before), "nothing was changed");
     }
 
     #[test]
-    fn the_first_line_is_read_with_a_robot_and_without_one() {
+    fn a_banner_is_parsed_with_a_robot_and_without_one() {
         let robot = |name: &str, hash: &str| {
             let [name, hash] = [name, hash].map(str::to_owned);
-            Some(Robot { name, hash })
+            Some(RobotIdentity { name, hash })
         };
         let version = Some("0.2.0".to_owned());
         for (line, expected) in [

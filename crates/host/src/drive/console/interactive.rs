@@ -1,4 +1,4 @@
-//! `lizard console`: a dialogue with the robot, by a user or by a script on standard input.
+//! `lizard console`: a user's or a script's dialogue with the robot; a script comes on standard input.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event as TerminalEvent};
 
-use super::connect::{BoardFinder, Connect, Connection};
+use super::connect::{BoardFinder, Connection, ConnectionArgs};
+use super::dialogue_error::DialogueError;
 use super::history;
 use super::link::LinkError;
 use super::prompt::{Prompt, PromptEvent};
@@ -16,17 +17,16 @@ use super::recorder::{self, Event, FORMAT, Recorder};
 use super::screen::Screen;
 use super::session::Session;
 use super::terminal;
-use super::turn_error::DialogueError;
 use crate::Failure;
 use crate::drive::clock::Clock;
 
-/// Dialogue to the robot
+/// Dialogue with the robot
 ///
 /// Finds the board, waits for it to start, and passes lines to it; `help` lists its commands. Esc stops the robot at
 /// once: `stop` goes ahead of whatever waits, and is sent until it is answered. The arrow keys bring back older
 /// lines; Ctrl-C, Ctrl-D or `quit` end the program. The line at the bottom shows gait, pose, smallest margin, supply
-/// and faults. For that the program asks the robot for its `status` twice a second, so `boot` does not act. While you
-/// drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines
+/// and faults. For that line, the program asks the robot for its `status` twice a second, so `boot` does not act. While
+/// you drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines
 /// are sent one after another, and the exit code is 1 if the robot refuses one; by radio, the robot stops when they
 /// have ended.
 #[derive(clap::Args, Debug)]
@@ -36,25 +36,26 @@ pub struct ConsoleArgs {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
-    connect: Connect,
+    connect: ConnectionArgs,
 }
 
 type FileRecorder = Recorder<BufWriter<File>>;
 
-/// Longest time that the loop waits for the robot before it checks the keys.
+/// Longest time that the loop waits for a line of the robot before it checks the keys.
 const ROBOT_READ_TIMEOUT: Duration = Duration::from_millis(10);
-/// Interval between attempts to find a vanished port.
+/// Pause before each attempt to open a vanished port again.
 const RETRY_INTERVAL: Duration = Duration::from_millis(300);
 
 /// Runs `lizard console`.
 ///
 /// # Errors
-/// Fails if there is no board, if the terminal fails, or if the file exists already or cannot be written.
-pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
+/// Fails if there is no board, if the connection or the terminal fails, if a script's line is not accepted, or if the
+/// file of the session exists already or cannot be written.
+pub fn run(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
     }
-    run_dialogue(&args.connect.finder("console")?, args.record)
+    run_dialogue(&args.connect.into_finder("console")?, args.record)
 }
 
 fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {
@@ -64,10 +65,10 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
         session: Session::new(clock.now(), true, file.is_some()).with_person(),
         clock,
         recorder: None,
-        status_prefix: "",
+        status_line_prefix: "",
     };
     if let Some(path) = file {
-        dialogue.status_prefix = "REC  ";
+        dialogue.status_line_prefix = "REC  ";
         let mut recorder = recorder::create(&path)?;
         let event = Event::Begin {
             format: FORMAT.to_owned(),
@@ -77,7 +78,7 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
         recorder.write(Instant::now(), event)?;
         dialogue.recorder = Some(recorder);
     }
-    let is_reset = banner.is_some();
+    let is_reset_by_opening = banner.is_some();
     let first_line = banner.unwrap_or_else(|| "(the board was not reset and continues)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         match dialogue.run_terminal(finder, board, &first_line) {
@@ -86,7 +87,7 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
             result => result,
         }
     } else {
-        dialogue.run_script(board, &first_line, is_reset)
+        dialogue.run_script(board, &first_line, is_reset_by_opening)
     }
 }
 
@@ -96,12 +97,12 @@ struct Dialogue {
     /// The clock of the session, so that a pause of this program does not count as silence of the robot.
     clock: Clock,
     recorder: Option<FileRecorder>,
-    /// Beginning of the status line: shows that the session is recorded.
-    status_prefix: &'static str,
+    /// Beginning of the status line, which shows whether the session is recorded.
+    status_line_prefix: &'static str,
 }
 
 impl Dialogue {
-    /// Sends the next line and reads the lines that have arrived; `show` prints the lines that are for the user.
+    /// Sends the next line, if one is due, and reads the lines that have arrived; `show` prints those for the user.
     fn exchange_lines(
         &mut self,
         board: &mut Connection,
@@ -111,11 +112,11 @@ impl Dialogue {
             board.link.send(&line)?;
         }
         // At most 51 lines, since keys are not handled meanwhile.
-        for wait in [ROBOT_READ_TIMEOUT; 1]
+        for timeout in [ROBOT_READ_TIMEOUT; 1]
             .into_iter()
             .chain([Duration::ZERO; 50])
         {
-            let Some(line) = board.link.line(wait)? else {
+            let Some(line) = board.link.read_line(timeout)? else {
                 break;
             };
             if let Some(line) = self.session.receive(&line) {
@@ -140,7 +141,7 @@ impl Dialogue {
     }
 
     /// Sends the lines of standard input. A port whose opening does not reset the board may be a radio link: then
-    /// `deadman` is set as for a person, and stays set while the robot walks.
+    /// `deadman` is set as for a person, and stays set after the last line if the robot still walks.
     fn run_script(
         mut self,
         mut board: Connection,
@@ -154,20 +155,20 @@ impl Dialogue {
             let is_recorded = self.recorder.is_some();
             self.session = Session::new(self.clock.now(), is_recorded, is_recorded);
         }
-        let lines = lines_of_stdin();
-        let mut has_ended = false;
-        let mut is_last_question_due = !is_reset_by_opening;
-        while !(has_ended && self.session.is_idle()) || is_last_question_due {
-            if has_ended && self.session.is_idle() {
-                is_last_question_due = false;
+        let lines = read_stdin_lines();
+        let mut has_input_ended = false;
+        let mut is_final_status_due = !is_reset_by_opening;
+        while !(has_input_ended && self.session.is_idle()) || is_final_status_due {
+            if has_input_ended && self.session.is_idle() {
+                is_final_status_due = false;
                 self.session.request_status(self.clock.now());
             }
-            while !has_ended {
+            while !has_input_ended {
                 match lines.try_recv() {
                     Ok(line) if line.trim().is_empty() => {}
                     Ok(line) => self.session.queue(line.trim()),
                     Err(TryRecvError::Empty) => break,
-                    Err(TryRecvError::Disconnected) => has_ended = true,
+                    Err(TryRecvError::Disconnected) => has_input_ended = true,
                 }
             }
             let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
@@ -219,7 +220,7 @@ impl Dialogue {
             }
             let status = self.session.status().map(lizard_robot::Status::status_line);
             let status = status.unwrap_or_default();
-            screen.draw(&format!("{}{status}", self.status_prefix), &prompt)?;
+            screen.draw(&format!("{}{status}", self.status_line_prefix), &prompt)?;
         }
         if let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman()) {
             let _ = board.link.ask(&line);
@@ -248,18 +249,18 @@ impl Dialogue {
             return Ok(true);
         }
         while event::poll(Duration::ZERO)? {
-            let outcomes = match event::read()? {
+            let events = match event::read()? {
                 TerminalEvent::Key(key) => vec![prompt.press_key(key)],
                 TerminalEvent::Paste(text) => prompt.paste(&text),
                 _ => vec![],
             };
-            for outcome in outcomes {
-                match outcome {
+            for event in events {
+                match event {
                     PromptEvent::Edited => {}
                     PromptEvent::Leave => return Ok(true),
                     PromptEvent::Suspend => {
                         screen.leave()?;
-                        terminal::stop()?;
+                        terminal::suspend_program()?;
                         screen.enter()?;
                     }
                     PromptEvent::Line(line) => {
@@ -276,7 +277,7 @@ impl Dialogue {
         Ok(false)
     }
 
-    /// Opens the board again if it is back.
+    /// Opens the board's port again; returns `None` if the board is not back yet.
     fn reopen(
         &mut self,
         finder: &BoardFinder,
@@ -300,7 +301,7 @@ impl Dialogue {
     }
 }
 
-/// Converts an error of the dialogue into the message for the user.
+/// Converts an error of the dialogue into the failure to report to the user.
 fn failure_of(error: DialogueError, board: &Connection) -> Failure {
     match error {
         DialogueError::Link(error) => board.failure(&error),
@@ -309,8 +310,8 @@ fn failure_of(error: DialogueError, board: &Connection) -> Failure {
     }
 }
 
-/// Reads the lines of standard input as they arrive; the channel closes at the end of the input.
-fn lines_of_stdin() -> Receiver<String> {
+/// Starts a thread that reads the lines of standard input as they arrive; the channel closes at the end of the input.
+fn read_stdin_lines() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
         for line in io::stdin().lock().lines() {

@@ -1,8 +1,8 @@
 //! A line-based connection to the robot over any stream of bytes.
 //!
-//! The serial line loses nothing, but it does not mark the end of an answer. Also, a board may be reset or unplugged,
-//! or may be no robot of this project. So after each line the link waits for the one line that begins with `ok` or
-//! `err`, and collects the lines that begin with `#` until then. If no answer arrives, it fails with a message.
+//! An answer may have several lines, and a board may be reset or unplugged, or may be another device. So after each
+//! line the link waits for the one line that begins with `ok` or `err`, and collects the lines that begin with `#`
+//! until then. If no answer arrives in time, it fails with a message.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -14,20 +14,20 @@ use pollster::block_on;
 use crate::drive::clock::Deadline;
 
 /// The beginning of the robot's first line after a reset.
-pub const BANNER: &str = "# lizard ";
-/// Number of questions to a board that was not reset: the board needs up to five lines to find the port's rate, and a
-/// radio may lose some.
+pub const BANNER_START: &str = "# lizard ";
+/// Largest number of `status` lines sent to a board that was not reset: its autobaud needs up to five lines to find the
+/// port's rate, and a radio may lose some.
 const MAX_QUESTIONS: u32 = 8;
 
 /// The beginning of an answer to `status`.
-const STATUS: &str = "ok gait=";
-/// Longer lines are cut: the firmware's lines are shorter, but noise may be endless.
+const STATUS_ANSWER_START: &str = "ok gait=";
+/// Length at which a received line is cut: the firmware's lines are shorter, but noise may be endless.
 const MAX_LINE_BYTES: usize = 512;
 
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
 pub struct Timeouts {
-    /// Time for the banner after the port has been opened. A UNO's boot loader needs more than a second of it.
+    /// Time for the banner after the port has been opened. A UNO's boot loader takes more than a second of it.
     pub banner: Duration,
     /// Time for an answer. `save` takes the longest, a third of a second.
     pub answer: Duration,
@@ -48,21 +48,21 @@ pub enum LinkError {
     /// The port has vanished.
     #[error("the port is gone: the board was unplugged, or its cable is loose")]
     Gone,
-    /// A line was not answered.
+    /// The robot has not answered this line.
     #[error("the robot does not answer to `{0}`")]
-    Silent(String),
-    /// The device sends lines, but no lizard's lines; this is its first line.
+    NoAnswer(String),
+    /// The device sends lines, but none of a lizard; this is its first line.
     #[error(
         "this is not a lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
          the board been flashed (lizard flash)?"
     )]
-    Stranger(String),
-    /// There is no answer and no banner at all.
+    OtherDevice(String),
+    /// The device sends nothing at all: neither a banner nor an answer.
     #[error(
         "nothing answers: no banner and no answer to `status`; is it the right port, and has \
          the board been flashed (lizard flash)?"
     )]
-    Mute,
+    NoOutput,
     /// The robot refuses a line, or its answer is not understood.
     #[error(transparent)]
     Reply(#[from] BadReply),
@@ -93,31 +93,32 @@ pub struct Link<P> {
     port: P,
     timeouts: Timeouts,
     /// The beginning of a line whose end has not arrived yet.
-    partial: Vec<u8>,
+    partial_line: Vec<u8>,
+    /// The complete lines that have not been read yet.
     lines: VecDeque<String>,
 }
 
 impl<P: Read + Write> Link<P> {
-    /// A connection over an open port.
+    /// Makes a connection over an open port.
     pub fn new(port: P, timeouts: Timeouts) -> Self {
         Self {
             port,
             timeouts,
-            partial: Vec::new(),
+            partial_line: Vec::new(),
             lines: VecDeque::new(),
         }
     }
 
     /// Waits for the banner and returns it. A board that was not reset when the port was opened sends none. So it is
-    /// asked for its status until it has found the port's rate and answers; then the result is `None`.
+    /// asked for its status until its autobaud has found the port's rate and it answers; then the result is `None`.
     ///
     /// # Errors
-    /// Fails if nothing answers, or something other than a lizard.
+    /// Fails if nothing answers, or if another device does.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
         let mut deadline = Deadline::after(self.timeouts.banner);
         let mut first_line = None;
-        while let Some(line) = self.line_before(&mut deadline)? {
-            if line.starts_with(BANNER) {
+        while let Some(line) = self.read_line_before(&mut deadline)? {
+            if line.starts_with(BANNER_START) {
                 return Ok(Some(line));
             }
             first_line = first_line.or(Some(line));
@@ -125,14 +126,14 @@ impl<P: Read + Write> Link<P> {
         for _ in 0..MAX_QUESTIONS {
             let mut deadline = Deadline::after(self.timeouts.answer / 4);
             self.send("status")?;
-            while let Some(line) = self.line_before(&mut deadline)? {
-                if line.starts_with(STATUS) {
+            while let Some(line) = self.read_line_before(&mut deadline)? {
+                if line.starts_with(STATUS_ANSWER_START) {
                     return Ok(None);
                 }
                 first_line = first_line.or(Some(line));
             }
         }
-        Err(first_line.map_or(LinkError::Mute, LinkError::Stranger))
+        Err(first_line.map_or(LinkError::NoOutput, LinkError::OtherDevice))
     }
 
     /// Sends a line without waiting for its answer.
@@ -155,13 +156,13 @@ impl<P: Read + Write> Link<P> {
         self.send(line)?;
         let mut deadline = Deadline::after(self.timeouts.answer);
         let mut notes = Vec::new();
-        while let Some(answer) = self.line_before(&mut deadline)? {
+        while let Some(answer) = self.read_line_before(&mut deadline)? {
             if !answer.starts_with('#') {
                 return Ok(Reply { notes, answer });
             }
             notes.push(answer);
         }
-        Err(LinkError::Silent(line.to_owned()))
+        Err(LinkError::NoAnswer(line.to_owned()))
     }
 
     /// Sends a line that must be accepted; returns the answer and the `#` lines before it.
@@ -176,33 +177,33 @@ impl<P: Read + Write> Link<P> {
     ///
     /// # Errors
     /// Fails if the port is gone.
-    pub fn line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
-        self.line_before(&mut Deadline::after(wait))
+    pub fn read_line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
+        self.read_line_before(&mut Deadline::after(wait))
     }
 
-    /// Waits for `time`, and discards the lines that arrive in it.
+    /// Waits for `time`, and discards the lines that arrive meanwhile.
     ///
     /// # Errors
     /// Fails if the port is gone.
     pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
         let mut deadline = Deadline::after(time);
-        while self.line_before(&mut deadline)?.is_some() {}
+        while self.read_line_before(&mut deadline)?.is_some() {}
         Ok(())
     }
 
-    fn line_before(&mut self, deadline: &mut Deadline) -> Result<Option<String>, LinkError> {
+    fn read_line_before(&mut self, deadline: &mut Deadline) -> Result<Option<String>, LinkError> {
         loop {
             if let Some(line) = self.lines.pop_front() {
                 return Ok(Some(line));
             }
-            self.receive()?;
+            self.receive_bytes()?;
             if deadline.has_passed() && self.lines.is_empty() {
                 return Ok(None);
             }
         }
     }
 
-    fn receive(&mut self) -> Result<(), LinkError> {
+    fn receive_bytes(&mut self) -> Result<(), LinkError> {
         let mut bytes = [0; 256];
         match self.port.read(&mut bytes) {
             Ok(0) => Err(LinkError::Gone),
@@ -221,17 +222,17 @@ impl<P: Read + Write> Link<P> {
 
     fn take_byte(&mut self, byte: u8) {
         if byte != b'\n' {
-            if self.partial.len() < MAX_LINE_BYTES {
-                self.partial.push(byte);
+            if self.partial_line.len() < MAX_LINE_BYTES {
+                self.partial_line.push(byte);
             }
             return;
         }
-        let bytes = std::mem::take(&mut self.partial);
+        let bytes = std::mem::take(&mut self.partial_line);
         let text = String::from_utf8_lossy(&bytes);
         let text = text.trim_end_matches('\r');
         // A reset cuts off the board's current line, and the banner follows directly. The part before the banner is
         // discarded.
-        let text = &text[text.find(BANNER).unwrap_or(0)..];
+        let text = &text[text.find(BANNER_START).unwrap_or(0)..];
         if !text.is_empty() {
             // A terminal executes control characters, so they are replaced: noise must not reach it.
             let replace_control = |c: char| if c.is_control() { '\u{fffd}' } else { c };
@@ -253,18 +254,18 @@ impl<P: Read + Write> Console for Link<P> {
     }
 }
 
-/// Converts an error of the system: for an open port, it nearly always means that the port is gone.
+/// Converts an error of the operating system, which for an open port nearly always means that the port is gone.
 fn to_link_error(error: io::Error) -> LinkError {
-    if is_gone(&error) {
+    if is_port_gone(&error) {
         LinkError::Gone
     } else {
         LinkError::Io(error)
     }
 }
 
-/// True if an error of the system means that the board was unplugged.
-pub(crate) fn is_gone(error: &io::Error) -> bool {
-    // EIO, ENXIO, ENODEV: the errors of Linux for a USB port without its board.
+/// True if an error of the operating system means that the board was unplugged.
+pub(crate) fn is_port_gone(error: &io::Error) -> bool {
+    // EIO, ENXIO and ENODEV: Linux returns them for a USB port whose board was unplugged.
     matches!(error.raw_os_error(), Some(5 | 6 | 19))
         || matches!(
             error.kind(),
@@ -280,34 +281,34 @@ pub(crate) fn is_gone(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// A port that plays back a script: each write releases the next piece; at `None` the port vanishes.
+    /// A port that plays back scripted output: each write releases the next piece, and at `None` the port vanishes.
     struct Script {
         pieces: VecDeque<Option<&'static str>>,
-        ready: VecDeque<u8>,
+        ready_bytes: VecDeque<u8>,
         is_gone: bool,
-        sent: String,
+        sent_text: String,
     }
 
     impl Script {
         fn link(pieces: &[Option<&'static str>]) -> Link<Self> {
             let mut script = Self {
                 pieces: pieces.iter().copied().collect(),
-                ready: VecDeque::new(),
+                ready_bytes: VecDeque::new(),
                 is_gone: false,
-                sent: String::new(),
+                sent_text: String::new(),
             };
             script.release_piece();
-            let limit = Duration::from_millis(20);
+            let timeout = Duration::from_millis(20);
             let timeouts = Timeouts {
-                banner: limit,
-                answer: limit,
+                banner: timeout,
+                answer: timeout,
             };
             Link::new(script, timeouts)
         }
 
         fn release_piece(&mut self) {
             match self.pieces.pop_front() {
-                Some(Some(piece)) => self.ready.extend(piece.bytes()),
+                Some(Some(piece)) => self.ready_bytes.extend(piece.bytes()),
                 Some(None) => self.is_gone = true,
                 None => {}
             }
@@ -316,7 +317,7 @@ mod tests {
 
     impl Read for Script {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-            if self.ready.is_empty() {
+            if self.ready_bytes.is_empty() {
                 if self.is_gone {
                     return Err(io::Error::from_raw_os_error(5));
                 }
@@ -324,13 +325,13 @@ mod tests {
             }
             // Small pieces, as from a serial port.
             let count = buffer.len().min(3);
-            self.ready.read(&mut buffer[..count])
+            self.ready_bytes.read(&mut buffer[..count])
         }
     }
 
     impl Write for Script {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.sent.push_str(&String::from_utf8_lossy(bytes));
+            self.sent_text.push_str(&String::from_utf8_lossy(bytes));
             self.release_piece();
             Ok(bytes.len())
         }
@@ -340,10 +341,10 @@ mod tests {
         }
     }
 
-    const HELLO: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
+    const BANNER_LINE: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn a_banner_after_the_rest_of_a_cut_off_line_is_found() {
+    fn a_banner_that_follows_a_cut_off_line_directly_is_found() {
         for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
             let bytes = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
@@ -358,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn the_banner_is_found_after_the_noise_of_an_opening() {
+    fn the_banner_is_found_after_the_noise_of_opening_the_port() {
         let mut link = Script::link(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
@@ -367,22 +368,24 @@ mod tests {
     }
 
     #[test]
-    fn a_board_that_was_not_reset_is_known_by_its_status() {
+    fn a_board_that_was_not_reset_is_recognized_by_its_status() {
         let mut link = Script::link(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
         assert_eq!(link.greet().expect("it is a lizard"), None);
-        assert_eq!(link.port.sent, "status\n");
+        assert_eq!(link.port.sent_text, "status\n");
     }
 
     #[test]
-    fn another_device_is_named_by_what_it_says_and_a_silent_one_is_called_silent() {
+    fn the_error_quotes_another_device_or_says_that_nothing_answers() {
         let message_of = |pieces: &[Option<&'static str>]| {
-            let error = Script::link(pieces).greet().expect_err("no lizard");
+            let error = Script::link(pieces)
+                .greet()
+                .expect_err("it is not a lizard");
             error.to_string()
         };
-        let printer_message = message_of(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        let other_device_message = message_of(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
         assert!(
-            printer_message.starts_with("this is not a lizard: it says `start`"),
-            "{printer_message}"
+            other_device_message.starts_with("this is not a lizard: it says `start`"),
+            "{other_device_message}"
         );
         assert!(message_of(&[]).starts_with("nothing answers"));
     }
@@ -390,7 +393,7 @@ mod tests {
     #[test]
     fn the_answer_is_the_first_line_that_is_not_a_note() {
         let mut link = Script::link(&[
-            Some(HELLO),
+            Some(BANNER_LINE),
             Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
         ]);
         link.greet().expect("it is a lizard");
@@ -401,7 +404,7 @@ mod tests {
 
     #[test]
     fn a_refusal_names_the_line_and_the_reason() {
-        let mut link = Script::link(&[Some(HELLO), Some("err 3 trim must be -20..20\r\n")]);
+        let mut link = Script::link(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
         link.greet().expect("it is a lizard");
         let error = link.command("trim 1 50").expect_err("it is refused");
         assert_eq!(
@@ -411,10 +414,10 @@ mod tests {
     }
 
     #[test]
-    fn silence_and_a_vanished_port_are_two_things() {
-        let mut link = Script::link(&[Some(HELLO), Some("# a note\r\n"), None]);
+    fn silence_and_a_vanished_port_are_different_errors() {
+        let mut link = Script::link(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
         link.greet().expect("it is a lizard");
-        assert!(matches!(link.ask("walk"), Err(LinkError::Silent(line)) if line == "walk"));
+        assert!(matches!(link.ask("walk"), Err(LinkError::NoAnswer(line)) if line == "walk"));
         assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
     }
 
@@ -430,6 +433,6 @@ mod tests {
         }
         assert_eq!(link.lines[0].len(), MAX_LINE_BYTES);
         assert_eq!(link.lines[1], "\u{fffd}[2Jhi");
-        assert_eq!(link.lines.len(), 2, "empty lines are none");
+        assert_eq!(link.lines.len(), 2, "empty lines are dropped");
     }
 }

@@ -1,13 +1,14 @@
 //! The commands for a board on USB: `lizard console`, `info` and `calibrate`, and the session, link and terminal
 //! that they use.
 //!
-//! The logic is separate from the terminal and from the serial port, so the tests need
-//! neither: they use the firmware's core on this machine, and scripted input.
+//! The logic is separate from the terminal and the serial port, so the tests need neither: they use the firmware's core
+//! on this machine and scripted input.
 
 pub mod backup;
 pub mod calibrate;
 pub mod connect;
 mod deadman;
+mod dialogue_error;
 #[cfg(test)]
 pub mod double;
 pub mod find;
@@ -23,4 +24,3 @@ pub mod replay;
 mod screen;
 pub mod session;
 mod terminal;
-mod turn_error;

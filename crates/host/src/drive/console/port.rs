@@ -1,4 +1,4 @@
-//! Opening a serial port, and the reasons why it may not open.
+//! Opens a serial port, and explains why it cannot be opened.
 
 use std::io;
 use std::path::Path;
@@ -8,12 +8,12 @@ use serialport::{ErrorKind, SerialPort};
 
 use super::find;
 
-/// Speed of the console, baud.
+/// Bit rate of the console, baud.
 pub const BAUD: u32 = 115_200;
-/// Longest time that a read waits for a byte, and the pause of a loop that polls the port.
+/// Longest time that a read waits for a byte; also the interval between two checks of whether a port is still in use.
 const READ_TIMEOUT: Duration = Duration::from_millis(5);
-/// Time that another program may take to close the port.
-const CLOSING_TIME: Duration = Duration::from_secs(1);
+/// Longest wait for another program that is about to close the port.
+const MAX_CLOSING_TIME: Duration = Duration::from_secs(1);
 
 /// The reason why a port cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -27,12 +27,12 @@ pub enum PortError {
         ports: String,
     },
     /// Another program has the port open.
-    #[error("{name} is open in {who}; close that program, then try again")]
+    #[error("{name} is open in {holder}; close that program, then try again")]
     Busy {
         /// The port that is busy.
         name: String,
         /// The program that has it open.
-        who: String,
+        holder: String,
     },
     /// The user has no permission.
     #[error(
@@ -42,7 +42,7 @@ pub enum PortError {
     Forbidden(String),
     /// The file is not a serial port.
     #[error("{0} is not a serial port")]
-    NoPort(String),
+    NotAPort(String),
     /// Any other error.
     #[error("{name} cannot be opened: {error}")]
     Other {
@@ -57,7 +57,7 @@ impl From<PortError> for crate::Failure {
     fn from(error: PortError) -> Self {
         let message = error.to_string();
         match error {
-            PortError::Missing { .. } | PortError::NoPort(_) => Self::Input(message),
+            PortError::Missing { .. } | PortError::NotAPort(_) => Self::Input(message),
             _ => Self::Impossible(message),
         }
     }
@@ -73,9 +73,9 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     }
     let busy_error = |holder: String| PortError::Busy {
         name: name.to_owned(),
-        who: holder,
+        holder,
     };
-    if let Some(holder) = find_lasting_holder(name) {
+    if let Some(holder) = find_persistent_holder(name) {
         return Err(busy_error(holder));
     }
     let result = serialport::new(name, BAUD).timeout(READ_TIMEOUT).open();
@@ -83,7 +83,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
         ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
         ErrorKind::NoDevice => busy_error("another program".to_owned()),
-        _ if cfg!(unix) && is_no_terminal(name) => PortError::NoPort(name.to_owned()),
+        _ if cfg!(unix) && is_other_than_terminal(name) => PortError::NotAPort(name.to_owned()),
         _ => PortError::Other {
             name: name.to_owned(),
             error,
@@ -117,22 +117,22 @@ fn missing_port_error(name: &str) -> PortError {
     }
 }
 
-/// The program that holds the port open. Waits up to [`CLOSING_TIME`] for a program that is about to close it, such
-/// as a console that is quitting or a simulated board that clears its line.
-fn find_lasting_holder(name: &str) -> Option<String> {
+/// Returns the program that keeps the port open. Waits up to [`MAX_CLOSING_TIME`] for a program that is about to close
+/// it, such as a console that is quitting or a simulated board that clears its line.
+fn find_persistent_holder(name: &str) -> Option<String> {
     let start = Instant::now();
     loop {
-        let holder = holder(name)?;
-        if start.elapsed() > CLOSING_TIME {
+        let holder = find_holder(name)?;
+        if start.elapsed() > MAX_CLOSING_TIME {
             return Some(holder);
         }
         std::thread::sleep(READ_TIMEOUT);
     }
 }
 
-/// Another program that has the port open, as far as `/proc` shows: programs that share a port take bytes from each
-/// other. Processes of other users are not visible.
-pub(in crate::drive) fn holder(name: &str) -> Option<String> {
+/// Returns another program that has the port open, as far as `/proc` shows: processes of other users are not visible.
+/// Two programs that share a port take bytes from each other.
+pub(in crate::drive) fn find_holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
     let own_id = std::process::id().to_string();
     let processes = std::fs::read_dir("/proc").ok()?;
@@ -148,7 +148,7 @@ pub(in crate::drive) fn holder(name: &str) -> Option<String> {
     })
 }
 
-fn is_no_terminal(name: &str) -> bool {
+fn is_other_than_terminal(name: &str) -> bool {
     use std::io::IsTerminal;
     std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())
 }
@@ -160,21 +160,21 @@ mod tests {
 
     use super::*;
 
-    fn refusal_of(name: &str) -> PortError {
-        open(name).expect_err("it does not open")
+    fn open_error(name: &str) -> PortError {
+        open(name).expect_err("the port does not open")
     }
 
     #[test]
     fn a_missing_port_and_a_file_that_is_not_a_port_have_different_errors() {
-        let message = refusal_of("/dev/no-such-port").to_string();
+        let message = open_error("/dev/no-such-port").to_string();
         assert!(message.starts_with("there is no /dev/no-such-port; USB serial ports"));
         let file = tempfile::NamedTempFile::new().expect("a file");
         let name = file.path().display().to_string();
         assert_eq!(
-            refusal_of(&name).to_string(),
+            open_error(&name).to_string(),
             format!("{name} is not a serial port")
         );
-        assert_eq!(crate::Failure::from(refusal_of(&name)).exit_code(), 2);
+        assert_eq!(crate::Failure::from(open_error(&name)).exit_code(), 2);
     }
 
     #[cfg(target_os = "linux")]
@@ -187,14 +187,14 @@ mod tests {
             .stdin(file.reopen().expect("it opens"))
             .spawn()
             .expect("it starts");
-        let message = refusal_of(&name).to_string();
+        let message = open_error(&name).to_string();
         LIMIT.end_of(&mut process).expect("it ends");
         assert_eq!(message, format!("{name} is not a serial port"));
     }
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_port_that_another_program_has_open_is_refused_with_its_name() {
+    fn a_port_that_another_program_has_open_is_refused_with_that_programs_name() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         let name = file.path().display().to_string();
         let mut process = std::process::Command::new("sleep")
@@ -202,7 +202,7 @@ mod tests {
             .stdin(file.reopen().expect("it opens"))
             .spawn()
             .expect("it starts");
-        let message = refusal_of(&name).to_string();
+        let message = open_error(&name).to_string();
         process.kill().expect("it ends");
         LIMIT.end_of(&mut process).expect("it ends");
         let id = process.id();

@@ -4,13 +4,13 @@ use crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-/// The number of lines kept in the history.
-const MAX_HISTORY: usize = 500;
+/// The largest number of lines kept in the history.
+const MAX_HISTORY_LINES: usize = 500;
 
 /// The effect of a key.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PromptEvent {
-    /// There is nothing to send.
+    /// The line may have changed; there is nothing to send.
     Edited,
     /// Send this line.
     Line(String),
@@ -25,14 +25,14 @@ pub enum PromptEvent {
 pub struct Prompt {
     input: Input,
     history: Vec<String>,
-    /// The index of the shown line in the history; the history's length for the line being typed.
+    /// The index of the shown line in the history; the history's length if the line being typed is shown.
     shown_index: usize,
     /// The unfinished line, while an older one is shown.
     draft: String,
 }
 
 impl Prompt {
-    /// An empty line with a history.
+    /// Makes an empty input line with a history, the oldest line first.
     pub fn new(history: Vec<String>) -> Self {
         Self {
             shown_index: history.len(),
@@ -74,11 +74,11 @@ impl Prompt {
 
     /// Handles pasted text; each line end acts like Enter.
     pub fn paste(&mut self, text: &str) -> Vec<PromptEvent> {
-        let mut outcomes = Vec::new();
+        let mut events = Vec::new();
         for character in text.chars() {
             match character {
                 '\r' => {}
-                '\n' => outcomes.push(self.enter()),
+                '\n' => events.push(self.enter()),
                 character if character.is_control() => {}
                 character => {
                     self.input
@@ -86,14 +86,14 @@ impl Prompt {
                 }
             }
         }
-        outcomes
+        events
     }
 
     fn enter(&mut self) -> PromptEvent {
         let line = self.input.value_and_reset().trim().to_owned();
         if !line.is_empty() && self.history.last() != Some(&line) {
             self.history.push(line.clone());
-            let surplus = self.history.len().saturating_sub(MAX_HISTORY);
+            let surplus = self.history.len().saturating_sub(MAX_HISTORY_LINES);
             self.history.drain(..surplus);
         }
         self.shown_index = self.history.len();
@@ -124,11 +124,14 @@ impl Prompt {
         self.input.value()
     }
 
-    /// The part of the text that fits in `width` columns, and the cursor's column in it.
+    /// Returns the part of the text that fits in `width` columns, and the cursor's column in it.
     pub fn view(&self, width: usize) -> (String, usize) {
-        let scroll = self.input.visual_scroll(width.max(1));
-        let visible = self.text().chars().skip(scroll).take(width).collect();
-        (visible, self.input.visual_cursor().saturating_sub(scroll))
+        let first_column = self.input.visual_scroll(width.max(1));
+        let visible = self.text().chars().skip(first_column).take(width).collect();
+        (
+            visible,
+            self.input.visual_cursor().saturating_sub(first_column),
+        )
     }
 
     /// The history of lines, the oldest first.
@@ -152,7 +155,7 @@ mod tests {
         ))
     }
 
-    fn type_text(prompt: &mut Prompt, text: &str) -> PromptEvent {
+    fn type_line(prompt: &mut Prompt, text: &str) -> PromptEvent {
         for c in text.chars() {
             press(prompt, KeyCode::Char(c));
         }
@@ -179,8 +182,8 @@ mod tests {
     #[test]
     fn the_arrows_bring_back_older_lines_and_then_the_draft() {
         let mut prompt = Prompt::new(vec!["stand".to_owned()]);
-        type_text(&mut prompt, "walk");
-        type_text(&mut prompt, "walk");
+        type_line(&mut prompt, "walk");
+        type_line(&mut prompt, "walk");
         press(&mut prompt, KeyCode::Char('s'));
         let mut shown_lines = Vec::new();
         for code in [
@@ -199,11 +202,11 @@ mod tests {
     }
 
     #[test]
-    fn escape_stops_the_robot_and_leaves_what_is_typed() {
+    fn escape_sends_stop_and_keeps_the_typed_text() {
         let mut prompt = Prompt::default();
         prompt.paste("wal");
-        let expected = PromptEvent::Line("stop".to_owned());
-        assert_eq!(press(&mut prompt, KeyCode::Esc), expected);
+        let stop_event = PromptEvent::Line("stop".to_owned());
+        assert_eq!(press(&mut prompt, KeyCode::Esc), stop_event);
         assert_eq!(prompt.text(), "wal");
     }
 
@@ -212,7 +215,7 @@ mod tests {
         let mut prompt = Prompt::default();
         assert_eq!(press_control(&mut prompt, 'c'), PromptEvent::Leave);
         assert_eq!(press_control(&mut prompt, 'd'), PromptEvent::Leave);
-        assert_eq!(type_text(&mut prompt, "quit"), PromptEvent::Leave);
+        assert_eq!(type_line(&mut prompt, "quit"), PromptEvent::Leave);
         press(&mut prompt, KeyCode::Char('x'));
         press(&mut prompt, KeyCode::Home);
         assert_eq!(
@@ -227,9 +230,9 @@ mod tests {
     #[test]
     fn pasted_lines_are_sent_one_by_one() {
         let mut prompt = Prompt::default();
-        let outcomes = prompt.paste("walk\r\nspeed 50\nst");
+        let events = prompt.paste("walk\r\nspeed 50\nst");
         let lines = ["walk", "speed 50"].map(|line| PromptEvent::Line(line.to_owned()));
-        assert_eq!(outcomes, lines);
+        assert_eq!(events, lines);
         assert_eq!(prompt.text(), "st");
     }
 

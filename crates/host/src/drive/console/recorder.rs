@@ -1,4 +1,4 @@
-//! A session as a file: one JSON object per line, with the time in ms.
+//! The file of a recorded session: one JSON object per line, with the time in ms.
 
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -13,7 +13,7 @@ use crate::shared::plain::escape_controls;
 use crate::shared::{files, json};
 use lizard_robot::parse_angles;
 
-/// The value of `format` in the first line. The number rises when a key changes its meaning.
+/// The value of `format` in the first line. The number increases when a key changes its meaning.
 pub const FORMAT: &str = "lizard record 1";
 
 /// A line of the file.
@@ -58,19 +58,19 @@ pub enum Event {
     Gone,
 }
 
-/// The recorder of a session.
+/// A recorder that writes a session to a file.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
     /// The file's name for messages.
     name: String,
     out: W,
-    begin: Instant,
+    start: Instant,
 }
 
 /// Creates a new file for a session.
 ///
 /// # Errors
-/// Fails if it already exists, or cannot be made.
+/// Fails if the file already exists, or cannot be created.
 pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
     let name = path.display().to_string();
     match File::create_new(path) {
@@ -83,13 +83,9 @@ pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
 }
 
 impl<W: Write> Recorder<W> {
-    /// A recorder of a session that begins at `start`; `name` is the file's name for messages.
+    /// Makes a recorder of a session that begins at `start`; `name` is the file's name for messages.
     pub fn new(name: String, out: W, start: Instant) -> Self {
-        Self {
-            name,
-            out,
-            begin: start,
-        }
+        Self { name, out, start }
     }
 
     /// Writes an event, and flushes it into the file at once unless it is a pose.
@@ -97,7 +93,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Fails if writing fails; the message names the file.
     pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
-        let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
+        let ms = now.saturating_duration_since(self.start).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
         json::write_line(&mut self.out, &Entry { ms, event })
             .map_err(|error| self.write_failure(&error))?;
@@ -118,7 +114,7 @@ impl<W: Write> Recorder<W> {
 }
 
 impl Event {
-    /// The event of a line that begins with `#`: a pose, or a note.
+    /// Returns the event of a line that begins with `#`: a pose or a note.
     pub fn from_note(line: &str) -> Self {
         match parse_pose(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },
@@ -126,10 +122,10 @@ impl Event {
         }
     }
 
-    /// The event with its texts made safe for a terminal, since a file may contain anything.
+    /// Returns the event with its text made safe for a terminal, since a file may contain anything.
     #[cfg(feature = "simulator")]
     #[must_use]
-    pub fn plain(self) -> Self {
+    pub fn with_escaped_controls(self) -> Self {
         match self {
             Self::Begin {
                 format,
@@ -204,18 +200,22 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_there_is_not_overwritten() {
+    fn an_existing_file_is_not_overwritten() {
         let file = tempfile::NamedTempFile::new().expect("a file");
-        let message = create(file.path()).expect_err("it is there").to_string();
+        let message = create(file.path())
+            .expect_err("the file exists")
+            .to_string();
         assert!(message.ends_with("already exists; name a new file for the session"));
     }
 
     #[test]
-    fn a_full_disk_is_reported_with_the_name_of_the_file() {
+    fn a_failed_write_is_reported_with_the_name_of_the_file() {
         let small_buffer: &mut [u8] = &mut [0; 10];
         let mut recorder = Recorder::new("a.jsonl".to_owned(), small_buffer, Instant::now());
         let event = Event::Sent("walk".to_owned());
-        let message = recorder.write(Instant::now(), event).expect_err("no room");
+        let message = recorder
+            .write(Instant::now(), event)
+            .expect_err("the buffer is too small");
         let message = message.to_string();
         assert!(message.starts_with("cannot write a.jsonl: "), "{message}");
     }

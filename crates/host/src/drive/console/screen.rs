@@ -8,16 +8,17 @@ use crossterm::{cursor, event, execute, queue};
 
 use super::prompt::Prompt;
 
+/// The beginning of the input line.
 const PROMPT_SIGN: &str = "> ";
 
 /// A terminal that reports single keys. Dropping it restores the terminal.
 pub struct Screen {
     out: Stdout,
-    /// Columns of the two lines at the bottom, the second up to the cursor; `None` if they
+    /// Numbers of columns that the two lines at the bottom take, the second up to the cursor; `None` if they
     /// are not drawn.
-    drawn: Option<[usize; 2]>,
+    drawn_columns: Option<[usize; 2]>,
     /// The latest drawing: status line, visible part of the input, cursor's column in it, terminal width.
-    last: Option<(String, String, usize, u16)>,
+    last_drawing: Option<(String, String, usize, u16)>,
 }
 
 impl Screen {
@@ -28,8 +29,8 @@ impl Screen {
     pub fn new() -> io::Result<Self> {
         let mut screen = Self {
             out: io::stdout(),
-            drawn: None,
-            last: None,
+            drawn_columns: None,
+            last_drawing: None,
         };
         screen.enter()?;
         Ok(screen)
@@ -40,7 +41,7 @@ impl Screen {
     /// # Errors
     /// Fails if the terminal is gone.
     pub fn enter(&mut self) -> io::Result<()> {
-        super::terminal::end_when_gone();
+        super::terminal::exit_when_closed();
         terminal::enable_raw_mode()?;
         execute!(self.out, event::EnableBracketedPaste)
     }
@@ -72,12 +73,12 @@ impl Screen {
     pub fn draw(&mut self, status: &str, prompt: &Prompt) -> io::Result<()> {
         let (width, _) = terminal::size()?;
         // A line that fills its last column would wrap.
-        let room = usize::from(width).saturating_sub(1);
-        let status: String = status.chars().take(room).collect();
-        let sign = &PROMPT_SIGN[..PROMPT_SIGN.len().min(room)];
-        let (text, cursor) = prompt.view(room - sign.len());
+        let usable_width = usize::from(width).saturating_sub(1);
+        let status: String = status.chars().take(usable_width).collect();
+        let prompt_sign = &PROMPT_SIGN[..PROMPT_SIGN.len().min(usable_width)];
+        let (text, cursor) = prompt.view(usable_width - prompt_sign.len());
         let drawing = (status, text, cursor, width);
-        if self.drawn.is_some() && self.last.as_ref() == Some(&drawing) {
+        if self.drawn_columns.is_some() && self.last_drawing.as_ref() == Some(&drawing) {
             return Ok(());
         }
         self.erase()?;
@@ -85,23 +86,23 @@ impl Screen {
         queue!(
             self.out,
             SetAttribute(Attribute::Reverse),
-            Print(format!("{status:room$}")),
+            Print(format!("{status:usable_width$}")),
             SetAttribute(Attribute::Reset),
             Print("\r\n"),
-            Print(sign),
+            Print(prompt_sign),
             Print(text),
-            cursor::MoveToColumn((sign.len() + cursor) as u16),
+            cursor::MoveToColumn((prompt_sign.len() + cursor) as u16),
         )?;
-        self.drawn = Some([room, sign.len() + cursor]);
-        self.last = Some(drawing);
+        self.drawn_columns = Some([usable_width, prompt_sign.len() + cursor]);
+        self.last_drawing = Some(drawing);
         self.out.flush()
     }
 
     /// Erases the two lines and puts the cursor at their beginning.
     fn erase(&mut self) -> io::Result<()> {
-        if let Some(columns) = self.drawn.take() {
+        if let Some(columns) = self.drawn_columns.take() {
             let (width, _) = terminal::size()?;
-            let row_count = rows_above(columns, width.into());
+            let row_count = rows_above_cursor(columns, width.into());
             queue!(self.out, cursor::MoveToPreviousLine(row_count as u16))?;
         }
         queue!(
@@ -112,9 +113,9 @@ impl Screen {
     }
 }
 
-/// The number of rows from the first of the two lines down to the cursor. A terminal that was
-/// made narrower has wrapped them into more rows.
-fn rows_above([status, cursor]: [usize; 2], width: usize) -> usize {
+/// Returns the number of rows from the first of the two lines down to the cursor, for the columns that both take. A
+/// terminal that was made narrower has wrapped them into more rows.
+fn rows_above_cursor([status, cursor]: [usize; 2], width: usize) -> usize {
     let width = width.max(1);
     status.div_ceil(width).max(1) + cursor / width
 }
@@ -132,13 +133,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_that_a_narrower_terminal_has_folded_are_counted_as_it_shows_them() {
-        assert_eq!(rows_above([99, 12], 100), 1, "as they were drawn");
-        assert_eq!(rows_above([99, 12], 200), 1, "wider");
-        assert_eq!(rows_above([99, 12], 50), 2, "the status takes two rows");
-        assert_eq!(rows_above([99, 60], 50), 3, "and what is typed, too");
-        assert_eq!(rows_above([99, 60], 33), 4);
-        assert_eq!(rows_above([0, 0], 1), 1);
-        assert_eq!(rows_above([0, 0], 0), 1, "a terminal without a size");
+    fn lines_that_a_narrower_terminal_has_wrapped_are_counted_as_it_shows_them() {
+        assert_eq!(
+            rows_above_cursor([99, 12], 100),
+            1,
+            "the width at which they were drawn"
+        );
+        assert_eq!(rows_above_cursor([99, 12], 200), 1, "a wider terminal");
+        assert_eq!(
+            rows_above_cursor([99, 12], 50),
+            2,
+            "the status takes two rows"
+        );
+        assert_eq!(
+            rows_above_cursor([99, 60], 50),
+            3,
+            "the input line takes two rows, too"
+        );
+        assert_eq!(rows_above_cursor([99, 60], 33), 4);
+        assert_eq!(rows_above_cursor([0, 0], 1), 1);
+        assert_eq!(rows_above_cursor([0, 0], 0), 1, "a terminal without a size");
     }
 }

@@ -3,10 +3,10 @@
 //!
 //! The robot answers each line once and in order, and prints other lines in between. For its
 //! status line the console sends `status` twice a second, and more often while a person drives;
-//! these answers are not shown, and a user's line waits for one of them at most. `stop` waits for
+//! these answers are not shown, and a user's line waits for at most one of them. `stop` waits for
 //! none: it is sent at once, and repeated until the robot answers it, since a link may lose a line
-//! or its answer. A program that sends a script has to know if a line was refused, so failed
-//! lines are counted.
+//! or its answer. Whoever runs a script has to know if a line was refused, so failed lines are
+//! counted.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -14,18 +14,18 @@ use std::time::{Duration, Instant};
 use lizard_core::console::text::Text;
 
 use super::deadman::{self, Deadman};
-use super::link::BANNER;
+use super::link::BANNER_START;
 use super::recorder::Event;
 use crate::Failure;
 use lizard_robot::Status;
 
 /// Interval between two `status` lines while no person drives the robot.
 const STATUS_INTERVAL: Duration = Duration::from_millis(500);
-/// The longest wait for an answer to a line.
-const TIMEOUT: Duration = Duration::from_millis(2000);
-/// The longest wait for an answer to the program's own `status`.
+/// Longest wait for the answer to a line.
+const ANSWER_TIMEOUT: Duration = Duration::from_millis(2000);
+/// Longest wait for the answer to the program's own `status`.
 const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
-/// Time from one `stop` to the next while none is answered.
+/// Interval between two `stop` lines while none is answered.
 const STOP_INTERVAL: Duration = Duration::from_millis(250);
 /// Time after a `stop` within which answers to earlier `stop` lines may arrive.
 const LATE_ANSWER_TIME: Duration = Duration::from_millis(500);
@@ -41,16 +41,16 @@ enum Question {
     Status,
     /// A `watch` that this program sends by itself.
     Watch,
-    /// A line about `deadman`, by this program.
+    /// A line about `deadman` that this program sends by itself.
     Deadman(String),
 }
 
 /// A line that waits to be sent.
 #[derive(Debug)]
-enum Queued {
+enum QueuedLine {
     /// A line of the user.
     Line(String),
-    /// A line about `deadman`, by this program.
+    /// A line about `deadman` that this program sends by itself.
     Deadman(deadman::DeadmanLine),
 }
 
@@ -58,7 +58,7 @@ impl Question {
     fn timeout(&self) -> Duration {
         match self {
             Self::Status => STATUS_TIMEOUT,
-            _ => TIMEOUT,
+            _ => ANSWER_TIMEOUT,
         }
     }
 
@@ -95,48 +95,58 @@ struct UnansweredStop {
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
+    /// The question that waits for its answer, and the time at which it was sent.
     pending_question: Option<(Question, Instant)>,
+    /// The `stop` that is being repeated until the robot answers it.
     unanswered_stop: Option<UnansweredStop>,
-    /// True from a missing answer until the next answer, so that the user is told once.
+    /// True from a missing answer until the next answer, so that the user is told only once.
     is_silent: bool,
     /// The time until which answers to repeated `stop` lines may arrive.
-    echoes_until: Instant,
-    queue: VecDeque<Queued>,
+    late_answers_until: Instant,
+    /// The lines that wait to be sent, the next one first.
+    queue: VecDeque<QueuedLine>,
     /// The handling of `deadman`, if a person drives.
     deadman: Option<Deadman>,
+    /// True if the program asks for the status repeatedly.
     polls_status: bool,
-    next_poll: Instant,
-    /// True while the program asks for poses by `watch`, until the user does.
+    /// The time at which the next `status` is due.
+    next_status_time: Instant,
+    /// True while the program asks for poses by `watch`; false once the user sends a `watch`.
     watches_poses: bool,
+    /// True if the program has to send `watch` next.
     is_watch_due: bool,
+    /// The latest status.
     status: Option<Status>,
+    /// The events since they were last taken.
     events: Vec<Event>,
-    sent: usize,
-    failed: usize,
+    /// Number of the user's lines that were sent or have failed, each `stop` included.
+    sent_count: usize,
+    /// Number of the user's lines that were refused, not answered or not sent.
+    failed_count: usize,
     /// The first line that failed, and the reason.
-    first_failed: Option<(String, String)>,
+    first_failure: Option<(String, String)>,
 }
 
 impl Session {
-    /// Starts a dialogue. `polls_status`: ask for the status repeatedly;
-    /// `watches_poses`: ask for every pose.
+    /// Starts a dialogue. If `polls_status` is true, it asks for the status repeatedly; if `watches_poses` is true, for
+    /// every pose.
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
             pending_question: None,
             unanswered_stop: None,
             is_silent: false,
-            echoes_until: now,
+            late_answers_until: now,
             queue: VecDeque::new(),
             deadman: None,
             polls_status,
-            next_poll: now,
+            next_status_time: now,
             watches_poses,
             is_watch_due: watches_poses,
             status: None,
             events: Vec::new(),
-            sent: 0,
-            failed: 0,
-            first_failed: None,
+            sent_count: 0,
+            failed_count: 0,
+            first_failure: None,
         }
     }
 
@@ -154,26 +164,26 @@ impl Session {
             self.watches_poses = false;
         }
         let (before, after) = match &mut self.deadman {
-            Some(deadman) => deadman.steps_around(line),
+            Some(deadman) => deadman.lines_around(line),
             None => (&[][..], &[][..]),
         };
         self.queue
-            .extend(before.iter().copied().map(Queued::Deadman));
-        self.queue.push_back(Queued::Line(line.to_owned()));
+            .extend(before.iter().copied().map(QueuedLine::Deadman));
+        self.queue.push_back(QueuedLine::Line(line.to_owned()));
         self.queue
-            .extend(after.iter().copied().map(Queued::Deadman));
+            .extend(after.iter().copied().map(QueuedLine::Deadman));
     }
 
-    /// The line that restores the robot's own `deadman` before the program ends, so that the
-    /// robot continues its gait; `None` if `deadman` is not set.
+    /// Returns the line that restores the robot's own `deadman` before the program ends, so that
+    /// the robot continues its gait; `None` if `deadman` is not set.
     pub fn restore_deadman(&mut self) -> Option<String> {
         let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
-        deadman.line(deadman::DeadmanLine::Restore)
+        deadman.console_line(deadman::DeadmanLine::Restore)
     }
 
     /// Makes the next `status` due at once; queued lines still go first.
     pub fn request_status(&mut self, now: Instant) {
-        self.next_poll = now;
+        self.next_status_time = now;
     }
 
     /// True while `deadman` is set because the robot walks, or is about to.
@@ -184,7 +194,7 @@ impl Session {
     /// Stops the robot. Queued lines are dropped, since they could start it again.
     pub fn stop(&mut self, now: Instant) {
         self.queue.clear();
-        self.sent += 1;
+        self.sent_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
         self.unanswered_stop.get_or_insert(UnansweredStop {
             since: now,
@@ -196,30 +206,30 @@ impl Session {
 
     /// Returns the line to send now; `None` if no line is due, or if an answer has to come first.
     pub fn next_line(&mut self, now: Instant) -> Option<String> {
-        if let Some(halt) = &mut self.unanswered_stop {
-            if now < halt.next_send {
+        if let Some(stop) = &mut self.unanswered_stop {
+            if now < stop.next_send {
                 return None;
             }
-            halt.next_send = now + STOP_INTERVAL;
-            halt.sent_count += 1;
-            self.echoes_until = now + LATE_ANSWER_TIME;
+            stop.next_send = now + STOP_INTERVAL;
+            stop.sent_count += 1;
+            self.late_answers_until = now + LATE_ANSWER_TIME;
             return Some("stop".to_owned());
         }
-        if self.pending_question.is_some() || now < self.echoes_until {
+        if self.pending_question.is_some() || now < self.late_answers_until {
             return None;
         }
         let (question, line) = if self.is_watch_due {
             self.is_watch_due = false;
             (Question::Watch, "watch 1".to_owned())
-        } else if let Some((question, line)) = self.next_queued() {
+        } else if let Some((question, line)) = self.pop_queued_line() {
             (question, line)
-        } else if self.polls_status && now >= self.next_poll {
+        } else if self.polls_status && now >= self.next_status_time {
             let interval = if self.is_driven() {
                 deadman::LINE_INTERVAL
             } else {
                 STATUS_INTERVAL
             };
-            self.next_poll = now + interval;
+            self.next_status_time = now + interval;
             (Question::Status, "status".to_owned())
         } else {
             return None;
@@ -228,16 +238,19 @@ impl Session {
         Some(line)
     }
 
-    fn next_queued(&mut self) -> Option<(Question, String)> {
+    fn pop_queued_line(&mut self) -> Option<(Question, String)> {
         while let Some(queued) = self.queue.pop_front() {
             match queued {
-                Queued::Line(line) => {
-                    self.sent += 1;
+                QueuedLine::Line(line) => {
+                    self.sent_count += 1;
                     self.events.push(Event::Sent(line.clone()));
                     return Some((Question::Line(line.clone()), line));
                 }
-                Queued::Deadman(step) => {
-                    if let Some(line) = self.deadman.as_mut().and_then(|deadman| deadman.line(step))
+                QueuedLine::Deadman(deadman_line) => {
+                    if let Some(line) = self
+                        .deadman
+                        .as_mut()
+                        .and_then(|deadman| deadman.console_line(deadman_line))
                     {
                         return Some((Question::Deadman(line.clone()), line));
                     }
@@ -247,12 +260,12 @@ impl Session {
         None
     }
 
-    /// Drops the queued lines, since the robot has not confirmed its `deadman`: a gait would go
-    /// on out of reach. Returns the message to the user.
-    fn drop_unconfirmed(&mut self) -> Option<String> {
+    /// Drops the queued lines, since the robot has not confirmed its `deadman`: out of reach, a gait
+    /// would go on. Returns the message to the user.
+    fn drop_queued_lines(&mut self) -> Option<String> {
         for queued in std::mem::take(&mut self.queue) {
-            if let Queued::Line(line) = queued {
-                self.sent += 1;
+            if let QueuedLine::Line(line) = queued {
+                self.sent_count += 1;
                 self.record_failure(line, "not sent");
             }
         }
@@ -263,8 +276,8 @@ impl Session {
         Some(message.to_owned())
     }
 
-    /// Restores the robot's own `deadman` once it does not walk and is not about to.
-    fn end_drive(&mut self) {
+    /// Queues the line that restores the robot's own `deadman`, once the robot does not walk and is not about to.
+    fn end_driving(&mut self) {
         let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
         if let Some(deadman) = &self.deadman
             && deadman.is_set
@@ -272,16 +285,19 @@ impl Session {
             && self.queue.is_empty()
         {
             self.queue
-                .push_back(Queued::Deadman(deadman::DeadmanLine::Restore));
+                .push_back(QueuedLine::Deadman(deadman::DeadmanLine::Restore));
         }
     }
 
     /// Handles a line from the robot; returns the text to show to the user, if any.
     pub fn receive(&mut self, line: &str) -> Option<String> {
-        let visible = Some(line.to_owned());
+        let visible_line = Some(line.to_owned());
         let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
-        if (line == "ok stop" || is_stop_refused) && !self.asks_to_stop() {
-            return self.take_stop_answer(line).then_some(visible).flatten();
+        if (line == "ok stop" || is_stop_refused) && !self.is_stop_pending() {
+            return self
+                .take_stop_answer(line)
+                .then_some(visible_line)
+                .flatten();
         }
         if let (Some((Question::Deadman(_), _)), Some(deadman)) =
             (&self.pending_question, &mut self.deadman)
@@ -291,13 +307,13 @@ impl Session {
         }
         if line.starts_with('#') {
             self.events.push(Event::from_note(line));
-            if line.starts_with(BANNER) {
+            if line.starts_with(BANNER_START) {
                 // The board has restarted, and has forgotten the question.
                 self.pending_question = None;
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
             }
-            return visible.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
+            return visible_line.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
         }
         self.is_silent = false;
         let status = Status::parse(line);
@@ -308,12 +324,12 @@ impl Session {
         {
             Some((Question::Status, _)) if status.is_some() => {
                 self.events.push(Event::Status(line.to_owned()));
-                self.end_drive();
+                self.end_driving();
                 return None;
             }
             Some((Question::Deadman(_), _)) => {
                 if line.starts_with("err ") {
-                    return self.drop_unconfirmed();
+                    return self.drop_queued_lines();
                 }
                 return None;
             }
@@ -329,21 +345,21 @@ impl Session {
             _ => {}
         }
         self.events.push(Event::Answer(line.to_owned()));
-        visible
+        visible_line
     }
 
-    /// True if a `stop` sent as a normal line, such as a script's, waits for its answer.
-    fn asks_to_stop(&self) -> bool {
+    /// True if a `stop` that was sent as a normal line, such as one of a script, waits for its answer.
+    fn is_stop_pending(&self) -> bool {
         matches!(&self.pending_question, Some((Question::Line(line), _)) if line == "stop")
     }
 
-    /// Takes an answer to `stop`; returns false if `stop` has been answered already.
+    /// Takes an answer to `stop`; returns false if no `stop` is unanswered.
     fn take_stop_answer(&mut self, line: &str) -> bool {
-        let Some(halt) = self.unanswered_stop.take() else {
+        let Some(stop) = self.unanswered_stop.take() else {
             return false;
         };
-        if halt.sent_count == 1 {
-            self.echoes_until = halt.since;
+        if stop.sent_count == 1 {
+            self.late_answers_until = stop.since;
         }
         // Answers come in order, so the answer to the line before `stop` has been lost.
         if let Some((Question::Line(sent_line), _)) = self.pending_question.take() {
@@ -356,11 +372,11 @@ impl Session {
     /// Ends an overdue question; returns the message to the user, if any.
     pub fn end_overdue_question(&mut self, now: Instant) -> Option<String> {
         let elapsed_since = |start: Instant| now.saturating_duration_since(start);
-        if let Some(halt) = &mut self.unanswered_stop
-            && !halt.is_reported
-            && elapsed_since(halt.since) >= SILENCE_TIMEOUT
+        if let Some(stop) = &mut self.unanswered_stop
+            && !stop.is_reported
+            && elapsed_since(stop.since) >= SILENCE_TIMEOUT
         {
-            halt.is_reported = true;
+            stop.is_reported = true;
             return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
         }
         let is_late = |(question, start): &mut (Question, Instant)| {
@@ -373,7 +389,7 @@ impl Session {
                 self.record_failure(line, "no answer");
                 message
             }
-            Question::Deadman(_) => return self.drop_unconfirmed(),
+            Question::Deadman(_) => return self.drop_queued_lines(),
             Question::Status | Question::Watch if self.is_silent => return None,
             Question::Status | Question::Watch => {
                 self.is_silent = true;
@@ -383,8 +399,8 @@ impl Session {
     }
 
     fn record_failure(&mut self, line: String, reason: &str) {
-        self.failed += 1;
-        self.first_failed.get_or_insert((line, reason.to_owned()));
+        self.failed_count += 1;
+        self.first_failure.get_or_insert((line, reason.to_owned()));
     }
 
     /// Succeeds if the robot accepted all lines.
@@ -392,12 +408,12 @@ impl Session {
     /// # Errors
     /// Fails if a line was refused, not answered or not sent; the message names the first one.
     pub fn check_all_accepted(&self) -> Result<(), Failure> {
-        let Some((line, reason)) = &self.first_failed else {
+        let Some((line, reason)) = &self.first_failure else {
             return Ok(());
         };
         Err(Failure::Impossible(format!(
             "the robot did not accept {} of {} lines, the first `{line}`: {reason}",
-            self.failed, self.sent
+            self.failed_count, self.sent_count
         )))
     }
 
@@ -417,7 +433,7 @@ impl Session {
     }
 }
 
-/// True if a line refuses `stop` for lack of pulses: the robot rests, or its flash holds no robot.
+/// True if a line refuses `stop` because there are no pulses to stop: the robot rests, or its flash holds no robot.
 /// The whole line must match: a line cut off by a radio may be the beginning of an older answer.
 fn is_stop_refusal(line: &str) -> bool {
     let is_refusal = |code: u8, reason: Text| {

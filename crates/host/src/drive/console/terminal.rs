@@ -1,4 +1,4 @@
-//! The terminal: detecting that it was closed, and suspending the program.
+//! The terminal: detects that it was closed, and suspends the program.
 
 use std::io::{self, IsTerminal};
 use std::sync::Once;
@@ -12,33 +12,33 @@ pub fn is_open() -> bool {
 
 /// Interval between checks of the terminal.
 const CHECK_INTERVAL: Duration = Duration::from_millis(200);
-/// Number of consecutive checks without a terminal after which the program is ended.
-const CHECKS: u32 = 10;
+/// Number of consecutive checks without a terminal after which the program exits.
+const MAX_CLOSED_CHECKS: u32 = 10;
 
-/// Ends the program two seconds after its terminal was closed, if it has not ended by itself: a wait for a key
-/// never returns if the terminal is closed in the middle of it. A recorded session may lose its last poses then;
+/// Starts a thread that ends the program two seconds after its terminal was closed, if it has not ended by itself: a
+/// wait for a key never returns if the terminal is closed meanwhile. A recorded session may then lose its last poses;
 /// other files exist only once they are complete.
-pub fn end_when_gone() {
-    let check = || {
-        let mut checks_gone = 0;
-        while checks_gone < CHECKS {
+pub fn exit_when_closed() {
+    let watch_terminal = || {
+        let mut closed_checks = 0;
+        while closed_checks < MAX_CLOSED_CHECKS {
             thread::sleep(CHECK_INTERVAL);
-            checks_gone = if is_open() { 0 } else { checks_gone + 1 };
+            closed_checks = if is_open() { 0 } else { closed_checks + 1 };
         }
         std::process::exit(0)
     };
     static ONCE: Once = Once::new();
     // The program also works without this thread.
-    ONCE.call_once(|| drop(thread::Builder::new().spawn(check)));
+    ONCE.call_once(|| drop(thread::Builder::new().spawn(watch_terminal)));
 }
 
 /// Suspends this program until the shell resumes it, as Ctrl-Z does. The terminal must
 /// have been restored before.
 ///
 /// # Errors
-/// Fails if the system refuses.
+/// Fails if the operating system refuses.
 #[cfg(unix)]
-pub fn stop() -> io::Result<()> {
+pub fn suspend_program() -> io::Result<()> {
     signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)
 }
 
@@ -47,6 +47,6 @@ pub fn stop() -> io::Result<()> {
 /// # Errors
 /// Never fails.
 #[cfg(not(unix))]
-pub fn stop() -> io::Result<()> {
+pub fn suspend_program() -> io::Result<()> {
     Ok(())
 }

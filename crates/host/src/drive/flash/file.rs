@@ -15,19 +15,19 @@ impl From<ImageError> for Failure {
     }
 }
 
-/// The image of a robot: the code inside this program followed by this robot's section.
+/// Makes the image of a robot: the code inside this program, followed by this robot's section of numbers.
 ///
 /// # Errors
-/// Never fails for a valid robot; a test makes the image of every built-in robot.
+/// Never fails for a valid robot; a test makes the image of each robot in robots/.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
     Image::firmware(CODE, &robot.section())
 }
 
-/// A robot's section alone.
+/// Makes the image of a robot's section alone, without the code.
 ///
 /// # Errors
 /// Never fails: flash has room for any robot's section.
-pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
+pub fn robot_only_image(robot: &Robot) -> Result<Image, ImageError> {
     Image::robot_alone(robot.section())
 }
 
@@ -44,30 +44,30 @@ pub fn read_hex_image(path: &Path) -> Result<Image, Failure> {
 #[cfg(test)]
 mod tests {
     use lizard_core::numbers::mark::Mark;
-    use lizard_core::numbers::section::START;
+    use lizard_core::numbers::section::START_ADDRESS;
     use lizard_upload::BLANK;
 
     use super::*;
 
     #[test]
-    fn every_robot_follows_the_same_code_or_is_alone() {
+    fn each_robots_section_follows_the_same_code_or_stands_alone() {
         let code = Image::from_hex(CODE).expect("it is Intel HEX");
         let code = code.bytes();
-        assert_eq!(Mark::find(code), Some(Mark::OWN));
+        assert_eq!(Mark::find(code), Some(Mark::THIS_FIRMWARE));
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
         let mut count = 0;
-        for file in std::fs::read_dir(folder).expect("robots/") {
-            let path = file.expect("a file").path();
-            let robot = Robot::load(&path).expect("it is right");
+        for file in std::fs::read_dir(folder).expect("the folder robots/ is readable") {
+            let path = file.expect("the folder is readable").path();
+            let robot = Robot::load(&path).expect("the robot.toml is valid");
             let image = image(&robot).expect("it fits");
-            let (start, section) = image.bytes().split_at(START.into());
-            let (start, gap) = start.split_at(code.len());
-            assert!(start == code, "{}", path.display());
+            let (start, section) = image.bytes().split_at(START_ADDRESS.into());
+            let (code_in_image, gap) = start.split_at(code.len());
+            assert!(code_in_image == code, "{}", path.display());
             assert!(gap.iter().all(|byte| *byte == BLANK));
             assert!(section == robot.section(), "{}", path.display());
-            let alone_image = robot_alone(&robot).expect("it fits");
-            assert!(alone_image.bytes() == section);
-            assert_eq!(alone_image.end(), image.end());
+            let robot_image = robot_only_image(&robot).expect("it fits");
+            assert!(robot_image.bytes() == section);
+            assert_eq!(robot_image.end(), image.end());
             count += 1;
         }
         assert!(count >= 4, "{count} robots");
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn the_error_names_a_file_that_is_not_an_image() {
-        let file = tempfile::NamedTempFile::new().expect("a file");
+        let file = tempfile::NamedTempFile::new().expect("a temporary file is created");
         std::fs::write(file.path(), "[servo]\n").expect("it is written");
         let message = read_hex_image(file.path())
             .expect_err("it is not an image")

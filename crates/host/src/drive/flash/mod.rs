@@ -1,7 +1,7 @@
 //! `lizard flash`: writes the firmware to a UNO or a Nano through the board's own boot loader.
 //!
-//! The order in which pages are written, so that a pulled cable is never dangerous, is that of [`lizard_upload`]; here
-//! are the port, the image and the words to the user.
+//! [`lizard_upload`] writes the pages in an order in which a pulled cable is never dangerous; this module chooses the
+//! port, makes the image and reports to the user.
 
 pub mod file;
 mod serial_board;
@@ -30,7 +30,7 @@ use serial_board::SerialBoard;
 /// The firmware is inside this program and needs no compiler; the robot is that of
 /// robot.toml. Says what the board has, writes the pages that differ, reads them back, starts the
 /// firmware and prints its first line. The EEPROM, and the calibration in it, is left as it is.
-/// A new board takes about ten seconds; with --only-robot it is one.
+/// A new board takes about ten seconds; with --only-robot, it takes about one.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The board's serial port [default: the one that has a UNO, or the only one]
@@ -42,7 +42,7 @@ pub struct Args {
     /// length
     #[arg(long)]
     only_robot: bool,
-    /// Write this file of Intel HEX instead, whatever it is
+    /// Write this Intel HEX file instead, whatever it contains
     #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "only_robot"])]
     image: Option<PathBuf>,
     /// Print one JSON object when the firmware has answered; all else goes to standard error
@@ -52,9 +52,10 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// The result of an upload, with the names of `--json`.
+/// The result of an upload, with the field names of `--json`.
 #[derive(Serialize)]
-struct Flashed {
+struct FlashReport {
+    /// The name of the port.
     port: String,
     bytes_written: usize,
     /// Bytes that were already right.
@@ -62,7 +63,7 @@ struct Flashed {
     /// The firmware's version; null if the firmware answered without its first line.
     firmware: Option<String>,
     /// Null if the board has no robot.
-    robot: Option<info::Robot>,
+    robot: Option<info::RobotIdentity>,
 }
 
 /// Runs `lizard flash`.
@@ -73,14 +74,14 @@ struct Flashed {
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read_hex_image(path)?,
-        None if args.only_robot => file::robot_alone(&args.robot.load()?)?,
+        None if args.only_robot => file::robot_only_image(&args.robot.load()?)?,
         None => file::image(&args.robot.load()?)?,
     };
     let ports = find::usb_ports();
-    let (port, name) = match args.port {
+    let (port, board_name) = match args.port {
         Some(port) => (port.clone(), port),
         None => {
-            let port = choose(&ports)?;
+            let port = choose_port(&ports)?;
             (port.name.clone(), port.to_string())
         }
     };
@@ -89,9 +90,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         may_be_nano: may_be_nano(&ports, &port),
     };
     let board = SerialBoard::open(&port)?;
-    eprintln!("lizard: calling the boot loader of the board at {name}");
-    let failure_of_port = |message: String| Failure::Impossible(format!("{name}: {message}"));
-    let (board, counts) = write(board, &image, target, args.json)
+    eprintln!("lizard: calling the boot loader of the board at {board_name}");
+    let failure_of_port = |message: String| Failure::Impossible(format!("{board_name}: {message}"));
+    let (board, page_counts) = write_image(board, &image, target, args.json)
         .map_err(|error| failure_of_port(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         failure_of_port(format!(
@@ -99,22 +100,22 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ))
     })?;
     let (firmware, robot) = info::parse_banner(&banner);
-    let flashed = Flashed {
+    let report = FlashReport {
         port,
-        bytes_written: counts.written * PAGE_BYTES,
-        bytes_kept: counts.kept * PAGE_BYTES,
+        bytes_written: page_counts.written * PAGE_BYTES,
+        bytes_kept: page_counts.kept * PAGE_BYTES,
         firmware,
         robot,
     };
-    json::print_json_or(args.json, &flashed, || format!("{banner}\n"))
+    json::print_json_or(args.json, &report, || format!("{banner}\n"))
 }
 
-/// Chooses the board to write.
-fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
-    find::choose(ports, "flash").map_err(|error| {
+/// Chooses the port of the board to write.
+fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
+    find::choose_port(ports, "flash").map_err(|error| {
         Failure::Impossible(match error {
             // In this message, other commands suggest a simulated board; `flash` needs a real one.
-            FindError::None { .. } => "no board found: this machine has no USB serial port. \
+            FindError::NoPort { .. } => "no board found: this machine has no USB serial port. \
                  Connect the UNO by a cable that carries data (some only charge), or name its \
                  port: lizard flash /dev/ttyACM0"
                 .to_owned(),
@@ -123,23 +124,24 @@ fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     })
 }
 
-/// True if the USB chip of a port may be that of a Nano. Only UNOs have Arduino's own USB chips.
+/// True if the USB chip of a port may be that of a Nano: Nanos, unlike UNOs, never have one of Arduino's own USB chips.
 fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
     // The name may be a symbolic link, such as those of /dev/serial/by-id.
     let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
     let port = ports.iter().find(|port| target == Path::new(&port.name));
-    port.is_some_and(|port| !port.is_arduinos())
+    port.is_some_and(|port| !port.has_arduino_vendor_id())
 }
 
-/// Writes the board, with a progress bar and a summary. Returns the board, whose firmware is starting.
-fn write(
+/// Writes an image to the board, with a progress bar and a summary. Returns the board, whose firmware is starting, and
+/// the number of pages that were written and kept.
+fn write_image(
     board: SerialBoard,
     image: &Image,
     target: Target,
-    is_json: bool,
+    prints_json: bool,
 ) -> Result<(SerialBoard, PageCounts), Failure> {
     // A closed standard output does not stop the upload.
-    let print_line = |line: &str| match is_json {
+    let print_line = |line: &str| match prints_json {
         true => eprintln!("{line}"),
         false => _ = writeln!(io::stdout(), "{line}"),
     };
@@ -149,14 +151,14 @@ fn write(
     let mut report = |event: Event<'_>| match event {
         Event::Found(found_board) => bar.suspend(|| print_line(&found_board.to_string())),
         Event::Retry {
-            trouble,
-            called,
-            next,
-        } => bar.suspend(|| match (called.baud(), next.baud()) {
+            error,
+            called_kind,
+            next_kind,
+        } => bar.suspend(|| match (called_kind.baud(), next_kind.baud()) {
             (old_baud, new_baud) if old_baud != new_baud => {
                 eprintln!("lizard: no answer at {old_baud} baud; calling again at {new_baud} baud");
             }
-            _ => eprintln!("lizard: {trouble}; the board is reset for another attempt"),
+            _ => eprintln!("lizard: {error}; the board is reset for another attempt"),
         }),
         Event::Progress(step, done_count, total) => {
             bar.set_message(match step {
@@ -168,16 +170,16 @@ fn write(
             bar.set_position(done_count as u64);
         }
     };
-    let counts = block_on(upload(&mut loader, image, target, &mut report));
+    let result = block_on(upload(&mut loader, image, target, &mut report));
     bar.finish_and_clear();
-    let counts = counts.map_err(failure_of)?;
-    print_line(&summary(counts, start.elapsed()));
+    let page_counts = result.map_err(failure_of)?;
+    print_line(&summary(page_counts, start.elapsed()));
     let mut board = loader.into_board();
     board.set_baud(BAUD)?;
-    Ok((board, counts))
+    Ok((board, page_counts))
 }
 
-/// The failure of an upload, with the option that helps.
+/// Returns the failure of an upload, with the option that helps.
 fn failure_of(error: UploadError) -> Failure {
     let remedy = match &error {
         UploadError::NoLizard(_) | UploadError::Format { .. } => {
@@ -191,7 +193,7 @@ fn failure_of(error: UploadError) -> Failure {
     Failure::Impossible(format!("{error}{remedy}"))
 }
 
-/// A message about a finished upload.
+/// Returns the message about a finished upload.
 fn summary(counts: PageCounts, time: Duration) -> String {
     let [written, kept] = [counts.written, counts.kept].map(|pages| pages * PAGE_BYTES);
     let seconds = time.as_secs_f64();
@@ -234,28 +236,28 @@ mod tests {
     fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
         let port = |name: &str, vendor| UsbPort {
             name: name.to_owned(),
-            vendor,
+            vendor_id: vendor,
             product_id: 0x43,
-            product: None,
+            product_name: None,
         };
         let ports = [port("/dev/ttyACM7", 0x2341), port("/dev/ttyUSB7", 0x1a86)];
         assert!(!may_be_nano(&ports, "/dev/ttyACM7"));
         assert!(may_be_nano(&ports, "/dev/ttyUSB7"));
-        assert!(!may_be_nano(&ports, "/dev/pts/7"), "no USB port");
+        assert!(!may_be_nano(&ports, "/dev/pts/7"), "it is not a USB port");
     }
 
     #[test]
     fn no_board_or_several_are_refused_with_the_remedy() {
         let message_of = |ports: &[UsbPort]| {
-            let error = choose(ports).expect_err("there is not one");
+            let error = choose_port(ports).expect_err("there is not exactly one port");
             error.to_string()
         };
         assert!(message_of(&[]).ends_with("lizard flash /dev/ttyACM0"));
         let port = |name: &str| UsbPort {
             name: name.to_owned(),
-            vendor: 0x2341,
+            vendor_id: 0x2341,
             product_id: 0x43,
-            product: None,
+            product_name: None,
         };
         assert_eq!(
             message_of(&[port("COM3"), port("COM4")]),

@@ -8,19 +8,19 @@ use lizard_upload::{Board, BoardError};
 use serialport::SerialPort;
 
 use crate::drive::clock::Deadline;
-use crate::drive::console::link::is_gone;
+use crate::drive::console::link::is_port_gone;
 use crate::drive::console::port::{self, PortError};
 
-/// Time for which each level of the reset lines is held, and pause between closing and reopening a port.
+/// Time for which each level of the reset lines is held; also the pause between closing and reopening a port.
 const RESET_TIME: Duration = Duration::from_millis(50);
 
 /// A board's serial port, which can be reopened.
 pub struct SerialBoard {
     name: String,
-    /// `None` only between closing and reopening.
+    /// `None` between closing and reopening, and if reopening has failed.
     port: Option<Box<dyn SerialPort>>,
-    /// True just after opening, which resets a board as well.
-    is_fresh: bool,
+    /// True from opening the port, which resets a board as well, until the first reset.
+    is_just_opened: bool,
 }
 
 impl SerialBoard {
@@ -32,7 +32,7 @@ impl SerialBoard {
         Ok(Self {
             name: name.to_owned(),
             port: Some(port::open(name)?),
-            is_fresh: true,
+            is_just_opened: true,
         })
     }
 
@@ -42,7 +42,7 @@ impl SerialBoard {
     }
 
     /// Toggles the lines that reset a board: DTR on a UNO, RTS on some clones.
-    fn toggle_reset(&mut self) -> io::Result<()> {
+    fn toggle_reset_lines(&mut self) -> io::Result<()> {
         let port = self.port()?;
         for level in [false, true] {
             port.write_data_terminal_ready(level)?;
@@ -52,7 +52,7 @@ impl SerialBoard {
         Ok(())
     }
 
-    /// Sets the speed of the line.
+    /// Sets the bit rate of the port.
     ///
     /// # Errors
     /// Fails if the port is gone.
@@ -73,12 +73,12 @@ impl SerialBoard {
     }
 
     fn reset_at(&mut self, baud: u32) -> io::Result<()> {
-        let was_fresh = std::mem::take(&mut self.is_fresh);
-        match self.toggle_reset() {
+        let was_just_opened = std::mem::take(&mut self.is_just_opened);
+        match self.toggle_reset_lines() {
             Ok(()) => {}
             // The pseudo terminal of a simulated board has no reset lines, but opening it resets that board. A port
-            // that has vanished fails here as well, and again when the speed is set.
-            Err(_) if was_fresh => {}
+            // that has vanished fails here as well, and again when the bit rate is set.
+            Err(_) if was_just_opened => {}
             Err(_) => self.open_again()?,
         }
         self.set_baud(baud)
@@ -97,7 +97,7 @@ impl SerialBoard {
     }
 }
 
-/// Reads block, so that the futures are ready when they are first polled.
+/// Its reads block, so its futures are ready when they are first polled.
 impl Board for SerialBoard {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
         self.reset_at(baud).map_err(to_board_error)
@@ -113,7 +113,8 @@ impl Board for SerialBoard {
         while filled_count < bytes.len() {
             let count = self.read_available(&mut bytes[filled_count..])?;
             filled_count += count;
-            // Bytes that have arrived while this program was suspended are read.
+            // The deadline is checked only after an empty read, so bytes that have arrived while this program was
+            // suspended are still read.
             if count == 0 && deadline.has_passed() {
                 break;
             }
@@ -136,7 +137,7 @@ impl Board for SerialBoard {
 fn to_board_error(error: io::Error) -> BoardError {
     match error.kind() {
         ErrorKind::TimedOut => BoardError::Busy,
-        _ if is_gone(&error) => BoardError::Gone,
+        _ if is_port_gone(&error) => BoardError::Gone,
         _ => BoardError::Other(error.to_string()),
     }
 }

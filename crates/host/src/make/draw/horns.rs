@@ -1,9 +1,9 @@
-//! `lizard draw --horns`: the angles at which to press the cranks onto the shafts, and the error that a trim
-//! corrects, because a crank fits only on the teeth of its shaft.
+//! `lizard draw --horns`: the angles at which to press the cranks onto the shafts. A crank fits only on the teeth of
+//! its shaft, so the drawing also shows the error that remains and the trim that corrects it.
 
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::Robot;
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::{Group, Polygon, Polyline};
 
 use crate::shared::ink::{
@@ -11,41 +11,41 @@ use crate::shared::ink::{
     text_end, text_middle, text_start,
 };
 
-const SIZE: (f64, f64) = (700.0, 640.0);
+const PAGE_SIZE: (f64, f64) = (700.0, 640.0);
 
 /// The centre of the robot on the page.
 const ROBOT_CENTRE: (f64, f64) = (196.0, 320.0);
 /// The size of the robot's area on the page.
-const ROBOT_AREA: (f64, f64) = (250.0, 476.0);
+const ROBOT_AREA_SIZE: (f64, f64) = (250.0, 476.0);
 
 /// Teeth of an SG-90's spline.
-const TEETH: usize = 25;
+const TOOTH_COUNT: usize = 25;
 /// Angle from a tooth to the next, deg.
-const TOOTH_PITCH_DEG: f64 = 360.0 / TEETH as f64;
+const TOOTH_PITCH_DEG: f64 = 360.0 / TOOTH_COUNT as f64;
 
 /// The centre of the enlarged spline.
 const SPLINE_CENTRE: (f64, f64) = (558.0, 158.0);
-/// Radii of the enlarged spline between the teeth and at their tips.
+/// Radii of the enlarged spline between the teeth and at their tips, pixels.
 const SPLINE_RADII: (f64, f64) = (52.0, 62.0);
-/// Length of the crank on the enlarged spline.
-const CRANK_LENGTH: f64 = 150.0;
+/// Length of the crank on the enlarged spline, pixels.
+const EXAMPLE_CRANK_LENGTH: f64 = 150.0;
 
 /// The error in the example: the crank sits this many degrees clockwise of its correct angle.
 const EXAMPLE_ERROR_DEG: f64 = 6.0;
 
 /// Width and length of an SG-90 from above, mm.
-const CASE_SIZE: (f64, f64) = (12.2, 22.8);
+const CASE_SIZE_MM: (f64, f64) = (12.2, 22.8);
 /// Distance of an SG-90's shaft from the nearer end of its case, mm.
-const SHAFT_TO_CASE_END: f64 = 6.0;
+const SHAFT_TO_CASE_END_MM: f64 = 6.0;
 
-/// The cranks of a robot at their neutral angles, as SVG text.
-pub fn horns(robot: &Robot) -> String {
+/// Draws the cranks of a robot at their neutral angles, as SVG text.
+pub fn draw_horns(robot: &Robot) -> String {
     let mut group = draw_chassis(robot);
     for servo in 0..4 {
         group = group.add(draw_crank(robot, servo));
     }
-    group = group.add(draw_example(robot)).add(draw_rose());
-    page(SIZE, group)
+    group = group.add(draw_example(robot)).add(draw_compass_rose());
+    page(PAGE_SIZE, group)
 }
 
 /// The ends of the cranks, mm in the chassis frame: the shaft, and the joint with the coupler.
@@ -61,17 +61,17 @@ fn crank_ends(robot: &Robot) -> [(Vector, Vector); 4] {
 }
 
 /// Pixels per millimetre at which the robot fits its area.
-fn scale_of(robot: &Robot) -> f64 {
+fn fitting_scale(robot: &Robot) -> f64 {
     let (mut x, mut y) = (0.0f64, 0.0f64);
     for (shaft, tip) in crank_ends(robot) {
         x = x.max(shaft.x.abs()).max(tip.x.abs());
         y = y.max(shaft.y.abs()).max(tip.y.abs());
     }
-    (ROBOT_AREA.0 / (2.0 * x)).min(ROBOT_AREA.1 / (2.0 * y))
+    (ROBOT_AREA_SIZE.0 / (2.0 * x)).min(ROBOT_AREA_SIZE.1 / (2.0 * y))
 }
 
 /// Position on the page of a point in the chassis frame.
-fn on_page(point: Vector, scale: f64) -> (f64, f64) {
+fn page_point(point: Vector, scale: f64) -> (f64, f64) {
     (
         ROBOT_CENTRE.0 + scale * point.x,
         ROBOT_CENTRE.1 - scale * point.y,
@@ -84,21 +84,21 @@ fn point_toward(from: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     (from.0 + distance * cos, from.1 - distance * sin)
 }
 
-/// An arc of a circle; angles count counter-clockwise.
-fn arc(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Polyline {
-    const STEPS: usize = 40;
-    let points: Vec<(f64, f64)> = (0..=STEPS)
-        .map(|step| {
-            let fraction = step as f64 / STEPS as f64;
+/// Draws an arc of a circle; angles count counter-clockwise.
+fn draw_arc(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Polyline {
+    const SEGMENT_COUNT: usize = 40;
+    let points: Vec<(f64, f64)> = (0..=SEGMENT_COUNT)
+        .map(|index| {
+            let fraction = index as f64 / SEGMENT_COUNT as f64;
             point_toward(middle, from_deg + (to_deg - from_deg) * fraction, radius)
         })
         .collect();
     curve(&points, colour, 1.6)
 }
 
-/// An arc with an arrowhead at its end.
-fn arrow(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Group {
-    const BARB: f64 = 8.0;
+/// Draws an arc with an arrowhead at its end.
+fn draw_arrow(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Group {
+    const BARB_LENGTH: f64 = 8.0;
     let tip = point_toward(middle, to_deg, radius);
     // The direction back along the arc at its end; the barbs lie to both sides of it.
     let back_deg = if to_deg > from_deg {
@@ -106,22 +106,22 @@ fn arrow(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &s
     } else {
         to_deg + 90.0
     };
-    let barb = |lean_deg: f64| point_toward(tip, back_deg + lean_deg, BARB);
+    let barb_end = |lean_deg: f64| point_toward(tip, back_deg + lean_deg, BARB_LENGTH);
     Group::new()
-        .add(arc(middle, radius, from_deg, to_deg, colour))
-        .add(curve(&[barb(28.0), tip, barb(-28.0)], colour, 1.6))
+        .add(draw_arc(middle, radius, from_deg, to_deg, colour))
+        .add(curve(&[barb_end(28.0), tip, barb_end(-28.0)], colour, 1.6))
 }
 
-/// The plate, the servos, and an arrow that points to the head.
+/// Draws the plate, the servos, and an arrow that points to the head.
 fn draw_chassis(robot: &Robot) -> Group {
-    let (scale, crank_ends) = (scale_of(robot), crank_ends(robot));
+    let (scale, crank_ends) = (fitting_scale(robot), crank_ends(robot));
     let half_width = crank_ends
         .iter()
         .map(|(shaft, _)| shaft.x.abs())
         .fold(0.0, f64::max)
         + 9.0;
     let half_height = crank_ends[0].0.y + 9.0;
-    let corner = on_page(Vector::new(-half_width, half_height), scale);
+    let corner = page_point(Vector::new(-half_width, half_height), scale);
     let size = (2.0 * half_width * scale, 2.0 * half_height * scale);
     let mut group = Group::new().add(edged(
         rectangle(corner, size, "#f4f1ea").set("rx", 12),
@@ -131,15 +131,15 @@ fn draw_chassis(robot: &Robot) -> Group {
     for (servo, (shaft, _)) in crank_ends.into_iter().enumerate() {
         // The longer part of a servo's case lies on the side of the shaft that faces the middle of the robot.
         let upper_y = if shaft.y > 0.0 {
-            shaft.y + SHAFT_TO_CASE_END
+            shaft.y + SHAFT_TO_CASE_END_MM
         } else {
-            shaft.y + CASE_SIZE.1 - SHAFT_TO_CASE_END
+            shaft.y + CASE_SIZE_MM.1 - SHAFT_TO_CASE_END_MM
         };
-        let corner = on_page(Vector::new(shaft.x - CASE_SIZE.0 / 2.0, upper_y), scale);
+        let corner = page_point(Vector::new(shaft.x - CASE_SIZE_MM.0 / 2.0, upper_y), scale);
         group = group.add(
             rectangle(
                 corner,
-                (CASE_SIZE.0 * scale, CASE_SIZE.1 * scale),
+                (CASE_SIZE_MM.0 * scale, CASE_SIZE_MM.1 * scale),
                 SERVO[servo],
             )
             .set("rx", 3)
@@ -158,11 +158,11 @@ fn draw_chassis(robot: &Robot) -> Group {
         .add(text_middle("tail", (tail.0, tail.1 + 20.0), 15.0))
 }
 
-/// A servo's crank, its angle and its name.
+/// Draws a servo's crank with its angle and its name.
 fn draw_crank(robot: &Robot, servo: usize) -> Group {
-    let scale = scale_of(robot);
+    let scale = fitting_scale(robot);
     let (shaft, tip) = crank_ends(robot)[servo];
-    let (shaft_point, tip_point) = (on_page(shaft, scale), on_page(tip, scale));
+    let (shaft_point, tip_point) = (page_point(shaft, scale), page_point(tip, scale));
     let angle_deg = robot.servos()[servo].neutral.rem_euclid(360.0);
     let colour = SERVO[servo];
     // Three lines of text, outside of the robot.
@@ -182,15 +182,16 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
             .set("stroke-dasharray", "3 3"),
         )
         .add(
-            line(shaft_point, tip_point, colour, 11.0).set("id", format!("crank-{}", NAMES[servo])),
+            line(shaft_point, tip_point, colour, 11.0)
+                .set("id", format!("crank-{}", SERVO_NAMES[servo])),
         )
         .add(edged(circle(tip_point, 6.5, "white"), DARK, 2.0))
-        .add(arrow(shaft_point, 22.0, 0.0, angle_deg, DARK))
+        .add(draw_arrow(shaft_point, 22.0, 0.0, angle_deg, DARK))
         .add(circle(shaft_point, 8.0, DARK))
         .add(circle(shaft_point, 3.0, "white"))
         .add(
             text(
-                NAMES[servo],
+                SERVO_NAMES[servo],
                 (tip_point.0, first_line_y),
                 18.0,
                 colour,
@@ -209,19 +210,19 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
                 (tip_point.0, first_line_y + 37.0),
                 16.0,
             )
-            .set("id", format!("angle-{}", NAMES[servo])),
+            .set("id", format!("angle-{}", SERVO_NAMES[servo])),
         )
 }
 
-/// The first servo's spline, enlarged, with a crank on the nearest tooth.
+/// Draws the first servo's spline, enlarged, with a crank that is off by [`EXAMPLE_ERROR_DEG`], and explains the trim.
 fn draw_example(robot: &Robot) -> Group {
     const TEXT_X: f64 = 404.0;
     let servo = 0;
     let exact_deg = robot.servos()[servo].neutral;
-    let placed_deg = exact_deg - EXAMPLE_ERROR_DEG;
+    let fitted_deg = exact_deg - EXAMPLE_ERROR_DEG;
     let servo_number = servo + 1;
     let lines = [
-        format!("{TEETH} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
+        format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
         format!("one a crank is off by {}° at most.", TOOTH_PITCH_DEG / 2.0),
         String::new(),
         "Dashed: the angle where it should be.".into(),
@@ -231,11 +232,11 @@ fn draw_example(robot: &Robot) -> Group {
         "\u{2212} clockwise, seen from above.".into(),
     ];
     let mut group = Group::new()
-        .add(draw_spline(placed_deg))
+        .add(draw_spline(fitted_deg))
         .add(
             line(
                 SPLINE_CENTRE,
-                point_toward(SPLINE_CENTRE, placed_deg, CRANK_LENGTH),
+                point_toward(SPLINE_CENTRE, fitted_deg, EXAMPLE_CRANK_LENGTH),
                 GREY,
                 13.0,
             )
@@ -245,28 +246,28 @@ fn draw_example(robot: &Robot) -> Group {
         .add(
             line(
                 SPLINE_CENTRE,
-                point_toward(SPLINE_CENTRE, exact_deg, CRANK_LENGTH),
+                point_toward(SPLINE_CENTRE, exact_deg, EXAMPLE_CRANK_LENGTH),
                 SERVO[servo],
                 3.0,
             )
             .set("stroke-dasharray", "9 5")
             .set("id", "should"),
         )
-        .add(arrow(
+        .add(draw_arrow(
             SPLINE_CENTRE,
-            CRANK_LENGTH + 12.0,
-            placed_deg - 7.0,
+            EXAMPLE_CRANK_LENGTH + 12.0,
+            fitted_deg - 7.0,
             exact_deg,
             DARK,
         ))
         .add(circle(SPLINE_CENTRE, 6.0, DARK))
         .add(text_end(
             "trim",
-            point_toward(SPLINE_CENTRE, exact_deg + 4.0, CRANK_LENGTH + 16.0),
+            point_toward(SPLINE_CENTRE, exact_deg + 4.0, EXAMPLE_CRANK_LENGTH + 16.0),
             14.0,
         ))
-        // The width of a tooth, marked on the side that is free.
-        .add(draw_tooth_mark(placed_deg - 9.0 * TOOTH_PITCH_DEG));
+        // The angle between two teeth is marked where the drawing has room.
+        .add(draw_tooth_mark(fitted_deg - 9.0 * TOOTH_PITCH_DEG));
     for (index, line_text) in lines.iter().enumerate() {
         let point = (TEXT_X, SPLINE_CENTRE.1 + 102.0 + 19.0 * index as f64);
         let mut line = text_start(line_text, point, 14.0);
@@ -278,9 +279,9 @@ fn draw_example(robot: &Robot) -> Group {
     group
 }
 
-/// The enlarged spline with a tooth at the angle `degrees`.
+/// Draws the enlarged spline with a tooth at the angle `degrees`.
 fn draw_spline(degrees: f64) -> Polygon {
-    let corners: Vec<String> = (0..4 * TEETH)
+    let corners: Vec<String> = (0..4 * TOOTH_COUNT)
         .map(|corner| {
             // Two corners at a tooth's tip, two between teeth.
             let radius = if corner % 4 < 2 {
@@ -301,7 +302,7 @@ fn draw_spline(degrees: f64) -> Polygon {
         .set("stroke-width", 1.5)
 }
 
-/// A mark for the angle from the tooth at `degrees` to the next tooth.
+/// Draws a mark for the angle from the tooth at `degrees` to the next tooth.
 fn draw_tooth_mark(degrees: f64) -> Group {
     let (inner_radius, outer_radius) = (SPLINE_RADII.1 + 3.0, SPLINE_RADII.1 + 26.0);
     let draw_ray = |degrees| {
@@ -320,7 +321,7 @@ fn draw_tooth_mark(degrees: f64) -> Group {
     Group::new()
         .add(draw_ray(degrees))
         .add(draw_ray(degrees + TOOTH_PITCH_DEG))
-        .add(arc(
+        .add(draw_arc(
             SPLINE_CENTRE,
             outer_radius - 7.0,
             degrees,
@@ -334,14 +335,14 @@ fn draw_tooth_mark(degrees: f64) -> Group {
         ))
 }
 
-/// A compass rose that shows the zero direction and the positive sense of angles.
-fn draw_rose() -> Group {
+/// Draws a compass rose that shows the zero direction and the positive sense of angles.
+fn draw_compass_rose() -> Group {
     let middle = (546.0, 540.0);
     let caption = (middle.0, middle.1 - 84.0);
     let mut group = Group::new()
         .add(text_middle("angles, seen from above", caption, 14.0))
         .add(edged(circle(middle, 46.0, "none"), GREY, 1.2))
-        .add(arrow(middle, 30.0, 0.0, 70.0, DARK));
+        .add(draw_arrow(middle, 30.0, 0.0, 70.0, DARK));
     for (degrees, label, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),
         (90.0, "90° head", Anchor::Middle, (0.0, -8.0)),

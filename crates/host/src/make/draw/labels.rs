@@ -1,20 +1,20 @@
 //! The labels of the view from above.
 
 use lizard_kinematics::{Vector, sin_cos};
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::Group;
 
-use super::top_view::{Joint, NAME_BEYOND, SIZE, SKIN_REACH, View};
+use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, Point, SKIN_REACH_MM, View};
 use crate::shared::ink::{
     Anchor, DARK, GREY, SERVO, line, pin_name, text, text_middle, text_start,
 };
 
 /// Distance of the servos' names from the middle of the page, sideways and vertically, pixels.
-const NAME_DISTANCE: f64 = 347.0;
+const SERVO_NAME_DISTANCE: f64 = 347.0;
 
 impl View<'_> {
-    /// Adds names, angles and dimensions.
-    pub(super) fn labels(&self, mut group: Group) -> Group {
+    /// Adds the labels of servos and parts, with angles and dimensions, and the axes to `group`.
+    pub(super) fn draw_labels(&self, mut group: Group) -> Group {
         let angles = self.angles();
         for servo in 0..4 {
             let shaft = self.shafts()[servo];
@@ -23,42 +23,42 @@ impl View<'_> {
             let sign = shaft.y.signum();
             let anchor = if is_left { Anchor::End } else { Anchor::Start };
             let (x, y) = (
-                SIZE.0 / 2.0 + side * NAME_DISTANCE,
-                SIZE.1 / 2.0 - sign * NAME_DISTANCE,
+                PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE,
+                PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE,
             );
             let near_shaft = self.page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
-            let name = format!(
+            let name_text = format!(
                 "{} · {}",
-                NAMES[servo],
+                SERVO_NAMES[servo],
                 pin_name(self.robot.servos()[servo].pin)
             );
             let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
-            let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
+            let angle_text = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
             let start = (x + 6.0 * -side, y - 4.0);
             group = group
                 .add(line(start, near_shaft, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
                 .add(
-                    text(&name, (x, y - 8.0), 20.0, SERVO[servo], anchor)
+                    text(&name_text, (x, y - 8.0), 20.0, SERVO[servo], anchor)
                         .set("font-weight", "bold"),
                 )
-                .add(text(&angle, (x, y + 16.0), 18.0, DARK, anchor));
+                .add(text(&angle_text, (x, y + 16.0), 18.0, DARK, anchor));
         }
         group = self.draw_part_labels(group);
-        draw_compass(group, self.scale)
+        draw_axes_and_scale_bar(group, self.pixels_per_mm)
     }
 
     fn draw_part_labels(&self, mut group: Group) -> Group {
         let solution = self.solution;
         let head = solution.head_point();
         let tail = solution.tail_point();
-        let coordinates = |name: &str, position: Joint| {
+        let coordinate_text = |name: &str, position: Point| {
             format!("{name} ({:.1}, {:.1}) mm", position.x, position.y)
         };
-        let (x, y) =
-            self.page_point(head + Vector::new(0.0, SKIN_REACH * self.size_ratio() + NAME_BEYOND));
-        group = group.add(text_middle(&coordinates("head", head), (x, y), 18.0));
+        let (x, y) = self
+            .page_point(head + Vector::new(0.0, SKIN_REACH_MM * self.size_ratio() + LABEL_GAP_MM));
+        group = group.add(text_middle(&coordinate_text("head", head), (x, y), 18.0));
         let (x, y) = self.page_point(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
-        group = group.add(text_middle(&coordinates("tail", tail), (x, y), 18.0));
+        group = group.add(text_middle(&coordinate_text("tail", tail), (x, y), 18.0));
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
             let anchor = if side < 0.0 {
                 Anchor::End
@@ -66,14 +66,14 @@ impl View<'_> {
                 Anchor::Start
             };
             let (x, y) = self.page_point(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
-            let travel = if slider.s.abs() < 0.05 {
+            let travel_text = if slider.s.abs() < 0.05 {
                 "s = 0.0 mm".to_owned()
             } else {
                 format!("s = {:+.1} mm", slider.s)
             };
             group = group
                 .add(text("slider", (x, y - 4.0), 17.0, GREY, anchor))
-                .add(text(&travel, (x, y + 18.0), 17.0, GREY, anchor));
+                .add(text(&travel_text, (x, y + 18.0), 17.0, GREY, anchor));
         }
         for servo in 0..4 {
             let foot = self.foot(servo);
@@ -96,9 +96,9 @@ impl View<'_> {
     }
 }
 
-/// The axes of the chassis frame, and a scale bar.
-fn draw_compass(mut group: Group, scale: f64) -> Group {
-    let origin = (50.0, SIZE.1 - 50.0);
+/// Draws the axes of the chassis frame, and a scale bar.
+fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
+    let origin = (50.0, PAGE_SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
         let (sin, cos) = sin_cos(degrees);
         let tip = (origin.0 + 62.0 * cos, origin.1 - 62.0 * sin);
@@ -117,7 +117,7 @@ fn draw_compass(mut group: Group, scale: f64) -> Group {
             .add(line(tip, barb(-155.0), DARK, 2.0))
             .add(text_start(name, name_point, 16.0));
     }
-    let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
+    let end = (PAGE_SIZE.0 - 60.0, PAGE_SIZE.1 - 48.0);
     let start = (end.0 - 50.0 * scale, end.1);
     for tick in [start, end] {
         group = group.add(line(

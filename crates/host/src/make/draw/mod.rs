@@ -14,9 +14,9 @@ use std::path::PathBuf;
 use crate::shared::files;
 use crate::{Failure, PoseArgs, RobotFile};
 
-pub use horns::horns;
-pub use top_view::top_view;
-pub use wiring::wiring;
+pub use horns::draw_horns;
+pub use top_view::draw_top_view;
+pub use wiring::draw_wiring;
 
 /// Draw the robot from above as SVG, or its wiring, or its cranks
 ///
@@ -56,13 +56,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let robot = args.robot.load()?;
     let picture = if args.wiring {
-        wiring(&robot)
+        draw_wiring(&robot)
     } else if args.horns {
-        horns(&robot)
+        draw_horns(&robot)
     } else {
-        let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
+        let pose = args.pose.get().unwrap_or_else(|| robot.neutral_pose());
         let solution = robot.lizard().solve(&pose)?;
-        top_view(&robot, &solution, !args.plain)
+        draw_top_view(&robot, &solution, !args.plain)
     };
     match args.output {
         Some(path) => files::write(&path, picture.as_bytes()),

@@ -7,27 +7,26 @@ use svg::node::element::{Group, Path};
 use super::body::Sheet;
 use crate::shared::ink::{DARK, SERVO, circle, edged, page};
 
-pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
-/// Largest scale of the drawing, pixels per mm. The scale is smaller if the robot is too large for the page.
-const PIXELS_PER_MM: f64 = 3.1;
-/// Margins of the page in x and y for names and measures, pixels.
-const MARGIN: (f64, f64) = (80.0, 28.0);
+pub(super) const PAGE_SIZE: (f64, f64) = (1000.0, 1110.0);
+/// Largest scale of the drawing. The scale is smaller if the robot is too large for the page.
+const MAX_PIXELS_PER_MM: f64 = 3.1;
+/// Margins of the page in x and y for labels, pixels.
+const PAGE_MARGIN: (f64, f64) = (80.0, 28.0);
 /// Reach of the skin beyond the head point, mm. Its reach beyond the tail point is smaller.
-pub(super) const SKIN_REACH: f64 = 30.0;
+pub(super) const SKIN_REACH_MM: f64 = 30.0;
 /// Distance from the skin to its label, mm.
-pub(super) const NAME_BEYOND: f64 = 6.0;
-/// Half the length of the paper robot's plate, for which the skin's coordinates are given, mm.
-const SKIN_LENGTH: f64 = 80.4;
+pub(super) const LABEL_GAP_MM: f64 = 6.0;
+/// Half the length of the plate of the paper's robot, for which the skin's coordinates are given, mm.
+const PAPER_PLATE_HALF_LENGTH_MM: f64 = 80.4;
 
 const SKIN_COLOUR: &str = "#e3ecdc";
-const STEEL: &str = "#555555";
+const STEEL_COLOUR: &str = "#555555";
 
-/// A joint of the robot: mm, chassis frame.
-pub(super) type Joint = Vector;
+/// A point of the robot: mm, chassis frame.
+pub(super) type Point = Vector;
 
-/// The robot at a solved pose, as SVG text; with names and measures if
-/// `has_labels`.
-pub fn top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
+/// Draws the robot at a solved pose, as SVG text; with names, angles and dimensions if `has_labels`.
+pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
     let view = View::new(robot, solution);
     let mut group = view.draw_skin(Group::new());
     let (legs, sheet) = (view.legs(), view.sheet());
@@ -40,19 +39,19 @@ pub fn top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String 
     for end in End::ALL {
         group = view.draw_five_bar(group, end);
     }
-    group = sheet.draw_anchors(group, &legs);
+    group = sheet.draw_strut_screws(group, &legs);
     if has_labels {
-        group = view.labels(group);
+        group = view.draw_labels(group);
     }
-    page(SIZE, group)
+    page(PAGE_SIZE, group)
 }
 
 /// A robot at a solved pose, and the scale at which it is drawn.
 pub(super) struct View<'a> {
     pub(super) robot: &'a Robot,
     pub(super) solution: &'a Solution,
-    /// Pixels per mm.
-    pub(super) scale: f64,
+    /// Scale of the drawing.
+    pub(super) pixels_per_mm: f64,
 }
 
 impl<'a> View<'a> {
@@ -60,70 +59,80 @@ impl<'a> View<'a> {
         let view = Self {
             robot,
             solution,
-            scale: PIXELS_PER_MM,
+            pixels_per_mm: MAX_PIXELS_PER_MM,
         };
         let legs = view.legs();
         let joints = legs.iter().flat_map(|leg| leg.joints);
         let max_x = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
         let ends = [solution.head_point(), solution.tail_point()];
-        let label_reach = SKIN_REACH * view.size_ratio() + NAME_BEYOND;
+        let label_reach = SKIN_REACH_MM * view.size_ratio() + LABEL_GAP_MM;
         let max_y = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + label_reach;
-        let scales = [(SIZE.0, MARGIN.0, max_x), (SIZE.1, MARGIN.1, max_y)];
+        let scales = [
+            (PAGE_SIZE.0, PAGE_MARGIN.0, max_x),
+            (PAGE_SIZE.1, PAGE_MARGIN.1, max_y),
+        ];
         let scales = scales.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
         Self {
-            scale: scales.into_iter().fold(PIXELS_PER_MM, f64::min),
+            pixels_per_mm: scales.into_iter().fold(MAX_PIXELS_PER_MM, f64::min),
             ..view
         }
     }
 
     /// The point on the page for a point in the chassis frame.
-    pub(super) fn page_point(&self, joint: Joint) -> (f64, f64) {
+    pub(super) fn page_point(&self, point: Point) -> (f64, f64) {
         (
-            SIZE.0 / 2.0 + self.scale * joint.x,
-            SIZE.1 / 2.0 - self.scale * joint.y,
+            PAGE_SIZE.0 / 2.0 + self.pixels_per_mm * point.x,
+            PAGE_SIZE.1 / 2.0 - self.pixels_per_mm * point.y,
         )
     }
 
-    /// The robot's size relative to the paper's robot.
+    /// The size of the robot's plate relative to that of the paper's robot.
     pub(super) fn size_ratio(&self) -> f64 {
-        self.robot.plate().half.y / SKIN_LENGTH
+        self.robot.plate().half_size.y / PAPER_PLATE_HALF_LENGTH_MM
     }
 
-    fn sheet(&self) -> Sheet<impl Fn(Joint) -> (f64, f64)> {
+    fn sheet(&self) -> Sheet<impl Fn(Point) -> (f64, f64)> {
         Sheet {
             project: |joint| self.page_point(joint),
-            scale: self.scale,
-            turn: 0.0,
+            pixels_per_mm: self.pixels_per_mm,
+            turn_deg: 0.0,
         }
     }
 
-    fn bar(&self, from: Joint, to: Joint, colour: &str, width_mm: f64) -> svg::node::element::Line {
-        self.sheet().bar(from, to, colour, width_mm)
+    fn draw_bar(
+        &self,
+        from: Point,
+        to: Point,
+        colour: &str,
+        width_mm: f64,
+    ) -> svg::node::element::Line {
+        self.sheet().draw_bar(from, to, colour, width_mm)
     }
 
-    fn pivot(&self, point: Joint, radius_mm: f64) -> svg::node::element::Circle {
-        self.sheet().joint(point, radius_mm)
+    fn draw_joint(&self, point: Point, radius_mm: f64) -> svg::node::element::Circle {
+        self.sheet().draw_joint(point, radius_mm)
     }
 
     pub(super) fn angles(&self) -> [f64; 4] {
         self.solution.pose.into()
     }
 
-    pub(super) fn shafts(&self) -> [Joint; 4] {
+    pub(super) fn shafts(&self) -> [Point; 4] {
         self.robot.lizard().shafts()
     }
 
     /// Tip of a servo's crank.
-    fn crank_tip(&self, servo: usize) -> Joint {
+    fn crank_tip(&self, servo: usize) -> Point {
         self.solution.crank_tips()[servo]
     }
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
-        // The skin's coordinates are those for the paper's robot, in mm; they grow with the robot. The head and the
-        // tail follow their points (`text_near`), and the flanks are fixed to the chassis (`text_on_chassis`).
+        // The coordinates below are in mm for the paper's robot, and are multiplied by `size_ratio`. The head and the
+        // tail of the skin follow their points (`text_near`), and the flanks are fixed to the chassis
+        // (`text_on_chassis`).
         let size_ratio = self.size_ratio();
-        let text_near = |point: Joint, x: f64, y: f64| {
+        let text_near = |point: Point, x: f64, y: f64| {
             let (x, y) = self.page_point(point + Vector::new(x, y) * size_ratio);
             format!("{x:.1} {y:.1}")
         };
@@ -183,7 +192,7 @@ impl<'a> View<'a> {
         group.add(outline).add(draw_eye(-9.0)).add(draw_eye(9.0))
     }
 
-    /// Draws the prismatic joint between the arms of a front and a rear servo.
+    /// Draws the slider of a side, a prismatic joint between the arms of the front and the rear servo.
     fn draw_slider(&self, mut group: Group, side: Side) -> Group {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
@@ -195,15 +204,15 @@ impl<'a> View<'a> {
         };
         let direction = (front_tip - rear_tip) * (1.0 / slider.d);
         group = group
-            .add(self.bar(rear_tip, front_tip, STEEL, 1.8))
-            .add(self.bar(rear_tip, rear_tip + direction * tube_length, "#9a9a9a", 5.0));
+            .add(self.draw_bar(rear_tip, front_tip, STEEL_COLOUR, 1.8))
+            .add(self.draw_bar(rear_tip, rear_tip + direction * tube_length, "#9a9a9a", 5.0));
         for (servo, tip) in [(front, front_tip), (rear, rear_tip)] {
             group = group
                 .add(
-                    self.bar(self.shafts()[servo], tip, SERVO[servo], 3.0)
+                    self.draw_bar(self.shafts()[servo], tip, SERVO[servo], 3.0)
                         .set("stroke-opacity", 0.75),
                 )
-                .add(self.pivot(tip, 2.0));
+                .add(self.draw_joint(tip, 2.0));
         }
         group
     }
@@ -212,31 +221,39 @@ impl<'a> View<'a> {
     fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
-            group = group.add(self.bar(self.crank_tip(servo), point, STEEL, 3.4));
+            group = group.add(self.draw_bar(self.crank_tip(servo), point, STEEL_COLOUR, 3.4));
         }
         for servo in servos {
             let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
             group = group
-                .add(self.bar(shaft, tip, SERVO[servo], 4.6))
-                .add(self.pivot(tip, 2.3))
-                .add(circle(self.page_point(shaft), 3.4 * self.scale, DARK))
-                .add(circle(self.page_point(shaft), 1.2 * self.scale, "white"));
+                .add(self.draw_bar(shaft, tip, SERVO[servo], 4.6))
+                .add(self.draw_joint(tip, 2.3))
+                .add(circle(
+                    self.page_point(shaft),
+                    3.4 * self.pixels_per_mm,
+                    DARK,
+                ))
+                .add(circle(
+                    self.page_point(shaft),
+                    1.2 * self.pixels_per_mm,
+                    "white",
+                ));
         }
         group.add(edged(
-            circle(self.page_point(point), 3.4 * self.scale, "#f0e442"),
+            circle(self.page_point(point), 3.4 * self.pixels_per_mm, "#f0e442"),
             DARK,
             2.5,
         ))
     }
 
-    pub(super) fn foot(&self, servo: usize) -> Joint {
+    pub(super) fn foot(&self, servo: usize) -> Point {
         self.legs()[servo].foot
     }
 
-    /// The legs' places at this pose, without lag.
+    /// The positions of the legs' points at this pose, if no leg lags behind its servo.
     pub(super) fn legs(&self) -> [LegPlace; 4] {
         let angles = self.angles();
-        std::array::from_fn(|i| self.robot.legs()[i].at(angles[i], angles[i]))
+        std::array::from_fn(|i| self.robot.legs()[i].place_at(angles[i], angles[i]))
     }
 }
 
@@ -249,17 +266,17 @@ mod tests {
     /// Passes the paper's robot at this pose to `check_view`; `None` is the neutral pose.
     fn with_view(pose: Option<Pose>, check_view: impl Fn(&View)) {
         let robot = named("paper");
-        let pose = pose.unwrap_or_else(|| robot.neutral());
+        let pose = pose.unwrap_or_else(|| robot.neutral_pose());
         let solution = robot.lizard().solve(&pose).expect("the pose closes");
         check_view(&View::new(&robot, &solution));
     }
 
     /// A pose without symmetry.
-    const ASKEW: [f64; 4] = [120.0, 50.0, 330.0, 200.0];
+    const ASYMMETRIC_POSE: [f64; 4] = [120.0, 50.0, 330.0, 200.0];
 
     #[test]
     fn every_drawn_link_has_its_length() {
-        for pose in [None, Some(ASKEW.into())] {
+        for pose in [None, Some(ASYMMETRIC_POSE.into())] {
             with_view(pose, |view| {
                 for servo in 0..4 {
                     let tip = view.crank_tip(servo);
@@ -292,12 +309,12 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_moves_forward_when_its_gait_does() {
-        use lizard_robot::servo::FORWARD;
+    fn a_servo_that_turns_forward_moves_its_foot_forward() {
+        use lizard_robot::servo::FORWARD_TURN_SIGN;
         with_view(None, |view| {
             for servo in 0..4 {
                 let mut angles: [f64; 4] = view.angles();
-                angles[servo] += 10.0 * FORWARD[servo];
+                angles[servo] += 10.0 * FORWARD_TURN_SIGN[servo];
                 let foot_before = view.foot(servo);
                 with_view(Some(angles.into()), |moved_view| {
                     assert!(moved_view.foot(servo).y > foot_before.y + 7.0);
@@ -307,9 +324,12 @@ mod tests {
     }
 
     #[test]
-    fn a_large_robot_is_on_the_page() {
+    fn a_large_robot_fits_the_page() {
         let robot = named("large");
-        let solution = robot.lizard().solve(&robot.neutral()).expect("it closes");
+        let solution = robot
+            .lizard()
+            .solve(&robot.neutral_pose())
+            .expect("the neutral pose closes");
         let view = View::new(&robot, &solution);
         let mut joints = view
             .legs()
@@ -319,16 +339,16 @@ mod tests {
         joints.extend([solution.head_point(), solution.tail_point()]);
         for joint in joints {
             let (x, y) = view.page_point(joint);
-            assert!((50.0..SIZE.0 - 50.0).contains(&x), "{x}");
-            assert!((50.0..SIZE.1 - 50.0).contains(&y), "{y}");
+            assert!((50.0..PAGE_SIZE.0 - 50.0).contains(&x), "{x}");
+            assert!((50.0..PAGE_SIZE.1 - 50.0).contains(&y), "{y}");
         }
     }
 
     #[test]
-    fn names_can_be_left_out() {
+    fn labels_can_be_left_out() {
         with_view(None, |view| {
-            assert!(top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
-            assert!(!top_view(view.robot, view.solution, false).contains("<text"));
+            assert!(draw_top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
+            assert!(!draw_top_view(view.robot, view.solution, false).contains("<text"));
         });
     }
 }

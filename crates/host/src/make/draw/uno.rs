@@ -1,4 +1,4 @@
-//! An Arduino UNO from above, with its pins where the board has them.
+//! A drawing of an Arduino UNO from above, with its pins where the board has them.
 
 use svg::node::element::{Group, Text};
 
@@ -7,107 +7,108 @@ use crate::shared::ink::{
     Anchor, DARK, GREY, PANEL, circle, edged, fixed, rectangle, text, text_middle, text_start,
 };
 
-/// Pixels between neighbouring pins, a tenth of an inch.
-const PITCH: f64 = 14.0;
+/// Distance between neighbouring pins, a tenth of an inch, in pixels.
+const PIN_PITCH: f64 = 14.0;
 
 /// Width and height of the board, in tenths of an inch.
-const BOARD: (f64, f64) = (27.0, 21.0);
+const BOARD_SIZE: (f64, f64) = (27.0, 21.0);
 
 /// Height of the upper row of pins above the board's lower edge, in tenths of an inch.
-const UPPER_ROW: f64 = 20.0;
+const UPPER_ROW_Y: f64 = 20.0;
 /// Height of the lower row of pins above the board's lower edge, in tenths of an inch.
-const LOWER_ROW: f64 = 1.0;
+const LOWER_ROW_Y: f64 = 1.0;
 
 /// The power header: its first pin, in tenths of an inch from the left edge, and the names
 /// printed beside its pins.
-const POWER: (f64, [&str; 7]) = (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
-/// The pins to the left of D13: the first one, in tenths of an inch from the left edge, and the
-/// names printed beside them.
-const REFERENCES: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
+const POWER_HEADER: (f64, [&str; 7]) =
+    (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
+/// The pins to the left of D13, among them the analogue reference: the first one, in tenths of an inch from the left
+/// edge, and the names printed beside them.
+const REFERENCE_HEADER: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
 
 /// Position of D13, from which D12 to D8 are counted, in tenths of an inch from the left edge.
-const D13: f64 = 11.4;
+const D13_X: f64 = 11.4;
 /// Position of D7, from which D6 to D0 are counted, in tenths of an inch from the left edge.
-const D7: f64 = 18.0;
+const D7_X: f64 = 18.0;
 /// Position of A0, from which A1 to A5 are counted, in tenths of an inch from the left edge.
-const A0: f64 = 20.0;
+const A0_X: f64 = 20.0;
 
 /// An Arduino UNO at a position on a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Uno {
     /// The board's upper left corner.
-    pub corner: (f64, f64),
+    pub upper_left_corner: (f64, f64),
 }
 
 impl Uno {
     /// The board's lower right corner.
-    pub fn far_corner(&self) -> (f64, f64) {
-        self.page_point(BOARD.0, 0.0)
+    pub fn lower_right_corner(&self) -> (f64, f64) {
+        self.page_point(BOARD_SIZE.0, 0.0)
     }
 
     /// Position of a pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
-    pub fn pin(&self, number: u8) -> (f64, f64) {
+    pub fn pin_point(&self, number: u8) -> (f64, f64) {
         let pin_number = f64::from(number);
         match number {
-            0..=7 => self.page_point(D7 + 7.0 - pin_number, UPPER_ROW),
-            8..=13 => self.page_point(D13 + 13.0 - pin_number, UPPER_ROW),
-            _ => self.page_point(A0 + pin_number - 14.0, LOWER_ROW),
+            0..=7 => self.page_point(D7_X + 7.0 - pin_number, UPPER_ROW_Y),
+            8..=13 => self.page_point(D13_X + 13.0 - pin_number, UPPER_ROW_Y),
+            _ => self.page_point(A0_X + pin_number - 14.0, LOWER_ROW_Y),
         }
     }
 
     /// Position of the ground pin beside D13.
-    pub fn ground(&self) -> (f64, f64) {
-        self.page_point(D13 - 1.0, UPPER_ROW)
+    pub fn ground_point(&self) -> (f64, f64) {
+        self.page_point(D13_X - 1.0, UPPER_ROW_Y)
     }
 
     /// Position of the 5V pin.
-    pub fn five_volts(&self) -> (f64, f64) {
-        self.page_point(POWER.0 + 3.0, LOWER_ROW)
+    pub fn five_volt_point(&self) -> (f64, f64) {
+        self.page_point(POWER_HEADER.0 + 3.0, LOWER_ROW_Y)
     }
 
     /// Draws the board, with the pins of `used_pins` emphasised.
     pub fn draw(&self, used_pins: &[u8]) -> Group {
-        let size = (BOARD.0 * PITCH, BOARD.1 * PITCH);
+        let size = (BOARD_SIZE.0 * PIN_PITCH, BOARD_SIZE.1 * PIN_PITCH);
         let mut group = Group::new().add(edged(
-            rectangle(self.corner, size, "#dfeaec").set("rx", 8),
+            rectangle(self.upper_left_corner, size, "#dfeaec").set("rx", 8),
             DARK,
             1.5,
         ));
-        group = self.draw_sockets(group);
+        group = self.draw_components(group);
         for number in 0..=19 {
             let name = pin_name(number);
             let is_used = used_pins.contains(&number);
-            let hole = draw_hole(self.pin(number), is_used).set("id", format!("pin-{name}"));
+            let hole = draw_hole(self.pin_point(number), is_used).set("id", format!("pin-{name}"));
             group = group
                 .add(hole)
-                .add(self.label(self.pin(number), &name, is_used));
+                .add(self.draw_label(self.pin_point(number), &name, is_used));
         }
-        for (index, name) in REFERENCES.1.iter().enumerate() {
-            let point = self.page_point(REFERENCES.0 + index as f64, UPPER_ROW);
-            let is_used = point == self.ground();
+        for (index, name) in REFERENCE_HEADER.1.iter().enumerate() {
+            let point = self.page_point(REFERENCE_HEADER.0 + index as f64, UPPER_ROW_Y);
+            let is_used = point == self.ground_point();
             let mut hole = draw_hole(point, is_used);
             if is_used {
                 hole = hole.set("id", "pin-GND");
             }
-            group = group.add(hole).add(self.label(point, name, is_used));
+            group = group.add(hole).add(self.draw_label(point, name, is_used));
         }
-        for (index, name) in POWER.1.iter().enumerate() {
-            let point = self.page_point(POWER.0 + index as f64, LOWER_ROW);
+        for (index, name) in POWER_HEADER.1.iter().enumerate() {
+            let point = self.page_point(POWER_HEADER.0 + index as f64, LOWER_ROW_Y);
             group = group
                 .add(draw_hole(point, false))
-                .add(self.label(point, name, false));
+                .add(self.draw_label(point, name, false));
         }
         let name_point = self.page_point(9.0, 11.2);
         group.add(text_start("Arduino UNO", name_point, 18.0))
     }
 
-    /// Sockets, chip and LED.
-    fn draw_sockets(&self, group: Group) -> Group {
+    /// Adds the sockets, the chip and the LED to `group`.
+    fn draw_components(&self, group: Group) -> Group {
         let draw_block = |x: f64, top: f64, size: (f64, f64), fill| {
             edged(
                 rectangle(
                     self.page_point(x, top),
-                    (size.0 * PITCH, size.1 * PITCH),
+                    (size.0 * PIN_PITCH, size.1 * PIN_PITCH),
                     fill,
                 ),
                 DARK,
@@ -125,9 +126,9 @@ impl Uno {
             .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
     }
 
-    /// The name printed beside a pin, rotated to read upwards.
-    fn label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
-        let is_upper = pin.1 < self.corner.1 + BOARD.1 * PITCH / 2.0;
+    /// Draws the name of a pin beside it, rotated to read upwards.
+    fn draw_label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
+        let is_upper = pin.1 < self.upper_left_corner.1 + BOARD_SIZE.1 * PIN_PITCH / 2.0;
         let (y, anchor) = if is_upper {
             (pin.1 + 9.0, Anchor::End)
         } else {
@@ -149,13 +150,13 @@ impl Uno {
     /// A point on the page, from its position in tenths of an inch right of and above the board's lower left corner.
     fn page_point(&self, right: f64, up: f64) -> (f64, f64) {
         (
-            self.corner.0 + right * PITCH,
-            self.corner.1 + (BOARD.1 - up) * PITCH,
+            self.upper_left_corner.0 + right * PIN_PITCH,
+            self.upper_left_corner.1 + (BOARD_SIZE.1 - up) * PIN_PITCH,
         )
     }
 }
 
-/// A hole of a header.
+/// Draws a hole of a header.
 fn draw_hole(middle: (f64, f64), is_used: bool) -> svg::node::element::Circle {
     let fill = if is_used { DARK } else { PANEL };
     edged(circle(middle, 4.0, fill), DARK, 1.2)

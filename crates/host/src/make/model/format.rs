@@ -1,4 +1,4 @@
-//! The format of a model's file, chosen by its ending.
+//! The format of a model's file, chosen by the ending of the file's name.
 
 use std::path::Path;
 
@@ -7,17 +7,17 @@ use crate::Failure;
 /// The format of a model's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
-    /// The format of MuJoCo.
+    /// MuJoCo's format.
     Mjcf,
-    /// The format of ROS.
+    /// The format of ROS, without closed loops.
     Urdf,
-    /// The format of Gazebo.
+    /// Gazebo's format.
     Sdf,
 }
 
 impl Format {
-    /// The format of a file, by its ending. A file without an ending, such as /dev/stdout, gets
-    /// MuJoCo's format, the only one that holds everything in one file.
+    /// The format of a file, by the ending of its name. A file without an ending, such as /dev/stdout, gets MuJoCo's
+    /// format, the only one that has everything in one file.
     ///
     /// # Errors
     /// Fails for any other ending.
@@ -52,7 +52,7 @@ mod tests {
         ] {
             assert_eq!(Format::of(Path::new(path)).expect(path), format, "{path}");
         }
-        let refusal = Format::of(Path::new("out/a.urfd")).expect_err("a typing error");
+        let refusal = Format::of(Path::new("out/a.urfd")).expect_err("the ending is misspelt");
         assert!(refusal.to_string().starts_with("out/a.urfd: "), "{refusal}");
     }
 }

@@ -1,46 +1,50 @@
-//! `--long-foot`: gives feet of the model a length error.
+//! The option `--long-foot`, which gives feet of the model a length error.
 
 use std::str::FromStr;
 
-use lizard_robot::servo::LEGS;
+use lizard_robot::servo::LEG_NAMES;
 
 use crate::Failure;
 
-/// Largest length error of a foot, mm; a larger one exceeds its screw or its leaf.
+/// Largest length error of a foot, mm. The foot's screw and its leaf spring allow no larger one.
 const MAX_FOOT_ERROR_MM: f64 = 5.0;
 
 /// A leg whose foot has the wrong length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LongFoot {
+    /// Index of the leg, in servo order.
     leg: usize,
-    mm: f64,
+    /// The excess of the foot's length, mm; negative for a short foot.
+    error_mm: f64,
 }
 
 /// The reason why `--long-foot` is refused.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum LongFootError {
     #[error("write the leg and by how many mm its foot is too long, such as LF=0.6")]
-    Form,
+    InvalidForm,
     #[error("there is no leg `{0}`; the legs are LF, RF, RH and LH")]
-    Leg(String),
+    UnknownLeg(String),
     #[error("`{0}` is not a number of mm")]
-    Number(String),
+    NotANumber(String),
     #[error("a foot may be off by at most {MAX_FOOT_ERROR_MM} mm either way, and {0} mm is more")]
-    Far(f64),
+    TooLarge(f64),
 }
 
 impl FromStr for LongFoot {
     type Err = LongFootError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (leg, mm) = text.split_once('=').ok_or(LongFootError::Form)?;
-        let index = LEGS.iter().position(|name| name.eq_ignore_ascii_case(leg));
-        let leg = index.ok_or_else(|| LongFootError::Leg(leg.to_owned()))?;
+        let (leg, mm) = text.split_once('=').ok_or(LongFootError::InvalidForm)?;
+        let index = LEG_NAMES
+            .iter()
+            .position(|name| name.eq_ignore_ascii_case(leg));
+        let leg = index.ok_or_else(|| LongFootError::UnknownLeg(leg.to_owned()))?;
         let number = mm.parse().ok().filter(|mm: &f64| mm.is_finite());
-        let mm = number.ok_or_else(|| LongFootError::Number(mm.to_owned()))?;
+        let mm = number.ok_or_else(|| LongFootError::NotANumber(mm.to_owned()))?;
         match mm.abs() <= MAX_FOOT_ERROR_MM {
-            true => Ok(Self { leg, mm }),
-            false => Err(LongFootError::Far(mm)),
+            true => Ok(Self { leg, error_mm: mm }),
+            false => Err(LongFootError::TooLarge(mm)),
         }
     }
 }
@@ -51,9 +55,9 @@ impl FromStr for LongFoot {
 /// Fails if a foot is given twice.
 pub(super) fn length_errors(long_feet: &[LongFoot]) -> Result<[f64; 4], Failure> {
     let mut errors = [None; 4];
-    for LongFoot { leg, mm } in long_feet {
-        if errors[*leg].replace(*mm).is_some() {
-            let leg = LEGS[*leg];
+    for LongFoot { leg, error_mm } in long_feet {
+        if errors[*leg].replace(*error_mm).is_some() {
+            let leg = LEG_NAMES[*leg];
             return Err(Failure::Input(format!("--long-foot {leg} is given twice")));
         }
     }
@@ -65,10 +69,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_foot_is_a_leg_and_its_mm() {
+    fn a_long_foot_is_parsed_from_its_leg_and_its_error_in_mm() {
         let parse = |text: &str| text.parse::<LongFoot>().expect(text);
-        assert_eq!(parse("LF=0.6"), LongFoot { leg: 0, mm: 0.6 });
-        assert_eq!(parse("rh=-5"), LongFoot { leg: 2, mm: -5.0 });
+        assert_eq!(
+            parse("LF=0.6"),
+            LongFoot {
+                leg: 0,
+                error_mm: 0.6
+            }
+        );
+        assert_eq!(
+            parse("rh=-5"),
+            LongFoot {
+                leg: 2,
+                error_mm: -5.0
+            }
+        );
     }
 
     #[test]
@@ -91,11 +107,13 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_has_one_length() {
-        let long_foot = |leg, mm| LongFoot { leg, mm };
-        let errors = length_errors(&[long_foot(3, 0.5), long_foot(1, -1.0)]).expect("two feet");
+    fn length_errors_are_in_servo_order_and_a_foot_given_twice_is_refused() {
+        let long_foot = |leg, mm| LongFoot { leg, error_mm: mm };
+        let errors =
+            length_errors(&[long_foot(3, 0.5), long_foot(1, -1.0)]).expect("the two feet differ");
         assert_eq!(errors, [0.0, -1.0, 0.0, 0.5]);
-        let refusal = length_errors(&[long_foot(0, 0.0), long_foot(0, 1.0)]).expect_err("one foot");
+        let refusal = length_errors(&[long_foot(0, 0.0), long_foot(0, 1.0)])
+            .expect_err("the foot is given twice");
         assert_eq!(refusal.to_string(), "--long-foot LF is given twice");
     }
 }

@@ -1,4 +1,4 @@
-//! `lizard model`: writes the robot for existing physics engines and for ROS.
+//! `lizard model`: writes a model of the robot for physics engines and for ROS.
 
 mod format;
 mod long_foot;
@@ -60,15 +60,15 @@ pub struct Args {
 /// Makes the model and writes it.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, a robot that cannot be built, an unknown file extension or gait, a firmware that
+/// Fails for an invalid robot.toml, a robot that cannot be built, an unknown file extension or gait, a firmware that
 /// is missing or has another robot, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let format = Format::of(&args.file)?;
     check_options(&args, format)?;
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);
-    assembly.check_measures()?;
-    let neutral = robot.lizard().solve(&robot.neutral())?;
+    assembly.check_dimensions()?;
+    let neutral = robot.lizard().solve(&robot.neutral_pose())?;
     let mut scene = Scene::of(&assembly);
     for (excess, error) in scene
         .excess_lengths
@@ -77,9 +77,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     {
         *excess += error;
     }
-    scene.course = course(&args, &robot)?;
+    scene.course = drive_course(&args, &robot)?;
     let pieces = Pieces::of(&assembly, &scene)?;
-    let folder = mesh_folder(&args.file);
+    let folder = mesh_folder_name(&args.file);
     let address = match &args.mesh_address {
         Some(address) => address.trim_end_matches('/'),
         None => &folder,
@@ -90,7 +90,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Format::Urdf => pieces.urdf(&neutral, &scene, &address),
         Format::Sdf => pieces.sdf(&neutral, &scene, &address),
     };
-    // Checked before the meshes are written: otherwise a failure would leave them without a model.
+    // Checked before the meshes are written: otherwise a failure would leave meshes without a model.
     files::check_replaceable(&args.file)?;
     let mut summary_suffix = String::new();
     if let Some(course) = &scene.course {
@@ -105,7 +105,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         summary_suffix = format!(", and {} meshes in {}", meshes.len(), folder.display());
     }
     files::write(&args.file, text.as_bytes())?;
-    // A stream such as /dev/stdout gets only the model, without the message.
+    // A stream such as /dev/stdout must contain only the model, not the message.
     if !args.file.is_file() {
         return Ok(());
     }
@@ -128,17 +128,18 @@ fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
     Err(Failure::Input(message.to_owned()))
 }
 
-/// The servo angles for `--drive`; `None` without this option.
+/// The course of the servo angles for `--drive`; `None` without this option.
 #[cfg(feature = "simulator")]
-fn course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
-    let drive = args.drive.as_deref();
-    let course = drive
-        .map(|gait| crate::simulate::course::course(robot, &args.robot, gait, args.elf.as_deref()));
+fn drive_course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
+    let gait = args.drive.as_deref();
+    let course = gait.map(|gait| {
+        crate::simulate::course::record_course(robot, &args.robot, gait, args.elf.as_deref())
+    });
     course.transpose()
 }
 
 #[cfg(not(feature = "simulator"))]
-fn course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
+fn drive_course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
     match args.drive {
         None => Ok(None),
         Some(_) => Err(Failure::Input(
@@ -148,7 +149,7 @@ fn course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
 }
 
 /// The name of the folder for the meshes, which lies beside the model's file.
-fn mesh_folder(file: &Path) -> String {
+fn mesh_folder_name(file: &Path) -> String {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     format!("{name}-meshes")
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use lizard_parts::{Answer, Assembly, BuildProblem, FAR_MM, NearestPair, Proof, Questions};
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
@@ -62,13 +62,15 @@ struct Report<'a> {
     fits: bool,
     /// The reason why the parts do not fit; null if they do.
     reason: Option<String>,
-    /// The closest pairs that must stay apart.
+    /// The closest pairs of parts that must stay apart.
     apart: Vec<Pair<'a>>,
-    /// The closest pairs that are made to touch.
+    /// The closest pairs of parts that are designed to touch.
     meeting: Vec<Pair<'a>>,
     /// The ranges of A1 to A4 over all poses that the guard accepts, deg.
     ranges: [[f64; 2]; 4],
+    /// The number of pairs of shapes in the proof.
     pairs: usize,
+    /// The number of regions of poses into which the proof was divided.
     regions: u64,
 }
 
@@ -85,19 +87,19 @@ impl<'a> From<&'a NearestPair> for Pair<'a> {
     }
 }
 
-/// Template of the progress bar, which counts pairs of mounts.
-const PAIRS_BAR: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
+/// Template of the progress bar, which counts pairs of mounts (groups of parts that move together).
+const BAR_TEMPLATE: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
 
 /// Proves how close the parts come to each other, with a progress bar.
-pub(super) fn proof(assembly: &Assembly) -> Proof {
+pub(super) fn prove(assembly: &Assembly) -> Proof {
     complete_proof(&Questions::new(assembly, |_, _| true), None)
 }
 
-/// Makes the proof from the given answers, and computes those that are missing.
+/// Makes the proof from the answers of a merge, and computes the missing answers.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
-    let bar = progress_bar(questions.count(), PAIRS_BAR);
+    let bar = progress_bar(questions.count(), BAR_TEMPLATE);
     let known_answer = |index: usize| answers.as_ref()?.get(index).cloned();
-    let proof = questions.answer(known_answer, |done_count, _| {
+    let proof = questions.answer_all(known_answer, |done_count, _| {
         bar.set_position(done_count as u64)
     });
     bar.finish_and_clear();
@@ -111,11 +113,11 @@ fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof 
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
-    assembly.check_measures()?;
+    assembly.check_dimensions()?;
     let questions = Questions::new(&assembly, |_, _| true);
     let count = questions.count();
     if let Some(part) = args.spread.part() {
-        let bar = progress_bar(part.count(count), PAIRS_BAR);
+        let bar = progress_bar(part.count(count), BAR_TEMPLATE);
         let answer_one = |index| {
             bar.inc(1);
             questions.answer_one(index)
@@ -134,19 +136,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
             apart: proof.separate_pairs.iter().map(Pair::from).collect(),
             meeting: proof.touching_pairs.iter().map(Pair::from).collect(),
             ranges: proof.ranges,
-            pairs: proof.pairs,
-            regions: proof.regions,
+            pairs: proof.shape_pair_count,
+            regions: proof.region_count,
         };
         serde_json::to_writer(&mut out, &report)?;
         writeln!(out)?;
     } else {
-        print(&proof, args.all, &mut out)?;
+        print_proof(&proof, args.all, &mut out)?;
     }
     out.flush()?;
     verdict.map_err(|clash| BuildProblem::from(clash).into())
 }
 
-fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
+fn print_proof(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     /// The largest number of rows in a list without --all.
     const SHOWN_ROWS: usize = 10;
     writeln!(
@@ -176,15 +178,15 @@ fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()>
     writeln!(out, "\nmade to meet: air between them")?;
     print_list(&proof.touching_pairs, out)?;
     writeln!(out, "\nthe guard lets the servos turn at most")?;
-    for (name, [from, to]) in NAMES.iter().zip(proof.ranges) {
+    for (name, [from, to]) in SERVO_NAMES.iter().zip(proof.ranges) {
         writeln!(out, "  {name} {from:7.2} to {to:7.2} deg")?;
     }
     writeln!(
         out,
         "{} pairs of shapes, {} regions of poses",
-        proof.pairs, proof.regions
+        proof.shape_pair_count, proof.region_count
     )?;
-    if let (Ok(()), Some(nearest)) = (proof.judge(), proof.nearest()) {
+    if let (Ok(()), Some(nearest)) = (proof.judge(), proof.nearest_separate_pair()) {
         writeln!(
             out,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",

@@ -5,7 +5,7 @@ pub mod fit;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use lizard_parts::{Assembly, Bill, BuildProblem, File, coupon, papers, part_files};
+use lizard_parts::{Assembly, Bill, BuildProblem, File, coupon, documents, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
@@ -52,7 +52,7 @@ pub struct Args {
 struct PartEntry {
     part: String,
     count: usize,
-    /// The part that this one may replace; null for a part that the robot has.
+    /// The part that this one may replace; null for a part of the standard robot.
     instead_of: Option<String>,
     /// The bodies that this part is made for, by their names in the assembly.
     bodies: Vec<String>,
@@ -82,10 +82,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         parts.extend(coupon(robot.parts()));
     }
     if !args.coupon {
-        assembly.check_measures()?;
-        fit::proof(&assembly).judge().map_err(BuildProblem::from)?;
+        assembly.check_dimensions()?;
+        fit::prove(&assembly).judge().map_err(BuildProblem::from)?;
         parts.extend(match args.corner {
-            true => assembly.corner(),
+            true => assembly.corner_parts(),
             false => assembly.parts(),
         });
     }
@@ -99,7 +99,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             part: part.name.clone(),
             count: part.count(),
             instead_of: part.instead_of.clone(),
-            bodies: part.bodies.clone(),
+            bodies: part.body_names.clone(),
             volume: part.volume(),
             files: new_files.iter().map(|file| file.path.clone()).collect(),
         });
@@ -109,11 +109,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     bar.finish_and_clear();
     let mut weight_text = None;
     if is_whole_robot {
-        let pose = robot.lizard().solve(&robot.neutral())?;
+        let pose = robot.lizard().solve(&robot.neutral_pose())?;
         let bill = Bill::of(&assembly, &assembly.parts(), &pose);
-        files.extend(papers(&assembly, &bill, &pose)?);
+        files.extend(documents(&assembly, &bill, &pose)?);
         weight_text = bill
-            .differs(&robot.ground().body)
+            .differs_from(&robot.ground().body)
             .then(|| weight_note(&bill, &robot));
     }
     write_files(&args.folder, &files)?;
@@ -123,10 +123,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         writeln!(out)?;
     } else {
         let needed_entries = entries.iter().filter(|part| part.instead_of.is_none());
-        let pieces: usize = needed_entries.map(|part| part.count).sum();
+        let piece_count: usize = needed_entries.map(|part| part.count).sum();
         writeln!(
             out,
-            "{} parts, {pieces} pieces, {} files in {}",
+            "{} parts, {piece_count} pieces, {} files in {}",
             entries.len(),
             files.len(),
             args.folder.display()
@@ -138,12 +138,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The message for a robot.toml whose mass or mass centre is not that of the parts.
+/// The note that robot.toml has another mass or mass centre than the parts.
 fn weight_note(bill: &Bill, robot: &Robot) -> String {
-    let Body { mass, centre } = robot.ground().body;
+    let Body {
+        mass,
+        mass_centre: centre,
+    } = robot.ground().body;
     format!(
         "The parts weigh {:.0} g, and their mass centre is {} the middle of the plate; robot.toml has {mass} g and \
-         {centre:?} mm. For predictions with these parts put into it:\n\n{}",
+         {centre:?} mm. For predictions with these parts, put into robot.toml:\n\n{}",
         bill.grams,
         bill.centre_in_words(),
         bill.body_toml()

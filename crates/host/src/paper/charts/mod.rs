@@ -57,12 +57,12 @@ struct ChartFiles {
 /// Fails for a wrong robot.toml, or a folder or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
+    let pose = args.pose.get().unwrap_or_else(|| robot.neutral_pose());
     let solution = robot.lizard().solve(&pose)?;
     // Created before the charts are computed, which takes seconds, so that a bad folder fails at once.
     fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
     let mut pictures = charts(&robot);
-    pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
+    pictures.push(("top-view", draw::draw_top_view(&robot, &solution, true)));
     let chart_files: Vec<ChartFiles> = pictures
         .iter()
         .map(|(name, svg)| {

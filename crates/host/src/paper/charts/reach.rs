@@ -153,7 +153,7 @@ fn draw_legend(mut group: Group) -> Group {
 
 /// The neutral servo angles plus these turns, deg.
 fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
-    let neutral: [f64; 4] = robot.neutral().into();
+    let neutral: [f64; 4] = robot.neutral_pose().into();
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
 }
 
@@ -162,7 +162,7 @@ fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Ve
     let turn_range = || (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from);
     let pairs = turn_range().flat_map(|a| turn_range().map(move |b| (a, b)));
     pairs
-        .filter_map(|(a, b)| robot.accepted(turned_angles(robot, turns(a, b))))
+        .filter_map(|(a, b)| robot.solve_if_allowed(turned_angles(robot, turns(a, b))))
         .collect()
 }
 
@@ -202,13 +202,13 @@ fn linkage_sliders(robot: &Robot) -> Cells {
     let mut cells = Cells::new();
     for side in Side::ALL {
         let slider = robot.lizard().side(side);
-        let shaft = Vector::new(slider.offset, slider.base);
+        let shaft = Vector::new(slider.front_offset, slider.base);
         let directions = || (0..180).map(|step| Vector::direction(2.0 * f64::from(step)));
         for (front, rear) in
             directions().flat_map(|front| directions().map(move |rear| (front, rear)))
         {
-            let (rear, front) = (rear * slider.rear, shaft + front * slider.front);
-            let travel = (front - rear).length() - slider.nominal;
+            let (rear, front) = (rear * slider.rear_arm, shaft + front * slider.front_arm);
+            let travel = (front - rear).length() - slider.nominal_length;
             if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
                 cells.insert(cell_of(slider_middle(robot, side, rear, front)));
             }
@@ -238,7 +238,7 @@ fn foot_positions(
         let mut turns = [0.0; 4];
         turns[servo] = turn;
         let angles = turned_angles(robot, turns);
-        let is_accepted = !is_guarded || robot.accepted(angles).is_some();
+        let is_accepted = !is_guarded || robot.solve_if_allowed(angles).is_some();
         is_accepted.then(|| foot_position(robot, servo, angles[servo]))
     };
     turns.filter_map(accepted_position).collect()
@@ -246,7 +246,7 @@ fn foot_positions(
 
 /// The position of a foot with its servo at `angle`, without lag.
 fn foot_position(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
-    let foot = robot.legs()[servo].at(angle, angle).foot;
+    let foot = robot.legs()[servo].place_at(angle, angle).foot;
     (foot.x, foot.y)
 }
 

@@ -154,7 +154,7 @@ fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
         theta4,
-        ..robot.neutral()
+        ..robot.neutral_pose()
     };
     let solution = robot.lizard().solve(&pose).ok()?;
     let is_broken = robot
@@ -241,15 +241,17 @@ fn square_around(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 /// Draws the singular curves within the plot, as short segments.
 fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     let bars = robot.lizard().end(End::Head);
-    group = draw_sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
+    group = draw_sweep(group, plot, |theta1| {
+        bars.singular_poses_with(theta1).collect()
+    });
     // Curves that are steep over theta1 also need a sweep over theta4. It uses the mirrored
     // five-bar, in which left and right change places.
     let mirrored_bars = FiveBar {
         base: bars.base,
-        crank_left: bars.crank_right,
-        coupler_left: bars.coupler_right,
-        coupler_right: bars.coupler_left,
-        crank_right: bars.crank_left,
+        left_crank_length: bars.right_crank_length,
+        left_coupler_length: bars.right_coupler_length,
+        right_coupler_length: bars.left_coupler_length,
+        right_crank_length: bars.left_crank_length,
     };
     group = draw_sweep(group, plot, |theta4| {
         let unmirror = |pose: SingularPose| SingularPose {
@@ -262,11 +264,11 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
             theta_right: theta4,
         };
         mirrored_bars
-            .singular_with(180.0 - theta4)
+            .singular_poses_with(180.0 - theta4)
             .map(unmirror)
             .collect()
     });
-    for pose in bars.coinciding_tips() {
+    for pose in bars.poses_with_coinciding_tips() {
         if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
             let position = plot.page_point(pose.theta_left, pose.theta_right);
             group = group.add(cross(position, 7.0, DARK, 3.0));

@@ -19,7 +19,7 @@ const BLUE: &str = "#0072b2";
 pub fn workspace(robot: &Robot) -> String {
     let bars = robot.lizard().end(End::Head);
     let space = Workspace::of(&bars);
-    let reach = (space.outer / 20.0).ceil() * 20.0 + 20.0;
+    let reach = (space.outer_radius / 20.0).ceil() * 20.0 + 20.0;
     let plot = Plot {
         corner: (90.0, 90.0),
         size: (720.0, 720.0),
@@ -33,7 +33,7 @@ pub fn workspace(robot: &Robot) -> String {
             .then_some(if y >= 0.0 { "#cfe3f1" } else { "#e6e3df" })
     });
     for shaft in [bars.left_shaft(), bars.right_shaft()] {
-        for radius in [space.inner, space.outer] {
+        for radius in [space.inner_radius, space.outer_radius] {
             group = group
                 .add(draw_ring(&plot, shaft, radius, GREY, 1.2).set("stroke-dasharray", "5 4"));
         }
@@ -86,7 +86,7 @@ pub fn workspace(robot: &Robot) -> String {
 pub fn conditioning(robot: &Robot) -> String {
     let bars = robot.lizard().end(End::Head);
     let space = Workspace::of(&bars);
-    let reach = (space.outer / 20.0).ceil() * 20.0;
+    let reach = (space.outer_radius / 20.0).ceil() * 20.0;
     let plot = Plot {
         corner: (90.0, 90.0),
         size: (720.0, 720.0 * 110.0 / 160.0),
@@ -101,10 +101,12 @@ pub fn conditioning(robot: &Robot) -> String {
     let mut group = plot.draw_grid(Group::new(), &X_AXIS, &Y_AXIS);
     group = plot.draw_map(group, (480, 330), |x, y| {
         let point = Vector::new(x, y);
-        space.contains(point).then(|| match bars.reach(point) {
-            Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&bars, point)),
-            _ => IMPOSSIBLE,
-        })
+        space
+            .contains(point)
+            .then(|| match bars.pose_at_point(point) {
+                Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&bars, point)),
+                _ => IMPOSSIBLE,
+            })
     });
     let performance = Performance::of(&bars, 64);
     if let (Some(mic), Some(lci_stats)) = (space.inscribed_circle(), performance.lci) {
@@ -176,7 +178,7 @@ fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
 }
 
 fn draw_mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
-    if let Ok(solution) = robot.lizard().solve(&robot.neutral()) {
+    if let Ok(solution) = robot.lizard().solve(&robot.neutral_pose()) {
         let head = &solution.head;
         let points = [
             head.bars.left_shaft(),

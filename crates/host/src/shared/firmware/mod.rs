@@ -9,7 +9,7 @@
 //!
 //! An ELF contains a robot. If that is not the selected robot, one of the two is a mistake, and the ELF is refused.
 
-pub use lizard_upload::label;
+pub use lizard_upload::robot_label;
 
 #[cfg(feature = "simulator")]
 pub use simulated::{Firmware, Unreadable, image_with, read, with_robot};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use lizard_core::numbers::section::{SPACE, START};
+use lizard_core::numbers::section::{SPACE_BYTES, START_ADDRESS};
 use lizard_robot::Robot;
-use lizard_upload::{label, robot_in};
+use lizard_upload::{robot_in, robot_label};
 use simulated_uno::{Image, LoadError};
 
 use super::CODE;
@@ -95,8 +95,8 @@ pub(crate) fn select_firmware(
     {
         return Err(FirmwareError::OtherRobot {
             robot: robot_file.name()?,
-            its: label(&robot_in_image),
-            wanted: label(robot.firmware()),
+            its: robot_label(&robot_in_image),
+            wanted: robot_label(robot.firmware()),
             elf: elf.to_owned(),
         }
         .into());
@@ -151,6 +151,6 @@ pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
 
 /// Replaces the robot's section of an image.
 fn put_robot(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
-    let start = u32::from(START);
-    image.replace(start..start + u32::from(SPACE), &robot.section())
+    let start = u32::from(START_ADDRESS);
+    image.replace(start..start + u32::from(SPACE_BYTES), &robot.section())
 }

@@ -13,86 +13,86 @@ use crate::Failure;
 use crate::shared::firmware;
 use crate::simulate::board::{BoardError, SimulatedBoard};
 use crate::simulate::patrol::PATROL;
-use crate::simulate::sim::frame::FRAME;
+use crate::simulate::sim::frame::FRAME_CYCLES;
 use crate::simulate::sim::tour;
 
-/// The costs and the exactness of the firmware. A cycle is 62.5 ns. A figure that could not be measured is `None`: a
-/// robot without a moving gait has no figures of a gait, and if a firmware was built from another source, the widths
-/// that it commands are not known.
+/// The costs and the exactness of the firmware. A cycle is 62.5 ns. A figure that could not be measured is `None`:
+/// the figures of a gait if the robot has no moving gait, and the errors of the widths if the firmware was built from
+/// another source, because the widths that it commands are then not known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
-    /// The gait that was measured: the first that moves.
+    /// The gait that was measured: the robot's first moving gait.
     pub gait: Option<String>,
     /// Bytes of flash of the code, with its tables and initial values.
-    pub code: u32,
+    pub code_bytes: u32,
     /// Bytes of the robot's section.
-    pub section: u32,
+    pub section_bytes: u32,
     /// True if the section has maps of certified cells; otherwise the guard measures every pose.
     pub has_maps: bool,
-    /// Bytes of RAM that are static.
+    /// Bytes of static data in RAM.
     pub static_ram: u16,
     /// Smallest measured number of bytes between the stack and static data.
     pub stack_spare: u16,
-    /// Number of bytes between static data and the deepest stack that the code allows; computed, not measured.
+    /// Number of bytes between static data and the deepest stack that the code allows, computed by [`StackDepth`].
     /// Negative if they collide.
     pub stack_margin: i32,
-    /// Mean cycles of the control tick without interrupts, in the gait with the largest mean.
-    pub tick_mean: Option<f64>,
-    /// The most cycles of a control tick in any motion, without interrupts.
-    pub tick_worst: u64,
-    /// Mean cycles of the control tick in a routine with inputs, without interrupts.
-    pub routine_mean: Option<f64>,
-    /// The most cycles of a control tick in a routine with inputs, without interrupts.
-    pub routine_worst: Option<u64>,
-    /// The most cycles from the tick to the end of its computation while the serial line is saturated in both
-    /// directions, with interrupts and answers.
-    pub tick_latency: u64,
-    /// The most cycles of a step of main other than the control tick, without interrupts: a line that is written, a
-    /// byte that ends a line, a part of a save or load.
-    pub step: u64,
-    /// Mean cycles of the guard in a tick of the gait.
-    pub guard: Option<f64>,
-    /// Mean cycles of main in a frame of the gait, with the tick.
-    pub main: Option<f64>,
+    /// Mean cycles of the control tick, without interrupts, in the gait with the largest mean.
+    pub mean_tick_cycles: Option<f64>,
+    /// Cycles of the longest control tick in any motion, without interrupts.
+    pub max_tick_cycles: u64,
+    /// Mean cycles of the control tick in a routine with inputs, without interrupts; `None` without such a routine.
+    pub mean_routine_tick_cycles: Option<f64>,
+    /// Cycles of the longest control tick in a routine with inputs, without interrupts; `None` without such a routine.
+    pub max_routine_tick_cycles: Option<u64>,
+    /// The most cycles from a control tick to the end of its computation while the serial line is saturated in both
+    /// directions, including interrupts and answers.
+    pub max_tick_latency: u64,
+    /// Cycles of main's longest step other than the control tick, without interrupts. Such a step writes a line,
+    /// executes a received line, or saves or loads a part of the settings.
+    pub max_step_cycles: u64,
+    /// Mean cycles of the guard in a control tick of the gait.
+    pub mean_guard_cycles: Option<f64>,
+    /// Mean cycles of main in a frame of the gait, including the control tick.
+    pub mean_main_cycles: Option<f64>,
     /// Mean cycles of the servo interrupts in a frame.
-    pub servo_interrupts: f64,
-    /// The longest time that a serial interrupt delays a servo interrupt, cycles.
-    pub serial_interrupt: u64,
-    /// Share of the gait's time that the CPU is asleep, percent.
-    pub asleep: Option<f64>,
-    /// Peak-to-peak difference of measured and commanded widths on an idle line, cycles.
+    pub mean_servo_interrupt_cycles: f64,
+    /// Cycles of the longest serial interrupt, and so of the longest delay of a servo interrupt.
+    pub max_serial_interrupt_cycles: u64,
+    /// Share of the gait's time in which the CPU is asleep, percent.
+    pub asleep_percent: Option<f64>,
+    /// Peak-to-peak error of the widths on an idle serial line, cycles.
     pub jitter_idle: Option<u64>,
-    /// Peak-to-peak difference of measured and commanded widths on a line saturated in both directions, cycles.
-    pub jitter_flooded: Option<u64>,
-    /// Worst deviation of a width from its command, on the idle and the saturated line, cycles.
-    pub width_error: Option<u64>,
-    /// Worst deviation of a servo's period from 20 ms, on the idle and the saturated line, cycles.
-    pub period_error: u64,
+    /// Peak-to-peak error of the widths on a serial line saturated in both directions, cycles.
+    pub jitter_saturated: Option<u64>,
+    /// Largest deviation of a width from its command, on the idle and the saturated line, cycles.
+    pub max_width_error: Option<u64>,
+    /// Largest deviation of a servo's period from 20 ms, on the idle and the saturated line, cycles.
+    pub max_period_error: u64,
     /// Largest number of servo pins high at the same time, on the idle and the saturated line.
-    pub pins_high: u32,
-    /// The step of which all changes of a width in the gait are multiples, cycles.
-    pub resolution: Option<u64>,
+    pub most_pins_high: u32,
+    /// The greatest common divisor of all changes of a width in the gait, cycles.
+    pub width_resolution: Option<u64>,
     /// Edges that the firmware counts as late.
-    pub late: u64,
+    pub late_edges: u64,
     /// Bytes that the firmware counts as lost while the sender waits for answers.
-    pub lost: u64,
+    pub lost_bytes: u64,
     /// Wall time of ten simulated minutes of the gait, s.
-    pub wall: f64,
+    pub wall_s: f64,
 }
 
 /// The function of the firmware that computes a frame: the control tick.
-const TICK_FUNCTION: &str = "Control::frame";
+const TICK_FUNCTION: &str = "Control::compute_frame";
 /// The guard's function in the ELF.
 const GUARD_FUNCTION: &str = "clearance::find_hazard";
-/// The functions of the steps of main other than the control tick.
+/// The functions of main's steps other than the control tick.
 const STEP_FUNCTIONS: [&str; 3] = [
     "Console::write_line",
     "Console::receive",
-    "Control::write_memory",
+    "Control::advance_memory",
 ];
-/// Lines that take long to execute: those with answers of several lines, and settings with which the limits of the
-/// pulse widths restrict a servo's travel.
-const LONG_LINES: [&str; 20] = [
+/// Lines that take long to execute: those whose answer has several lines, and settings with which the pulse width
+/// limits restrict a servo's travel.
+const SLOW_LINES: [&str; 20] = [
     "status",
     "help",
     "cal",
@@ -120,16 +120,16 @@ const SERVO_VECTORS: [u8; 2] = [11, 12];
 const SERIAL_VECTORS: [u8; 2] = [18, 19];
 /// Cycles from the end of the interrupted instruction to the first instruction of the handler: 4 for the interrupt
 /// response and 3 for the jump in the vector table.
-const ENTRY_CYCLES: u64 = 7;
-/// Ten minutes, ms.
+const INTERRUPT_ENTRY_CYCLES: u64 = 7;
+/// Simulated time of the long run, ms: ten minutes.
 const LONG_RUN_MS: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF with a robot. `patrol_robot` is the same robot with the routine [`PATROL`], if that is to be
-    /// measured, too. `report_progress` receives the name of each measurement.
+    /// Measures the firmware in an ELF, with this robot. `patrol_robot` is the same robot with the routine [`PATROL`];
+    /// without it, no routine is measured. `report_progress` receives the name of each measurement before it starts.
     ///
     /// # Errors
-    /// Fails for a firmware that cannot be loaded, stops, or does not answer.
+    /// Fails if the firmware cannot be loaded, stops or does not answer, or if its stack depth cannot be computed.
     pub fn measure(
         elf: &Path,
         robot: &Robot,
@@ -154,83 +154,94 @@ impl Figures {
         let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
         report_progress("pulses on an idle line");
         let mut idle_run = GaitRun::of(boot_board()?, gait, 20_000)?;
-        let bytes_sent = idle_run.board.uno.received_by_uno().len();
-        let idle_exactness = Exactness::measure(&mut idle_run.board, robot.firmware(), bytes_sent)?;
+        let command_bytes = idle_run.board.uno.received_by_uno().len();
+        let idle_exactness =
+            Exactness::measure(&mut idle_run.board, robot.firmware(), command_bytes)?;
         report_progress("pulses on a saturated line");
-        let (mut flooded_board, bytes_sent) = flood(boot_board()?, turn_gait)?;
-        let flooded_exactness =
-            Exactness::measure(&mut flooded_board, robot.firmware(), bytes_sent)?;
+        let (mut saturated_board, command_bytes) =
+            run_gait_on_saturated_line(boot_board()?, turn_gait)?;
+        let saturated_exactness =
+            Exactness::measure(&mut saturated_board, robot.firmware(), command_bytes)?;
         report_progress("every command");
         let mut session_board = run_all_commands(boot_board()?, robot)?;
         report_progress("the control tick in every motion");
-        let tick_calls = time_calls_under(boot_board()?, TICK_FUNCTION, &motion_commands(robot))?;
+        let tick_calls =
+            time_calls_per_command(boot_board()?, TICK_FUNCTION, &motion_commands(robot))?;
         let gait_calls = tick_calls.iter().take(robot.gaits().len());
         report_progress("the control tick in a routine");
         let routine_calls = patrol_robot
             .map(|robot| time_patrol(elf, robot))
             .transpose()?;
         report_progress("the guard");
-        let guard =
-            mean_cycles(&time_calls_under(boot_board()?, GUARD_FUNCTION, &[gait])?.concat());
+        let mean_guard_cycles = mean_own_cycles(
+            &time_calls_per_command(boot_board()?, GUARD_FUNCTION, &[gait])?.concat(),
+        );
         report_progress("the control tick on a saturated line");
-        let tick_latency = longest_latency(boot_board()?, turn_gait)?;
+        let max_tick_latency = longest_tick_latency(boot_board()?, turn_gait)?;
         report_progress("every other step");
-        let step = longest_step(elf, robot)?;
+        let max_step_cycles = longest_step(elf, robot)?;
         report_progress("serial interrupts");
-        let serial_interrupt = longest_serial(boot_board, turn_gait)?;
+        let max_serial_interrupt_cycles = longest_serial_interrupt(boot_board, turn_gait)?;
         report_progress("ten minutes of a gait");
         let start = Instant::now();
         let long_run = GaitRun::of(boot_board()?, gait, LONG_RUN_MS)?;
         let wall_s = start.elapsed().as_secs_f64();
 
-        let frames = idle_run.cycles as f64 / FRAME as f64;
-        let figure_of_gait = |figure: f64| is_moving.then_some(figure);
-        let section = robot.section().len() as u32;
-        let width_error = idle_exactness
+        let frame_count = idle_run.cycles as f64 / FRAME_CYCLES as f64;
+        let some_if_moving = |figure: f64| is_moving.then_some(figure);
+        let section_bytes = robot.section().len() as u32;
+        let max_width_errors = idle_exactness
             .max_width_error()
-            .zip(flooded_exactness.max_width_error());
+            .zip(saturated_exactness.max_width_error());
         Ok(Self {
-            code: firmware::code_bytes(long_run.board.uno.image(), robot),
-            section,
+            code_bytes: firmware::code_bytes(long_run.board.uno.image(), robot),
+            section_bytes,
             has_maps: robot.has_room_for_maps(),
             static_ram: long_run.board.uno.image().static_ram(),
             stack_spare: session_board
                 .uno
                 .stack_spare()
-                .min(flooded_board.uno.stack_spare()),
+                .min(saturated_board.uno.stack_spare()),
             stack_margin: stack.margin(),
-            tick_mean: figure_of_gait(
+            mean_tick_cycles: some_if_moving(
                 gait_calls
-                    .map(|calls| mean_cycles(calls))
+                    .map(|calls| mean_own_cycles(calls))
                     .fold(0.0, f64::max),
             ),
-            tick_worst: most_cycles(&tick_calls.concat()),
-            routine_mean: routine_calls.as_deref().map(mean_cycles),
-            routine_worst: routine_calls.as_deref().map(most_cycles),
-            tick_latency,
-            step,
-            guard: figure_of_gait(guard),
-            main: figure_of_gait((idle_run.awake - idle_run.in_handlers) as f64 / frames),
-            servo_interrupts: idle_run.in_servos as f64 / frames,
-            serial_interrupt,
-            asleep: figure_of_gait(100.0 - 100.0 * idle_run.awake as f64 / idle_run.cycles as f64),
+            max_tick_cycles: max_own_cycles(&tick_calls.concat()),
+            mean_routine_tick_cycles: routine_calls.as_deref().map(mean_own_cycles),
+            max_routine_tick_cycles: routine_calls.as_deref().map(max_own_cycles),
+            max_tick_latency,
+            max_step_cycles,
+            mean_guard_cycles: some_if_moving(mean_guard_cycles),
+            mean_main_cycles: some_if_moving(
+                (idle_run.awake_cycles - idle_run.handler_cycles) as f64 / frame_count,
+            ),
+            mean_servo_interrupt_cycles: idle_run.servo_handler_cycles as f64 / frame_count,
+            max_serial_interrupt_cycles,
+            asleep_percent: some_if_moving(
+                100.0 - 100.0 * idle_run.awake_cycles as f64 / idle_run.cycles as f64,
+            ),
             jitter_idle: idle_exactness.jitter(),
-            jitter_flooded: flooded_exactness.jitter(),
-            width_error: width_error.map(|(idle, flooded)| idle.max(flooded)),
-            period_error: idle_exactness
-                .period_error
-                .max(flooded_exactness.period_error),
-            pins_high: idle_exactness.pins_high.max(flooded_exactness.pins_high),
-            resolution: idle_exactness.step,
-            late: session_board.read_counter("late")? + flooded_board.read_counter("late")?,
-            lost: session_board.read_counter("rx_lost")?,
-            wall: wall_s,
+            jitter_saturated: saturated_exactness.jitter(),
+            max_width_error: max_width_errors.map(|(idle, saturated)| idle.max(saturated)),
+            max_period_error: idle_exactness
+                .max_period_error
+                .max(saturated_exactness.max_period_error),
+            most_pins_high: idle_exactness
+                .most_pins_high
+                .max(saturated_exactness.most_pins_high),
+            width_resolution: idle_exactness.width_step,
+            late_edges: session_board.read_counter("late")?
+                + saturated_board.read_counter("late")?,
+            lost_bytes: session_board.read_counter("rx_lost")?,
+            wall_s,
             gait: gaits.first().cloned(),
         })
     }
 }
 
-/// The most cycles of a step of main other than the control tick, without interrupts.
+/// Returns the cycles of main's longest step other than the control tick, without interrupts.
 ///
 /// # Errors
 /// See [`Figures::measure`].
@@ -238,14 +249,13 @@ pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
     let gait = tour::demonstration_gaits(robot)
         .first()
         .map_or("stand".into(), |gait| command_of(gait));
-    let mut largest_cycles = 0;
+    let mut max_cycles = 0;
     for function in STEP_FUNCTIONS {
         let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
         board.run_ms(1000)?;
-        largest_cycles =
-            longest_call(board, function, &gait, &long_lines(robot))?.max(largest_cycles);
+        max_cycles = longest_call(board, function, &gait, &slow_lines(robot))?.max(max_cycles);
     }
-    Ok(largest_cycles)
+    Ok(max_cycles)
 }
 
 /// The console command of a gait.
@@ -253,18 +263,19 @@ fn command_of(gait: &str) -> String {
     gait.replace('-', " ")
 }
 
-/// A board that has executed one command for some time on an idle line, and the cycles that it spent meanwhile.
+/// A board that has executed one command for some time on an idle serial line, and the cycles of that time.
 struct GaitRun {
     board: SimulatedBoard,
+    /// All cycles, awake or asleep.
     cycles: u64,
-    awake: u64,
-    in_handlers: u64,
-    in_servos: u64,
+    awake_cycles: u64,
+    handler_cycles: u64,
+    servo_handler_cycles: u64,
 }
 
 impl GaitRun {
-    fn of(mut board: SimulatedBoard, line: &str, ms: u64) -> Result<Self, BoardError> {
-        board.say(line)?;
+    fn of(mut board: SimulatedBoard, command: &str, ms: u64) -> Result<Self, BoardError> {
+        board.say(command)?;
         board.run_ms(1000)?;
         let count_cycles = |board: &SimulatedBoard| {
             [
@@ -277,103 +288,109 @@ impl GaitRun {
         let counts_before = count_cycles(&board);
         board.run_ms(ms)?;
         let counts_after = count_cycles(&board);
-        let [cycles, awake, in_handlers, in_servos] =
+        let [cycles, awake_cycles, handler_cycles, servo_handler_cycles] =
             std::array::from_fn(|i| counts_after[i] - counts_before[i]);
         Ok(Self {
             board,
             cycles,
-            awake,
-            in_handlers,
-            in_servos,
+            awake_cycles,
+            handler_cycles,
+            servo_handler_cycles,
         })
     }
 }
 
-/// Saturates the line in both directions for twenty seconds while the robot walks. The commands that are sent move
-/// nothing. Also returns the number of bytes that the board had received before them.
-fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
-    let received_before = saturate(&mut board, gait)?;
+/// Runs a gait for twenty seconds on a serial line that is saturated in both directions. The lines that saturate it are
+/// `status`, which moves nothing. Also returns the number of bytes that the board had received before these lines.
+fn run_gait_on_saturated_line(
+    mut board: SimulatedBoard,
+    gait: &str,
+) -> Result<(SimulatedBoard, usize), BoardError> {
+    let command_bytes = start_gait_on_saturated_line(&mut board, gait)?;
     board.run_ms(20_000)?;
     board.uno.flood(b"");
     board.run_ms(300)?;
-    // This line ends the last command of the flood.
+    // This line end completes the last `status`.
     board.uno.send(b"\n");
     board.run_ms(100)?;
-    Ok((board, received_before))
+    Ok((board, command_bytes))
 }
 
-/// Starts a gait and saturates the line in both directions. Returns the number of bytes that the board had received
-/// before the line was saturated.
-fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError> {
+/// Starts a gait and saturates the serial line in both directions. Returns the number of bytes that the board had
+/// received before the line was saturated.
+fn start_gait_on_saturated_line(
+    board: &mut SimulatedBoard,
+    gait: &str,
+) -> Result<usize, BoardError> {
     board.say("watch 1")?;
     board.say(gait)?;
-    let received_before = board.uno.received_by_uno().len();
+    let command_bytes = board.uno.received_by_uno().len();
     board.uno.flood(b"status\n");
-    Ok(received_before)
+    Ok(command_bytes)
 }
 
-/// Commands for every kind of motion: each gait after the previous one, a far pose, neutral, a stop.
+/// Commands for every kind of motion: each gait, a pose far from neutral, the neutral pose, and `stop`.
 fn motion_commands(robot: &Robot) -> Vec<String> {
-    let names = robot.gaits().iter().map(|gait| command_of(gait.name()));
-    let mut lines: Vec<String> = names.collect();
-    lines.push(pose_command(robot, [-35.0, 0.0, -35.0, 0.0]));
-    lines.push(pose_command(robot, [0.0; 4]));
-    lines.push("stop".into());
-    lines
+    let gait_commands = robot.gaits().iter().map(|gait| command_of(gait.name()));
+    let mut commands: Vec<String> = gait_commands.collect();
+    commands.push(pose_command(robot, [-35.0, 0.0, -35.0, 0.0]));
+    commands.push(pose_command(robot, [0.0; 4]));
+    commands.push("stop".into());
+    commands
 }
 
-/// The command for a pose this many degrees from neutral.
-fn pose_command(robot: &Robot, turns: [f64; 4]) -> String {
-    let neutral = <[f64; 4]>::from(robot.neutral());
-    let [a1, a2, a3, a4]: [f64; 4] = std::array::from_fn(|i| neutral[i] + turns[i]);
+/// The command for the pose at these offsets from neutral, deg.
+fn pose_command(robot: &Robot, offsets: [f64; 4]) -> String {
+    let neutral = <[f64; 4]>::from(robot.neutral_pose());
+    let [a1, a2, a3, a4]: [f64; 4] = std::array::from_fn(|i| neutral[i] + offsets[i]);
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
-/// Sends every command, with a report of every frame. Each is sent after the previous one was answered.
+/// Sends every kind of command while `watch` reports every frame. Each is sent after the previous one was answered.
 fn run_all_commands(
     mut board: SimulatedBoard,
     robot: &Robot,
 ) -> Result<SimulatedBoard, BoardError> {
     board.say("watch 1")?;
-    let mut lines = motion_commands(robot);
-    lines.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
+    let mut commands = motion_commands(robot);
+    commands.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
     let gait = tour::demonstration_gaits(robot)
         .first()
         .copied()
         .map(command_of);
-    lines.extend(gait.clone());
-    lines.push("rest".into());
-    lines.extend(gait);
-    lines.extend(["stand", "watch 0", "what", "speed", "speed 5"].map(str::to_owned));
-    lines.push(pose_command(robot, [-48.59, 48.59, 0.0, 0.0]));
-    lines.push(pose_command(robot, [11.41, 0.0, 0.0, -21.41]));
-    lines.push("a line that is longer than the sixty-three characters it may have".into());
-    for line in &lines {
-        board.say(line)?;
+    commands.extend(gait.clone());
+    commands.push("rest".into());
+    commands.extend(gait);
+    commands.extend(["stand", "watch 0", "what", "speed", "speed 5"].map(str::to_owned));
+    commands.push(pose_command(robot, [-48.59, 48.59, 0.0, 0.0]));
+    commands.push(pose_command(robot, [11.41, 0.0, 0.0, -21.41]));
+    commands.push("a line that is longer than the sixty-three characters it may have".into());
+    for command in &commands {
+        board.say(command)?;
         board.run_ms(700)?;
     }
     Ok(board)
 }
 
-/// Times a function under one command after another; returns the calls of each.
-fn time_calls_under(
+/// Times the calls of a function during one command after another; returns the calls of each command.
+fn time_calls_per_command(
     mut board: SimulatedBoard,
     function: &str,
-    lines: &[impl AsRef<str>],
+    commands: &[impl AsRef<str>],
 ) -> Result<Vec<Vec<Call>>, BoardError> {
     let mut calls = Vec::new();
-    for line in lines {
-        board.say(line.as_ref())?;
+    for command in commands {
+        board.say(command.as_ref())?;
         calls.push(board.time_calls(function, 3000)?);
     }
     Ok(calls)
 }
 
-/// Lines that take long to execute. Among them is an unknown name that has the most leading characters in common
-/// with the names of the gaits.
-fn long_lines(robot: &Robot) -> Vec<String> {
+/// Lines that take long to execute. Some have an unknown name that begins like a gait's name: of all gaits, the one
+/// whose name has the most leading characters in common with the others.
+fn slow_lines(robot: &Robot) -> Vec<String> {
     let gait_names = || robot.gaits().iter().map(|gait| command_of(gait.name()));
-    let shared_count = |line: &String| -> usize {
+    let total_shared_length = |line: &String| -> usize {
         let shared_length = |name: String| {
             zip(name.bytes(), line.bytes())
                 .take_while(|(a, b)| a == b)
@@ -381,8 +398,10 @@ fn long_lines(robot: &Robot) -> Vec<String> {
         };
         gait_names().map(shared_length).sum()
     };
-    let nearest_name = gait_names().max_by_key(shared_count).unwrap_or_default();
-    let mut lines = LONG_LINES.map(str::to_owned).to_vec();
+    let nearest_name = gait_names()
+        .max_by_key(total_shared_length)
+        .unwrap_or_default();
+    let mut lines = SLOW_LINES.map(str::to_owned).to_vec();
     lines.push(format!("boot {nearest_name}"));
     lines.push("cal".into());
     lines.push(format!("{nearest_name}x"));
@@ -390,8 +409,8 @@ fn long_lines(robot: &Robot) -> Vec<String> {
     lines
 }
 
-/// The most cycles of a function while each line is executed during a gait. Lines that are refused count, too, since
-/// they take as long.
+/// The cycles of a function's longest call while the lines are executed during a gait. Refused lines count, too,
+/// because they take as long.
 fn longest_call(
     mut board: SimulatedBoard,
     function: &str,
@@ -399,24 +418,24 @@ fn longest_call(
     lines: &[String],
 ) -> Result<u64, BoardError> {
     board.say(gait)?;
-    let mut largest_cycles = 0;
+    let mut max_cycles = 0;
     for line in lines {
         board.uno.send(line.as_bytes());
         board.uno.send(b"\n");
         let calls = board.time_calls(function, 400)?;
-        largest_cycles = largest_cycles.max(most_cycles(&calls));
+        max_cycles = max_cycles.max(max_own_cycles(&calls));
     }
-    Ok(largest_cycles)
+    Ok(max_cycles)
 }
 
-/// The control ticks of a patrol in which each input is closed and opened five times.
+/// Times the control ticks of a patrol in which each input is closed and opened five times.
 fn time_patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
     let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
     board.run_ms(1000)?;
     board.say(PATROL)?;
     let mut calls = Vec::new();
     for _ in 0..5 {
-        for (_, pin) in robot.inputs().each() {
+        for (_, pin) in robot.inputs().named_pins() {
             for is_closed in [true, false] {
                 board.uno.set_contact(Pin::arduino(pin), is_closed);
                 calls.extend(board.time_calls(TICK_FUNCTION, 1500)?);
@@ -426,39 +445,39 @@ fn time_patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
     Ok(calls)
 }
 
-fn most_cycles(calls: &[Call]) -> u64 {
+fn max_own_cycles(calls: &[Call]) -> u64 {
     calls.iter().map(Call::own_cycles).max().unwrap_or(0)
 }
 
-fn mean_cycles(calls: &[Call]) -> f64 {
+fn mean_own_cycles(calls: &[Call]) -> f64 {
     let total: u64 = calls.iter().map(Call::own_cycles).sum();
     total as f64 / calls.len().max(1) as f64
 }
 
-/// The longest time from a tick to the return of the function that computes its frame, on a saturated line, cycles.
-fn longest_latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
-    saturate(&mut board, gait)?;
+/// The longest time from a control tick to the return of the function that computes its frame, on a saturated serial
+/// line, cycles.
+fn longest_tick_latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
+    start_gait_on_saturated_line(&mut board, gait)?;
     let calls = board.time_calls(TICK_FUNCTION, 5000)?;
     // The tick is one slot before A1's pulse.
-    let tick_cycle = board.first_pulse()? - FRAME / 5;
-    let latencies = calls.iter().map(|call| (call.leave - tick_cycle) % FRAME);
+    let tick_cycle = board.first_pulse_cycle()? - FRAME_CYCLES / 5;
+    let latencies = calls
+        .iter()
+        .map(|call| (call.leave_cycle - tick_cycle) % FRAME_CYCLES);
     Ok(latencies.max().unwrap_or(0))
 }
 
-/// The longest serial interrupt on a saturated line, including the entry into its handler, cycles.
-fn longest_serial(
+/// The longest serial interrupt on a saturated serial line, including the entry into its handler, cycles.
+fn longest_serial_interrupt(
     boot_board: impl Fn() -> Result<SimulatedBoard, BoardError>,
     gait: &str,
 ) -> Result<u64, BoardError> {
-    let mut longest_cycles = 0;
+    let mut max_cycles = 0;
     for vector in SERIAL_VECTORS {
         let mut board = boot_board()?;
-        saturate(&mut board, gait)?;
+        start_gait_on_saturated_line(&mut board, gait)?;
         let calls = board.time_calls(&format!("__vector_{vector}"), 2000)?;
-        longest_cycles = calls
-            .iter()
-            .map(Call::cycles)
-            .fold(longest_cycles, u64::max);
+        max_cycles = calls.iter().map(Call::cycles).fold(max_cycles, u64::max);
     }
-    Ok(longest_cycles + ENTRY_CYCLES)
+    Ok(max_cycles + INTERRUPT_ENTRY_CYCLES)
 }

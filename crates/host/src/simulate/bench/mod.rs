@@ -23,9 +23,8 @@ pub use stack::{StackDepth, StackError};
 ///
 /// Flash, RAM and stack; cycles of the control tick, the guard and the
 /// interrupts; exactness of pulses while the serial line is saturated; and how
-/// much faster than a real board the simulation is. All but the last is counted in
-/// cycles and comes out the same on any machine. Exit code 1 if a budget is
-/// broken.
+/// much faster than a real board the simulation is. All but the last are the same on
+/// any machine. Exit code 1 if a budget is broken.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The firmware that was built, with the names of its functions:
@@ -39,17 +38,18 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// A row with its verdict, for `--json`.
+/// A row and its verdict, for `--json`.
 #[derive(serde::Serialize)]
-struct Judged<'a> {
+struct JudgedRow<'a> {
     #[serde(flatten)]
     row: &'a Row,
+    /// True if the figure is within its budget.
     met: bool,
 }
 
-impl<'a> Judged<'a> {
+impl<'a> JudgedRow<'a> {
     fn of(row: &'a Row) -> Self {
-        let met = row.is_met();
+        let met = row.is_within_budget();
         Self { row, met }
     }
 }
@@ -72,15 +72,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let patrol_robot = with_patrol(&args.robot.text()?, &[]).ok();
     let progress = progress_bar(0, "{spinner} {msg}, {elapsed}");
     progress.enable_steady_tick(std::time::Duration::from_millis(100));
-    let figures = Figures::measure(&elf, &robot, patrol_robot.as_ref(), |step| {
-        progress.set_message(step);
+    let figures = Figures::measure(&elf, &robot, patrol_robot.as_ref(), |measurement| {
+        progress.set_message(measurement);
     })?;
     progress.finish_and_clear();
 
     let rows = rows(&figures);
     let mut out = io::stdout().lock();
     if args.json {
-        let rows: Vec<_> = rows.iter().map(Judged::of).collect();
+        let rows: Vec<_> = rows.iter().map(JudgedRow::of).collect();
         let elf = elf.display().to_string();
         writeln!(out, "{}", serde_json::json!({ "elf": elf, "rows": rows }))?;
     } else {
@@ -88,7 +88,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let broken_budgets: Vec<&str> = rows
         .iter()
-        .filter(|row| !row.is_met())
+        .filter(|row| !row.is_within_budget())
         .map(|row| row.what)
         .collect();
     if broken_budgets.is_empty() {

@@ -1,11 +1,11 @@
-//! The table of figures and budgets for people.
+//! Prints the table of figures and budgets as text.
 
 use std::io::{self, Write};
 
 use super::budget::{Bound, Row, SERVO_LIBRARY};
 use crate::shared::number::grouped;
 
-/// Prints the table.
+/// Prints a row for each figure, then notes about the measured `gait` and the missing figures.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -34,11 +34,15 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
             row.unit,
             budget,
             row.servo_library.unwrap_or(""),
-            if row.is_met() { "" } else { "  OVER BUDGET" },
+            if row.is_within_budget() {
+                ""
+            } else {
+                "  OVER BUDGET"
+            },
         );
         writeln!(out, "{}", line.trim_end())?;
     }
-    let gait = match gait {
+    let gait_note = match gait {
         Some(gait) => format!("The gait is {gait}."),
         None => "-: not measured, this robot has no gait that moves.".to_owned(),
     };
@@ -52,7 +56,7 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
              its widths were not compared."
         )?;
     }
-    writeln!(out, "\nA cycle is 62.5 ns. {gait} {SERVO_LIBRARY}.")
+    writeln!(out, "\nA cycle is 62.5 ns. {gait_note} {SERVO_LIBRARY}.")
 }
 
 #[cfg(test)]
@@ -60,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_broken_budget_stands_out() {
+    fn a_figure_over_its_budget_is_marked() {
         let row = Row {
             what: "flash",
             unit: "bytes",
@@ -70,8 +74,8 @@ mod tests {
             wall_clock: false,
         };
         let mut text = Vec::new();
-        print(&[row], None, &mut text).expect("a vector takes it");
-        let text = String::from_utf8(text).expect("it is text");
+        print(&[row], None, &mut text).expect("writing to a vector succeeds");
+        let text = String::from_utf8(text).expect("the table is UTF-8");
         assert!(text.contains("20 000 bytes"), "{text}");
         assert!(
             text.contains("at most 16 384   5 994  OVER BUDGET"),

@@ -1,13 +1,13 @@
-//! Servo angles read back from frames, and the figures computed from them.
+//! Servo angles read back from the pulses of frames, and the figures computed from them.
 
 use std::collections::HashMap;
 
-use lizard_robot::servo::{FORWARD, LEGS, NAMES};
+use lizard_robot::servo::{FORWARD_TURN_SIGN, LEG_NAMES, SERVO_NAMES};
 use lizard_robot::{Robot, Travel};
 use serde::Serialize;
 use simulated_uno::{CYCLES_PER_US, FREQUENCY};
 
-use super::frame::{FRAME, Frame};
+use super::frame::{FRAME_CYCLES, Frame};
 use super::frame_log::FrameLog;
 use super::spans::Span;
 use crate::shared::ink::pin_name;
@@ -39,15 +39,15 @@ pub struct ServoReport {
     pub min_us: f64,
     /// Longest pulse, us; 0 without pulses.
     pub max_us: f64,
-    /// Worst deviation of a width from its command, cycles; `None` without known commands.
+    /// Largest deviation of a width from its command, cycles; `None` if the commands are not known.
     pub width_error: Option<u64>,
-    /// Worst deviation of a period from 20 ms, cycles.
+    /// Largest deviation of a period from 20 ms, cycles.
     pub period_error: u64,
-    /// Fastest turn from one frame to the next, deg/s.
+    /// Largest slew rate from one frame to the next, deg/s.
     pub slew: f64,
 }
 
-/// The smallest margin of the run, and its time.
+/// The smallest margin of a run, and its time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SmallestMargin {
     /// The name of the margin.
@@ -58,12 +58,12 @@ pub struct SmallestMargin {
     pub seconds: f64,
 }
 
-/// The smallest margins and the strokes over all poses of the run.
+/// The smallest margin, the stroke and the violations over all poses of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Safety {
-    /// The smallest margin; `None` if no pose is feasible.
+    /// The smallest margin; `None` if the run has no feasible pose.
     pub least: Option<SmallestMargin>,
-    /// Smallest and largest slider travel, mm.
+    /// Smallest and largest slider travel, mm; infinite if the run has no feasible pose.
     pub stroke: [f64; 2],
     /// Number of frames whose pose is infeasible or breaks a limit of robot.toml.
     pub violations: usize,
@@ -90,22 +90,23 @@ pub struct CommandPath {
 }
 
 impl ServoFrame {
-    /// A frame that starts at a time (s) with these pulses (cycles).
+    /// The frame that starts `seconds` after power-on, with these pulse widths in cycles.
     fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
         let to_us = |width: u64| width as f64 / CYCLES_PER_US as f64;
-        let turns = widths.map(|widths| -> [f64; 4] {
+        let offsets = widths.map(|widths| -> [f64; 4] {
             std::array::from_fn(|i| robot.servos()[i].sweep(to_us(widths[i])))
         });
         Self {
             seconds,
-            angles: turns
-                .map(|turns| std::array::from_fn(|i| robot.servos()[i].neutral + turns[i])),
-            sweeps: turns.map(|turns| std::array::from_fn(|i| turns[i] * FORWARD[i])),
+            angles: offsets
+                .map(|offsets| std::array::from_fn(|i| robot.servos()[i].neutral + offsets[i])),
+            sweeps: offsets
+                .map(|offsets| std::array::from_fn(|i| offsets[i] * FORWARD_TURN_SIGN[i])),
         }
     }
 }
 
-/// The servo angles of frames, from the widths of their pulses.
+/// The servo angles of each frame, computed from its pulse widths.
 pub fn servo_frames_of(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds_of = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
@@ -114,7 +115,7 @@ pub fn servo_frames_of(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
         .collect()
 }
 
-/// A run's frames, and the robot whose servos received them.
+/// The frames of a run, and the robot whose servos received them.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The robot whose servos received the frames.
@@ -133,7 +134,7 @@ impl<'a> Run<'a> {
             let widths = self.log.widths[index];
             let has_all_widths = widths.iter().all(|width| *width > 0);
             let widths = has_all_widths.then_some(widths.map(u64::from));
-            ServoFrame::of(self.robot, self.log.seconds(index), widths)
+            ServoFrame::of(self.robot, self.log.seconds_at(index), widths)
         })
     }
 
@@ -149,43 +150,45 @@ impl Serialize for Run<'_> {
     }
 }
 
-/// Makes each servo's row of the table. `commands` are the widths in cycles that the
-/// firmware's core requested in each frame, 0 for no pulse.
-pub fn servo_reports(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
+/// Makes the report of each servo. `commanded_widths` are the widths in cycles that the firmware's
+/// core requested in each frame, 0 for no pulse.
+pub fn servo_reports(run: Run<'_>, commanded_widths: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     let frames = &run.log.widths;
-    let mut slew = [0.0f64; 4];
+    let mut max_turns_per_frame = [0.0f64; 4];
     let mut angles_before = None;
     for angles in run.servo_frames().map(|servo_frame| servo_frame.angles) {
         if let (Some(angles_before), Some(angles)) = (angles_before, angles) {
             let angles_before: [f64; 4] = angles_before;
-            slew = std::array::from_fn(|i| slew[i].max((angles[i] - angles_before[i]).abs()));
+            max_turns_per_frame = std::array::from_fn(|i| {
+                max_turns_per_frame[i].max((angles[i] - angles_before[i]).abs())
+            });
         }
         angles_before = angles;
     }
     let report_of = |i: usize| {
         let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
         let to_us = |width: Option<u16>| f64::from(width.unwrap_or(0)) / CYCLES_PER_US as f64;
-        let width_error = commands.map(|commands| {
-            let pairs = frames.iter().zip(commands);
+        let width_error = commanded_widths.map(|commanded_widths| {
+            let pairs = frames.iter().zip(commanded_widths);
             let errors = pairs.map(|(frame, command)| frame[i].abs_diff(command[i]));
             u64::from(errors.max().unwrap_or(0))
         });
         ServoReport {
-            servo: NAMES[i],
-            leg: LEGS[i],
+            servo: SERVO_NAMES[i],
+            leg: LEG_NAMES[i],
             pin: pin_name(run.robot.servos()[i].pin),
             pulses: widths().count(),
             min_us: to_us(widths().min()),
             max_us: to_us(widths().max()),
             width_error,
-            period_error: run.log.period_error[i],
-            slew: slew[i] * FREQUENCY as f64 / FRAME as f64,
+            period_error: run.log.max_period_error[i],
+            slew: max_turns_per_frame[i] * FREQUENCY as f64 / FRAME_CYCLES as f64,
         }
     };
     (0..4).map(report_of).collect()
 }
 
-/// Solves every pose of the run, and collects margins, strokes and violations.
+/// Solves every pose of the run, and collects the smallest margin, the stroke and the violations.
 pub fn check_safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
@@ -193,7 +196,7 @@ pub fn check_safety(run: Run<'_>) -> Safety {
         violations: 0,
         first_violation: None,
     };
-    // A standing robot repeats its pose, which is solved only once.
+    // A standing robot repeats its pose; consecutive equal poses are solved only once.
     let mut latest_pose: Option<([f64; 4], Option<String>)> = None;
     for servo_frame in run.servo_frames() {
         let Some(angles) = servo_frame.angles else {
@@ -219,10 +222,10 @@ impl Safety {
             Err(infeasible) => return Some(infeasible.to_string()),
             Ok(solution) => solution,
         };
-        let (check, value) = solution.margins.min();
+        let (margin, value) = solution.margins.min();
         if self.least.as_ref().is_none_or(|min| value < min.value) {
             self.least = Some(SmallestMargin {
-                margin: check.to_string(),
+                margin: margin.to_string(),
                 value,
                 seconds,
             });
@@ -235,44 +238,50 @@ impl Safety {
     }
 }
 
-/// The path during each command by the contact model, and the path of the complete run as the
-/// last one. Legs count as rigid, so that equal pairs of frames are computed once; `lizard twin`
-/// lets legs lag. Feet are never lifted: see [`lizard_robot::Ground`].
+/// The path during each command by the contact model; the last entry is the path of the complete
+/// run. Legs count as rigid here, so that each pair of frames that repeats is computed once; in
+/// `lizard twin` legs lag. Feet are never lifted: see [`lizard_robot::Ground`].
 pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
-    let mut steps = TravelCache {
+    let mut travel_cache = TravelCache {
         run,
         travels: HashMap::new(),
     };
     let mut total = NO_TRAVEL;
-    let mut are_all_decided = [true; 3];
-    let mut predictions = HashMap::new();
+    let mut are_all_determined = [true; 3];
+    let mut determined_by_command = HashMap::new();
     let mut paths = Vec::with_capacity(spans.len() + 1);
     for span in spans {
         let mut travel = NO_TRAVEL;
-        for index in run.log.index(span.from)..run.log.index(span.to) {
-            let step_travel = steps.travel_from(index);
-            travel = compose_travel(travel, step_travel);
-            total = compose_travel(total, step_travel);
+        for index in run.log.index_at(span.from)..run.log.index_at(span.to) {
+            let frame_travel = travel_cache.travel_from(index);
+            travel = compose_travel(travel, frame_travel);
+            total = compose_travel(total, frame_travel);
         }
-        let are_decided = *predictions
+        let are_determined = *determined_by_command
             .entry(span.command.as_str())
-            .or_insert_with(|| decided_parts(run.robot, &span.command));
-        are_all_decided = std::array::from_fn(|part| are_all_decided[part] && are_decided[part]);
+            .or_insert_with(|| determined_parts(run.robot, &span.command));
+        are_all_determined =
+            std::array::from_fn(|part| are_all_determined[part] && are_determined[part]);
         paths.push(CommandPath::new(
             &span.command,
             [span.from, span.to],
             travel,
-            are_decided,
+            are_determined,
         ));
     }
     let end = spans.last().map_or(0.0, |span| span.to);
-    paths.push(CommandPath::new("all", [0.0, end], total, are_all_decided));
+    paths.push(CommandPath::new(
+        "all",
+        [0.0, end],
+        total,
+        are_all_determined,
+    ));
     paths
 }
 
-/// True for each part of a command's path (forward, left, turn) that is determined. For a
-/// gait, a part is not determined if its prediction depends on a tie.
-fn decided_parts(robot: &Robot, command: &str) -> [bool; 3] {
+/// True for each part of a command's path (forward, left, turn) that the contact model determines.
+/// It does not determine a part of a gait's path that depends on a tie.
+fn determined_parts(robot: &Robot, command: &str) -> [bool; 3] {
     robot.gait_of_line(command).map_or([true; 3], |gait| {
         let prediction = robot.predict(gait);
         [prediction.forward, prediction.left, prediction.turn].map(|part| part.is_some())
@@ -280,8 +289,8 @@ fn decided_parts(robot: &Robot, command: &str) -> [bool; 3] {
 }
 
 impl CommandPath {
-    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, are_decided: [bool; 3]) -> Self {
-        let [forward, left, turn] = are_decided;
+    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, are_determined: [bool; 3]) -> Self {
+        let [forward, left, turn] = are_determined;
         Self {
             command: command.to_owned(),
             from,
@@ -300,20 +309,20 @@ const NO_TRAVEL: Travel = Travel {
     turn: 0.0,
 };
 
-/// Widths of a frame and of the next, cycles.
-type Pair = [[u16; 4]; 2];
+/// Pulse widths of a frame and of the next frame, cycles.
+type WidthPair = [[u16; 4]; 2];
 
-/// Computes the movement from one frame to the next. A gait repeats its frames, so the results
-/// are kept.
+/// The movements of the robot from one frame to the next, computed when they are needed and kept,
+/// because a gait repeats its frames.
 struct TravelCache<'a> {
     run: Run<'a>,
-    travels: HashMap<Pair, Travel>,
+    travels: HashMap<WidthPair, Travel>,
 }
 
 impl TravelCache<'_> {
     /// The movement from frame number `index` to the next; zero while the robot rests, and for the last frame.
     fn travel_from(&mut self, index: usize) -> Travel {
-        /// Largest number of pairs that are kept: a few megabytes.
+        /// Largest number of pairs of frames in the cache, which then takes a few megabytes.
         const MAX_CACHED_PAIRS: usize = 100_000;
         let frames = &self.run.log.widths;
         let Some(next) = frames.get(index + 1) else {
@@ -327,7 +336,7 @@ impl TravelCache<'_> {
             .run
             .servo_frames_in(index..index + 2)
             .filter_map(|servo_frame| servo_frame.sweeps);
-        let travel = self.run.robot.ground().rigid().travel(sweeps);
+        let travel = self.run.robot.ground().with_rigid_drive().travel(sweeps);
         if self.travels.len() < MAX_CACHED_PAIRS {
             self.travels.insert(pair, travel);
         }
@@ -335,7 +344,7 @@ impl TravelCache<'_> {
     }
 }
 
-/// Joins two movements; the second one is relative to the end of the first.
+/// Composes two movements; the second one is relative to the end of the first.
 fn compose_travel(first: Travel, second: Travel) -> Travel {
     let (sin, cos) = first.turn.to_radians().sin_cos();
     Travel {

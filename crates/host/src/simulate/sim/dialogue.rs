@@ -1,26 +1,30 @@
-//! Prints the dialogue line by line as it happens.
+//! Prints the dialogue between user and robot line by line as it happens.
 
 use std::io::{self, Write};
 
 use super::session::{DialogueLine, Sender};
 use crate::shared::plain::escape_controls;
 
-/// Number of lines of a run of `# t=` lines that are printed; the others are only counted.
+/// Number of lines that are printed of a run of successive `# t=` lines; the others are only counted.
 const MAX_SHOWN_LINES: usize = 3;
 
-/// Prints the lines of a dialogue. Of a run of `# t=` lines, which `watch` causes, it prints only the first three and
-/// the number of the others, unless it is to print all.
+/// Prints the lines of a dialogue. Of a run of successive `# t=` lines, which `watch` causes, it prints only the first
+/// three and the number of the others, unless `shows_all` is true.
 #[derive(Debug)]
 pub struct Printer {
+    /// True if runs of `# t=` lines are printed completely.
     shows_all: bool,
     /// Number of lines in the current run of `# t=` lines.
-    run: usize,
+    run_length: usize,
 }
 
 impl Printer {
-    /// A printer of all lines, or one that shortens runs of `# t=` lines.
+    /// A printer that prints all lines, or shortens runs of `# t=` lines.
     pub fn new(shows_all: bool) -> Self {
-        Self { shows_all, run: 0 }
+        Self {
+            shows_all,
+            run_length: 0,
+        }
     }
 
     /// Prints a line.
@@ -30,8 +34,8 @@ impl Printer {
     pub fn print(&mut self, line: &DialogueLine, out: &mut impl Write) -> io::Result<()> {
         let is_watch_line = line.from == Sender::Robot && line.text.starts_with("# t=");
         if is_watch_line && !self.shows_all {
-            self.run += 1;
-            if self.run > MAX_SHOWN_LINES {
+            self.run_length += 1;
+            if self.run_length > MAX_SHOWN_LINES {
                 return Ok(());
             }
         } else {
@@ -50,12 +54,12 @@ impl Printer {
         out.flush()
     }
 
-    /// Prints how many lines were left out, if any.
+    /// Ends a run of `# t=` lines: prints the number of its lines that were left out, if any.
     ///
     /// # Errors
     /// Fails if writing fails.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
-        let hidden_count = std::mem::take(&mut self.run).saturating_sub(MAX_SHOWN_LINES);
+        let hidden_count = std::mem::take(&mut self.run_length).saturating_sub(MAX_SHOWN_LINES);
         if hidden_count > 0 {
             writeln!(
                 out,
@@ -76,14 +80,18 @@ mod tests {
         for (from, text) in lines {
             let (ms, from, text) = (1500.0, *from, (*text).to_owned());
             let line = DialogueLine { ms, from, text };
-            printer.print(&line, &mut out).expect("a vector takes it");
+            printer
+                .print(&line, &mut out)
+                .expect("writing to a vector succeeds");
         }
-        printer.finish(&mut out).expect("a vector takes it");
-        String::from_utf8(out).expect("it is text")
+        printer
+            .finish(&mut out)
+            .expect("writing to a vector succeeds");
+        String::from_utf8(out).expect("the output is UTF-8")
     }
 
     #[test]
-    fn a_run_of_watch_lines_is_counted_and_every_other_line_is_printed() {
+    fn long_runs_of_watch_lines_are_shortened_and_every_other_line_is_printed() {
         let watch_lines = [(Sender::Robot, "# t=1 pose=1,2,3,4"); 5];
         let mut lines = vec![(Sender::User, "watch 1"), (Sender::Robot, "ok watch 1")];
         lines.extend(watch_lines);
@@ -91,13 +99,18 @@ mod tests {
         lines.extend(&watch_lines[..3]);
         lines.push((Sender::User, "# t=0"));
         lines.extend(&watch_lines[..4]);
-        let short_text = print_lines(false, &lines);
-        assert_eq!(short_text.matches("# t=1").count(), 9, "{short_text}");
-        assert!(
-            short_text.contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold")
+        let shortened_text = print_lines(false, &lines);
+        assert_eq!(
+            shortened_text.matches("# t=1").count(),
+            9,
+            "{shortened_text}"
         );
-        assert!(short_text.ends_with("(1 more lines `# t=`; --all prints them)\n"));
-        assert_eq!(short_text.matches("more lines").count(), 2);
+        assert!(
+            shortened_text
+                .contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold")
+        );
+        assert!(shortened_text.ends_with("(1 more lines `# t=`; --all prints them)\n"));
+        assert_eq!(shortened_text.matches("more lines").count(), 2);
         let full_text = print_lines(true, &lines);
         assert_eq!(full_text.lines().count(), lines.len());
         assert!(full_text.starts_with("    1.500 s  > watch 1\n    1.500 s    ok watch 1\n"));

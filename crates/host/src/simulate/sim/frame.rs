@@ -3,12 +3,12 @@
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
 
-/// Cycles of a frame, 20 ms.
-pub const FRAME: u64 = 20 * CYCLES_PER_MS;
+/// Cycles of a frame of 20 ms.
+pub const FRAME_CYCLES: u64 = 20 * CYCLES_PER_MS;
 
-/// Cycles from one servo's pulse to the next one's. A pulse that comes up to half a slot
-/// before its frame's start still belongs to this frame.
-pub(super) const SLOT: u64 = FRAME / 5;
+/// Cycles from one servo's pulse to the next servo's pulse. A pulse that comes up to half a slot
+/// before the start of a frame still belongs to that frame.
+pub(super) const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 
 /// The servo pulses of one frame, in servo order A1, A2, A3, A4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Frame {
             .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
     }
 
-    /// True if no servo has a pulse: the robot rests.
+    /// True if no servo has a pulse, because the robot rests.
     pub fn is_silent(&self) -> bool {
         self.widths == [None; 4]
     }
@@ -48,35 +48,35 @@ pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
     robot.servos().map(|servo| Pin::arduino(servo.pin))
 }
 
-/// The first cycle that belongs to the frame which starts at cycle `start`: half
-/// a slot earlier, so that no pulse falls between two frames.
+/// The first cycle that belongs to the frame that starts at cycle `start`: half a slot earlier, so
+/// that a pulse that comes a little early is not counted to the previous frame.
 pub fn first_cycle(start: u64) -> u64 {
-    start.saturating_sub(SLOT / 2)
+    start.saturating_sub(SLOT_CYCLES / 2)
 }
 
-/// Start of the first frame that opens, half a slot before its start, at cycle `current_cycle` or
-/// later. Frames start at cycle `anchor` and every 20 ms after it.
+/// Start of the first frame whose [`first_cycle`] is `current_cycle` or later. Frames start at cycle
+/// `anchor` and every 20 ms after it.
 pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
     anchor
-        + (current_cycle + SLOT / 2)
+        + (current_cycle + SLOT_CYCLES / 2)
             .saturating_sub(anchor)
-            .div_ceil(FRAME)
-            * FRAME
+            .div_ceil(FRAME_CYCLES)
+            * FRAME_CYCLES
 }
 
-/// Cycle of the last rising edge of A1; `None` without one.
+/// Cycle of the last rising edge of A1, the first of `pins`; `None` without one.
 pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
     edges
         .iter()
         .rev()
-        .find(|edge| edge.high && edge.pin == pins[0])
+        .find(|edge| edge.is_rising && edge.pin == pins[0])
         .map(|edge| edge.cycle)
 }
 
 /// Groups the pulses of these edges into the `count` frames from cycle `start` on.
 pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty_frame = |n| Frame {
-        start: start + n * FRAME,
+        start: start + n * FRAME_CYCLES,
         starts: [None; 4],
         widths: [None; 4],
     };
@@ -87,7 +87,7 @@ pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> V
             let Some(offset) = pulse.start.checked_sub(group_start) else {
                 continue;
             };
-            if let Some(frame) = frames.get_mut((offset / FRAME) as usize) {
+            if let Some(frame) = frames.get_mut((offset / FRAME_CYCLES) as usize) {
                 frame.starts[servo] = Some(pulse.start);
                 frame.widths[servo] = Some(pulse.width);
             }
@@ -107,12 +107,12 @@ mod tests {
             Edge {
                 cycle: start,
                 pin,
-                high: true,
+                is_rising: true,
             },
             Edge {
                 cycle: start + width,
                 pin,
-                high: false,
+                is_rising: false,
             },
         ]
     }
@@ -122,22 +122,25 @@ mod tests {
         let start = 1_000_000;
         let mut edges = Vec::new();
         edges.extend(pulse_edges(start, 24_000, PINS[0]));
-        edges.extend(pulse_edges(start + 3 * SLOT, 25_000, PINS[3]));
-        edges.extend(pulse_edges(start + FRAME - 1, 26_000, PINS[0]));
+        edges.extend(pulse_edges(start + 3 * SLOT_CYCLES, 25_000, PINS[3]));
+        edges.extend(pulse_edges(start + FRAME_CYCLES - 1, 26_000, PINS[0]));
         let frames = group_frames(&edges, PINS, start, 3);
         assert_eq!(frames[0].widths, [Some(24_000), None, None, Some(25_000)]);
         assert_eq!(frames[1].widths, [Some(26_000), None, None, None]);
-        assert_eq!(frames[1].starts[0], Some(start + FRAME - 1));
+        assert_eq!(frames[1].starts[0], Some(start + FRAME_CYCLES - 1));
         assert!(frames[2].is_silent());
     }
 
     #[test]
-    fn the_next_frame_has_not_started_yet() {
-        assert_eq!(next_start(500, 0), 500 + FRAME);
+    fn the_next_frame_is_the_first_whose_first_cycle_is_not_past() {
+        assert_eq!(next_start(500, 0), 500 + FRAME_CYCLES);
         assert_eq!(next_start(1_000_000, 0), 1_000_000);
         let next = next_start(1_000_000, 1_000_000);
-        assert_eq!(next, 1_000_000 + FRAME);
+        assert_eq!(next, 1_000_000 + FRAME_CYCLES);
         assert_eq!(next_start(1_000_000, first_cycle(next)), next);
-        assert_eq!(next_start(1_000_000, first_cycle(next) + 1), next + FRAME);
+        assert_eq!(
+            next_start(1_000_000, first_cycle(next) + 1),
+            next + FRAME_CYCLES
+        );
     }
 }

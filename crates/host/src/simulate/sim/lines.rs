@@ -2,7 +2,7 @@
 
 use simulated_uno::SerialByte;
 
-/// A line that the robot has sent.
+/// A line that the firmware has sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
     /// The cycle at which the line ended.
@@ -12,16 +12,16 @@ pub struct Line {
 }
 
 impl Line {
-    /// True if this is the final line of a command's answer, not information.
+    /// True if this is the line that answers a command, not an information line (`# ...`).
     pub fn is_answer(&self) -> bool {
         !self.text.starts_with('#')
     }
 }
 
-/// Keeps the beginning of a line until its end arrives.
+/// Assembles lines, and keeps the beginning of a line until its end arrives.
 #[derive(Debug, Default)]
 pub struct LineReader {
-    partial: String,
+    partial_line: String,
 }
 
 impl LineReader {
@@ -30,11 +30,11 @@ impl LineReader {
         bytes.iter().filter_map(|byte| match byte.byte {
             b'\n' => Some(Line {
                 cycle: byte.cycle,
-                text: std::mem::take(&mut self.partial),
+                text: std::mem::take(&mut self.partial_line),
             }),
             b'\r' => None,
             character => {
-                self.partial.push(char::from(character));
+                self.partial_line.push(char::from(character));
                 None
             }
         })

@@ -24,9 +24,9 @@ use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
 use lizard_robot::Robot;
-#[cfg(target_os = "linux")]
-use simulated_uno::{Air, Radio};
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
+#[cfg(target_os = "linux")]
+use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
 use crate::shared::progress::{Spinner, progress_bar};
@@ -59,7 +59,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
     /// Simulated time in seconds [default: 12, or a second after the script]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     duration: Option<f64>,
     /// Press a robot's input for 0.2 s, or from a time to another, in seconds since power-on:
     /// `button@2`, `nose@5.5-8`; may be repeated
@@ -111,10 +111,11 @@ enum FidelityArg {
     Stock,
 }
 
-/// Longest run, seconds: a day.
+/// Longest run, s: a day.
 const MAX_SECONDS: f64 = 86_400.0;
 
-fn seconds(text: &str) -> Result<f64, String> {
+/// Parses a time in seconds, which must be above 0 and at most [`MAX_SECONDS`].
+fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= MAX_SECONDS => Ok(value),
         Ok(_) => Err(format!("it must be above 0 and at most {MAX_SECONDS}")),
@@ -125,8 +126,8 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, a firmware that is missing or has another robot, an unknown gait or input, a wrong
-/// script, a firmware that crashes, or a file that cannot be written.
+/// Fails for an invalid robot.toml, a firmware that is missing or has another robot, an unknown gait or input, an
+/// invalid script, a firmware that crashes, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {
         FidelityArg::DataSheet => Fidelity::DataSheet,
@@ -146,10 +147,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         };
         supplies::connect(&mut uno, &robot);
         let radio = args.radio.map(|baud| {
-            Radio::new(Air {
+            Radio::new(RadioLink {
                 baud: f64::from(baud),
                 seed: args.seed,
-                ..Air::default()
+                ..RadioLink::default()
             })
         });
         return served::serve_until_interrupted(uno, link.as_deref(), radio, &contacts);
@@ -167,10 +168,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
     let spinner = Spinner::new("looking at every frame");
     let spans = spans::command_spans(&script, &recording.answers);
-    let commands = core_widths(&robot, &recording, &script.contacts);
+    let commanded_widths = core_widths(&robot, &recording, &script.contacts);
     let (robot, log) = (&robot, &recording.frames);
-    let frames = Run { robot, log };
-    let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
+    let run = Run { robot, log };
+    let picture = timeline::draw(run, &spans, &timeline::SIMULATED_CAPTION);
     files::write(&args.svg, picture.as_bytes())?;
     let report = Report {
         elf: name,
@@ -180,9 +181,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         },
         seconds: recording.cycles as f64 / FREQUENCY as f64,
         wall_seconds: recording.wall_time.as_secs_f64(),
-        servos: analysis::servo_reports(frames, commands.as_deref()),
-        safety: analysis::check_safety(frames),
-        way: analysis::command_paths(frames, &spans),
+        servos: analysis::servo_reports(run, commanded_widths.as_deref()),
+        safety: analysis::check_safety(run),
+        way: analysis::command_paths(run, &spans),
         most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
@@ -192,7 +193,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ended: end_message(&recording.state),
         svg: Some(args.svg.display().to_string()),
         dialogue: dialogue_lines,
-        frames,
+        frames: run,
     };
     drop(spinner);
     let mut out = io::stdout().lock();
@@ -207,7 +208,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Plays the script. The dialogue is printed as it happens, or kept for JSON.
+/// Plays the script. The dialogue is printed as it happens; with `--json` it is collected in `dialogue_lines` instead.
 fn record(
     uno: &mut Uno,
     robot: &Robot,
@@ -215,19 +216,19 @@ fn record(
     args: &Args,
     dialogue_lines: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
-    let bar = time_progress_bar(script.end_ms);
+    let time_bar = time_progress_bar(script.end_ms);
     let mut printer = Printer::new(args.all);
     let mut out = io::stdout();
     let pins = frame::servo_pins(robot);
     let recording = session::play(uno, pins, script, |event| {
         match event {
-            Event::Time(ms) => bar.set_position(ms),
+            Event::Time(ms) => time_bar.set_position(ms),
             Event::Line(line) if args.json => dialogue_lines.push(line.clone()),
-            Event::Line(line) => return bar.suspend(|| printer.print(line, &mut out)),
+            Event::Line(line) => return time_bar.suspend(|| printer.print(line, &mut out)),
         }
         Ok(())
     })?;
-    bar.finish_and_clear();
+    time_bar.finish_and_clear();
     if !args.json {
         printer.finish(&mut out)?;
         writeln!(out)?;
@@ -235,31 +236,32 @@ fn record(
     Ok(recording)
 }
 
-/// The widths that the firmware's core asks for; `None` if the firmware's banner does not
-/// say that it was built from the same core and tables as this program.
+/// The pulse widths, in cycles, that the firmware's core requests in each frame; `None` unless the
+/// firmware's banner says that it was built from the same core and tables as this program.
 fn core_widths(
     robot: &Robot,
     recording: &Recording,
     contacts: &[ContactChange],
 ) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
-    let commands = core_run::play_with_contacts(
+    let output = core_run::play_with_contacts(
         *robot.firmware(),
         &recording.received_by_uno,
         contacts,
-        log.first,
+        log.first_start,
         log.widths.len(),
     );
-    let is_same_source = recording.banner.as_deref()? == commands.written.lines().next()?;
-    is_same_source.then_some(commands.widths)
+    let is_same_source = recording.banner.as_deref()? == output.text.lines().next()?;
+    is_same_source.then_some(output.widths)
 }
 
+/// The message about the state in which the firmware ended.
 fn end_message(state: &State) -> String {
     match state {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
-            // The message of simavr if it knows no reason.
+            // simavr's message if it knows no reason.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 known_reason => known_reason,
@@ -270,7 +272,7 @@ fn end_message(state: &State) -> String {
     }
 }
 
-/// The script that the options ask for.
+/// The script that the command-line options ask for.
 fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let duration_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {

@@ -1,4 +1,4 @@
-//! Presses of a robot's inputs (contacts) at given times.
+//! Presses of a robot's inputs, which are contacts, at given times.
 
 use std::str::FromStr;
 
@@ -10,9 +10,10 @@ use crate::Failure;
 /// The length of a press whose end is not given, ms.
 const DEFAULT_PRESS_MS: u64 = 200;
 
-/// A contact that is closed for some time, as in `button@2` or `nose@5.5-8`.
+/// A press of an input: its contact is closed for some time. Written as `button@2` or `nose@5.5-8`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Press {
+    /// Name of the input in robot.toml.
     input: String,
     /// Time at which the contact closes, ms since power-on.
     from_ms: u64,
@@ -20,7 +21,7 @@ pub struct Press {
     to_ms: u64,
 }
 
-/// A contact that closes or opens.
+/// A change of a contact, which closes or opens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactChange {
     /// Milliseconds since power-on.
@@ -32,7 +33,7 @@ pub struct ContactChange {
 }
 
 impl ContactChange {
-    /// Closes or opens the contact.
+    /// Closes or opens the contact of a simulated UNO.
     pub fn apply(&self, uno: &mut Uno) {
         uno.set_contact(Pin::arduino(self.pin), self.is_closed);
     }
@@ -42,21 +43,21 @@ impl FromStr for Press {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let form_error = || "it is not NAME@SECONDS or NAME@FROM-TO".to_owned();
-        let (input, times) = text.split_once('@').ok_or_else(form_error)?;
-        let parse_ms = |text| super::seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
-        let (from, to) = match times.split_once('-') {
+        let invalid_form = || "it is not NAME@SECONDS or NAME@FROM-TO".to_owned();
+        let (input, times) = text.split_once('@').ok_or_else(invalid_form)?;
+        let parse_ms = |text| super::parse_seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
+        let (from_ms, to_ms) = match times.split_once('-') {
             Some((from, to)) => (parse_ms(from)?, parse_ms(to)?),
             None => (parse_ms(times)?, parse_ms(times)? + DEFAULT_PRESS_MS),
         };
-        if to <= from {
+        if to_ms <= from_ms {
             return Err("it ends before it begins".to_owned());
         }
         let input = input.to_owned();
         Ok(Self {
             input,
-            from_ms: from,
-            to_ms: to,
+            from_ms,
+            to_ms,
         })
     }
 }
@@ -68,7 +69,7 @@ impl FromStr for Press {
 pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactChange>, Failure> {
     let mut changes = Vec::new();
     for press in presses {
-        let mut inputs = robot.inputs().each();
+        let mut inputs = robot.inputs().named_pins();
         let Some((_, pin)) = inputs.find(|(name, _)| *name == press.input) else {
             let name = &press.input;
             let message = format!("robot.toml has no [input.{name}] for --press");
@@ -88,17 +89,17 @@ pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactCh
 mod tests {
     use super::*;
 
-    fn press(input: &str, from: u64, to: u64) -> Press {
+    fn press(input: &str, from_ms: u64, to_ms: u64) -> Press {
         let input = input.to_owned();
         Press {
             input,
-            from_ms: from,
-            to_ms: to,
+            from_ms,
+            to_ms,
         }
     }
 
     #[test]
-    fn a_press_is_a_name_and_a_time_or_a_span() {
+    fn a_press_is_a_name_and_a_time_or_a_time_span() {
         assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
         assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
         for (invalid_text, reason) in [

@@ -1,8 +1,8 @@
-//! The results of a run, as tables or as JSON.
+//! The report of a run, as tables or as JSON.
 
 use std::io::{self, Write};
 
-use lizard_robot::UNDECIDED;
+use lizard_robot::UNDECIDED_NOTE;
 use serde::Serialize;
 use simulated_uno::Uno;
 
@@ -15,34 +15,34 @@ use crate::shared::number::round_decimals;
 pub struct Report<'a> {
     /// The name of the firmware.
     pub elf: String,
-    /// `data-sheet` or `stock`.
+    /// The fidelity of the simulated chip: `data-sheet` or `stock`.
     pub fidelity: &'static str,
     /// Simulated time, s.
     pub seconds: f64,
-    /// Wall time in seconds.
+    /// Wall time, s.
     pub wall_seconds: f64,
     /// The console's dialogue.
     pub dialogue: Vec<DialogueLine>,
-    /// The table of servos.
+    /// The pulses of each servo.
     pub servos: Vec<ServoReport>,
-    /// Margins and strokes of every pose sent.
+    /// The smallest margin, the stroke and the violations over all poses of the run.
     pub safety: Safety,
     /// The predicted path of each command; the last entry is the complete run.
     pub way: Vec<CommandPath>,
     /// Largest number of servo pins that are high at the same time.
     pub most_pins_high: u32,
-    /// Share of the cycles in which the CPU was asleep, percent.
+    /// Share of all cycles in which the CPU was asleep, percent.
     pub asleep_percent: f64,
     /// Bytes of flash of the firmware.
     pub flash: u32,
-    /// The RAM in use; known only from an ELF, not from a bare image.
+    /// The RAM in use; `None` for an image that is not an ELF, because it does not say where its data ends.
     #[serde(flatten)]
     pub ram: Option<Ram>,
-    /// Received bytes that the UNO lost.
+    /// Number of received bytes that the UNO lost.
     pub overruns: u64,
     /// The number of watchdog resets.
     pub resets: u64,
-    /// The state in which the firmware ended.
+    /// The state in which the firmware ended, as a message.
     pub ended: String,
     /// The file of the picture.
     pub svg: Option<String>,
@@ -51,14 +51,14 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Prints the report for people, without the dialogue.
+    /// Prints the report as tables and text, without the dialogue.
     ///
     /// # Errors
     /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         self.print_servos(out)?;
         self.print_paths(out)?;
-        self.print_rest(out)
+        self.print_summary(out)
     }
 
     fn print_servos(&self, out: &mut impl Write) -> io::Result<()> {
@@ -71,7 +71,7 @@ impl Report<'_> {
             "                                              (cycles)      (cycles)   (deg/s)"
         )?;
         for row in &self.servos {
-            let error = row
+            let error_text = row
                 .width_error
                 .map_or("?".to_owned(), |error| error.to_string());
             writeln!(
@@ -83,7 +83,7 @@ impl Report<'_> {
                 row.pulses,
                 row.min_us,
                 row.max_us,
-                error,
+                error_text,
                 row.period_error,
                 row.slew
             )?;
@@ -122,17 +122,17 @@ impl Report<'_> {
         if self.frames.robot.drive().can_lag() {
             writeln!(
                 out,
-                "Legs are where their servos are here; `lizard twin` lets them lag."
+                "Here the legs follow their servos exactly; `lizard twin` lets them lag."
             )?;
         }
         let parts_of = |path: &CommandPath| [path.forward, path.left, path.turn];
         if self.way.iter().any(|path| parts_of(path).contains(&None)) {
-            write!(out, "{UNDECIDED}")?;
+            write!(out, "{UNDECIDED_NOTE}")?;
         }
         writeln!(out)
     }
 
-    fn print_rest(&self, out: &mut impl Write) -> io::Result<()> {
+    fn print_summary(&self, out: &mut impl Write) -> io::Result<()> {
         if let Some(least_margin) = &self.safety.least {
             writeln!(
                 out,
@@ -151,13 +151,13 @@ impl Report<'_> {
                 "{frame_count} frames break a limit of robot.toml, the first: {reason}"
             )?;
         }
-        let ram = self.ram.as_ref().map_or_else(String::new, |ram| {
+        let ram_text = self.ram.as_ref().map_or_else(String::new, |ram| {
             let (spare, data) = (ram.stack_spare, ram.static_ram);
             format!("static RAM {data} B, stack {spare} B from it, ")
         });
         writeln!(
             out,
-            "CPU asleep {:.1} %, flash {} B, {ram}bytes lost {}, resets {}, pins high at once {}",
+            "CPU asleep {:.1} %, flash {} B, {ram_text}bytes lost {}, resets {}, pins high at once {}",
             self.asleep_percent, self.flash, self.overruns, self.resets, self.most_pins_high
         )?;
         writeln!(

@@ -1,17 +1,17 @@
-//! A script: commands for the robot, each with its time.
+//! A script: commands for the robot, each with the time at which it is sent.
 
 use super::press::ContactChange;
 
-/// A command at a time.
+/// A command and the time at which it is sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
     /// Milliseconds since power-on.
     pub ms: u64,
-    /// The line, without its end.
+    /// The command line without its line end.
     pub command: String,
 }
 
-/// A run of the robot: its commands, the changes of its contacts, and its end.
+/// The commands of a run, the changes of the robot's contacts, and the end of the run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Script {
     /// The commands in order of time.
@@ -22,41 +22,41 @@ pub struct Script {
     pub end_ms: u64,
 }
 
-/// An invalid line of a script; lines are counted from 1.
+/// The error in an invalid line of a script. Lines are counted from 1.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ScriptError {
     /// The line does not begin with a time.
     #[error("line {0}: it begins with `{1}`, not with a time in whole milliseconds")]
-    Time(usize, String),
-    /// There is nothing after the time.
+    NoTime(usize, String),
+    /// No command follows the time.
     #[error("line {0}: no command follows the time")]
-    Silent(usize),
+    NoCommand(usize),
     /// The line's time is before that of the previous command.
-    #[error("line {line}: {now} ms comes before the {before} ms of the command above")]
-    Backwards {
+    #[error("line {line}: {ms} ms comes before the {previous_ms} ms of the command above")]
+    OutOfOrder {
         /// The number of the line.
         line: usize,
-        /// The time of this line.
-        now: u64,
-        /// The time of the previous command.
-        before: u64,
+        /// The time of this line, ms.
+        ms: u64,
+        /// The time of the previous command, ms.
+        previous_ms: u64,
     },
 }
 
-/// Time for which the robot stands before the first command of the built-in scripts, ms.
+/// Time for which the robot stands before the first command of a built-in script, ms.
 const STAND_MS: u64 = 1000;
-/// Time for stop, status and rest at the end of the built-in scripts, ms.
-const CLOSE_MS: u64 = 2000;
+/// Time for `stop`, `status` and `rest` at the end of a built-in script, ms.
+const CLOSING_MS: u64 = 2000;
 
 impl Script {
     /// Shortest length that a built-in script may have, ms.
-    pub const SHORTEST_MS: u64 = STAND_MS + CLOSE_MS + 1000;
+    pub const SHORTEST_MS: u64 = STAND_MS + CLOSING_MS + 1000;
 
     /// A script of `ms` milliseconds, which must be at least [`Self::SHORTEST_MS`]: a second of standing, then the
     /// gaits one after the other, `stop`, `status` and `rest`.
     pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
-        let gaits_ms = ms - STAND_MS - CLOSE_MS;
-        // The last gait gets four parts of the time, each earlier gait five.
+        let gaits_ms = ms - STAND_MS - CLOSING_MS;
+        // The last gait gets four parts of the time, and each earlier gait gets five.
         let start_of = |index: usize| {
             STAND_MS + gaits_ms * 5 * index as u64 / (4 + 5 * (gaits.len() as u64 - 1))
         };
@@ -66,9 +66,9 @@ impl Script {
             .enumerate()
             .map(|(index, gait)| step(start_of(index), &command_of(gait)))
             .collect();
-        steps.push(step(ms - CLOSE_MS, "stop"));
-        steps.push(step(ms - CLOSE_MS / 2 - 200, "status"));
-        steps.push(step(ms - CLOSE_MS / 2, "rest"));
+        steps.push(step(ms - CLOSING_MS, "stop"));
+        steps.push(step(ms - CLOSING_MS / 2 - 200, "status"));
+        steps.push(step(ms - CLOSING_MS / 2, "rest"));
         Self {
             steps,
             end_ms: ms,
@@ -76,11 +76,11 @@ impl Script {
         }
     }
 
-    /// Reads lines `<ms> <command>`. Blank lines and lines that begin with `#`
-    /// are skipped, and so is a byte order mark. The run ends a second after the last command.
+    /// Parses lines of the form `<ms> <command>`. Skips blank lines, lines that begin with `#`, and
+    /// a byte order mark. The run ends a second after the last command.
     ///
     /// # Errors
-    /// Fails for a line without a time or a command, or out of order.
+    /// Fails if a line has no time or no command, or if the lines are out of order.
     pub fn parse(text: &str) -> Result<Self, ScriptError> {
         let mut steps: Vec<Step> = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -93,21 +93,21 @@ impl Script {
             let (time_text, command) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
             let ms = time_text
                 .parse()
-                .map_err(|_| ScriptError::Time(line_number, time_text.to_owned()))?;
+                .map_err(|_| ScriptError::NoTime(line_number, time_text.to_owned()))?;
             let command = command.trim();
             if command.is_empty() {
-                return Err(ScriptError::Silent(line_number));
+                return Err(ScriptError::NoCommand(line_number));
             }
-            if let Some(previous) = steps.last().filter(|previous| previous.ms > ms) {
-                return Err(ScriptError::Backwards {
+            if let Some(previous_step) = steps.last().filter(|step| step.ms > ms) {
+                return Err(ScriptError::OutOfOrder {
                     line: line_number,
-                    now: ms,
-                    before: previous.ms,
+                    ms,
+                    previous_ms: previous_step.ms,
                 });
             }
             steps.push(step(ms, command));
         }
-        let end_ms = steps.last().map_or(0, |previous| previous.ms) + 1000;
+        let end_ms = steps.last().map_or(0, |last_step| last_step.ms) + 1000;
         Ok(Self {
             steps,
             end_ms,
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_script_is_times_and_commands() {
+    fn a_script_is_parsed_into_commands_with_their_times() {
         let text = "\u{feff}500 walk\r\n# a comment\n\n 1500\tspeed 50\r\n1500 stop";
         let script = Script::parse(text);
         let steps = vec![
@@ -147,8 +147,12 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_names_its_line() {
-        let message_of = |text| Script::parse(text).expect_err("it is wrong").to_string();
+    fn an_error_names_its_line() {
+        let message_of = |text| {
+            Script::parse(text)
+                .expect_err("the script is invalid")
+                .to_string()
+        };
         assert_eq!(
             message_of("100 walk\nsoon stop"),
             "line 2: it begins with `soon`, not with a time in whole milliseconds"

@@ -1,4 +1,4 @@
-//! Serves the simulated UNO at a serial port of this machine, for other programs.
+//! Serves the simulated UNO to other programs, at a serial port of this machine.
 
 use std::fs;
 use std::io::{self, Write};
@@ -15,7 +15,7 @@ use super::press::ContactChange;
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
-/// A new board, with this boot loader in flash and nothing else.
+/// A new board that has only this boot loader in flash.
 ///
 /// # Errors
 /// Fails if the file is missing or is not an AVR program.
@@ -25,11 +25,13 @@ pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, F
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO, by cable or by radio, until the program is ended, and presses its contacts. `link` becomes a
-/// symbolic link to the port, because the port's own name differs from run to run; the link is removed at the end.
+/// Serves the UNO, by cable or by radio, until the program is ended, and closes and opens its contacts at their times.
+/// `link` becomes a symbolic link to the port, because the port's own name differs from run to run; the link is removed
+/// at the end.
 ///
 /// # Errors
-/// Fails if there is no pseudo terminal, or something other than such a link already exists at `link`.
+/// Fails if this machine provides no pseudo terminal, or if something other than a link to one already exists at
+/// `link`.
 pub(super) fn serve_until_interrupted(
     mut uno: Uno,
     link: Option<&Path>,
@@ -41,12 +43,12 @@ pub(super) fn serve_until_interrupted(
     })?;
     let reset_note = match radio {
         Some(radio) => {
-            port = port.by_radio(radio);
+            port = port.with_radio(radio);
             "opening the port resets nothing"
         }
         None => "opening the port resets it",
     };
-    let name = match link {
+    let port_name = match link {
         Some(link) => {
             // Called before the link is made, so that a signal between the two calls does not leave the link behind.
             remove_link_on_signal(link.to_owned(), port.path().to_owned())?;
@@ -56,7 +58,7 @@ pub(super) fn serve_until_interrupted(
         None => port.path().to_owned(),
     };
     let mut out = io::stdout();
-    writeln!(out, "the simulated UNO is at {}", name.display())?;
+    writeln!(out, "the simulated UNO is at {}", port_name.display())?;
     writeln!(out, "{reset_note}; Ctrl-C ends it")?;
     let mut printed_state = State::Alive;
     let mut contacts = contacts.iter().peekable();
@@ -76,13 +78,17 @@ pub(super) fn serve_until_interrupted(
         uno.take_marks();
         if *uno.state() != printed_state {
             printed_state = uno.state().clone();
-            writeln!(out, "{}", end_message(&printed_state, uno.flash(), &name))?;
+            writeln!(
+                out,
+                "{}",
+                end_message(&printed_state, uno.flash(), &port_name)
+            )?;
         }
     }
 }
 
-/// The message about a new state of the chip. A new board has nothing in flash at the firmware's address, so it stops
-/// as soon as the boot loader starts the program.
+/// The message about a new state of the chip. A new board has nothing in flash at the firmware's address, so the chip
+/// stops as soon as the boot loader jumps there.
 fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
@@ -93,8 +99,8 @@ fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     }
 }
 
-/// Removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link points to another file
-/// by then. Then lets the signal have its default effect.
+/// Starts a thread that removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link
+/// points to another file by then. The signal then has its default effect.
 fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])
         .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
@@ -110,7 +116,7 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes `link` point at `port`. Replaces a link to another pseudo terminal, which a killed run has left.
+/// Makes `link` a symbolic link to `port`. Replaces a link to another pseudo terminal, which a killed run left behind.
 fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
     let failure_of = |error: io::Error| files::write_failure(link, &error);
     let foreign_failure = || {
@@ -136,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_empty_board_is_no_crash_and_a_crash_does_not_name_the_simulator() {
+    fn a_board_without_firmware_is_reported_as_such_and_a_crash_in_plain_words() {
         let crashed_state = State::Crashed {
             pc: 0x7fe4,
             message: "avr_sadly_crashed".to_owned(),

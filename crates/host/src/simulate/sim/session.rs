@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Pin, SerialByte, State, Uno};
 
-use super::frame::FRAME;
+use super::frame::FRAME_CYCLES;
 use super::frame_log::{FrameLog, FrameReader};
 use super::lines::LineReader;
 use super::script::Script;
@@ -14,7 +14,7 @@ use super::script::Script;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sender {
-    /// The person at the console.
+    /// The user, or the script in the user's place.
     User,
     /// The firmware on the simulated board.
     Robot,
@@ -23,8 +23,7 @@ pub enum Sender {
 /// A line of the dialogue.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct DialogueLine {
-    /// Milliseconds from power-on to the end of a line from the robot, or to the
-    /// start of a line from the user.
+    /// Milliseconds from power-on to the end of the robot's line, or to the start of the user's line.
     pub ms: f64,
     /// The sender of the line.
     pub from: Sender,
@@ -37,7 +36,7 @@ pub struct DialogueLine {
 pub enum Event<'a> {
     /// The next line of the dialogue.
     Line(&'a DialogueLine),
-    /// The time reached, ms since power-on; every 20 ms.
+    /// The simulated time in ms since power-on, reported every 20 ms.
     Time(u64),
 }
 
@@ -46,11 +45,11 @@ pub enum Event<'a> {
 pub struct Recording {
     /// The firmware's first line; `None` if it has sent none.
     pub banner: Option<String>,
-    /// The answer to each command of the script; `None` if it did not come before the end.
+    /// The answer to each command of the script; `None` if it did not come before the end of the run.
     pub answers: Vec<Option<String>>,
     /// Every pulse of the servos.
     pub frames: FrameLog,
-    /// The bytes of the commands that the UNO has received completely.
+    /// The bytes that the UNO has received completely, each with its cycle.
     pub received_by_uno: Vec<SerialByte>,
     /// The number of simulated cycles.
     pub cycles: u64,
@@ -83,14 +82,14 @@ pub fn play(
     let mut contacts = script.contacts.iter().peekable();
     let mut ms = 0;
     while ms < script.end_ms && *uno.state() == State::Alive {
-        let slice_end_ms = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
+        let slice_end_ms = (ms + FRAME_CYCLES / CYCLES_PER_MS).min(script.end_ms);
         loop {
             let next_command_ms = steps.peek().map_or(slice_end_ms, |step| step.ms);
-            if let Some(contact) =
+            if let Some(change) =
                 contacts.next_if(|contact| contact.ms < slice_end_ms.min(next_command_ms))
             {
-                uno.run_until_cycle(contact.ms * CYCLES_PER_MS);
-                contact.apply(uno);
+                uno.run_until_cycle(change.ms * CYCLES_PER_MS);
+                change.apply(uno);
             } else if let Some(step) = steps.next_if(|step| step.ms < slice_end_ms) {
                 uno.run_until_cycle(step.ms * CYCLES_PER_MS);
                 dialogue.receive(uno)?;
@@ -138,7 +137,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
         }))
     }
 
-    /// Reads what the UNO has sent, and reports its lines.
+    /// Takes the bytes that the UNO has sent, and reports the lines that end in them.
     fn receive(&mut self, uno: &mut Uno) -> io::Result<()> {
         for line in self.reader.read(&uno.take_transmitted()) {
             if line.is_answer() {

@@ -15,16 +15,16 @@ pub struct Span {
     pub to: f64,
 }
 
-/// True if a command starts, ends or paces a motion. A word that the console does not know counts as the name of a
-/// gait of some robot.
+/// True if a command starts or ends a motion or changes its speed. A word that the console does not know counts as the
+/// name of a gait.
 fn changes_motion(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or_default();
     Word::find(word.as_bytes())
         .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::Calibrates))
 }
 
-/// The commands that changed the motion, in order of time, after the initial `stand`. A refused command changes
-/// nothing: the previous one continues.
+/// The initial `stand` and the commands that changed the motion, in order of time. After a refused command, the
+/// previous command stays in effect.
 pub fn command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
@@ -53,17 +53,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_refused_command_and_a_question_leave_the_old_command_in_effect() {
+    fn a_refused_command_and_one_without_motion_leave_the_previous_command_in_effect() {
         let script = Script::parse("1000 walk\n2000 pose 0 0 0 0\n3000 watch 5\n4000 rest")
-            .expect("it is well formed");
+            .expect("the script is valid");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];
         let spans = command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
-        let spans_found: Vec<(&str, f64, f64)> = spans
+        let span_tuples: Vec<(&str, f64, f64)> = spans
             .iter()
             .map(|span| (span.command.as_str(), span.from, span.to))
             .collect();
         assert_eq!(
-            spans_found,
+            span_tuples,
             [("stand", 0.0, 1.0), ("walk", 1.0, 4.0), ("rest", 4.0, 5.0)]
         );
     }

@@ -1,6 +1,6 @@
-//! The picture of a run: servo angles over time, and each foot's stance and swing.
+//! The picture of a run: the servo angles over time, and the stance and swing of each foot.
 
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::Group;
 
 use super::analysis::Run;
@@ -44,34 +44,34 @@ pub struct Caption {
     pub title: &'static str,
     /// Description below the title, in small type.
     pub note: &'static str,
-    /// Label below the time axis.
-    pub axis: &'static str,
+    /// Label below the time axis, with its unit.
+    pub axis_label: &'static str,
 }
 
 /// The caption of a run on the simulated UNO.
-pub const SIMULATED: Caption = Caption {
+pub const SIMULATED_CAPTION: Caption = Caption {
     title: "Servo angles and footfalls, measured on the simulated UNO",
     note: "degrees in the chassis frame, read back from every pulse; dashed: the neutral angle",
-    axis: "time since power-on (s)",
+    axis_label: "time since power-on (s)",
 };
 
-/// Draws the picture as SVG text. `spans` are the commands that were in effect.
+/// Draws the picture and returns it as SVG text. `spans` are the commands that were in effect.
 pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     let end_s = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {
         run,
         spans,
         caption,
-        seconds: end_s.max(0.1),
+        end_s: end_s.max(0.1),
     };
-    let reach_deg = chart.reach();
+    let half_range_deg = chart.half_range_deg();
     let mut group = title(Group::new(), LEFT_MARGIN, caption.title, caption.note);
     group = chart.draw_commands(group);
     for servo in 0..4 {
-        group = chart.draw_strip(group, servo, reach_deg);
-        group = chart.draw_feet(group, servo);
+        group = chart.draw_strip(group, servo, half_range_deg);
+        group = chart.draw_foot_row(group, servo);
     }
-    group = chart.draw_marks(group);
+    group = chart.draw_command_changes(group);
     group = chart.draw_axis(group);
     page((WIDTH, HEIGHT), group)
 }
@@ -81,23 +81,23 @@ struct Chart<'a> {
     run: Run<'a>,
     spans: &'a [Span],
     caption: &'a Caption,
-    /// Length of the time axis, s.
-    seconds: f64,
+    /// End of the time axis, s; it starts at 0.
+    end_s: f64,
 }
 
 impl Chart<'_> {
     /// Horizontal position of a time, px.
-    fn x(&self, seconds: f64) -> f64 {
-        LEFT_MARGIN + (WIDTH - LEFT_MARGIN - RIGHT_MARGIN) * seconds / self.seconds
+    fn x_at(&self, seconds: f64) -> f64 {
+        LEFT_MARGIN + (WIDTH - LEFT_MARGIN - RIGHT_MARGIN) * seconds / self.end_s
     }
 
     /// Adds the band with the commands in effect.
     fn draw_commands(&self, mut group: Group) -> Group {
         for (index, Span { from, to, command }) in self.spans.iter().enumerate() {
-            let (x, end_x) = (self.x(*from), self.x(*to));
+            let (x, end_x) = (self.x_at(*from), self.x_at(*to));
             let fill = if index % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS_Y), (end_x - x, 26.0), fill));
-            // A letter takes about 7.5 px. A command that would not fit is left out.
+            // A letter takes about 7.5 px. The name of a command that would not fit is left out.
             if command.len() as f64 * 7.5 < end_x - x {
                 let position = ((x + end_x) / 2.0, COMMANDS_Y + 18.0);
                 group = group.add(text_middle(command, position, 15.0));
@@ -113,18 +113,18 @@ impl Chart<'_> {
     }
 
     /// Adds a vertical line across the complete picture at each change of command.
-    fn draw_marks(&self, mut group: Group) -> Group {
+    fn draw_command_changes(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
-            let x = self.x(span.from);
+            let x = self.x_at(span.from);
             let mark = line((x, COMMANDS_Y), (x, AXIS_Y), GREY, 1.0);
             group = group.add(mark.set("stroke-dasharray", "2 4"));
         }
         group
     }
 
-    /// Half the height of a strip in degrees, the same for all strips so that
-    /// slopes can be compared.
-    fn reach(&self) -> f64 {
+    /// Half the angle range of a strip, deg. It is the same for all strips, so that their slopes can
+    /// be compared.
+    fn half_range_deg(&self) -> f64 {
         let sweeps = self
             .run
             .servo_frames()
@@ -135,12 +135,13 @@ impl Chart<'_> {
     }
 
     /// Adds the strip with a servo's angle over time.
-    fn draw_strip(&self, mut group: Group, servo: usize, reach_deg: f64) -> Group {
+    fn draw_strip(&self, mut group: Group, servo: usize, half_range_deg: f64) -> Group {
         let top = STRIPS_Y + servo as f64 * (STRIP_HEIGHT + STRIP_GAP);
         let neutral = self.run.robot.servos()[servo].neutral;
-        let y_of = |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / reach_deg);
-        let (start_x, end_x) = (self.x(0.0), self.x(self.seconds));
-        let name = format!("{} {}", NAMES[servo], PLACES[servo]);
+        let y_of =
+            |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / half_range_deg);
+        let (start_x, end_x) = (self.x_at(0.0), self.x_at(self.end_s));
+        let name = format!("{} {}", SERVO_NAMES[servo], PLACES[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
             .add(rectangle(
@@ -165,10 +166,10 @@ impl Chart<'_> {
                 GREY,
                 Anchor::Start,
             ));
-        let step_deg = if reach_deg > 50.0 { 40.0 } else { 20.0 };
-        let first_tick = -(reach_deg / step_deg).floor() as i32;
+        let tick_interval_deg = if half_range_deg > 50.0 { 40.0 } else { 20.0 };
+        let first_tick = -(half_range_deg / tick_interval_deg).floor() as i32;
         for tick in first_tick..=-first_tick {
-            let angle = neutral + f64::from(tick) * step_deg;
+            let angle = neutral + f64::from(tick) * tick_interval_deg;
             let grid_line = line((start_x, y_of(angle)), (end_x, y_of(angle)), GRID, 1.0);
             group = group.add(if tick == 0 {
                 grid_line
@@ -184,16 +185,16 @@ impl Chart<'_> {
         for angle_curve in self.angle_curves(servo) {
             let points: Vec<(f64, f64)> = angle_curve
                 .iter()
-                .map(|(seconds, angle)| (self.x(*seconds), y_of(*angle)))
+                .map(|(seconds, angle)| (self.x_at(*seconds), y_of(*angle)))
                 .collect();
             group = group.add(curve(&points, SERVO[servo], 2.2));
         }
         group
     }
 
-    /// A servo's angle as points (seconds, degrees), one curve for each time span with
-    /// pulses. If the pixel columns have many frames each, only the lowest and the highest
-    /// angle of a column are kept.
+    /// A servo's angle as points (seconds, degrees), with one curve for each time span with
+    /// pulses. If there are many frames per pixel column, only the lowest and the highest angle of
+    /// each column are kept.
     fn angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let is_dense =
             self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT_MARGIN - RIGHT_MARGIN);
@@ -201,7 +202,7 @@ impl Chart<'_> {
         for servo_frame in self.run.servo_frames() {
             match (servo_frame.angles, curves.last_mut()) {
                 (Some(angles), Some(last_curve)) => {
-                    let column = is_dense.then(|| self.x(servo_frame.seconds) as i64);
+                    let column = is_dense.then(|| self.x_at(servo_frame.seconds) as i64);
                     last_curve.add_point(column, (servo_frame.seconds, angles[servo]));
                 }
                 (None, Some(last_curve)) if last_curve.points.is_empty() => {}
@@ -215,10 +216,10 @@ impl Chart<'_> {
             .collect()
     }
 
-    /// Adds the row with the footfalls of a servo's foot.
-    fn draw_feet(&self, mut group: Group, servo: usize) -> Group {
+    /// Adds the row with the footfalls of a servo's foot; the first row also gets the heading and the legend.
+    fn draw_foot_row(&self, mut group: Group, servo: usize) -> Group {
         let top = FEET_Y + servo as f64 * (FOOT_HEIGHT + FOOT_GAP);
-        let (start_x, end_x) = (self.x(0.0), self.x(self.seconds));
+        let (start_x, end_x) = (self.x_at(0.0), self.x_at(self.end_s));
         if servo == 0 {
             let position = (14.0, FEET_Y - 12.0);
             group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
@@ -244,7 +245,7 @@ impl Chart<'_> {
             return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
         for FootSpan { phase, from, to } in spans_of_foot {
-            let (x, width) = (self.x(from), self.x(to) - self.x(from));
+            let (x, width) = (self.x_at(from), self.x_at(to) - self.x_at(from));
             group = group.add(draw_foot_span(
                 phase,
                 SERVO[servo],
@@ -255,6 +256,7 @@ impl Chart<'_> {
         group
     }
 
+    /// Adds the legend of the footfalls.
     fn draw_legend(&self, mut group: Group) -> Group {
         let entries = [
             (Phase::Stance, "moves back: stance of a forward gait"),
@@ -282,24 +284,25 @@ impl Chart<'_> {
         group
     }
 
+    /// Adds the time axis.
     fn draw_axis(&self, mut group: Group) -> Group {
-        let steps = [
+        let tick_intervals = [
             0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0,
         ];
-        let step_s = steps
+        let tick_interval_s = tick_intervals
             .into_iter()
-            .find(|step_s| self.seconds / step_s <= 15.0)
+            .find(|tick_interval_s| self.end_s / tick_interval_s <= 15.0)
             .unwrap_or(7200.0);
         group = group.add(line(
-            (self.x(0.0), AXIS_Y),
-            (self.x(self.seconds), AXIS_Y),
+            (self.x_at(0.0), AXIS_Y),
+            (self.x_at(self.end_s), AXIS_Y),
             DARK,
             1.2,
         ));
-        for tick in 0..=(self.seconds / step_s + 1e-9) as u32 {
-            let seconds = f64::from(tick) * step_s;
-            let x = self.x(seconds);
-            let label = if step_s < 1.0 {
+        for tick in 0..=(self.end_s / tick_interval_s + 1e-9) as u32 {
+            let seconds = f64::from(tick) * tick_interval_s;
+            let x = self.x_at(seconds);
+            let label = if tick_interval_s < 1.0 {
                 format!("{seconds:.1}")
             } else {
                 format!("{seconds:.0}")
@@ -308,17 +311,17 @@ impl Chart<'_> {
                 .add(line((x, AXIS_Y), (x, AXIS_Y + 7.0), DARK, 1.2))
                 .add(text_middle(&label, (x, AXIS_Y + 25.0), 14.0));
         }
-        let middle = (self.x(0.0) + self.x(self.seconds)) / 2.0;
+        let middle = (self.x_at(0.0) + self.x_at(self.end_s)) / 2.0;
         group.add(text_middle(
-            self.caption.axis,
+            self.caption.axis_label,
             (middle, AXIS_Y + 50.0),
             15.0,
         ))
     }
 }
 
-/// One time span of a footfall row: filled for stance, pale for still, outlined for
-/// swing, so that it is readable without colour.
+/// Draws one time span of a footfall row: filled for stance, pale for still, outlined for swing, so
+/// that the picture is readable without colour. `corner` is the upper left one.
 fn draw_foot_span(
     phase: Phase,
     colour: &str,
@@ -329,7 +332,7 @@ fn draw_foot_span(
         Phase::Stance => rectangle(corner, size, colour),
         Phase::Still => rectangle(corner, size, colour).set("fill-opacity", 0.22),
         Phase::Swing => {
-            // The stroke stays inside the area of the time span.
+            // The outline stays inside the area of the time span.
             let inner_area = (
                 (corner.0 + 0.7, corner.1 + 0.7),
                 ((size.0 - 1.4).max(0.2), size.1 - 1.4),
@@ -350,8 +353,8 @@ struct Curve {
 }
 
 impl Curve {
-    /// Adds a point. Of the points in the same column of pixels, only the lowest and
-    /// the highest are kept. If `column` is `None`, all points are kept.
+    /// Adds a point in a pixel column. Only the lowest and the highest of the points in the same
+    /// column are kept. If `column` is `None`, all points are kept.
     fn add_point(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);
@@ -389,7 +392,7 @@ mod tests {
             ..FrameLog::default()
         };
         let (robot, log) = (&robot, &log);
-        draw(Run { robot, log }, spans, &SIMULATED)
+        draw(Run { robot, log }, spans, &SIMULATED_CAPTION)
     }
 
     fn span(command: &str, from: f64, to: f64) -> Span {
@@ -398,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn each_unbroken_stretch_of_each_servo_is_one_curve() {
+    fn each_time_span_with_pulses_is_one_curve_per_servo() {
         let is_resting = |n| n == 100 || n >= 350;
         let picture = draw_picture(
             400,
@@ -410,8 +413,8 @@ mod tests {
     }
 
     #[test]
-    fn a_long_run_is_drawn_with_as_many_points_as_pixels_and_keeps_its_extremes() {
-        // One frame of 10 000 stands out.
+    fn a_long_run_is_a_small_picture_that_keeps_the_extremes() {
+        // One frame out of 10 000 is an extreme.
         let width_at = |n| match n {
             5000 => 24_800,
             _ => 24_000 + 10 * (n as u16 % 3),
@@ -419,13 +422,16 @@ mod tests {
         let picture = draw_picture(10_000, width_at, &[span("stand", 0.0, 200.0)]);
         assert!(picture.len() < 300_000, "{} bytes", picture.len());
         // 50 us are 5 degrees, so 10.4 pixels: half a strip has 52 pixels for 25 degrees.
-        let first_curve = picture.split("points=\"").nth(1).expect("a curve");
-        let ys = first_curve
+        let first_curve = picture
+            .split("points=\"")
+            .nth(1)
+            .expect("the picture has a curve");
+        let point_texts = first_curve
             .split('"')
             .next()
-            .expect("its points")
+            .expect("the curve has points")
             .split_whitespace();
-        let ys = ys.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
+        let ys = point_texts.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
         let [low, high] = ys.fold([f64::MAX, f64::MIN], |[low, high], y| {
             [low.min(y), high.max(y)]
         });

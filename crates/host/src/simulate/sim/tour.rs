@@ -1,15 +1,15 @@
-//! The gaits of a robot that a demonstration shows.
+//! The selection of a robot's gaits for a demonstration.
 
 use lizard_robot::Robot;
 
 /// Names of the gaits that move a servo, in the order of robot.toml.
 pub fn moving_gaits(robot: &Robot) -> Vec<&str> {
-    let gaits = robot.gaits().iter().filter(|gait| gait.moves());
+    let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
     gaits.map(|gait| gait.name()).collect()
 }
 
-/// The gaits of a demonstration: the first moving gait, then the other one that is predicted to turn the robot
-/// most in a cycle. Fewer if the robot has fewer moving gaits.
+/// Names of the gaits of a demonstration: the first moving gait, then the one of the other moving gaits that is
+/// predicted to turn the robot most in a cycle. A robot with fewer than two moving gaits has fewer.
 pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
     let gaits = moving_gaits(robot);
     let turn_of = |name: &str| {
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_paper_robot_walks_and_turns_left() {
+    fn the_demonstration_of_the_paper_robot_is_walk_and_left() {
         let robot = crate::shared::robot_file::named("paper");
         assert_eq!(demonstration_gaits(&robot), ["walk", "left"]);
         assert!(!moving_gaits(&robot).contains(&"stand"));

@@ -1,5 +1,5 @@
-//! `lizard twin`: the real firmware on the simulated UNO moves a simulated robot, and the output
-//! shows how it walks.
+//! `lizard twin`: the real firmware runs on the simulated UNO and moves a simulated robot; the output
+//! shows how the robot walks.
 
 pub mod replay;
 pub mod report;
@@ -8,7 +8,7 @@ mod robust;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_robot::{CheckedGait, Robot, Round, Routine, WITHOUT_CONTACTS};
+use lizard_robot::{CheckedGait, Robot, Round, Routine, WITHOUT_CONTACTS_NOTE};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
@@ -73,7 +73,8 @@ enum ServoArg {
 /// Runs the firmware, walks the robot and prints the report.
 ///
 /// # Errors
-/// Fails without a firmware, for a wrong script, a firmware that crashes, or an output that cannot be written.
+/// Fails for an invalid robot.toml, a firmware that is missing or has another robot, an unknown gait, an invalid
+/// script, a firmware that crashes, or an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = choose_script(&args, &robot)?;
@@ -90,26 +91,26 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ServoArg::Ideal => ServoModel::Ideal,
     };
     let spans = spans::command_spans(&script, &recording.answers);
-    let is_paced = script
+    let changes_speed = script
         .steps
         .iter()
         .any(|step| step.command.starts_with("speed"));
     let spinner = Spinner::new("walking every frame");
     let replay = Replay::of(&robot, &recording.frames, spans, model);
-    let report = Report::of(&robot, &replay, model, is_paced);
+    let report = Report::of(&robot, &replay, model, changes_speed);
     drop(spinner);
 
     let mut out = io::stdout().lock();
     if args.json {
-        report.json(&mut out)?;
+        report.write_json(&mut out)?;
     } else {
         report.print(&mut out)?;
         if has_inputs {
-            write!(out, "\n{WITHOUT_CONTACTS}")?;
+            write!(out, "\n{WITHOUT_CONTACTS_NOTE}")?;
         }
     }
-    if let Some(times) = args.robust {
-        robust::run(&robot, &replay, model, times, args.json, &mut out)?;
+    if let Some(variation_count) = args.robust {
+        robust::run(&robot, &replay, model, variation_count, args.json, &mut out)?;
     }
     Ok(out.flush()?)
 }
@@ -137,6 +138,7 @@ pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Re
     }
 }
 
+/// The script that the command-line options ask for.
 fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(path) = &args.script {
         return read_script(path);
@@ -150,7 +152,8 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     })
 }
 
-/// Builds a script for one round of a routine, with a second of standing before it and a second after its end.
+/// Builds a script for one round of a routine. The round begins after a second of standing, and the script ends two
+/// seconds after the round.
 fn round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
     let round = Round::of(robot, routine);
@@ -173,7 +176,7 @@ fn round_script(robot: &Robot, routine: &Routine) -> Script {
 /// The gait of this name. Fails if the robot has no such gait or if the gait moves no servo.
 pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     match robot.gait(name) {
-        Some(gait) if gait.moves() => Ok(gait),
+        Some(gait) if gait.has_movement() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
         None => {
             let gaits = tour::moving_gaits(robot);
@@ -186,10 +189,10 @@ pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a Checke
     }
 }
 
-/// Builds a script that walks each of these gaits for three cycles. The robot first has a second to take its
-/// first pose.
+/// Builds a script that walks each of these gaits for three cycles, after a second in which the robot takes the gait's
+/// first pose. The robot stands for a second before the first gait and after the last.
 pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
-    const CYCLES: f64 = 3.0;
+    const CYCLES_PER_GAIT: f64 = 3.0;
     const STAND_MS: u64 = 1000;
     let mut ms = STAND_MS;
     let mut steps = Vec::new();
@@ -199,7 +202,7 @@ pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
             command: name.replace('-', " "),
         });
         let period = robot.gait(name).map_or(1.0, |gait| gait.period());
-        ms += STAND_MS + (1000.0 * CYCLES * period).ceil() as u64;
+        ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;
     }
     steps.push(Step {
         ms,

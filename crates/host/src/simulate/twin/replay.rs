@@ -1,4 +1,4 @@
-//! Replays a run of the firmware on the simulated robot, frame by frame.
+//! Replays the pulses of a run on the simulated robot, frame by frame.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::simulate::sim::spans::Span;
 
 /// The simulated robot in every frame of a run.
 pub struct Replay {
-    /// The robot that walked.
+    /// The robot that is simulated.
     pub robot: Robot,
     /// Seconds from power-on to the first frame.
     pub start_s: f64,
@@ -25,29 +25,29 @@ pub struct Replay {
 pub struct Stage {
     /// The command of this stage.
     pub command: String,
-    /// The frames of this stage.
+    /// The indices of this stage's frames.
     pub frames: Range<usize>,
 }
 
 impl Replay {
-    /// Runs the simulated robot through the frames of a run.
+    /// Moves the simulated robot through the frames of a run. `spans` are the run's commands.
     pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let to_us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
         let states = log.widths.iter().map(|widths| twin.push(widths.map(to_us)));
         let stage_of = |span: Span| Stage {
-            frames: log.index(span.from)..log.index(span.to),
+            frames: log.index_at(span.from)..log.index_at(span.to),
             command: span.command,
         };
         Self {
             robot: robot.clone(),
-            start_s: log.seconds(0),
+            start_s: log.seconds_at(0),
             states: states.collect(),
             stages: spans.into_iter().map(stage_of).collect(),
         }
     }
 
-    /// Summarises a range of frames.
+    /// The summary of a range of frames.
     pub fn tally(&self, frames: Range<usize>) -> Tally {
         let start_place = match frames.start {
             0 => Place::START,
@@ -60,13 +60,13 @@ impl Replay {
         tally
     }
 
-    /// The gait of a stage and the frames of its last complete cycle. `None` unless the
+    /// The gait of a stage and the frame indices of its last complete cycle. `None` unless the
     /// stage's command is a moving gait that ran for at least two cycles.
     pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self
             .robot
             .gait(&stage.command)
-            .filter(|gait| gait.moves())?;
+            .filter(|gait| gait.has_movement())?;
         let frame_count = (gait.period() / FRAME).round() as usize;
         let start_frame = stage.frames.end.checked_sub(frame_count)?;
         (start_frame >= stage.frames.start + frame_count)

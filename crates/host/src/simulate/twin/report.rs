@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{Prediction, Robot, Round, SpringCost, Travel, UNDECIDED};
+use lizard_robot::{Prediction, Robot, Round, SpringCost, Travel, UNDECIDED_NOTE};
 use lizard_twin::{ServoModel, Tally};
 use serde::Serialize;
 
@@ -38,16 +38,16 @@ pub struct Row {
     pub lag: f64,
     /// The name and the value of the smallest margin.
     pub margin: Option<(&'static str, f64)>,
-    /// Least and greatest slider travel, mm.
+    /// Smallest and largest slider travel, mm.
     pub stroke: Option<[f64; 2]>,
-    /// The fastest turn of a servo, deg/s.
+    /// The largest angular rate of a servo, deg/s.
     pub servo_rate: f64,
     /// The largest deviation of a servo from its pulse, deg.
     pub servo_error: f64,
 }
 
-/// A displacement; a part is null if the contact model cannot determine it, because two feet pull
-/// against the other two.
+/// The parts of a displacement. A part is null if the contact model cannot determine it, because two
+/// feet balance the other two (a tie).
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct PathParts {
     /// Distance forward, mm.
@@ -82,19 +82,20 @@ impl From<Prediction> for PathParts {
     }
 }
 
-/// Predicts one round of a routine with this kind of servos; `None` unless the command runs exactly
-/// one round.
+/// Predicts one round of a routine with this model of the servos; `None` unless the command runs
+/// exactly one round of a routine.
 fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
     let round = Round::of(robot, routine);
     let prediction = match model {
-        ServoModel::Motors(_) => round.driven,
+        ServoModel::Motors(_) => round.driven_movement,
         ServoModel::Ideal | ServoModel::Unloaded(_) => round.movement,
     };
     Some((round, prediction))
 }
 
 impl PathParts {
+    /// The parts of a travel that the prediction determines; all parts without a prediction.
     fn of(travel: Travel, prediction: Option<&Prediction>) -> Self {
         let keep_determined =
             |component: fn(&Prediction) -> Option<f64>, value: f64| match prediction {
@@ -110,59 +111,62 @@ impl PathParts {
 }
 
 impl Report {
-    /// Summarises a replay, one row for each command. `is_paced` is true if the script changes the
-    /// speed of the gaits; cycles and predicted rounds are then left out.
-    pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, is_paced: bool) -> Self {
-        let rows = replay
+    /// Summarises a replay in one row for each command. `changes_speed` is true if the script changes
+    /// the speed of the gaits; cycles and predicted rounds are then left out.
+    pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, changes_speed: bool) -> Self {
+        let stages = replay
             .stages
             .iter()
             .filter(|stage| !stage.frames.is_empty());
         let row_of = |stage: &super::replay::Stage| {
-            let tally_of_stage = replay.tally(stage.frames.clone());
+            let stage_tally = replay.tally(stage.frames.clone());
             let gait = robot.gait_of_line(&stage.command);
-            let prediction = gait.map(|gait| robot.predict(gait));
-            let cycle = replay.last_cycle(stage).filter(|_| !is_paced);
-            let last_tally = cycle
+            let gait_prediction = gait.map(|gait| robot.predict(gait));
+            let cycle = replay.last_cycle(stage).filter(|_| !changes_speed);
+            let cycle_tally = cycle
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
-            let round = predict_round(robot, &stage.command, model).filter(|_| !is_paced);
-            let expected = prediction
+            let round = predict_round(robot, &stage.command, model).filter(|_| !changes_speed);
+            let prediction = gait_prediction
                 .as_ref()
                 .or(round.as_ref().map(|(_, prediction)| prediction));
             let seconds_at = |frame: usize| replay.start_s + frame as f64 * lizard_twin::FRAME;
-            let cycle_or_stage: &Tally = last_tally.as_ref().unwrap_or(&tally_of_stage);
+            let reported_tally: &Tally = cycle_tally.as_ref().unwrap_or(&stage_tally);
             Row {
                 command: stage.command.clone(),
                 seconds: [seconds_at(stage.frames.start), seconds_at(stage.frames.end)],
-                way: PathParts::of(tally_of_stage.travel(), expected),
-                cycle: last_tally.zip(cycle).map(|(tally, (gait, _))| Cycle {
-                    way: PathParts::of(tally.travel(), expected),
-                    predicted: expected.map_or(PathParts::of(tally.travel(), None), |prediction| {
-                        (*prediction).into()
-                    }),
-                    speed: expected.and_then(|prediction| prediction.forward).map(|_| {
-                        let travel = tally.travel();
-                        travel.forward.hypot(travel.left) / tally.seconds()
-                    }),
+                way: PathParts::of(stage_tally.travel(), prediction),
+                cycle: cycle_tally.zip(cycle).map(|(tally, (gait, _))| Cycle {
+                    way: PathParts::of(tally.travel(), prediction),
+                    predicted: prediction
+                        .map_or(PathParts::of(tally.travel(), None), |prediction| {
+                            (*prediction).into()
+                        }),
+                    speed: prediction
+                        .and_then(|prediction| prediction.forward)
+                        .map(|_| {
+                            let travel = tally.travel();
+                            travel.forward.hypot(travel.left) / tally.seconds()
+                        }),
                     share_of_rigid: SpringCost::of(gait, robot.ground())
-                        .and_then(|cost| cost.share),
+                        .and_then(|cost| cost.share_of_rigid),
                 }),
-                // An input's contact may end a step earlier or later than the prediction assumes.
+                // An input may end a step of the routine earlier or later than the prediction assumes.
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
                     .map(|(_, prediction)| prediction.into()),
-                foot_slip: cycle_or_stage.slip,
-                lag: cycle_or_stage.lag,
-                margin: cycle_or_stage
+                foot_slip: reported_tally.slip,
+                lag: reported_tally.lag,
+                margin: reported_tally
                     .margin
                     .map(|(check, value)| (check.name(), value)),
-                stroke: cycle_or_stage.stroke,
-                servo_rate: cycle_or_stage.rate,
-                servo_error: cycle_or_stage.error,
+                stroke: reported_tally.stroke,
+                servo_rate: reported_tally.rate,
+                servo_error: reported_tally.error,
             }
         };
         Self {
-            rows: rows.map(row_of).collect(),
+            rows: stages.map(row_of).collect(),
         }
     }
 
@@ -170,7 +174,7 @@ impl Report {
     ///
     /// # Errors
     /// Fails if writing fails.
-    pub fn json(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_json(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
             json::write_line(out, row)?;
         }
@@ -266,7 +270,7 @@ impl Report {
                 || displacement.turn.is_none()
         };
         if self.rows.iter().any(|row| is_undecided(&row.way)) {
-            write!(out, "\n{UNDECIDED}")?;
+            write!(out, "\n{UNDECIDED_NOTE}")?;
         }
         Ok(())
     }

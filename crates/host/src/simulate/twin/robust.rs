@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{CheckedGait, Effort, Ground, HIGH_LINE_SHARE, PACES, Robot, Travel};
+use lizard_robot::{CheckedGait, Effort, Ground, HIGH_LINE_SHARE, PACES_PERCENT, Robot, Travel};
 use lizard_tune::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
@@ -16,7 +16,9 @@ use crate::shared::progress::progress_bar;
 /// The spread of a gait's displacement in one cycle.
 #[derive(Debug, Serialize)]
 struct Spread {
+    /// The name of the gait.
     gait: String,
+    /// Number of variations that walked.
     times: usize,
     /// The 5th, 50th and 95th percentile of the distance forward, mm.
     forward: [f64; 3],
@@ -24,27 +26,28 @@ struct Spread {
     left: [f64; 3],
     /// The same percentiles of the turn, deg counter-clockwise.
     turn: [f64; 3],
-    /// The servos' load at each pace on each supply.
+    /// The load of the servos at each pace on each supply.
     lines: Vec<EffortShare>,
 }
 
-/// The largest share of a servo's torque-speed line that a gait uses.
+/// The largest share of a servo's torque-speed line that a gait uses at one pace on one supply.
 #[derive(Debug, Serialize)]
 struct EffortShare {
-    /// Percent of the gait's own pace.
+    /// Pace, percent of the gait's own pace.
     pace: f64,
-    /// Supply of the servos, V.
+    /// Supply voltage of the servos, V.
     volts: f64,
-    /// The share on the robot's own floor, then on a floor with the highest friction of the variations.
+    /// The share on the robot's own floor, then the share on a floor with the highest friction of the variations; 1 is
+    /// the whole line.
     share: [f64; 2],
 }
 
 impl EffortShare {
-    /// The shares of a gait on every supply, at each of the paces `PACES`.
+    /// The shares of a gait at each of the [`PACES_PERCENT`] on every supply.
     fn of_gait(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
         let efforts = [1.0, FRICTION.1].map(|factor| {
             let ground = Ground {
-                friction: robot.ground().friction * factor,
+                friction_coefficient: robot.ground().friction_coefficient * factor,
                 ..*robot.ground()
             };
             Effort::of(gait, &ground, &robot.motors())
@@ -57,11 +60,12 @@ impl EffortShare {
                 .map(|effort| effort.line_share(pace / 100.0, volts / robot.servo_type().volts)),
         };
         let shares_at_pace = |pace| robot.reported_volts().map(|volts| share_at(pace, volts));
-        PACES.into_iter().flat_map(shares_at_pace).collect()
+        PACES_PERCENT.into_iter().flat_map(shares_at_pace).collect()
     }
 }
 
-/// Walks every gait of the run `times` times, each time with another robot and floor, and prints the spreads.
+/// Walks every gait of the run `variation_count` times, each time with another variation of robot and floor, and prints
+/// the spreads.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -69,17 +73,21 @@ pub fn run(
     robot: &Robot,
     replay: &Replay,
     model: ServoModel,
-    times: u32,
+    variation_count: u32,
     is_json: bool,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
     let gaits: Vec<&CheckedGait> = replay
         .stages
         .iter()
-        .filter_map(|stage| robot.gait(&stage.command).filter(|gait| gait.moves()))
+        .filter_map(|stage| {
+            robot
+                .gait(&stage.command)
+                .filter(|gait| gait.has_movement())
+        })
         .collect();
     let bar = progress_bar(
-        times as usize * gaits.len(),
+        variation_count as usize * gaits.len(),
         "{bar:40} {pos}/{len} walks, {eta}",
     );
     let mut spreads: Vec<Spread> = Vec::new();
@@ -93,7 +101,7 @@ pub fn run(
                 .with_play(seed)
                 .walked(robot, gait, model)
         };
-        let paths: Vec<Travel> = (0..u64::from(times)).map(walk_once).collect();
+        let paths: Vec<Travel> = (0..u64::from(variation_count)).map(walk_once).collect();
         spreads.push(Spread::of(
             gait.name(),
             &paths,
@@ -106,12 +114,13 @@ pub fn run(
             json::write_line(out, spread)?;
         }
     } else {
-        print(&spreads, times, out)?;
+        print(&spreads, variation_count, out)?;
     }
     Ok(())
 }
 
 impl Spread {
+    /// The spread of a gait over the paths of its variations.
     fn of(gait: &str, paths: &[Travel], lines: Vec<EffortShare>) -> Self {
         let quantiles_of = |quantity: fn(&Travel) -> f64| {
             quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
@@ -127,10 +136,11 @@ impl Spread {
     }
 }
 
-fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()> {
+/// Prints a table of the spreads and a table of the shares of the torque-speed line.
+fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "\n{times} robots and floors: {SPREAD}, {PLAY_SPREAD}; a cycle, mm and deg:\n"
+        "\n{variation_count} robots and floors: {SPREAD}, {PLAY_SPREAD}; a cycle, mm and deg:\n"
     )?;
     let columns = [
         "ahead  5 %",
@@ -172,8 +182,12 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
         for line in &spread.lines {
-            let [own_share, largest_share] = line.share.map(format_share);
-            write!(out, "{:>18}", format!("{own_share} {largest_share}"))?;
+            let [own_floor_share, rough_floor_share] = line.share.map(format_share);
+            write!(
+                out,
+                "{:>18}",
+                format!("{own_floor_share} {rough_floor_share}")
+            )?;
         }
         writeln!(out)?;
     }

@@ -1,6 +1,6 @@
 //! Tests of the drawing of the cranks and the spline.
 
-use lizard_host::draw::horns;
+use lizard_host::draw::draw_horns;
 use lizard_robot::Robot;
 
 use super::drawing::{Drawing, Point};
@@ -9,7 +9,7 @@ use super::files::{SERVOS, files, paper, value_of};
 #[test]
 fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     for (name, text) in files() {
-        let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
+        let drawing = Drawing::of(&draw_horns(&Robot::parse(&text).expect("a robot")));
         // All four cranks have the same scale.
         let link_length = |key: &str| -> f64 {
             let line = text
@@ -64,7 +64,7 @@ fn turn_between(from: f64, to: f64) -> f64 {
 #[test]
 fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
     for (name, text) in files() {
-        let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
+        let drawing = Drawing::of(&draw_horns(&Robot::parse(&text).expect("a robot")));
         let (placed_crank, exact_crank) = (drawing.path("sits"), drawing.path("should"));
         let neutral: f64 = value_of(&text, "A1", "neutral").parse().expect("degrees");
         assert!(
@@ -84,7 +84,7 @@ fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
 
 #[test]
 fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
-    let drawing = Drawing::of(&horns(&Robot::parse(&paper()).expect("a robot")));
+    let drawing = Drawing::of(&draw_horns(&Robot::parse(&paper()).expect("a robot")));
     let corners = drawing.path("spline");
     let count = corners.len() as f64;
     let sum = corners

@@ -5,7 +5,7 @@ mod drawing;
 mod files;
 mod wires;
 
-use lizard_host::draw::{horns, top_view, wiring};
+use lizard_host::draw::{draw_horns, draw_top_view, draw_wiring};
 use lizard_robot::Robot;
 
 use crate::program::read;
@@ -16,7 +16,7 @@ use files::{files, paper};
 fn everything_is_on_the_page_and_large_enough_to_be_read() {
     for (name, text) in files() {
         let robot = Robot::parse(&text).expect("a robot");
-        for svg in [wiring(&robot), horns(&robot)] {
+        for svg in [draw_wiring(&robot), draw_horns(&robot)] {
             let drawing = Drawing::of(&svg);
             let (width, height) = {
                 let page = &drawing.0[0];
@@ -52,11 +52,14 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
 #[test]
 fn the_drawings_in_docs_are_up_to_date() {
     let robot = Robot::parse(&paper()).expect("a robot");
-    let neutral = robot.lizard().solve(&robot.neutral()).expect("it closes");
-    let view = top_view(&robot, &neutral, true);
+    let neutral = robot
+        .lizard()
+        .solve(&robot.neutral_pose())
+        .expect("it closes");
+    let view = draw_top_view(&robot, &neutral, true);
     for (name, svg) in [
-        ("wiring", wiring(&robot)),
-        ("horns", horns(&robot)),
+        ("wiring", draw_wiring(&robot)),
+        ("horns", draw_horns(&robot)),
         ("lizard", view.clone()),
         ("charts/top-view", view),
     ] {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lizard_host::draw::wiring;
+use lizard_host::draw::draw_wiring;
 use lizard_robot::Robot;
 
 use super::drawing::{Drawing, Point};
@@ -134,7 +134,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
         (format!("{pins:?}"), text)
     });
     for (name, text) in files().into_iter().chain(pin_sets) {
-        let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
+        let drawing = Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")));
         let nets = Nets::of(&drawing);
         let servo_grounds = [
             "end-A1-ground",
@@ -207,7 +207,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
 
 #[test]
 fn removing_any_link_splits_its_strip() {
-    let svg = wiring(&Robot::parse(&paper()).expect("a robot"));
+    let svg = draw_wiring(&Robot::parse(&paper()).expect("a robot"));
     let links = (1..10).map(|link| format!("link-ground-{link}"));
     let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
     for link in links {
@@ -236,7 +236,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
         .iter()
         .map(|pins| with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str())));
     for text in files().into_iter().map(|file| file.1).chain(pin_sets) {
-        let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
+        let drawing = Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")));
         // The wires in the radio's panel may touch each other, so they are left out.
         let mut wires = drawing.wires();
         wires.retain(|(name, _)| !name.starts_with("radio-"));
@@ -291,7 +291,7 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
 
 #[test]
 fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
-    let drawing = Drawing::of(&wiring(&Robot::parse(&paper()).expect("a robot")));
+    let drawing = Drawing::of(&draw_wiring(&Robot::parse(&paper()).expect("a robot")));
     let point_of = |name: &str| drawing.path(name)[0];
     let path_of = |name: &str| drawing.path(name);
     let [anode, cathode] = ["end-diode-anode", "end-diode-cathode"].map(point_of);
@@ -319,7 +319,7 @@ fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
 fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground() {
     let draw_with = |tables: &str| {
         let text = paper().replace("[limits]", &format!("{tables}\n[limits]"));
-        Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")))
+        Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")))
     };
     let has_entry = |drawing: &Drawing, name: &str| {
         let mut ids = drawing.0.iter().map(|element| element.attribute("id"));
@@ -374,7 +374,7 @@ fn pins_are_where_an_uno_has_them() {
         ("A3", (2300.0, 100.0)),
         ("A5", (2500.0, 100.0)),
     ];
-    let drawing = Drawing::of(&wiring(&Robot::parse(&paper()).expect("a robot")));
+    let drawing = Drawing::of(&draw_wiring(&Robot::parse(&paper()).expect("a robot")));
     let pin_point = |name: &str| drawing.path(&format!("pin-{name}"))[0];
     let scale = (pin_point("D0").0 - pin_point("D13").0) / (2500.0 - 1140.0);
     let (origin, origin_mil) = (pin_point("D13"), PINS[0].1);
@@ -397,7 +397,7 @@ fn a_rail_that_is_measured_has_its_pin_marked() {
         "[limits]",
         "[supply.rail]\npin = \"A3\"\nratio = 2.5\n[limits]",
     );
-    let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
+    let drawing = Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")));
     let remark = "A3 measures the +5 V strip, divided by 2.50.";
     assert!(drawing.0.iter().any(|element| element.content == remark));
     let fill_of = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use lizard_film::{Picture, read, sheet};
+use lizard_film::{Picture, read_tags, sheet};
 
 use crate::program::{run, scratch};
 
@@ -91,7 +91,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
                 "printers leave a margin: {ink:?}"
             );
         }
-        let mut tags = read(&picture);
+        let mut tags = read_tags(&picture);
         tags.sort_by_key(|tag| tag.id);
         let ids: Vec<usize> = tags.iter().map(|tag| tag.id).collect();
         assert_eq!(ids, [0, 1, 2, 3, 4], "{paper}");
@@ -101,7 +101,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
             let [left, right, ..] = tag.corners;
             let edge = distance_mm(left, right);
             assert!(
-                (edge - sheet::edge(tag.id)).abs() < 0.4,
+                (edge - sheet::tag_edge(tag.id)).abs() < 0.4,
                 "{paper} {}: {edge}",
                 tag.id
             );
@@ -112,7 +112,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
         }
         for strip in [0, 2] {
             let span = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
-            assert!((span - sheet::SPAN).abs() < 0.4, "{paper}: {span}");
+            assert!((span - sheet::TAG_SPACING).abs() < 0.4, "{paper}: {span}");
         }
     }
 }
@@ -123,8 +123,8 @@ fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
     let rectangles: Vec<Vec<f64>> = operands(&text, " re").collect();
     let lines = rectangles
         .iter()
-        .filter(|line| (line[2] * MM_PER_POINT - sheet::RULER).abs() < 0.01);
-    assert_eq!(lines.count(), sheet::STRIPS);
+        .filter(|line| (line[2] * MM_PER_POINT - sheet::RULER_LENGTH).abs() < 0.01);
+    assert_eq!(lines.count(), sheet::STRIP_COUNT);
     // The outer edges of the two end ticks are the end points of the line.
     let ticks = rectangles
         .iter()
@@ -132,9 +132,9 @@ fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
     let ticks: Vec<[f64; 2]> = ticks
         .map(|tick| [tick[0] * MM_PER_POINT, (tick[0] + tick[2]) * MM_PER_POINT])
         .collect();
-    assert_eq!(ticks.len(), 2 * sheet::STRIPS);
+    assert_eq!(ticks.len(), 2 * sheet::STRIP_COUNT);
     assert!(
-        (ticks[1][1] - ticks[0][0] - sheet::RULER).abs() < 0.01,
+        (ticks[1][1] - ticks[0][0] - sheet::RULER_LENGTH).abs() < 0.01,
         "{ticks:?}"
     );
 }

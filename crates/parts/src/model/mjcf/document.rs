@@ -7,13 +7,13 @@ use crate::model::text::{escape_attribute, join_numbers, round};
 use crate::model::writer::Writer;
 
 /// Time step of the simulation, s.
-const TIME_STEP: f64 = 0.0002;
-/// Stiffness (`solref`) of constraints and limits: time constant, s, and damping ratio.
+const TIME_STEP_S: f64 = 0.0002;
+/// `solref` of constraints and limits: time constant, s, and damping ratio.
 const CONSTRAINT_SOLREF: &str = "0.002 1";
-/// Stiffness (`solref`) of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's
+/// `solref` of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's
 /// excess length.
 pub(super) const CONTACT_SOLREF: &str = "0.001 1";
-/// Impedance (`solimp`) of constraints and limits.
+/// `solimp` of constraints and limits: least and largest impedance, and the width of the transition, m or rad.
 const CONSTRAINT_SOLIMP: &str = "0.99 0.999 0.0001";
 
 impl Writer<'_> {
@@ -23,7 +23,7 @@ impl Writer<'_> {
         self.xml.open(format!(r#"mujoco model="{name}""#));
         self.write_options();
         self.xml.open("custom");
-        let ratio = round(self.scene.ratio);
+        let ratio = round(self.scene.friction_ratio);
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
         self.xml.write_empty_element(data);
         if self.scene.drives_in_bursts {
@@ -31,9 +31,9 @@ impl Writer<'_> {
                 .write_empty_element(r#"numeric name="bursts" data="1""#);
         }
         if let Some(course) = &self.scene.course {
-            let (begin, period) = (round(course.measure_start), round(course.period));
-            let count = course.count;
-            let data = format!(r#"numeric name="cycle" data="{begin} {period} {count}""#);
+            let (start, period) = (round(course.measure_start), round(course.period));
+            let measured_cycles = course.measured_cycles;
+            let data = format!(r#"numeric name="cycle" data="{start} {period} {measured_cycles}""#);
             self.xml.write_empty_element(data);
         }
         self.xml.close();
@@ -50,7 +50,7 @@ impl Writer<'_> {
         xml.write_empty_element(r#"compiler angle="radian" autolimits="true""#);
         // Feet of a few grams chatter with MuJoCo's default contact settings.
         xml.write_empty_element(format!(
-            r#"option timestep="{TIME_STEP}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
+            r#"option timestep="{TIME_STEP_S}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
             self.scene.floor.gravity()
         ));
         xml.open("visual");
@@ -68,15 +68,15 @@ impl Writer<'_> {
     }
 
     fn write_assets(&mut self) {
-        const SIZE: &str = r#"width="256" height="256""#;
+        const TEXTURE_SIZE: &str = r#"width="256" height="256""#;
         let pieces = self.visible_pieces();
         let xml = &mut self.xml;
         xml.open("asset");
         xml.write_empty_element(format!(
-            r#"texture name="sky" type="skybox" builtin="gradient" rgb1="0.9 0.95 1" rgb2="0.6 0.7 0.8" {SIZE}"#
+            r#"texture name="sky" type="skybox" builtin="gradient" rgb1="0.9 0.95 1" rgb2="0.6 0.7 0.8" {TEXTURE_SIZE}"#
         ));
         xml.write_empty_element(format!(
-            r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {SIZE}"#
+            r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {TEXTURE_SIZE}"#
         ));
         // Each square of the checker pattern becomes 5 cm wide.
         xml.write_empty_element(
@@ -105,6 +105,6 @@ impl Writer<'_> {
 }
 
 /// The attributes that make a joint's range limits stiff.
-pub(super) fn limits() -> String {
+pub(super) fn stiff_limit_attributes() -> String {
     format!(r#"solreflimit="{CONSTRAINT_SOLREF}" solimplimit="{CONSTRAINT_SOLIMP}""#)
 }

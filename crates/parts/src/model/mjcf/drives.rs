@@ -1,22 +1,22 @@
-//! Constraints that close the loops, and motors that follow the servo pulses.
+//! Constraints that close the loops, and motors that follow the servos' target angles.
 
 use lizard_robot::FRAMES_PER_SECOND;
-use lizard_robot::servo::NAMES;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::closed;
+use crate::model::loops;
 use crate::model::node::Node;
-use crate::model::text::{MILLI, join_numbers, metres, round};
+use crate::model::text::{MILLI, format_metres, join_numbers, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn write_loops(&mut self) {
         self.xml.open("equality");
-        for loop_joint in closed::cut_joints(self.assembly, self.scene.pull.is_some()) {
+        for loop_joint in loops::cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
             let [first, second] = loop_joint.bodies.map(Node::name);
             let (name, anchor) = (
                 loop_joint.name,
-                metres([loop_joint.at.x, loop_joint.at.y, 0.0]),
+                format_metres([loop_joint.point.x, loop_joint.point.y, 0.0]),
             );
             self.xml.write_empty_element(format!(
                 r#"connect name="{name}" body1="{first}" body2="{second}" anchor="{anchor}""#
@@ -27,9 +27,9 @@ impl Writer<'_> {
 
     pub(super) fn write_actuators(&mut self) {
         self.xml.open("actuator");
-        for (servo, name) in NAMES.iter().enumerate() {
-            let motor = self.scene.motors.each[servo];
-            let stall = motor.stall * MILLI;
+        for (servo, name) in SERVO_NAMES.iter().enumerate() {
+            let motor = self.scene.motors.per_servo[servo];
+            let stall = motor.stall_torque * MILLI;
             let (gain, stall) = (
                 round(stall / motor.full_torque_error.to_radians()),
                 round(stall),

@@ -3,10 +3,10 @@
 use super::document::CONTACT_SOLREF;
 use crate::model::floor::{Block, Floor};
 use crate::model::scene::Pads;
-use crate::model::text::{MILLI, join_numbers, metres, round};
+use crate::model::text::{MILLI, format_metres, join_numbers, round};
 use crate::model::writer::Writer;
 use lizard_robot::GRAVITY;
-use lizard_robot::servo::LEGS;
+use lizard_robot::servo::LEG_NAMES;
 
 /// Height of a flat pad, mm.
 const FLAT_PAD_HEIGHT: f64 = 3.0;
@@ -39,8 +39,8 @@ impl Writer<'_> {
             // The box is twice as high as the block; its lower half is under the floor.
             let [width, length, height] = *size;
             let (half_size, position) = (
-                metres([width / 2.0, length / 2.0, height]),
-                metres([*x, *y, 0.0]),
+                format_metres([width / 2.0, length / 2.0, height]),
+                format_metres([*x, *y, 0.0]),
             );
             self.xml.write_empty_element(format!(
                 r#"geom type="box" size="{half_size}" pos="{position}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
@@ -54,31 +54,32 @@ impl Writer<'_> {
     /// the floor and on its blocks.
     pub(super) fn write_pad(&mut self, servo: usize) {
         let pad = self.assembly.robot().parts().pad;
-        let [x, y, middle] = self.pad_middle(servo);
-        let lowest = middle - pad.radius;
+        let [x, y, middle_z] = self.pad_middle(servo);
+        let lowest_z = middle_z - pad.radius;
         match self.scene.pads {
             Pads::Domes(radius) => {
                 let shape = format!(r#"type="sphere" size="{}""#, round(radius * MILLI));
-                self.write_pad_shape(servo, "", &shape, [x, y, lowest + radius]);
+                self.write_pad_shape(servo, "", &shape, [x, y, lowest_z + radius]);
             }
-            Pads::Terraces(layer) => {
+            Pads::Terraces(layer_height) => {
                 // A layer has the dome's radius at the middle of the layer's height.
                 let radius_at = |height: f64| (height * (2.0 * pad.radius - height)).sqrt();
-                let layers = (0..).map(|number| (f64::from(number) + 0.5) * layer);
-                let layers = layers.take_while(|height| radius_at(*height) < pad.width / 2.0);
-                for (number, height) in layers.enumerate() {
-                    let name = format!(" {number}");
-                    let position = [x, y, lowest + height];
+                let heights =
+                    (0..).map(|layer_index| (f64::from(layer_index) + 0.5) * layer_height);
+                let heights = heights.take_while(|height| radius_at(*height) < pad.width / 2.0);
+                for (layer_index, height) in heights.enumerate() {
+                    let suffix = format!(" {layer_index}");
+                    let position = [x, y, lowest_z + height];
                     self.write_pad_shape(
                         servo,
-                        &name,
-                        &disc_attributes(radius_at(height), layer),
+                        &suffix,
+                        &disc_attributes(radius_at(height), layer_height),
                         position,
                     );
                 }
             }
             Pads::Flat(diameter) => {
-                let position = [x, y, lowest + FLAT_PAD_HEIGHT / 2.0];
+                let position = [x, y, lowest_z + FLAT_PAD_HEIGHT / 2.0];
                 self.write_pad_shape(
                     servo,
                     "",
@@ -89,14 +90,14 @@ impl Writer<'_> {
         }
     }
 
-    fn write_pad_shape(&mut self, servo: usize, name: &str, shape: &str, position: [f64; 3]) {
+    fn write_pad_shape(&mut self, servo: usize, suffix: &str, shape: &str, position: [f64; 3]) {
         let (leg, position, friction) = (
-            LEGS[servo],
-            metres(position),
-            self.scene.floor.friction[servo],
+            LEG_NAMES[servo],
+            format_metres(position),
+            self.scene.floor.friction_coefficients[servo],
         );
         self.xml.write_empty_element(format!(
-            r#"geom name="pad {leg}{name}" {shape} pos="{position}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
+            r#"geom name="pad {leg}{suffix}" {shape} pos="{position}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
         ));
     }
 }

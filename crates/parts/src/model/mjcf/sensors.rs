@@ -1,8 +1,8 @@
 //! The sensors of the MuJoCo model.
 
-use lizard_robot::servo::{LEGS, NAMES};
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
-use crate::model::text::{MILLI, metres, round};
+use crate::model::text::{MILLI, format_metres, round};
 use crate::model::writer::Writer;
 
 /// Radius of a pad's site as a share of its dome's: contacts lie a little outside the dome.
@@ -13,14 +13,14 @@ impl Writer<'_> {
     /// position, the orientation and the velocities of the chassis.
     pub(super) fn write_sensors(&mut self) {
         self.xml.open("sensor");
-        for name in NAMES {
+        for name in SERVO_NAMES {
             for (quantity, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
                 self.xml.write_empty_element(format!(
                     r#"actuator{kind} name="{name} {quantity}" actuator="{name}""#
                 ));
             }
         }
-        for leg in LEGS {
+        for leg in LEG_NAMES {
             self.xml
                 .write_empty_element(format!(r#"touch name="load {leg}" site="pad {leg}""#));
         }
@@ -39,7 +39,7 @@ impl Writer<'_> {
     /// Writes the site on a servo's pad at which the pad's load is measured.
     pub(super) fn write_pad_site(&mut self, servo: usize) {
         let radius = self.assembly.robot().parts().pad.radius;
-        let (leg, position) = (LEGS[servo], metres(self.pad_middle(servo)));
+        let (leg, position) = (LEG_NAMES[servo], format_metres(self.pad_middle(servo)));
         let size = round(SITE_RADIUS_SHARE * radius * MILLI);
         self.xml.write_empty_element(format!(
             r#"site name="pad {leg}" type="sphere" size="{size}" pos="{position}" group="3""#

@@ -1,35 +1,42 @@
 //! The tree of bodies, each with the joint to its parent, as MJCF.
 
-use lizard_robot::SLOT;
+use lizard_robot::SLOT_LENGTH;
 
-use super::document::limits;
+use super::document::stiff_limit_attributes;
 use crate::layers::body::Mount;
-use crate::model::looks::Material;
+use crate::model::material::Material;
 use crate::model::node::{Freedom, Node};
-use crate::model::scene::Pull;
-use crate::model::text::{MILLI, join_numbers, metres, round};
+use crate::model::scene::StrutSpring;
+use crate::model::text::{MILLI, format_metres, join_numbers, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn write_body(&mut self, node: Node) {
         let placement = self.place_on_parent(node);
         let is_chassis = self.parent(node).is_none();
-        let height = if is_chassis { self.height() } else { 0.0 };
+        let height = if is_chassis {
+            self.chassis_height()
+        } else {
+            0.0
+        };
         let half_angle = placement.x_axis.angle().to_radians() / 2.0;
         let (name, position) = (
             node.name(),
-            metres([placement.origin.x, placement.origin.y, height]),
+            format_metres([placement.origin.x, placement.origin.y, height]),
         );
         let (cos, sin) = (round(half_angle.cos()), round(half_angle.sin()));
         self.xml.open(format!(
             r#"body name="{name}" pos="{position}" quat="{cos} 0 0 {sin}""#
         ));
         self.write_joint(node);
-        let mass = self.mass(node);
-        let (centre, grams) = (metres(mass.centre()), round(mass.mass * MILLI));
-        let tensor = join_numbers(mass.written_tensor());
+        let inertia = self.inertia(node);
+        let (centre, kilograms) = (
+            format_metres(inertia.mass_centre()),
+            round(inertia.mass * MILLI),
+        );
+        let tensor = join_numbers(inertia.formatted_tensor());
         self.xml.write_empty_element(format!(
-            r#"inertial pos="{centre}" mass="{grams}" fullinertia="{tensor}""#
+            r#"inertial pos="{centre}" mass="{kilograms}" fullinertia="{tensor}""#
         ));
         for piece in self
             .visible_pieces()
@@ -68,7 +75,7 @@ impl Writer<'_> {
                     .write_empty_element(format!(r#"freejoint name="{name}""#));
                 return;
             }
-            Freedom::Turns => ("hinge", "0 0 1"),
+            Freedom::TurnsAboutZ => ("hinge", "0 0 1"),
             Freedom::SlidesAlongX => ("slide", "1 0 0"),
             Freedom::SlidesVertically => ("slide", "0 0 1"),
         };
@@ -77,20 +84,23 @@ impl Writer<'_> {
         if let Some(servo) = self.driving_servo(node) {
             // Back-EMF reduces the motor's torque as it turns faster. Seen through the gears, its rotor has far
             // more inertia than a leg, so it smooths the steps of the pulses.
-            let motor = self.scene.motors.each[servo];
+            let motor = self.scene.motors.per_servo[servo];
             let damping = round(motor.damping() * MILLI);
             let armature = round(motor.inertia() * MILLI);
             joint += &format!(r#" damping="{damping}" armature="{armature}""#);
-            joint += &friction_loss(joints.drag * MILLI);
-        } else if matches!(node.freedom(), Freedom::Turns) {
-            joint += &friction_loss(self.scene.pin_friction * MILLI);
+            joint += &friction_attributes(joints.pin_torque * MILLI);
+        } else if matches!(node.freedom(), Freedom::TurnsAboutZ) {
+            joint += &friction_attributes(self.scene.pin_friction * MILLI);
         }
-        if matches!(node.freedom(), Freedom::SlidesAlongX) && !matches!(node, Node::Slot(_)) {
-            joint += &friction_loss(joints.slider);
+        if matches!(node.freedom(), Freedom::SlidesAlongX) && !matches!(node, Node::SlotPin(_)) {
+            joint += &friction_attributes(joints.slider_force);
         }
-        match (node, self.scene.pull) {
+        match (node, self.scene.strut_spring) {
             (Node::OnMount(Mount::Link(_)), _) if self.has_play() => {
-                let (play, limits) = (round(self.scene.play.to_radians()), limits());
+                let (play, limits) = (
+                    round(self.scene.play.to_radians()),
+                    stiff_limit_attributes(),
+                );
                 // Grease: it damps a link that moves freely within its play.
                 joint += &format!(r#" range="{} {play}" {limits} damping="0.00001""#, -play);
             }
@@ -98,12 +108,12 @@ impl Writer<'_> {
                 let [stiffness, damping] = self.leaf_spring();
                 joint += &format!(r#" stiffness="{stiffness}" damping="{damping}""#);
             }
-            (Node::Slot(_), Some(Pull { force, rate })) => {
-                let (end, limits) = (round(SLOT * MILLI), limits());
+            (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
+                let (slot_end, limits) = (round(SLOT_LENGTH * MILLI), stiff_limit_attributes());
                 let (stiffness, rest_position) =
-                    (round(rate / MILLI), round(-force / rate * MILLI));
+                    (round(rate / MILLI), round(-preload / rate * MILLI));
                 joint += &format!(
-                    r#" range="0 {end}" {limits} stiffness="{stiffness}" springref="{rest_position}" damping="0.1""#
+                    r#" range="0 {slot_end}" {limits} stiffness="{stiffness}" springref="{rest_position}" damping="0.1""#
                 );
             }
             _ => {}
@@ -113,7 +123,7 @@ impl Writer<'_> {
 }
 
 /// The attributes for a joint's dry friction, N or N m; empty for a joint without friction.
-fn friction_loss(friction: f64) -> String {
+fn friction_attributes(friction: f64) -> String {
     match friction > 0.0 {
         // MuJoCo's default friction constraint is soft: a servo that hardly moves would have less friction.
         true => format!(

@@ -1,6 +1,6 @@
-//! Tests with gaits at their limits and just beyond.
+//! Tests of the audit with gaits at their limits and just beyond them.
 
-use crate::testing::{all, robot, text_before_gaits, with};
+use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
 use crate::{CheckedGait, Robot};
 use lizard_core::guard::hazard::{Hazard, Margin};
 use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
@@ -12,7 +12,7 @@ fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     let mut travels = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for phase in (0..=u16::MAX).step_by(32) {
         let solution = robot.lizard().solve(&gait.table_angles(phase).into());
-        let solution = solution.expect("a checked gait closes");
+        let solution = solution.expect("a checked gait closes its loops");
         for (travel, side) in travels.iter_mut().zip(Side::ALL) {
             let s = solution.side(side).s;
             *travel = (travel.0.min(s), travel.1.max(s));
@@ -23,8 +23,8 @@ fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
 
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
-/// The unequal robot with sliders at nominal in its neutral pose, and one gait that moves the legs of one side, so
-/// that only one slider moves.
+/// The robot `unequal` with its sliders at nominal in the neutral pose. Its only moving gait, `lean`, moves the legs
+/// of one side, so that only that slider moves.
 fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
     let legs = if is_right {
         "LF = 0.0, LH = 0.0"
@@ -44,12 +44,12 @@ fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, cra
 }
 
 #[test]
-fn both_sides_count_to_the_sliders_travel() {
+fn the_stroke_covers_the_sliders_of_both_sides() {
     for is_right in [false, true] {
-        let robot = leaning_robot(is_right, &[]).expect("it leans");
-        let gait = robot.gait("lean").expect("lean");
+        let robot = leaning_robot(is_right, &[]).expect("the leaning robot is valid");
+        let gait = robot.gait("lean").expect("the robot has the gait lean");
         let travel = slider_travels(&robot, gait)[usize::from(is_right)];
-        let (min_stroke, max_stroke) = gait.audit().stroke;
+        let (min_stroke, max_stroke) = gait.audit().stroke_range;
         assert!(travel.0 < -5.0 && travel.1 > 3.0, "{travel:?}");
         assert!((travel.0 - min_stroke).abs() < 0.05, "{min_stroke}");
         assert!((max_stroke - travel.1).abs() < 0.05, "{max_stroke}");
@@ -57,10 +57,10 @@ fn both_sides_count_to_the_sliders_travel() {
 }
 
 #[test]
-fn a_slider_that_runs_out_on_one_side_alone_is_named() {
+fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
     for (is_right, side) in [(false, "left"), (true, "right")] {
-        let robot = leaning_robot(is_right, &[]).expect("it leans");
-        let gait = robot.gait("lean").expect("lean");
+        let robot = leaning_robot(is_right, &[]).expect("the leaning robot is valid");
+        let gait = robot.gait("lean").expect("the robot has the gait lean");
         let (min_stroke, max_stroke) = slider_travels(&robot, gait)[usize::from(is_right)];
         for (from, to, word) in [
             (
@@ -99,7 +99,7 @@ fn a_slider_that_runs_out_on_one_side_alone_is_named() {
 }
 
 #[test]
-fn a_hazard_of_the_guard_has_the_name_of_its_condition() {
+fn each_hazard_of_the_guard_corresponds_to_the_check_of_the_same_condition() {
     let margin_hazard = |margin| Hazard::Margin {
         margin,
         value: Sine(0),
@@ -115,15 +115,15 @@ fn a_hazard_of_the_guard_has_the_name_of_its_condition() {
         (stroke_hazard(CoreSide::Left), "stroke_left"),
         (stroke_hazard(CoreSide::Right), "stroke_right"),
     ] {
-        assert_eq!(super::condition(&hazard).name(), name);
+        assert_eq!(super::corresponding_check(&hazard).name(), name);
     }
 }
 
 #[test]
 fn every_sample_of_every_servo_is_checked() {
-    for (name, robot) in all() {
+    for (name, robot) in all_robots() {
         for gait in robot.gaits() {
-            let phases = super::phases(gait.table());
+            let phases = super::phases_to_check(gait.table());
             for channel in gait.table().channels {
                 for sample in (0..=u16::MAX).step_by(1024) {
                     let phase = sample.wrapping_sub(channel.offset);
@@ -135,37 +135,37 @@ fn every_sample_of_every_servo_is_checked() {
 }
 
 #[test]
-fn a_swing_backward_is_as_fast_as_one_forward() {
+fn a_backward_swing_is_as_fast_as_a_forward_one() {
     // All legs have a negative gain, so they swing backward.
     let table = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
-    let robot = with("unequal", &[("[gait.trot]", table)]).expect("a gait");
-    let speed_of = |name: &str| robot.gait(name).expect(name).audit().peak.speed;
+    let robot = robot_with("unequal", &[("[gait.trot]", table)]).expect("the gait is valid");
+    let speed_of = |name: &str| robot.gait(name).expect(name).audit().peak_speed.speed;
     assert!((speed_of("against") - speed_of("walk")).abs() < 1e-9);
 }
 
 #[test]
-fn a_gait_may_be_as_fast_as_its_limit() {
+fn a_gait_may_be_as_fast_as_the_limit_but_no_faster() {
     let unequal = robot("unequal");
-    let speed_of = |gait: &CheckedGait| gait.audit().peak.speed;
+    let speed_of = |gait: &CheckedGait| gait.audit().peak_speed.speed;
     let largest_speed = unequal.gaits().iter().map(speed_of).fold(0.0, f64::max);
     let limit_line = |speed: f64| format!("gait_slew = {speed:?}");
     assert!(
-        with(
+        robot_with(
             "unequal",
             &[("gait_slew = 330.0", &limit_line(largest_speed))]
         )
         .is_ok()
     );
-    let refusal = with(
+    let refusal = robot_with(
         "unequal",
         &[("gait_slew = 330.0", &limit_line(largest_speed - 1e-6))],
     );
-    let refusal = refusal.expect_err("it is too fast").to_string();
+    let refusal = refusal.expect_err("the gait is too fast").to_string();
     assert!(refusal.contains("limits.gait_slew is"), "{refusal}");
 }
 
 #[test]
-fn a_gait_may_use_all_of_a_servos_travel() {
+fn a_gait_may_use_all_of_a_servos_travel_but_no_more() {
     // A held leg swings exactly its amplitude to either side of neutral.
     let robot_with_travel = |degrees: f64| {
         let servo_keys = format!("us_per_degree = 8.5\nmin_us = {:?}", 1500.0 - degrees * 8.5);
@@ -183,7 +183,7 @@ fn a_gait_may_use_all_of_a_servos_travel() {
         Ok(2)
     );
     let message = robot_with_travel(16.9)
-        .expect_err("a tenth less")
+        .expect_err("the travel is a tenth of a degree too small")
         .to_string();
     assert!(
         message.starts_with("in \"sway\" servo A3 would have to turn farther than it can: ")
@@ -193,7 +193,7 @@ fn a_gait_may_use_all_of_a_servos_travel() {
 }
 
 #[test]
-fn every_end_of_every_travel_is_checked() {
+fn both_ends_of_every_servos_travel_are_checked() {
     // A servo with only about a degree of travel on one side cannot walk.
     for (servo, min_line, max_line, neutral) in [
         ("A1", "min_us = 610.0", "max_us = 2350.0", 1470.0),
@@ -205,7 +205,9 @@ fn every_end_of_every_travel_is_checked() {
             (min_line, format!("min_us = {}", neutral - 9.0)),
             (max_line, format!("max_us = {}", neutral + 9.0)),
         ] {
-            let message = with("unequal", &[(from, &to)]).expect_err(&to).to_string();
+            let message = robot_with("unequal", &[(from, &to)])
+                .expect_err(&to)
+                .to_string();
             assert!(
                 message.starts_with(&format!(
                     "in \"walk\" servo {servo} would have to turn farther"
@@ -217,19 +219,19 @@ fn every_end_of_every_travel_is_checked() {
 }
 
 #[test]
-fn each_kind_of_margin_has_the_limit_of_its_kind() {
+fn each_kind_of_margin_is_checked_against_its_own_limit() {
     let unequal = robot("unequal");
     for (key, checks) in [
         ("type2 = 0.32 ", &Check::TYPE2[..]),
         ("type1 = 0.27 ", &Check::TYPE1),
         ("leg = 0.38 ", &Check::LEG),
     ] {
-        let name = key.split(' ').next().expect("a name");
+        let name = key.split(' ').next().expect("the text begins with a key");
         let least_margin_of = |gait: &CheckedGait| {
             let audit = gait.audit();
             let [least] = [audit.type2, audit.type1, audit.leg]
                 .into_iter()
-                .filter(|margin| checks.contains(&margin.what))
+                .filter(|margin| checks.contains(&margin.check))
                 .collect::<Vec<_>>()[..]
             else {
                 panic!("{audit:?}")
@@ -244,10 +246,10 @@ fn each_kind_of_margin_has_the_limit_of_its_kind() {
         let limit_line = |value: f64| format!("{name} = {value:?} ");
         // The firmware's guard is accurate to one or two thousandths.
         assert!(
-            with("unequal", &[(key, &limit_line(least_margin - 0.003))]).is_ok(),
+            robot_with("unequal", &[(key, &limit_line(least_margin - 0.003))]).is_ok(),
             "{name}"
         );
-        let refusal = with("unequal", &[(key, &limit_line(least_margin + 1e-6))]);
+        let refusal = robot_with("unequal", &[(key, &limit_line(least_margin + 1e-6))]);
         let refusal = refusal.expect_err(name).to_string();
         assert!(refusal.contains(&format!("margin {name}_")), "{refusal}");
     }
@@ -255,8 +257,8 @@ fn each_kind_of_margin_has_the_limit_of_its_kind() {
 
 #[test]
 fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
-    // If the limit is only a step or two of the firmware's integers below the gaits' smallest margin, the
-    // floating-point check still accepts, but the guard of at least one robot refuses.
+    // If the limit is only slightly below the gaits' smallest margin, by one or two units of the firmware's integers,
+    // the floating-point check still accepts every gait, but the guard of at least one robot refuses one.
     let mut refusals = Vec::new();
     for (name, key) in [
         ("paper", "leg = 0.3 "),
@@ -277,14 +279,17 @@ fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
             .iter()
             .map(least_margin_of)
             .fold(1.0, f64::min);
-        let limit_name = key.split(' ').next().expect("a name");
+        let limit_name = key.split(' ').next().expect("the text begins with a key");
         for i in 1..10 {
             let limit_line = format!("{limit_name} = {:?} ", least_margin - f64::from(i) * 1e-5);
-            let refusal = with(name, &[(key, &limit_line)]).err();
+            let refusal = robot_with(name, &[(key, &limit_line)]).err();
             refusals.extend(refusal.map(|error| error.to_string()));
         }
     }
-    assert!(!refusals.is_empty(), "no limit is too near");
+    assert!(
+        !refusals.is_empty(),
+        "no limit was refused by the guard alone"
+    );
     for refusal in refusals {
         assert!(
             refusal.contains(": margin or travel ") && refusal.contains("leave it a little room ("),
@@ -294,19 +299,22 @@ fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
 }
 
 #[test]
-fn the_least_margins_are_those_at_their_phases() {
-    for (name, robot) in all() {
+fn each_least_margin_is_the_margin_at_its_reported_phase() {
+    for (name, robot) in all_robots() {
         for gait in robot.gaits() {
             let audit = gait.audit();
-            for least in [audit.type2, audit.type1, audit.leg] {
-                let phase = (least.phase * 65536.0) as u16;
+            for least_margin in [audit.type2, audit.type1, audit.leg] {
+                let phase = (least_margin.phase * 65536.0) as u16;
                 let pose = gait.table_angles(phase).into();
-                let solution = robot.lizard().solve(&pose).expect("closes");
+                let solution = robot
+                    .lizard()
+                    .solve(&pose)
+                    .expect("a checked gait closes its loops");
                 let (_, value) = solution
                     .conditions()
-                    .find(|(check, _)| *check == least.what)
-                    .expect("a condition");
-                assert_eq!(value, least.value, "{name} {}", gait.name());
+                    .find(|(check, _)| *check == least_margin.check)
+                    .expect("the solution has this condition");
+                assert_eq!(value, least_margin.value, "{name} {}", gait.name());
             }
         }
     }

@@ -29,17 +29,22 @@ fn a_gait_reversed_twice_goes_forward() {
         [false, true, false, false, true, true]
     );
     let stroll_on = robot.gait("stroll-on").expect("stroll-on");
-    assert_eq!((stroll_on.phase(0.32), stroll_on.period()), (0.25, 1.28));
+    assert_eq!((stroll_on.phase_at(0.32), stroll_on.period()), (0.25, 1.28));
     let stroll_back = robot.gait("stroll-back").expect("stroll-back");
-    assert_eq!((stroll_back.phase(0.3), stroll_back.period()), (0.75, 1.2));
+    assert_eq!(
+        (stroll_back.phase_at(0.3), stroll_back.period()),
+        (0.75, 1.2)
+    );
 }
 
 #[test]
-fn a_mirror_exchanges_the_legs_and_its_gains_count_after_it() {
+fn a_mirrored_gait_exchanges_left_and_right_before_its_gains_apply() {
     let robot = robot("own-gaits");
     let amplitudes_and_starts = |name| {
         let strides = robot.gait(name).expect(name).strides();
-        strides.each_ref().map(|s| (s.amplitude, s.start))
+        strides
+            .each_ref()
+            .map(|stride| (stride.amplitude, stride.start))
     };
     assert_eq!(
         amplitudes_and_starts("stroll"),
@@ -60,7 +65,7 @@ fn a_mirror_exchanges_the_legs_and_its_gains_count_after_it() {
 }
 
 #[test]
-fn an_order_gives_each_leg_its_turn() {
+fn each_leg_swings_at_its_position_in_the_order() {
     let robot = robot("own-gaits");
     let creep = robot.gait("creep").expect("creep");
     // All legs move back in the first fifth; then RF, LH, LF and RH swing forward, each in one of the next fifths.
@@ -72,15 +77,18 @@ fn an_order_gives_each_leg_its_turn() {
 }
 
 #[test]
-fn a_path_leads_the_end_that_it_names_and_leaves_the_other() {
+fn a_path_moves_the_end_that_it_names_and_leaves_the_other_at_neutral() {
     let robot = robot("own-gaits");
-    let neutral: [f64; 4] = robot.neutral().into();
+    let neutral: [f64; 4] = robot.neutral_pose().into();
     let wag = robot.gait("wag").expect("wag");
     let nod = robot.gait("nod").expect("nod");
     for i in 0..64 {
         let phase = f64::from(i) / 64.0;
         let angle = std::f64::consts::TAU * phase;
-        let solution = robot.lizard().solve(&wag.pose(phase)).expect("closes");
+        let solution = robot
+            .lizard()
+            .solve(&wag.pose(phase))
+            .expect("a checked gait closes its loops");
         let tail = solution.tail.end_point;
         let (x, y) = (
             9.0 * angle.sin(),
@@ -88,7 +96,10 @@ fn a_path_leads_the_end_that_it_names_and_leaves_the_other() {
         );
         assert!((tail.x - x).hypot(tail.y - y) < 1e-9, "{tail:?}");
         assert_eq!(wag.angles(phase)[..2], neutral[..2]);
-        let solution = robot.lizard().solve(&nod.pose(phase)).expect("closes");
+        let solution = robot
+            .lizard()
+            .solve(&nod.pose(phase))
+            .expect("a checked gait closes its loops");
         let head = solution.head.end_point;
         let (x, y) = (4.0 + 2.0 * angle.sin(), 56.0 + 5.0 * angle.sin());
         assert!((head.x - x).hypot(head.y - y) < 1e-9, "{head:?}");
@@ -119,7 +130,7 @@ fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
 }
 
 #[test]
-fn a_gait_may_have_the_name_of_a_word_of_the_console_that_is_not_reserved() {
+fn a_gait_name_may_begin_with_a_console_word_unless_it_is_reserved() {
     for word in Word::ALL.iter().filter(|word| **word != Word::QuestionMark) {
         for name in [word.text().to_owned(), format!("{}-on", word.text())] {
             let gaits = format!("{STAND}{}", WALK.replace("walk", &name));
@@ -130,13 +141,13 @@ fn a_gait_may_have_the_name_of_a_word_of_the_console_that_is_not_reserved() {
 }
 
 #[test]
-fn a_name_may_have_48_characters() {
+fn a_name_may_have_48_characters_but_not_49() {
     let gaits_of_name_length =
         |length: usize| format!("{STAND}{}", WALK.replace("walk", &"w".repeat(length)));
-    let robot = paper_with_gaits(&gaits_of_name_length(48)).expect("48 characters");
+    let robot = paper_with_gaits(&gaits_of_name_length(48)).expect("48 characters are allowed");
     assert_eq!(robot.gaits()[1].name().len(), 48);
     let message = paper_with_gaits(&gaits_of_name_length(49))
-        .expect_err("49")
+        .expect_err("49 characters are too many")
         .to_string();
     assert!(
         message.contains("has 49 characters") && message.ends_with("so it may have 48"),
@@ -144,8 +155,8 @@ fn a_name_may_have_48_characters() {
     );
 }
 
-/// The end of the message for a robot whose gaits take too many bytes.
-const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other has";
+/// The end of the message for a robot whose gaits do not fit into the section.
+const NO_ROOM_ADVICE: &str = "leave out gaits, first those whose waveform no other has";
 
 #[test]
 fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
@@ -154,7 +165,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
         let derived_gaits: String = (2..count).map(derive_gait).collect();
         format!("{STAND}{WALK}{derived_gaits}")
     };
-    let robot_with_80 = paper_with_gaits(&text_of_gaits(80)).expect("80 gaits");
+    let robot_with_80 = paper_with_gaits(&text_of_gaits(80)).expect("80 gaits fit");
     assert_eq!(robot_with_80.gaits().len(), 80);
     assert_eq!(
         robot_with_80.gait("walk79").map(|gait| gait.index()),
@@ -166,25 +177,28 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
             .map(|gait| gait.table_sweeps(99)),
         robot_with_80.gait("walk").map(|gait| gait.table_sweeps(99))
     );
-    // More gaits leave no room for the maps of cells, but are accepted until the section is full.
+    // More gaits leave no room for the maps of cells but are accepted until the section is full.
     for count in 80..255 {
         match paper_with_gaits(&text_of_gaits(count)) {
             Ok(robot) => {
-                assert!(robot.section().len() <= usize::from(lizard_core::numbers::section::SPACE))
+                assert!(
+                    robot.section().len()
+                        <= usize::from(lizard_core::numbers::section::SPACE_BYTES)
+                )
             }
             Err(error) => {
                 assert!(count > 85, "{count}");
-                assert!(error.to_string().ends_with(LEAVE_OUT), "{error}");
+                assert!(error.to_string().ends_with(NO_ROOM_ADVICE), "{error}");
                 break;
             }
         }
     }
     let message_at_255 = paper_with_gaits(&text_of_gaits(255))
-        .expect_err("255")
+        .expect_err("255 gaits do not fit")
         .to_string();
-    assert!(message_at_255.ends_with(LEAVE_OUT), "{message_at_255}");
+    assert!(message_at_255.ends_with(NO_ROOM_ADVICE), "{message_at_255}");
     let message_at_256 = paper_with_gaits(&text_of_gaits(256))
-        .expect_err("256")
+        .expect_err("256 gaits are too many")
         .to_string();
     assert!(
         message_at_256.ends_with(
@@ -195,7 +209,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
 }
 
 #[test]
-fn waveforms_are_refused_that_the_section_has_no_room_for() {
+fn more_waveforms_than_the_section_has_room_for_are_refused() {
     // The walk takes one waveform, and each nod, along its own line, takes two.
     let text_of_gaits = |count: usize| {
         let make_nod = |i: usize| {
@@ -207,23 +221,23 @@ fn waveforms_are_refused_that_the_section_has_no_room_for() {
         let nods: String = (0..count).map(make_nod).collect();
         format!("{STAND}{WALK}{nods}")
     };
-    let robot = paper_with_gaits(&text_of_gaits(6)).expect("13 waveforms");
+    let robot = paper_with_gaits(&text_of_gaits(6)).expect("13 waveforms fit");
     assert_eq!(robot.firmware().waves().len(), 13);
     for count in [14, 127] {
         let message = paper_with_gaits(&text_of_gaits(count))
-            .expect_err("too many")
+            .expect_err("the waveforms are too many")
             .to_string();
-        assert!(message.ends_with(LEAVE_OUT), "{message}");
+        assert!(message.ends_with(NO_ROOM_ADVICE), "{message}");
     }
     let message = paper_with_gaits(&text_of_gaits(128))
-        .expect_err("257")
+        .expect_err("257 waveforms are too many")
         .to_string();
     assert!(message.contains("gait.nod127 needs one waveform more than the 255 that the firmware can number with a byte; gaits"), "{message}");
 }
 
 #[test]
-fn a_mistake_in_one_gait_is_named_by_its_line_there() {
-    let paper = paper_with_gaits(STAND).expect("it is right");
+fn a_mistake_in_an_added_gait_is_reported_with_its_line_in_the_added_text() {
+    let paper = paper_with_gaits(STAND).expect("the robot with stand alone is valid");
     for (table, line, phrase) in [
         (
             "[gait.a]\nperiod = 1.0\nwaveform = \"wav\"\n",

@@ -1,16 +1,17 @@
-//! A cell: a rectangle of two servos' angles. Proves that all poses of a cell keep a condition of the guard.
+//! A cell: a rectangle in the plane of two servos' angles, and the proof that all its poses keep a condition of the
+//! guard.
 
 use std::f64::consts::TAU;
 
-use lizard_core::numbers::units::TURN;
+use lizard_core::numbers::units::STEPS_PER_TURN;
 use lizard_kinematics::Vector;
 
-/// Largest number of successive divisions of a cell in four before it counts as not proven. A bound over a cell is
-/// too wide by an amount about proportional to the cell's size, so each division proves cells that lie half as far
-/// from a limit.
-const DIVISIONS: u32 = 4;
+/// Largest number of times that a cell is divided in four before it counts as not proven. A bound over a cell is too
+/// wide by an amount about proportional to the cell's size, so each division proves cells that are half as far from a
+/// limit.
+const MAX_DIVISIONS: u32 = 4;
 
-/// Allowance for floating-point errors, both as a sine and in mm; far larger than these errors are.
+/// Allowance for floating-point errors, both of a sine and of a length in mm. It is far larger than these errors.
 pub(super) const ROUNDING_ALLOWANCE: f64 = 1e-9;
 
 /// A range of one servo's angles in the chassis frame, in 1/65536 turn.
@@ -20,19 +21,19 @@ pub(super) struct Span {
     pub high: f64,
 }
 
-/// The ranges of two servos' angles: first that of a map's row, then that of its column.
+/// The ranges of two servos' angles: first the servo of a map's rows, then the servo of its columns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
 /// The result of judging a condition over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The condition, as the firmware computes it in integers, is true at every pose of the cell.
+    /// Every pose of the cell keeps the condition, as the firmware computes it in integers.
     Kept,
     /// The centre of the cell breaks the condition.
     Broken,
     /// The bounds over the cell are too wide for a decision.
-    Open,
+    Undecided,
 }
 
 /// A condition of the guard that depends on two servos.
@@ -46,20 +47,21 @@ pub(super) trait Condition {
 
 impl Span {
     /// The middle of the span, degrees.
-    pub fn centre(&self) -> f64 {
-        (self.low + self.high) / 2.0 * 360.0 / f64::from(TURN)
+    pub fn centre_deg(&self) -> f64 {
+        (self.low + self.high) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN)
     }
 
     /// Half the width of the span, radians.
-    pub fn half(&self) -> f64 {
-        (self.high - self.low) / 2.0 * TAU / f64::from(TURN)
+    pub fn half_width_rad(&self) -> f64 {
+        (self.high - self.low) / 2.0 * TAU / f64::from(STEPS_PER_TURN)
     }
 
     /// Unit vector at the middle of the span.
     pub fn direction(&self) -> Vector {
-        Vector::direction(self.centre())
+        Vector::direction(self.centre_deg())
     }
 
+    /// The lower and the upper half of the span.
     fn halves(self) -> [Self; 2] {
         let middle = (self.low + self.high) / 2.0;
         [
@@ -76,16 +78,16 @@ impl Span {
 }
 
 impl Cell {
-    /// True if a condition is proven in the whole cell, divided up to [`DIVISIONS`] times.
+    /// True if a condition is proven in the whole cell, divided up to [`MAX_DIVISIONS`] times.
     pub fn proves(&self, condition: &impl Condition) -> bool {
-        self.proves_within(condition, DIVISIONS)
+        self.proves_within(condition, MAX_DIVISIONS)
     }
 
     fn proves_within(&self, condition: &impl Condition, divisions: u32) -> bool {
         match condition.judge(self) {
             Verdict::Kept => true,
             Verdict::Broken => false,
-            Verdict::Open => {
+            Verdict::Undecided => {
                 let [rows, columns] = self.0.map(Span::halves);
                 divisions > 0
                     && rows.into_iter().all(|row| {

@@ -1,19 +1,21 @@
-//! The conditions of the guard for the head or tail five-bar over a cell: the sines at its couplers, elbows and legs.
+//! The conditions of the guard for the head or tail five-bar over a cell: limits of the sines at its couplers, elbows
+//! and legs.
 //!
-//! While the crank angles change from the cell's centre to any other pose of the cell, each crank tip moves by at
-//! most crank length times angle, and the line `k` between the tips changes by at most the sum. Three bounds follow:
+//! Between the cell's centre and any other pose of the cell, each crank tip moves by at most its crank's length times
+//! the angle of the crank's turn, and the vector `k` between the tips changes by at most the sum `|dk|` of both. Three
+//! bounds follow:
 //!
-//! * The distance of the tips is in a range, and so is the sine between the couplers, the type-2 margin;
-//!   [`bounds::EndErrors::min_type2`] is its smallest value. The tips cannot cross if their distance along the base
-//!   is more than the two tips can move.
-//! * From `a u2 - b u3 = k`, with couplers of directions `u2` and `u3` over the line `k`: the left coupler turns by
-//!   at most `|dk| / (a sin(theta3 - theta2))`, and the right one by the same with `b` instead of `a`. Each crank
-//!   turns by at most half the width of its range. So the type-1 margin, a sine, is smaller than at the centre by
-//!   at most the sum of the turns of crank and coupler.
-//! * A leg's margin is the sine of its own crank angle, which is smallest at an end point of the angle's range.
+//! * The distance of the tips is within a range, and so is the type-2 margin, the sine of the angle between the
+//!   couplers; [`bounds::EndErrors::min_type2`] is its smallest value. The tips cannot cross if their distance along
+//!   the base is more than both tips together can move.
+//! * The couplers close the loop: `a u2 - b u3 = k`, with their lengths `a` and `b` and their directions `u2` and `u3`.
+//!   So the left coupler turns by at most `|dk| / (a sin(theta3 - theta2))`, and the right one by at most the same with
+//!   `b` instead of `a`. Each crank turns by at most half the width of its range. The type-1 margin is a sine, so it
+//!   is smaller than at the centre by at most the sum of the turns of crank and coupler.
+//! * A leg's margin is the sine of its own crank angle, and this sine is smallest at an end point of the angle's range.
 //!
-//! The guard computes with integers. Its margins are smaller than these by at most their error bounds, and must
-//! still keep the guard's limits.
+//! The guard computes with integers. Its margins are smaller than the true ones by at most their error bounds, and
+//! must still keep the guard's limits.
 
 use lizard_core::guard::bounds::{self, MAX_DIRECTION_ERROR};
 use lizard_core::numbers::limits::Limits;
@@ -28,33 +30,37 @@ use crate::units::ONE_Q15;
 pub(super) struct EndConditions {
     end: End,
     bars: FiveBar,
-    integers: bounds::RoundedBars,
-    type2: f64,
-    type1: f64,
-    leg: f64,
+    /// The scale and the couplers as the guard's integers have them.
+    rounded_bars: bounds::RoundedBars,
+    /// Smallest type-2 margin that the guard allows, a sine.
+    type2_limit: f64,
+    /// Smallest type-1 margin that the guard allows, a sine.
+    type1_limit: f64,
+    /// Smallest margin of a leg that the guard allows, a sine.
+    leg_limit: f64,
 }
 
 impl EndConditions {
     pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
-        let integers = &numbers.ends[end as usize];
+        let five_bar_lengths = &numbers.ends[end as usize];
         let Limits { type2, type1, leg } = numbers.limits;
         let sine_of = |limit: Sine| f64::from(limit.0) / ONE_Q15;
         Self {
             end,
             bars: lizard.end(end),
-            integers: bounds::RoundedBars {
-                scale: integers.scale,
-                couplers: integers.couplers,
+            rounded_bars: bounds::RoundedBars {
+                scale: five_bar_lengths.scale,
+                couplers: five_bar_lengths.couplers,
             },
-            type2: sine_of(type2),
-            type1: sine_of(type1),
-            leg: sine_of(leg),
+            type2_limit: sine_of(type2),
+            type1_limit: sine_of(type1),
+            leg_limit: sine_of(leg),
         }
     }
 
-    /// Returns the smallest sine of a leg over a range of its servo's angles, which is narrower than half a turn.
-    fn least_leg_sine(&self, span: &Span) -> f64 {
-        let half = span.half();
+    /// Returns the smallest sine of a leg over a range of its servo's angles. The range must be narrower than half a turn.
+    fn min_leg_sine(&self, span: &Span) -> f64 {
+        let half = span.half_width_rad();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
         // The centre, rotated by half the range in either direction.
         sin * half.cos() - cos.abs() * half.sin()
@@ -84,42 +90,44 @@ impl Condition for EndConditions {
         };
         let type1 = [pose.type1_left(), pose.type1_right()];
         let keeps_limits = pose.gap.x > 0.0
-            && pose.type2 >= self.type2
-            && type1.iter().all(|margin| *margin >= self.type1)
-            && directions.iter().all(|crank| crank.y >= self.leg);
+            && pose.type2 >= self.type2_limit
+            && type1.iter().all(|margin| *margin >= self.type1_limit)
+            && directions.iter().all(|crank| crank.y >= self.leg_limit);
         if !keeps_limits {
             return Verdict::Broken;
         }
 
-        let crank_movement =
-            self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
+        let crank_movement = self.bars.left_crank_length * left.half_width_rad()
+            + self.bars.right_crank_length * right.half_width_rad();
         let tip_distance = pose.gap.length();
-        let range = [
+        let tip_distance_range = [
             (tip_distance - crank_movement).max(0.0),
             tip_distance + crank_movement,
         ];
-        let errors = bounds::EndErrors::between(&self.bars, self.integers, range);
-        let is_uncrossed = pose.gap.x - crank_movement > errors.along + ROUNDING_ALLOWANCE;
-        if !(errors.is_known && is_uncrossed) {
-            return Verdict::Open;
+        let errors = bounds::EndErrors::between(&self.bars, self.rounded_bars, tip_distance_range);
+        let is_uncrossed = pose.gap.x - crank_movement > errors.gap_x + ROUNDING_ALLOWANCE;
+        if !(errors.are_margins_known && is_uncrossed) {
+            return Verdict::Undecided;
         }
         let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.min_type2);
         let elbow_losses = [
-            left.half() + coupler_turn(self.bars.coupler_left) + errors.type1_left,
-            right.half() + coupler_turn(self.bars.coupler_right) + errors.type1_right,
+            left.half_width_rad() + coupler_turn(self.bars.left_coupler_length) + errors.type1_left,
+            right.half_width_rad()
+                + coupler_turn(self.bars.right_coupler_length)
+                + errors.type1_right,
         ];
-        let is_kept = errors.min_type2 - errors.type2 >= self.type2 + ROUNDING_ALLOWANCE
+        let is_kept = errors.min_type2 - errors.type2 >= self.type2_limit + ROUNDING_ALLOWANCE
             && type1
                 .iter()
                 .zip(elbow_losses)
-                .all(|(margin, loss)| margin - loss >= self.type1 + ROUNDING_ALLOWANCE)
+                .all(|(margin, loss)| margin - loss >= self.type1_limit + ROUNDING_ALLOWANCE)
             && [left, right].iter().all(|span| {
-                self.least_leg_sine(span) - MAX_DIRECTION_ERROR >= self.leg + ROUNDING_ALLOWANCE
+                self.min_leg_sine(span) - MAX_DIRECTION_ERROR >= self.leg_limit + ROUNDING_ALLOWANCE
             });
         if is_kept {
             Verdict::Kept
         } else {
-            Verdict::Open
+            Verdict::Undecided
         }
     }
 }
@@ -129,74 +137,82 @@ mod tests {
     use super::*;
     use crate::testing::robot;
 
-    /// Makes a cell of a single pose, the neutral one, for the head of a robot without symmetry, and conditions whose
-    /// limits every pose keeps.
+    /// Makes conditions whose limits every pose keeps, for the head of a robot without symmetry, and a cell of a single
+    /// pose, the neutral one.
     fn neutral_cell() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
-        let rule = EndConditions {
-            type2: 0.0,
-            type1: -1.0,
-            leg: 0.0,
+        let conditions = EndConditions {
+            type2_limit: 0.0,
+            type1_limit: -1.0,
+            leg_limit: 0.0,
             ..EndConditions::new(robot.lizard(), numbers, End::Head)
         };
         let span_of = |servo: usize| {
-            let angle = f64::from(numbers.neutral[servo].0);
+            let angle = f64::from(numbers.neutral_angles[servo].0);
             Span {
                 low: angle,
                 high: angle,
             }
         };
-        (rule, Cell([span_of(0), span_of(1)]))
+        (conditions, Cell([span_of(0), span_of(1)]))
     }
 
     type Limit = fn(&mut EndConditions) -> &mut f64;
 
     #[test]
     fn a_single_pose_is_proved_if_clear_of_each_limit_by_the_rounding_error() {
-        let (mut rule, cell) = neutral_cell();
+        let (mut conditions, cell) = neutral_cell();
         // Without limits every pose passes.
-        assert_eq!(rule.judge(&cell), Verdict::Kept);
+        assert_eq!(conditions.judge(&cell), Verdict::Kept);
         let cranks = cell.0.map(|span| span.direction());
         let [left, right] = cranks;
-        let pose = rule.bars.close(AssemblyMode::Ahead, left, right);
-        let pose = pose.expect("it stands");
+        let pose = conditions.bars.close(AssemblyMode::Ahead, left, right);
+        let pose = pose.expect("the neutral pose closes");
         let tip_distance = pose.gap.length();
-        let errors = bounds::EndErrors::between(&rule.bars, rule.integers, [tip_distance; 2]);
+        let errors = bounds::EndErrors::between(
+            &conditions.bars,
+            conditions.rounded_bars,
+            [tip_distance; 2],
+        );
         let (lower, bound) = if pose.type1_left() < pose.type1_right() {
             (pose.type1_left(), errors.type1_left)
         } else {
             (pose.type1_right(), errors.type1_right)
         };
         let limits: [(Limit, f64, f64); 3] = [
-            (|rule| &mut rule.type2, pose.type2, errors.type2),
-            (|rule| &mut rule.type1, lower, bound),
             (
-                |rule| &mut rule.leg,
+                |conditions| &mut conditions.type2_limit,
+                pose.type2,
+                errors.type2,
+            ),
+            (|conditions| &mut conditions.type1_limit, lower, bound),
+            (
+                |conditions| &mut conditions.leg_limit,
                 left.y.min(right.y),
                 MAX_DIRECTION_ERROR,
             ),
         ];
         for (limit, value, bound) in limits {
             assert!(bound > 1e-5 && bound < 0.01, "{bound}");
-            let unlimited = *limit(&mut rule);
+            let unlimited = *limit(&mut conditions);
             for (clearance, verdict) in [
                 (1.01 * bound, Verdict::Kept),
-                (0.99 * bound, Verdict::Open),
-                (0.01 * bound, Verdict::Open),
+                (0.99 * bound, Verdict::Undecided),
+                (0.01 * bound, Verdict::Undecided),
                 (-0.01 * bound, Verdict::Broken),
             ] {
-                *limit(&mut rule) = value - clearance;
-                assert_eq!(rule.judge(&cell), verdict, "{value} {clearance}");
+                *limit(&mut conditions) = value - clearance;
+                assert_eq!(conditions.judge(&cell), verdict, "{value} {clearance}");
             }
-            *limit(&mut rule) = unlimited;
+            *limit(&mut conditions) = unlimited;
         }
     }
 
     #[test]
     fn crank_tips_that_may_have_crossed_prove_nothing() {
-        let (rule, _) = neutral_cell();
-        let per_step = f64::from(rule.integers.scale.bits).exp2().recip();
+        let (conditions, _) = neutral_cell();
+        let per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
         let span_at = |degrees: f64| {
             let angle = degrees * 65536.0 / 360.0;
             Span {
@@ -208,7 +224,8 @@ mod tests {
         let right = span_at(165.0);
         let gap_at = |left: Span| {
             let left = left.direction();
-            rule.bars
+            conditions
+                .bars
                 .pose_unchecked(AssemblyMode::Ahead, left, right.direction())
                 .gap
                 .x
@@ -225,13 +242,13 @@ mod tests {
             }
         }
         let judge_at = |mm: f64| {
-            let slope = rule.bars.crank_left * apart_deg.to_radians().sin();
+            let slope = conditions.bars.left_crank_length * apart_deg.to_radians().sin();
             let left = span_at(apart_deg + (mm / slope).to_degrees());
             assert!((gap_at(left) - mm).abs() < per_step);
-            rule.judge(&Cell([left, right]))
+            conditions.judge(&Cell([left, right]))
         };
         assert_eq!(judge_at(-per_step), Verdict::Broken);
-        assert_eq!(judge_at(per_step), Verdict::Open);
+        assert_eq!(judge_at(per_step), Verdict::Undecided);
         assert_eq!(judge_at(20.0 * per_step), Verdict::Kept);
     }
 }

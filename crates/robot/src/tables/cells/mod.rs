@@ -1,11 +1,11 @@
 //! The maps of cells in which the integer guard is proven to accept every pose.
 //!
-//! On the chip, computing the distance of a pose from every hazard takes most of a frame's time. Every condition
-//! depends on one servo, on the two servos of the head or tail five-bar, or on the two servos of a side. So the poses
-//! that are far from every limit can be listed in advance, in four maps over pairs of servos:
-//! [`lizard_core::numbers::cells`]. This module computes the maps from the robot's true lengths, with bounds over a
-//! whole cell and a bound of the error of the guard's integers. No pose is sampled, so the proof holds for every
-//! pose in a cell.
+//! On the chip, computing the distance of a pose from every hazard takes most of a frame's time. But each condition
+//! depends only on one servo, on the two servos of the head or tail five-bar, or on the two servos of a side. So the
+//! poses that are far from every limit can be listed in advance, in four maps over pairs of servos
+//! ([`lizard_core::numbers::cells`]). This module computes the maps from the robot's true lengths, with bounds over
+//! whole cells and bounds of the errors of the guard's integers. It samples no poses, so the proof is valid for every
+//! pose of a cell.
 
 mod cell;
 mod end;
@@ -35,11 +35,11 @@ pub struct CellMaps {
     pub right: Map,
 }
 
-/// A row without any cell.
-const NO_CELL: [i8; 2] = [1, 0];
+/// The first and the last column of a row without cells.
+const EMPTY_ROW: [i8; 2] = [1, 0];
 
 impl CellMaps {
-    /// Computes the maps from the true lengths and from the integers that the firmware computes with.
+    /// Computes the maps from the true lengths and from the integers with which the firmware computes.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
         let certify_end =
             |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
@@ -53,7 +53,7 @@ impl CellMaps {
         }
     }
 
-    /// True if a pose is certified in all four maps, so that the guard accepts it.
+    /// True if all four maps contain a pose, so that the guard accepts it.
     pub fn contains(&self, pose: &Pose) -> bool {
         let [a1, a2, a3, a4] = pose.0;
         self.head.cells().contains(a1, a2)
@@ -64,28 +64,28 @@ impl CellMaps {
 }
 
 /// Makes the map of the cells in which a condition is proven.
-fn certify(rule: &impl Condition, numbers: &Content) -> Map {
-    let [row, column] = rule.servos().map(|servo| Servo {
-        neutral: numbers.neutral[servo],
-        travel: numbers.calibration[servo],
+fn certify(condition: &impl Condition, numbers: &Content) -> Map {
+    let [row, column] = condition.servos().map(|servo| DividedServo {
+        neutral: numbers.neutral_angles[servo],
+        calibration: numbers.calibration[servo],
     });
     let half_rows = MAX_ROWS as i32 / 2;
-    let rows = row.cells(ROW_BITS, -half_rows..=half_rows - 1);
-    let columns = column.cells(COLUMN_BITS, i8::MIN.into()..=i8::MAX.into());
+    let rows = row.overlapping_cells(ROW_BITS, -half_rows..=half_rows - 1);
+    let columns = column.overlapping_cells(COLUMN_BITS, i8::MIN.into()..=i8::MAX.into());
     let first_row = *rows.start();
     let all_rows: Vec<[i8; 2]> = rows
         .map(|cell| {
-            let row_span = row.span(cell, ROW_BITS);
-            certified_columns(&columns, |cell| {
-                let column_span = column.span(cell, COLUMN_BITS);
-                Cell([row_span, column_span]).proves(rule)
+            let row_span = row.cell_span(cell, ROW_BITS);
+            find_certified_columns(&columns, |cell| {
+                let column_span = column.cell_span(cell, COLUMN_BITS);
+                Cell([row_span, column_span]).proves(condition)
             })
         })
         .collect();
     let is_occupied = |row: &[i8; 2]| row[0] <= row[1];
     let Some(start) = all_rows.iter().position(is_occupied) else {
         return Map {
-            first: 0,
+            first_row: 0,
             rows: Vec::new(),
         };
     };
@@ -94,26 +94,27 @@ fn certify(rule: &impl Condition, numbers: &Content) -> Map {
         .rposition(is_occupied)
         .map_or(start, |last| last + 1);
     Map {
-        first: (first_row + start as i32) as i8,
+        first_row: (first_row + start as i32) as i8,
         rows: all_rows[start..end].to_vec(),
     }
 }
 
 /// A servo whose travel is divided into cells.
-struct Servo {
+struct DividedServo {
     neutral: Angle,
-    travel: Calibration,
+    calibration: Calibration,
 }
 
-impl Servo {
+impl DividedServo {
     /// Returns the indices of the cells that overlap the servo's travel, within the range that a map can contain.
-    fn cells(&self, bits: u32, allowed: RangeInclusive<i32>) -> RangeInclusive<i32> {
-        let [min, max] = [self.travel.min, self.travel.max].map(|end| i32::from(end.0 >> bits));
+    fn overlapping_cells(&self, bits: u32, allowed: RangeInclusive<i32>) -> RangeInclusive<i32> {
+        let [min, max] = [self.calibration.travel_min, self.calibration.travel_max]
+            .map(|end| i32::from(end.0 >> bits));
         min.max(*allowed.start())..=max.min(*allowed.end())
     }
 
     /// Returns the range of a cell's angles in the chassis frame, from its first sweep to its last.
-    fn span(&self, cell: i32, bits: u32) -> Span {
+    fn cell_span(&self, cell: i32, bits: u32) -> Span {
         let first = f64::from(i32::from(self.neutral.0) + (cell << bits));
         Span {
             low: first,
@@ -123,12 +124,12 @@ impl Servo {
 }
 
 /// Finds the first and last of the contiguous columns that keep a condition, around the kept column nearest to
-/// neutral. Returns [`NO_CELL`] if no column keeps it.
-fn certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
+/// neutral. Returns [`EMPTY_ROW`] if no column keeps it.
+fn find_certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
     let mut candidates: Vec<i32> = columns.clone().collect();
     candidates.sort_by_key(|column| (2 * column + 1).abs());
     let Some(nearest) = candidates.into_iter().find(|column| is_kept(*column)) else {
-        return NO_CELL;
+        return EMPTY_ROW;
     };
     let columns_after = (nearest + 1..=*columns.end()).take_while(|column| is_kept(*column));
     let columns_before = (*columns.start()..nearest)

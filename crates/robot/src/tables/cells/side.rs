@@ -1,8 +1,8 @@
 //! The condition of a side over a cell: its slider stays within its stroke.
 //!
-//! While the servo angles change from the cell's centre to any other pose of the cell, the tip of each arm moves by
-//! at most arm length times angle, and the slider's length changes by at most the sum. With the error bound of the
-//! guard's integers added, the length must still be within the guard's stroke.
+//! Between the cell's centre and any other pose of the cell, the tip of each arm moves by at most the arm's length times
+//! the angle of its turn, and the slider's length changes by at most the sum of both movements. With the error bound of
+//! the guard's integers added, the length must still be within the guard's stroke.
 
 use lizard_core::guard::bounds;
 use lizard_core::numbers::section::Content;
@@ -15,24 +15,25 @@ use crate::measures::scale;
 pub(super) struct StrokeCondition {
     side: Side,
     slider: Slider,
-    /// Error bound of the integers, mm.
-    error: f64,
-    /// Smallest length of the slider within its stroke, mm; `max` is the largest.
-    min: f64,
-    max: f64,
+    /// Bound of the error of the guard's integers, mm.
+    error_bound: f64,
+    /// Smallest length of the slider within its stroke, mm.
+    min_length: f64,
+    /// Largest length of the slider within its stroke, mm.
+    max_length: f64,
 }
 
 impl StrokeCondition {
     pub fn new(lizard: &Lizard, numbers: &Content, side: Side) -> Self {
-        let integers = &numbers.sides[side as usize];
+        let core_slider = &numbers.sliders[side as usize];
         let slider = lizard.side(side);
-        let mm_of = |steps: u16| f64::from(steps) / scale::steps_per_mm(integers.scale);
+        let mm_of = |steps: u16| f64::from(steps) / scale::steps_per_mm(core_slider.scale);
         Self {
             side,
             slider,
-            error: bounds::slider_error(&slider, integers),
-            min: mm_of(integers.min),
-            max: mm_of(integers.max),
+            error_bound: bounds::slider_error(&slider, core_slider),
+            min_length: mm_of(core_slider.stroke_min),
+            max_length: mm_of(core_slider.stroke_max),
         }
     }
 
@@ -40,7 +41,7 @@ impl StrokeCondition {
     fn length(&self, cell: &Cell) -> f64 {
         let [front, rear] = cell.0.map(|span| span.direction());
         let (rear, front) = (self.side.rear_arm(rear), self.side.front_arm(front));
-        self.slider.shape(rear, front).d
+        self.slider.pose_unchecked(rear, front).d
     }
 }
 
@@ -52,15 +53,16 @@ impl Condition for StrokeCondition {
     fn judge(&self, cell: &Cell) -> Verdict {
         let [front, rear] = cell.0;
         let length = self.length(cell);
-        let clearance = (length - self.min).min(self.max - length);
+        let clearance = (length - self.min_length).min(self.max_length - length);
         if clearance < 0.0 {
             return Verdict::Broken;
         }
-        let arm_movement = self.slider.front * front.half() + self.slider.rear * rear.half();
-        if clearance - arm_movement - self.error >= ROUNDING_ALLOWANCE {
+        let arm_movement = self.slider.front_arm * front.half_width_rad()
+            + self.slider.rear_arm * rear.half_width_rad();
+        if clearance - arm_movement - self.error_bound >= ROUNDING_ALLOWANCE {
             Verdict::Kept
         } else {
-            Verdict::Open
+            Verdict::Undecided
         }
     }
 }
@@ -76,38 +78,38 @@ mod tests {
         let robot = robot("unequal");
         let numbers = robot.content();
         for side in Side::ALL {
-            let mut rule = StrokeCondition::new(robot.lizard(), numbers, side);
+            let mut condition = StrokeCondition::new(robot.lizard(), numbers, side);
             let spans = side.servos().map(|servo| {
-                let angle = f64::from(numbers.neutral[servo].0);
+                let angle = f64::from(numbers.neutral_angles[servo].0);
                 Span {
                     low: angle,
                     high: angle,
                 }
             });
             let cell = Cell(spans);
-            assert_eq!(rule.judge(&cell), Verdict::Kept);
-            let length = rule.length(&cell);
+            assert_eq!(condition.judge(&cell), Verdict::Kept);
+            let length = condition.length(&cell);
             for (clearance, verdict) in [
                 (1.01, Verdict::Kept),
-                (0.99, Verdict::Open),
-                (0.01, Verdict::Open),
+                (0.99, Verdict::Undecided),
+                (0.01, Verdict::Undecided),
                 (-0.01, Verdict::Broken),
             ] {
-                let (min, max) = (rule.min, rule.max);
-                rule.min = length - clearance * rule.error;
+                let (min, max) = (condition.min_length, condition.max_length);
+                condition.min_length = length - clearance * condition.error_bound;
                 assert_eq!(
-                    rule.judge(&cell),
+                    condition.judge(&cell),
                     verdict,
                     "{side} {clearance} from the shortest"
                 );
-                rule.min = min;
-                rule.max = length + clearance * rule.error;
+                condition.min_length = min;
+                condition.max_length = length + clearance * condition.error_bound;
                 assert_eq!(
-                    rule.judge(&cell),
+                    condition.judge(&cell),
                     verdict,
                     "{side} {clearance} from the longest"
                 );
-                rule.max = max;
+                condition.max_length = max;
             }
         }
     }

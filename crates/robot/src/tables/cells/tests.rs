@@ -1,4 +1,4 @@
-//! Compares the maps with the integer guard: [`Clearance`] computes a pose's margins without the maps.
+//! Comparison of the maps with the integer guard: [`Clearance`] computes a pose's margins without the maps.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::gaits::GaitId;
@@ -14,18 +14,18 @@ use crate::measures::Measures;
 use crate::tables::core_robot::{CoreRobot, flash};
 use crate::tables::numbers;
 use crate::tables::table::Tables;
-use crate::testing::{all, robot};
+use crate::testing::{all_robots, robot};
 use crate::{Robot, Servo};
 
-/// Collects the measures of a robot, which tests then change.
-fn measures(robot: &Robot) -> Measures {
+/// Collects the measures of a robot, so that a test can change them.
+fn measures_of(robot: &Robot) -> Measures {
     Measures {
         lizard: *robot.lizard(),
         servos: *robot.servos(),
         servo_type: *robot.servo_type(),
         joints: robot.motors().joints,
         limits: *robot.limits(),
-        pace: *robot.pace(),
+        speed_limits: *robot.speed_limits(),
         ground: *robot.ground(),
         supplies: *robot.supplies(),
         parts: *robot.parts(),
@@ -86,30 +86,31 @@ fn random_measures() -> impl Strategy<Value = Measures> {
                     ..paper.servos()[n]
                 }
             }),
-            ..measures(&paper)
+            ..measures_of(&paper)
         }
     })
 }
 
 /// A map, and the conditions of the guard that hold in its cells.
-struct Part<'a> {
+struct CertifiedMap<'a> {
     map: &'a Map,
     /// Index of the servo of the rows, and index of the servo of the columns.
     servos: [usize; 2],
     /// Indices in [`Clearance::margins`] of the margins that the map certifies.
     margins: &'static [usize],
-    /// Index in [`Clearance::sliders_sq`] of the slider that the map certifies; `None` in the maps of head and tail.
+    /// Index in [`Clearance::slider_lengths_sq`] of the slider that the map certifies; `None` in the maps of head and
+    /// tail.
     slider: Option<usize>,
 }
 
-/// A robot as the firmware has it, in integers, and the maps to be checked.
-struct Subject {
+/// A robot in the integers of the firmware, and the maps to be checked.
+struct RobotWithMaps {
     name: String,
     robot: CoreRobot,
     maps: CellMaps,
 }
 
-impl Subject {
+impl RobotWithMaps {
     fn of(name: &str, robot: &Robot) -> Self {
         Self {
             name: name.to_string(),
@@ -118,18 +119,24 @@ impl Subject {
         }
     }
 
-    /// Makes a subject without gaits from measures alone.
+    /// Makes a robot without gaits from its measures.
     fn from_measures(name: &str, measures: &Measures) -> Self {
-        let content = numbers::content(name, measures, &Tables::new(&[]).expect("no gait"), &[]);
+        let content = numbers::section_content(
+            name,
+            measures,
+            &Tables::new(&[]).expect("tables without gaits can be built"),
+            &[],
+        );
         Self {
             name: name.to_string(),
             maps: CellMaps::new(&measures.lizard, &content),
-            robot: CoreRobot::unchecked(flash(&content.section())).expect("whole"),
+            robot: CoreRobot::unchecked(flash(&content.section_bytes()))
+                .expect("the section is complete"),
         }
     }
 
-    fn parts(&self) -> [Part<'_>; 4] {
-        let make_part = |map, servos, margins, slider| Part {
+    fn certified_maps(&self) -> [CertifiedMap<'_>; 4] {
+        let certified_map = |map, servos, margins, slider| CertifiedMap {
             map,
             servos,
             margins,
@@ -142,35 +149,40 @@ impl Subject {
             right,
         } = &self.maps;
         [
-            make_part(head, [0, 1], &[0, 2, 3, 6, 7], None),
-            make_part(tail, [2, 3], &[1, 4, 5, 8, 9], None),
-            make_part(left, [0, 3], &[], Some(0)),
-            make_part(right, [1, 2], &[], Some(1)),
+            certified_map(head, [0, 1], &[0, 2, 3, 6, 7], None),
+            certified_map(tail, [2, 3], &[1, 4, 5, 8, 9], None),
+            certified_map(left, [0, 3], &[], Some(0)),
+            certified_map(right, [1, 2], &[], Some(1)),
         ]
     }
 
-    /// Checks that the guard accepts seven pairs of angles in every cell: the corners, the centre and two random
-    /// ones. Compares only the margins and sliders that the map certifies. Returns the number of cells, or the first
-    /// refused pose.
+    /// Checks that the guard accepts seven pairs of angles in every cell: the four corners, the centre and two random
+    /// pairs. Compares only the margins and sliders that the map certifies. Returns the number of cells, or a message
+    /// about the first pose that the guard refuses.
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
         let min_margins = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
-        let sides = [0, 1].map(|side| self.robot.side(lizard_core::numbers::part::Side::ALL[side]));
-        let mut cells = 0;
-        for part in self.parts() {
-            let Part {
+        let sides = [0, 1].map(|side| {
+            self.robot
+                .slider(lizard_core::numbers::part::Side::ALL[side])
+        });
+        let mut cell_count = 0;
+        for certified_map in self.certified_maps() {
+            let CertifiedMap {
                 map,
                 servos: [row_servo, column_servo],
                 margins,
                 slider,
-            } = part;
+            } = certified_map;
             assert!(map.rows.len() <= MAX_ROWS);
-            for (row, [first, last]) in (i32::from(map.first)..).zip(&map.rows) {
+            for (row, [first, last]) in (i32::from(map.first_row)..).zip(&map.rows) {
                 for column in i32::from(*first)..=i32::from(*last) {
-                    cells += 1;
+                    cell_count += 1;
                     let offsets = (0..256i32, 0..128i32);
                     let [first_pair, second_pair] = [0; 2].map(|_| {
-                        let tree = offsets.new_tree(runner).expect("a pair");
+                        let tree = offsets
+                            .new_tree(runner)
+                            .expect("the strategy yields a pair");
                         tree.current()
                     });
                     let corners = [(0, 0), (0, 127), (255, 0), (255, 127)];
@@ -190,8 +202,9 @@ impl Subject {
                         let is_kept = margins
                             .iter()
                             .all(|margin| clearance.margins[*margin] >= min_margins[*margin])
-                            && slider
-                                .is_none_or(|side| sides[side].allows(clearance.sliders_sq[side]));
+                            && slider.is_none_or(|side| {
+                                sides[side].allows(clearance.slider_lengths_sq[side])
+                            });
                         if !is_kept {
                             return Err(format!("{} at {pose:?}: {clearance:?}", self.name));
                         }
@@ -199,15 +212,15 @@ impl Subject {
                 }
             }
         }
-        Ok(cells)
+        Ok(cell_count)
     }
 }
 
 #[test]
 fn the_guard_accepts_the_corners_the_centre_and_any_pair_of_every_cell() {
     let mut runner = TestRunner::deterministic();
-    for (name, robot) in all() {
-        let cells = Subject::of(name, &robot).check(&mut runner);
+    for (name, robot) in all_robots() {
+        let cells = RobotWithMaps::of(name, &robot).check(&mut runner);
         let cells = cells.unwrap_or_else(|message| panic!("{message}"));
         assert!(cells > 2000, "{name}: {cells}");
     }
@@ -218,8 +231,11 @@ fn the_guard_accepts_every_cell_of_random_robots() {
     let mut runner = TestRunner::deterministic();
     let (strategy, mut cells) = (random_measures(), 0);
     for number in 0..100 {
-        let measures = strategy.new_tree(&mut runner).expect("a robot").current();
-        let subject = Subject::from_measures(&format!("robot {number}"), &measures);
+        let measures = strategy
+            .new_tree(&mut runner)
+            .expect("the strategy yields a robot")
+            .current();
+        let subject = RobotWithMaps::from_measures(&format!("robot {number}"), &measures);
         let checked_cells = subject.check(&mut runner);
         cells += checked_cells.unwrap_or_else(|message| panic!("{message}"));
     }
@@ -227,19 +243,22 @@ fn the_guard_accepts_every_cell_of_random_robots() {
 }
 
 #[test]
-fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
+fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
     let mut runner = TestRunner::deterministic();
-    for (name, robot) in all() {
-        let Subject { robot, maps, .. } = Subject::of(name, &robot);
+    for (name, robot) in all_robots() {
+        let RobotWithMaps { robot, maps, .. } = RobotWithMaps::of(name, &robot);
         let travels = robot
             .calibration()
-            .map(|servo| (servo.min.0..=servo.max.0).prop_map(Sweep));
-        let mut held_count = 0;
+            .map(|servo| (servo.travel_min.0..=servo.travel_max.0).prop_map(Sweep));
+        let mut certified_count = 0;
         for _ in 0..200_000 {
-            let pose = travels.new_tree(&mut runner).expect("a pose").current();
+            let pose = travels
+                .new_tree(&mut runner)
+                .expect("the strategy yields a pose")
+                .current();
             let pose = Pose(pose);
             if maps.contains(&pose) {
-                held_count += 1;
+                certified_count += 1;
                 assert_eq!(
                     Clearance::of(&robot, &pose).first_hazard(&robot),
                     None,
@@ -247,12 +266,15 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
                 );
             }
         }
-        assert!(held_count > 200, "{name}: {held_count} of 200 000 poses");
+        assert!(
+            certified_count > 200,
+            "{name}: {certified_count} of 200 000 poses"
+        );
     }
 }
 
-/// Makes one limit after another a little stricter than in the maps; a cell then breaks it. So the comparison
-/// notices a wrong map.
+/// Makes one limit after another a little stricter than in the maps. Some cell then breaks the limit, so the comparison
+/// would notice a wrong map.
 #[test]
 fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
     let robot = robot("unequal");
@@ -264,21 +286,21 @@ fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
         |limits| limits.stroke_max -= 1.0,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut stricter_measures = measures(&robot);
+        let mut stricter_measures = measures_of(&robot);
         change(&mut stricter_measures.limits);
-        let subject = Subject::from_measures("of its own", &stricter_measures);
+        let subject = RobotWithMaps::from_measures("of its own", &stricter_measures);
         let maps = robot.cell_maps();
         assert_ne!(subject.maps, maps, "limit {index}");
-        let mixed = Subject { maps, ..subject };
+        let mixed = RobotWithMaps { maps, ..subject };
         let outcome = mixed.check(&mut TestRunner::deterministic());
         assert!(outcome.is_err(), "limit {index}");
     }
 }
 
 #[test]
-fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
-    for (name, robot) in all() {
-        for Part { map, .. } in Subject::of(name, &robot).parts() {
+fn maps_have_at_most_max_rows_and_begin_and_end_with_a_cell() {
+    for (name, robot) in all_robots() {
+        for CertifiedMap { map, .. } in RobotWithMaps::of(name, &robot).certified_maps() {
             assert!(map.rows.len() <= MAX_ROWS, "{name}");
             let [first, .., last] = map.rows.as_slice() else {
                 panic!("{name}: a map of {} rows", map.rows.len());
@@ -293,15 +315,15 @@ fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
 /// Returns the share of a gait's phases at which all four maps contain its pose.
 fn certified_share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
     let gait = robot.gait(gait);
-    let held_count = (0..1u32 << 16)
+    let certified_count = (0..1u32 << 16)
         .filter(|phase| maps.contains(&gait.pose(robot.waves(), phase << 8)))
         .count();
-    held_count as f64 / 65536.0
+    certified_count as f64 / 65536.0
 }
 
 #[test]
 fn every_gait_of_every_robot_is_within_the_cells_at_every_phase() {
-    for (name, robot) in all() {
+    for (name, robot) in all_robots() {
         let maps = robot.cell_maps();
         for (gait, id) in robot.gaits().iter().zip(GaitId::all(robot.gaits().len())) {
             let share = certified_share(robot.firmware(), &maps, id);

@@ -1,4 +1,4 @@
-//! A robot that is written alone, while the board keeps its code.
+//! Uploads of a robot alone, in which the board keeps its code.
 
 use super::*;
 
@@ -6,132 +6,154 @@ const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
 #[test]
 fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
-    let run = run_with(with_robot("paper"), &robot_image("unequal"));
-    let done = run.result.expect("it is written");
+    let run = run_with(board_with_robot("paper"), &robot_image("unequal"));
+    let counts = run.result.expect("the image is written");
     let section = robot("unequal").section();
     let pages: Vec<usize> = (0x6e00..0x6e00 + section.len()).step_by(128).collect();
-    assert_eq!(done.written, pages.len(), "each byte of the robots differs");
+    assert_eq!(
+        counts.written,
+        pages.len(),
+        "each byte of the robots differs"
+    );
     let order = [&pages[..], &[0x6e00]].concat();
-    assert_eq!(run.board.written, order);
-    let whole = whole_image("unequal");
-    assert!(run.board.flash[..whole.end()] == *whole.bytes());
+    assert_eq!(run.board.written_addresses, order);
+    let expected_image = firmware_image("unequal");
+    assert!(run.board.flash[..expected_image.end()] == *expected_image.bytes());
     assert!(run.board.has_started_program, "the firmware is started");
-    let [found] = &run.found[..] else {
-        panic!("{:?}", run.found)
+    let [contents] = &run.reported_contents[..] else {
+        panic!("{:?}", run.reported_contents)
     };
-    assert!(found.contains(" robot paper "), "{found}");
+    assert!(contents.contains(" robot paper "), "{contents}");
 }
 
 #[test]
-fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
-    let slower = PAPER.replacen("period = 1.25", "period = 1.5", 1);
-    assert_ne!(slower, PAPER);
-    let slower = lizard_robot::Robot::parse(&slower).expect("it is right");
+fn a_changed_gait_takes_less_than_a_second_on_the_serial_line() {
+    let slower_toml = PAPER.replacen("period = 1.25", "period = 1.5", 1);
+    assert_ne!(slower_toml, PAPER);
+    let slower_robot = lizard_robot::Robot::parse(&slower_toml).expect("the robot file is valid");
     let run = run_with(
-        with_robot("paper"),
-        &Image::robot_alone(slower.section()).expect("it fits"),
+        board_with_robot("paper"),
+        &Image::robot_alone(slower_robot.section()).expect("the image fits"),
     );
-    let done = run.result.expect("it is written");
-    assert!((1..=3).contains(&done.written), "{done:?}");
+    let counts = run.result.expect("the image is written");
+    assert!((1..=3).contains(&counts.written), "{counts:?}");
     // A byte takes ten bits on the line.
-    let seconds = (run.board.received + run.board.sent) as f64 * 10.0 / 115_200.0;
+    let seconds = (run.board.received_count + run.board.sent_count) as f64 * 10.0 / 115_200.0;
     assert!((0.2..0.6).contains(&seconds), "{seconds} s");
 }
 
 #[test]
-fn a_robot_that_the_board_has_is_not_written() {
-    let run = run_with(with_robot("paper"), &robot_image("paper"));
-    assert_eq!(run.result.expect("it is right").written, 0);
-    assert!(run.board.written.is_empty() && run.board.has_started_program);
-    assert!(run.found[0].ends_with(" already"), "{:?}", run.found);
+fn a_robot_that_the_board_has_already_is_not_written() {
+    let run = run_with(board_with_robot("paper"), &robot_image("paper"));
+    assert_eq!(run.result.expect("the upload succeeds").written, 0);
+    assert!(run.board.written_addresses.is_empty() && run.board.has_started_program);
+    assert!(
+        run.reported_contents[0].ends_with(" already"),
+        "{:?}",
+        run.reported_contents
+    );
 }
 
 #[test]
 fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
-    let (before, large) = (with_robot("own-gaits").flash, robot_image("large"));
+    let (before, large) = (board_with_robot("own-gaits").flash, robot_image("large"));
     let code = before[..0x6e00].to_vec();
     for written in 1..=large.pages().len() {
         let mut board = BoardDouble::with(&before);
-        board.unplugged_after = Some(written);
-        let cut = run_with(board, &large);
-        let words = cut.error();
-        assert!(words.starts_with("the port is gone"), "{words}");
-        assert!(words.contains("fault=robot and moves no servo"), "{words}");
-        assert!(cut.board.flash[..0x6e00] == code, "the code");
-        assert_eq!(robot_name(&cut.board), None, "after {written} pages");
-        let mut board = cut.board;
-        board.unplugged_after = None;
-        let mended = run_with(board, &large);
+        board.unplugged_after_pages = Some(written);
+        let interrupted_run = run_with(board, &large);
+        let message = interrupted_run.error_message();
+        assert!(message.starts_with("the port is gone"), "{message}");
         assert!(
-            mended.found[0].contains(" without a robot"),
-            "{:?}",
-            mended.found
+            message.contains("fault=robot and moves no servo"),
+            "{message}"
         );
-        assert!(mended.result.is_ok(), "{}", mended.error());
-        assert_eq!(robot_name(&mended.board).as_deref(), Some("large"));
+        assert!(
+            interrupted_run.board.flash[..0x6e00] == code,
+            "the code is unchanged"
+        );
+        assert_eq!(
+            robot_name(&interrupted_run.board),
+            None,
+            "after {written} pages"
+        );
+        let mut board = interrupted_run.board;
+        board.unplugged_after_pages = None;
+        let next_run = run_with(board, &large);
+        assert!(
+            next_run.reported_contents[0].contains(" without a robot"),
+            "{:?}",
+            next_run.reported_contents
+        );
+        assert!(next_run.result.is_ok(), "{}", next_run.error_message());
+        assert_eq!(robot_name(&next_run.board).as_deref(), Some("large"));
     }
 }
 
 #[test]
 fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
-    let (before, paper) = (with_robot("own-gaits").flash, robot_image("paper"));
-    let right = whole_image("paper");
-    let whole = run_with(BoardDouble::with(&before), &paper).board;
-    let assert_recovered = |run: &Run, at: usize| {
-        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
+    let (before, paper) = (board_with_robot("own-gaits").flash, robot_image("paper"));
+    let expected_image = firmware_image("paper");
+    let undisturbed_board = run_with(BoardDouble::with(&before), &paper).board;
+    let assert_recovered = |run: &Run, lost_byte: usize| {
         assert!(
-            run.board.flash[..right.end()] == *right.bytes(),
-            "byte {at}"
+            run.result.is_ok(),
+            "byte {lost_byte}: {}",
+            run.error_message()
+        );
+        assert!(
+            run.board.flash[..expected_image.end()] == *expected_image.bytes(),
+            "byte {lost_byte}"
         );
     };
-    for at in 0..whole.received {
+    for lost_byte in 0..undisturbed_board.received_count {
         let mut board = BoardDouble::with(&before);
-        board.lost_byte_to_board = Some(at);
-        assert_recovered(&run_with(board, &paper), at);
+        board.lost_byte_to_board = Some(lost_byte);
+        assert_recovered(&run_with(board, &paper), lost_byte);
     }
-    for at in (0..whole.sent).step_by(101) {
+    for lost_byte in (0..undisturbed_board.sent_count).step_by(101) {
         let mut board = BoardDouble::with(&before);
-        board.lost_byte_from_board = Some(at);
-        assert_recovered(&run_with(board, &paper), at);
+        board.lost_byte_from_board = Some(lost_byte);
+        assert_recovered(&run_with(board, &paper), lost_byte);
     }
 }
 
 #[test]
 fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
-    let (before, large) = (with_robot("paper").flash, robot_image("large"));
-    let refused = |change: &dyn Fn(&mut BoardDouble)| {
+    let (before, large) = (board_with_robot("paper").flash, robot_image("large"));
+    let error_after_change = |change: &dyn Fn(&mut BoardDouble)| {
         let mut board = BoardDouble::with(&before);
         change(&mut board);
         let before = board.flash.clone();
         let run = run_with(board, &large);
-        assert!(run.board.flash == before && run.board.written.is_empty());
-        run.error()
+        assert!(run.board.flash == before && run.board.written_addresses.is_empty());
+        run.error_message()
     };
     let reason = "a robot alone moves nothing: write the firmware, too. Nothing was written";
     assert_eq!(
-        refused(&|board| board.flash[..BOOT_ADDRESS].fill(0xff)),
+        error_after_change(&|board| board.flash[..BOOT_ADDRESS].fill(0xff)),
         format!("the board has no program, and {reason}")
     );
     // Another sketch, shorter than the firmware; the rest of the firmware is still there.
     assert_eq!(
-        refused(&|board| board.flash[..1000].fill(0x95)),
+        error_after_change(&|board| board.flash[..1000].fill(0x95)),
         format!("the board has another program, and {reason}")
     );
     assert_eq!(
-        refused(&|board| {
+        error_after_change(&|board| {
             board.flash[..PAGE_BYTES].fill(0xff);
             board.flash[..2].copy_from_slice(&IDLE_JUMP);
         }),
         format!("the board has half a program, which does nothing, and {reason}")
     );
-    let words = refused(&|board| board.flash[ADDRESS + 4] += 1);
+    let message = error_after_change(&|board| board.flash[ADDRESS + 4] += 1);
     assert!(
-        words.ends_with(&format!(
+        message.ends_with(&format!(
             ", whose robots are of format {}; this robot is of format {FORMAT}: write the \
              firmware, too. Nothing was written",
             FORMAT + 1
         )),
-        "{words}"
+        "{message}"
     );
-    assert!(words.starts_with("the board has lizard "), "{words}");
+    assert!(message.starts_with("the board has lizard "), "{message}");
 }

@@ -5,85 +5,90 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::board::{Board, BoardError};
-use crate::loader::Kind;
+use crate::loader::LoaderKind;
 
 /// A simulated board: its flash, and the faults to inject.
 pub struct BoardDouble {
-    /// The 32 KiB of flash; of the boot loader they hold only the first four bytes.
+    /// The 32 KiB of flash, with only the first four bytes of the boot loader.
     pub flash: Vec<u8>,
     /// The kind of boot loader. It receives nothing at a baud rate other than its own.
-    pub kind: Kind,
+    pub kind: LoaderKind,
     /// The chip signature that the loader reports.
     pub signature: [u8; 3],
-    /// Bytes sent by a running program until the reset, which are received afterwards.
-    pub garbage: Vec<u8>,
+    /// The bytes that a running program sends before each reset, and that arrive after it.
+    pub old_program_output: Vec<u8>,
     /// The number of calls that are ignored after each reset.
-    pub ignored_calls: usize,
+    pub ignored_calls_per_reset: usize,
     /// True if the loader never answers.
     pub is_mute: bool,
-    /// The number of the byte to the board that is lost, counted from 0.
+    /// The number of the lost byte among those sent to the board, counted from 0.
     pub lost_byte_to_board: Option<usize>,
-    /// The number of the byte from the board that is lost, counted from 0.
+    /// The number of the lost byte among those sent by the board, counted from 0.
     pub lost_byte_from_board: Option<usize>,
-    /// An address in flash, and its bits that are stuck at 0.
+    /// An address in flash, and the bits at that address that are stuck at 0.
     pub stuck_bits: Option<(usize, u8)>,
     /// The number of written pages after which the port vanishes.
-    pub unplugged_after: Option<usize>,
+    pub unplugged_after_pages: Option<usize>,
     /// The addresses of written pages, in order.
-    pub written: Vec<usize>,
+    pub written_addresses: Vec<usize>,
     /// The number of resets so far.
-    pub resets: usize,
+    pub reset_count: usize,
     /// True if the last command started the program in flash.
     pub has_started_program: bool,
     /// The number of bytes sent to the board so far, lost ones included.
-    pub received: usize,
+    pub received_count: usize,
     /// The number of bytes sent by the board so far, lost ones included.
-    pub sent: usize,
+    pub sent_count: usize,
     /// The number of bytes that ATmegaBOOT did not understand since the reset.
-    errors: usize,
+    error_count: usize,
+    /// True while the boot loader runs and receives.
     is_listening: bool,
+    /// The number of calls that are still to be ignored.
     calls_to_ignore: usize,
+    /// The address in flash at which the next page command begins.
     address: usize,
+    /// The bytes of the incomplete command.
     command: Vec<u8>,
-    out: VecDeque<u8>,
+    /// The bytes that the board has sent and that have not been read.
+    output: VecDeque<u8>,
 }
 
 impl BoardDouble {
-    /// A board with a chip whose flash is blank.
+    /// A UNO with blank flash.
     pub fn blank() -> Self {
-        Self::of(Kind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
+        Self::with_loader(LoaderKind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
     }
 
     /// An old Nano with blank flash.
     pub fn old_nano() -> Self {
-        Self::of(Kind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
+        Self::with_loader(LoaderKind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
     }
 
-    fn of(kind: Kind, start: usize, loader: [u8; 4]) -> Self {
+    fn with_loader(kind: LoaderKind, loader_address: usize, loader_bytes: [u8; 4]) -> Self {
         let mut flash = vec![0xff; 0x8000];
-        flash[start..start + 4].copy_from_slice(&loader);
+        flash[loader_address..loader_address + 4].copy_from_slice(&loader_bytes);
         Self {
             flash,
             kind,
-            errors: 0,
+            error_count: 0,
             signature: [0x1e, 0x95, 0x0f],
-            garbage: Vec::new(),
-            ignored_calls: 0,
+            old_program_output: Vec::new(),
+            ignored_calls_per_reset: 0,
             is_mute: false,
             lost_byte_to_board: None,
             lost_byte_from_board: None,
             stuck_bits: None,
-            unplugged_after: None,
-            written: Vec::new(),
-            resets: 0,
+            unplugged_after_pages: None,
+            written_addresses: Vec::new(),
+            reset_count: 0,
             has_started_program: false,
-            received: 0,
-            sent: 0,
+            received_count: 0,
+            sent_count: 0,
             is_listening: false,
             calls_to_ignore: 0,
             address: 0,
             command: Vec::new(),
-            out: VecDeque::new(),
+            output: VecDeque::new(),
         }
     }
 
@@ -96,8 +101,8 @@ impl BoardDouble {
 
     /// Fails if the board is unplugged.
     fn check_connection(&self) -> Result<(), BoardError> {
-        let page_limit = self.unplugged_after;
-        match page_limit.is_some_and(|page_limit| self.written.len() >= page_limit) {
+        let page_limit = self.unplugged_after_pages;
+        match page_limit.is_some_and(|page_limit| self.written_addresses.len() >= page_limit) {
             true => Err(BoardError::Gone),
             false => Ok(()),
         }
@@ -118,10 +123,10 @@ impl BoardDouble {
             self.command = command;
             return;
         }
-        if command[length - 1] != b' ' && self.kind == Kind::AtmegaBoot {
-            self.errors += 1;
+        if command[length - 1] != b' ' && self.kind == LoaderKind::AtmegaBoot {
+            self.error_count += 1;
             // MAX_ERROR_COUNT: the program starts.
-            self.is_listening = self.errors < 5;
+            self.is_listening = self.error_count < 5;
             return;
         }
         if command[length - 1] != b' ' {
@@ -144,50 +149,50 @@ impl BoardDouble {
             b'd' => self.write_page(&command[4..length - 1]),
             b'Q' => {
                 // ATmegaBOOT keeps listening until nothing arrives for a while.
-                self.is_listening = self.kind == Kind::AtmegaBoot;
+                self.is_listening = self.kind == LoaderKind::AtmegaBoot;
                 self.has_started_program = true;
             }
             _ => {}
         }
         answer.push(0x10);
         for byte in answer {
-            if self.lost_byte_from_board != Some(self.sent) {
-                self.out.push_back(byte);
+            if self.lost_byte_from_board != Some(self.sent_count) {
+                self.output.push_back(byte);
             }
-            self.sent += 1;
+            self.sent_count += 1;
         }
     }
 
     fn write_page(&mut self, bytes: &[u8]) {
         assert_eq!(bytes.len(), 128, "a page of an ATmega328P");
-        assert_eq!(self.address % 128, 0, "pages begin where pages begin");
+        assert_eq!(self.address % 128, 0, "the address is that of a page");
         self.flash[self.address..self.address + 128].copy_from_slice(bytes);
         if let Some((address, bits)) = self.stuck_bits {
             self.flash[address] &= !bits;
         }
-        self.written.push(self.address);
+        self.written_addresses.push(self.address);
     }
 }
 
 impl Board for BoardDouble {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
-        self.resets += 1;
-        self.errors = 0;
+        self.reset_count += 1;
+        self.error_count = 0;
         self.is_listening = !self.is_mute && baud == self.kind.baud();
-        self.calls_to_ignore = self.ignored_calls;
+        self.calls_to_ignore = self.ignored_calls_per_reset;
         self.has_started_program = false;
         self.command.clear();
-        self.out.clear();
-        self.out.extend(&self.garbage);
+        self.output.clear();
+        self.output.extend(&self.old_program_output);
         Ok(())
     }
 
     async fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
         self.check_connection()?;
         for byte in bytes {
-            let lost = self.lost_byte_to_board == Some(self.received);
-            self.received += 1;
-            if lost || !self.is_listening {
+            let is_lost = self.lost_byte_to_board == Some(self.received_count);
+            self.received_count += 1;
+            if is_lost || !self.is_listening {
                 continue;
             }
             self.command.push(*byte);
@@ -204,8 +209,8 @@ impl Board for BoardDouble {
 
     async fn read(&mut self, bytes: &mut [u8], _time: Duration) -> Result<usize, BoardError> {
         self.check_connection()?;
-        let count = bytes.len().min(self.out.len());
-        for (byte, sent) in bytes.iter_mut().zip(self.out.drain(..count)) {
+        let count = bytes.len().min(self.output.len());
+        for (byte, sent) in bytes.iter_mut().zip(self.output.drain(..count)) {
             *byte = sent;
         }
         Ok(count)
@@ -213,7 +218,7 @@ impl Board for BoardDouble {
 
     async fn discard(&mut self, _time: Duration) -> Result<(), BoardError> {
         self.check_connection()?;
-        self.out.clear();
+        self.output.clear();
         Ok(())
     }
 }

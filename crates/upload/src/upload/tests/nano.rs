@@ -6,15 +6,18 @@ use super::*;
 fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
     let mut board = BoardDouble::old_nano();
     board.flash[..500].fill(9);
-    let run = run_with(board, &whole_image("paper"));
-    assert!(run.result.is_ok(), "{}", run.error());
+    let run = run_with(board, &firmware_image("paper"));
+    assert!(run.result.is_ok(), "{}", run.error_message());
     assert_eq!(
-        (run.board.resets, run.retries),
+        (run.board.reset_count, run.retry_count),
         (2, 1),
         "called at both speeds"
     );
-    assert_eq!(run.found, ["the board has another program, of 500 bytes"]);
-    let image = whole_image("paper");
+    assert_eq!(
+        run.reported_contents,
+        ["the board has another program, of 500 bytes"]
+    );
+    let image = firmware_image("paper");
     assert!(run.board.flash[..image.end()] == *image.bytes());
     assert!(run.board.flash[0x7800..] == BoardDouble::old_nano().flash[0x7800..]);
     assert!(run.board.has_started_program, "the program is started");
@@ -22,71 +25,82 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
 
 #[test]
 fn a_byte_lost_on_the_way_to_an_old_nano_is_recovered_at_its_speed() {
-    let (code, large) = (whole_image("paper"), robot_image("large"));
-    let nano = |lost| {
+    let (code, large) = (firmware_image("paper"), robot_image("large"));
+    let run_with_lost_byte = |lost_byte| {
         let mut board = BoardDouble::old_nano();
         board.flash[..code.end()].copy_from_slice(code.bytes());
-        board.lost_byte_to_board = lost;
+        board.lost_byte_to_board = lost_byte;
         run_with(board, &large)
     };
-    let bytes = nano(None).board.received;
-    assert!(bytes > 1000, "{bytes} bytes");
-    for at in 0..bytes {
-        let run = nano(Some(at));
-        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
+    let byte_count = run_with_lost_byte(None).board.received_count;
+    assert!(byte_count > 1000, "{byte_count} bytes");
+    for lost_byte in 0..byte_count {
+        let run = run_with_lost_byte(Some(lost_byte));
+        assert!(
+            run.result.is_ok(),
+            "byte {lost_byte}: {}",
+            run.error_message()
+        );
         assert_eq!(
             robot_name(&run.board).as_deref(),
             Some("large"),
-            "byte {at}"
+            "byte {lost_byte}"
         );
         assert!(
-            run.board.resets <= 4,
-            "byte {at}: {} resets",
-            run.board.resets
+            run.board.reset_count <= 4,
+            "byte {lost_byte}: {} resets",
+            run.board.reset_count
         );
     }
 }
 
 #[test]
-fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
+fn an_image_that_reaches_into_a_nanos_boot_section_is_refused_if_the_board_may_be_a_nano() {
     // The robot with the most gaits in the repository.
-    let image = whole_image("own-gaits");
+    let image = firmware_image("own-gaits");
     assert!(image.end() > 0x7800, "{:#x}", image.end());
-    let refused = |mut board: BoardDouble, target: Target| {
+    let refusal_of = |mut board: BoardDouble, target: Target| {
         board.flash[..500].fill(9);
         let before = board.flash.clone();
         let run = run_as(board, &image, target);
-        assert!(run.board.flash == before && run.board.written.is_empty());
-        run.error()
+        assert!(run.board.flash == before && run.board.written_addresses.is_empty());
+        run.error_message()
     };
-    let any = Target::default();
-    let named = |model| Target {
+    let unknown_model = Target::default();
+    let model_named = |model| Target {
         model: Some(model),
         may_be_nano: true,
     };
-    let words = refused(BoardDouble::old_nano(), any);
-    let needed = format!(
+    let message = refusal_of(BoardDouble::old_nano(), unknown_model);
+    let expected_start = format!(
         "{} bytes of flash are needed, and a Nano has 30720",
         image.end()
     );
-    assert!(words.starts_with(&needed), "{words}");
-    assert!(words.ends_with("Nothing was written"), "{words}");
-    assert_eq!(words, refused(BoardDouble::blank(), named(Model::Nano)));
-    // A newer Nano answers like a UNO, and clones of the UNO have the same USB chip as a Nano.
-    let in_doubt = Target {
-        may_be_nano: true,
-        ..any
-    };
-    let words = refused(BoardDouble::blank(), in_doubt);
-    assert!(
-        words.contains("; this board may be one, because of its USB chip. Nothing"),
-        "{words}"
+    assert!(message.starts_with(&expected_start), "{message}");
+    assert!(message.ends_with("Nothing was written"), "{message}");
+    assert_eq!(
+        message,
+        refusal_of(BoardDouble::blank(), model_named(Model::Nano))
     );
-    for target in [any, named(Model::Uno)] {
+    // A newer Nano answers like a UNO, and clones of the UNO have the same USB chip as a Nano.
+    let possible_nano = Target {
+        may_be_nano: true,
+        ..unknown_model
+    };
+    let message = refusal_of(BoardDouble::blank(), possible_nano);
+    assert!(
+        message.contains("; this board may be one, because of its USB chip. Nothing"),
+        "{message}"
+    );
+    for target in [unknown_model, model_named(Model::Uno)] {
         let run = run_as(BoardDouble::blank(), &image, target);
-        assert!(run.result.is_ok(), "{}", run.error());
+        assert!(run.result.is_ok(), "{}", run.error_message());
     }
     // An image that fits a Nano, too, is written without a question.
-    let run = run_as(BoardDouble::blank(), &whole_image("paper"), in_doubt);
-    assert!(run.result.is_ok(), "{}", run.error());
+    let run = run_as(
+        BoardDouble::blank(),
+        &firmware_image("paper"),
+        possible_nano,
+    );
+    assert!(run.result.is_ok(), "{}", run.error_message());
 }

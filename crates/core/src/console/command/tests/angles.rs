@@ -1,24 +1,25 @@
-//! The angles of `pose`, in every notation.
+//! The angles of `pose` in all their notations.
 
 use super::*;
 
-/// A `pose` line with this angle at an index, and neutral angles at the other three.
+/// A `pose` line with the given angle for the servo at `index`, and neutral angles for the other three.
 fn pose_line(index: usize, angle: &str) -> String {
     let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
     words[index] = angle.to_string();
     format!("pose {}", words.join(" "))
 }
 
-fn read_angle(index: usize, angle: &str) -> Result<i32, Misread> {
+/// Parses a `pose` line with this angle; returns the angle in hundredths of a degree.
+fn parse_angle(index: usize, angle: &str) -> Result<i32, LineError> {
     match with_shared_robot(|robot| parse(pose_line(index, angle).as_bytes(), robot)) {
         Ok(Command::Order(Order::Pose(angles))) => Ok(angles[index].centideg().into()),
         Ok(command) => panic!("{command:?}"),
-        Err(misread) => Err(misread),
+        Err(line_error) => Err(line_error),
     }
 }
 
 #[test]
-fn hundredths_of_a_degree_within_a_turn_are_read_and_others_refused() {
+fn angles_within_a_turn_are_read_to_the_hundredth_and_larger_ones_are_refused() {
     for centideg in (-36_100..36_100)
         .step_by(3)
         .chain([-36_000, -1, 36_000, 36_001])
@@ -28,11 +29,11 @@ fn hundredths_of_a_degree_within_a_turn_are_read_and_others_refused() {
         let angle = format!("{sign}{}.{:02}", magnitude / 100, magnitude % 100);
         let index = magnitude as usize % 4;
         let expected = if magnitude > 36_000 {
-            Err(Misread::AngleOutOfRange(Servo::at(index)))
+            Err(LineError::AngleOutOfRange(Servo::at(index)))
         } else {
             Ok(centideg.rem_euclid(36_000))
         };
-        assert_eq!(read_angle(index, &angle), expected, "{angle}");
+        assert_eq!(parse_angle(index, &angle), expected, "{angle}");
     }
 }
 
@@ -44,7 +45,7 @@ fn an_angle_may_be_written_in_several_ways() {
         (["0", "-0", "360", "-360", "-0.00"], 0),
     ] {
         for notation in notations {
-            assert_eq!(read_angle(1, notation), Ok(centideg), "{notation}");
+            assert_eq!(parse_angle(1, notation), Ok(centideg), "{notation}");
         }
     }
 }
@@ -56,34 +57,35 @@ fn an_invalid_angle_is_refused() {
         "1.-5", ".", "0x10",
     ] {
         assert_eq!(
-            read_angle(2, word),
-            Err(Misread::WrongArguments(Text::PoseWants)),
+            parse_angle(2, word),
+            Err(LineError::WrongArguments(Text::PoseUsage)),
             "{word}"
         );
     }
     let lines = "pose|pose 1|pose 1 2 3|pose 1 2 3 4 5|pose 1 2 3 4 x|pose 1 999 3 4 5";
     for line in lines.split('|') {
         assert_eq!(
-            read(line),
-            Err(Misread::WrongArguments(Text::PoseWants)),
+            parse_line(line),
+            Err(LineError::WrongArguments(Text::PoseUsage)),
             "{line}"
         );
     }
 }
 
 #[test]
-fn angles_go_to_the_servos_in_order_and_the_first_too_large_is_named() {
-    let Ok(Command::Order(Order::Pose(angles))) = read("pose 138.59   41.42\t318.60 221.44") else {
-        panic!("a pose");
+fn angles_go_to_the_servos_in_order_and_the_first_one_too_large_is_named() {
+    let Ok(Command::Order(Order::Pose(angles))) = parse_line("pose 138.59   41.42\t318.60 221.44")
+    else {
+        panic!("the line is not read as a pose");
     };
     let centideg = angles.map(Angle::centideg);
     assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
     assert_eq!(
-        read("pose 1 361 3 -400"),
-        Err(Misread::AngleOutOfRange(Servo::A2))
+        parse_line("pose 1 361 3 -400"),
+        Err(LineError::AngleOutOfRange(Servo::A2))
     );
     assert_eq!(
-        read("pose 1 2 3 99999999"),
-        Err(Misread::AngleOutOfRange(Servo::A4))
+        parse_line("pose 1 2 3 99999999"),
+        Err(LineError::AngleOutOfRange(Servo::A4))
     );
 }

@@ -1,4 +1,4 @@
-//! Lines of any bytes and of any length.
+//! Lines of random bytes, and lines that are refused.
 
 use super::*;
 
@@ -23,11 +23,18 @@ const REFUSED_LINES: [&str; 9] = [
     "pose 170 130 309.64 226.18",
 ];
 
-/// Bytes as from a person, from a faulty program, and from a broken cable.
+/// Random bytes as a person, a faulty program or a broken cable sends them.
 fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
-    let mut lines = GAITS.to_vec();
+    let mut lines = GAIT_NAMES.to_vec();
     lines.extend([
-        "help", "stop", "rest", "speed 33", "watch 9", "watch 0", "status", NEUTRAL,
+        "help",
+        "stop",
+        "rest",
+        "speed 33",
+        "watch 9",
+        "watch 0",
+        "status",
+        NEUTRAL_COMMAND,
     ]);
     lines.extend(REFUSED_LINES);
     let line = prop::sample::select(lines).prop_map(|line| format!("{line}\r").into_bytes());
@@ -54,47 +61,47 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn every_line_of_any_bytes_gets_one_final_line_with_any_frames_between(
+    fn every_line_of_random_bytes_gets_one_final_line_however_slowly_the_bytes_come(
         bytes in any_bytes(),
         frames_between in 0u32..3,
     ) {
-        let (mut whole_dialogue, mut slow_dialogue) = (wake_odd_robot(), wake_odd_robot());
+        let (mut burst_dialogue, mut bytewise_dialogue) = (wake_odd_robot(), wake_odd_robot());
         let final_lines_of = |lines: Vec<String>| -> Vec<String> {
-            lines.into_iter().filter(|line| is_final(line)).collect()
+            lines.into_iter().filter(|line| is_answer(line)).collect()
         };
-        let whole_lines = final_lines_of(whole_dialogue.send(&bytes));
-        prop_assert_eq!(whole_lines.len(), count_answers_due(&bytes));
-        let mut slow_lines = Vec::new();
+        let burst_lines = final_lines_of(burst_dialogue.send(&bytes));
+        prop_assert_eq!(burst_lines.len(), count_answers_due(&bytes));
+        let mut bytewise_lines = Vec::new();
         for byte in &bytes {
-            slow_lines.extend(slow_dialogue.send(&[*byte]));
-            slow_lines.extend(slow_dialogue.run_frames(frames_between));
+            bytewise_lines.extend(bytewise_dialogue.send(&[*byte]));
+            bytewise_lines.extend(bytewise_dialogue.run_frames(frames_between));
         }
-        // Only the answer to `status` depends on time; it is the one with `=`.
-        let timeless_lines_of = |lines: Vec<String>| -> Vec<String> {
+        // Only the answer to `status` depends on time; it is the only one that contains `=`.
+        let time_independent_lines_of = |lines: Vec<String>| -> Vec<String> {
             lines.into_iter().filter(|line| !line.contains('=')).collect()
         };
-        prop_assert_eq!(timeless_lines_of(final_lines_of(slow_lines)), timeless_lines_of(whole_lines));
+        prop_assert_eq!(time_independent_lines_of(final_lines_of(bytewise_lines)), time_independent_lines_of(burst_lines));
     }
 
     #[test]
     fn a_refused_line_changes_nothing(
-        history in prop::collection::vec((prop::sample::select(GAITS.to_vec()), 0u32..90), 0..4),
+        history in prop::collection::vec((prop::sample::select(GAIT_NAMES.to_vec()), 0u32..90), 0..4),
         speed in 10u8..=100,
         line in prop::sample::select(REFUSED_LINES.to_vec()),
     ) {
-        let [mut asked_dialogue, mut spared_dialogue] = [(); 2].map(|()| wake_odd_robot());
-        for dialogue in [&mut asked_dialogue, &mut spared_dialogue] {
+        let [mut tested_dialogue, mut undisturbed_dialogue] = [(); 2].map(|()| wake_odd_robot());
+        for dialogue in [&mut tested_dialogue, &mut undisturbed_dialogue] {
             dialogue.send_line(&format!("speed {speed}"));
             for (gait, frames) in &history {
                 dialogue.send_line(gait);
                 dialogue.run_frames(*frames);
             }
         }
-        prop_assert!(asked_dialogue.send_line(line).starts_with("err "));
+        prop_assert!(tested_dialogue.send_line(line).starts_with("err "));
         for _ in 0..40 {
-            prop_assert_eq!(asked_dialogue.frame(), spared_dialogue.frame());
-            prop_assert_eq!(asked_dialogue.read_lines(), spared_dialogue.read_lines());
+            prop_assert_eq!(tested_dialogue.run_frame(), undisturbed_dialogue.run_frame());
+            prop_assert_eq!(tested_dialogue.read_lines(), undisturbed_dialogue.read_lines());
         }
-        prop_assert_eq!(asked_dialogue.send_line("status"), spared_dialogue.send_line("status"));
+        prop_assert_eq!(tested_dialogue.send_line("status"), undisturbed_dialogue.send_line("status"));
     }
 }

@@ -1,7 +1,7 @@
-//! Settings of the servos: set, saved, and restored.
+//! The settings, most of which calibrate servos: changed, saved and loaded.
 
 use super::*;
-use crate::memory::copies::COPIES;
+use crate::memory::copies::COPY_ADDRESSES;
 use crate::memory::record::Progress;
 use crate::numbers::part::Servo;
 use crate::numbers::units::Sweep;
@@ -60,27 +60,31 @@ fn cal_prints_all_settings_and_no_state() {
 }
 
 #[test]
-fn only_saved_settings_survive_power_off() {
+fn only_saved_settings_survive_a_loss_of_power() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("trim 2 4");
     dialogue.expect_accepted("save");
     let saved_lines = read_cal(&mut dialogue);
     dialogue.send_line("trim 2 5");
     assert_ne!(read_cal(&mut dialogue), saved_lines);
-    let mut restarted = Dialogue::with_memory(
+    let mut restarted_dialogue = Dialogue::with_memory(
         *Sample::odd(),
         dialogue.board.memory.clone(),
         Restart::default(),
     );
-    assert_eq!(restarted.read_lines().len(), 1, "the banner alone");
-    assert_eq!(read_cal(&mut restarted), saved_lines);
-    // Also without a power cycle.
+    assert_eq!(
+        restarted_dialogue.read_lines().len(),
+        1,
+        "only the banner is printed"
+    );
+    assert_eq!(read_cal(&mut restarted_dialogue), saved_lines);
+    // `load` restores the saved settings without a power cycle.
     dialogue.expect_accepted("load");
     assert_eq!(read_cal(&mut dialogue), saved_lines);
 }
 
 #[test]
-fn load_before_the_first_save_and_a_worn_memory_are_refused() {
+fn load_before_the_first_save_is_refused_and_so_is_save_to_a_worn_memory() {
     let mut dialogue = wake_odd_robot();
     dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
     dialogue.board.memory.is_worn = true;
@@ -89,7 +93,7 @@ fn load_before_the_first_save_and_a_worn_memory_are_refused() {
 }
 
 #[test]
-fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
+fn a_change_of_calibration_moves_only_its_servo_and_within_the_slew_limit() {
     for change in [
         "trim 1 20",
         "trim 1 -12.5",
@@ -111,7 +115,7 @@ fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
         dialogue.run_frames(100);
         dialogue.send_line("pose 145 50 311 224.5");
         dialogue.run_frames(150);
-        let widths_before = widths(&mut dialogue);
+        let widths_before = run_frame_and_read_widths(&mut dialogue);
         dialogue.expect_accepted(change);
         let motion = dialogue.motion();
         let expected_widths = motion
@@ -123,7 +127,7 @@ fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
         let max_change = f64::from(motion.robot().slew().per_frame) * gain;
         let mut last_widths = widths_before;
         for _ in 0..200 {
-            let new_widths = widths(&mut dialogue);
+            let new_widths = run_frame_and_read_widths(&mut dialogue);
             assert!(
                 f64::from(new_widths[0].abs_diff(last_widths[0])) <= max_change.max(1.0),
                 "{change}"
@@ -132,7 +136,7 @@ fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
             last_widths = new_widths;
         }
         assert_eq!(last_widths, expected_widths, "{change}");
-        assert_eq!(dialogue.status("pose"), "145.00,50.00,311.00,224.50");
+        assert_eq!(dialogue.status_value("pose"), "145.00,50.00,311.00,224.50");
     }
 }
 
@@ -146,15 +150,15 @@ fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
     dialogue.run_frames(1);
     assert_eq!(dialogue.motion().phase(), phase_before);
     dialogue.run_frames(200);
-    assert_eq!(dialogue.status("gait"), "sway");
+    assert_eq!(dialogue.status_value("gait"), "sway");
     assert_ne!(dialogue.motion().phase(), phase_before);
     let motion = dialogue.motion();
     let expected_pulses = motion.pose().pulses(motion.calibration());
-    assert_eq!(motion.sent(), &expected_pulses);
+    assert_eq!(motion.sent_pulses(), &expected_pulses);
 }
 
 #[test]
-fn a_calibration_too_narrow_for_gaits_or_pose_is_refused_and_changes_nothing() {
+fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused_and_change_nothing() {
     let mut dialogue = wake_odd_robot();
     let lines_before = read_cal(&mut dialogue);
     for line in [
@@ -180,7 +184,7 @@ fn a_calibration_too_narrow_for_gaits_or_pose_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_factory_or_a_load_that_is_refused_changes_nothing() {
+fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     let mut dialogue = wake_odd_robot();
     for line in [
         "trim 1 10",
@@ -208,9 +212,10 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
     other_dialogue.board.memory.bytes_mut()[44] ^= 1;
     other_dialogue.expect_refused("load", "9 ");
     assert_eq!(read_cal(&mut other_dialogue), lines_before);
-    // A trim moves the travel: the pose below is within the moved travel, but not within robot.toml's.
+    // A trim shifts the travel: the pose below is within the shifted travel, but not within that of robot.toml.
     let narrow_max = Sweep(2200);
-    let robot = Sample::odd().with(|content| content.calibration[0].max = narrow_max);
+    let robot =
+        Sample::odd().with_changes(|content| content.calibration[0].travel_max = narrow_max);
     let mut narrow_dialogue = wake_robot(robot);
     narrow_dialogue.expect_accepted("trim 1 -5");
     narrow_dialogue.expect_accepted("limit 1 67 149");
@@ -224,19 +229,19 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
 }
 
 #[test]
-fn settings_too_narrow_for_a_gait_are_not_loaded_and_change_nothing() {
+fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits() {
     for servo in Servo::ALL {
-        for (excess, is_loaded) in [(1, true), (-1, false)] {
+        for (excess_steps, is_loaded) in [(1, true), (-1, false)] {
             let mut dialogue = wake_odd_robot();
             let robot = Sample::odd();
             let mut settings = Settings::of(&robot);
-            let mut adjustment = settings.servo(servo);
-            adjustment.min = Sweep(robot.reach(servo).min.0 - excess);
-            settings.set_servo(servo, adjustment);
-            let mut writing = COPIES[0].start_write();
-            while writing.step(settings.bytes(), &mut dialogue.board.memory) == Progress::InProgress
-            {
-            }
+            let mut adjustment = settings.adjustment(servo);
+            adjustment.travel_min = Sweep(robot.needed_travel(servo).min.0 - excess_steps);
+            settings.set_adjustment(servo, adjustment);
+            let mut write_job = COPY_ADDRESSES[0].start_write();
+            while write_job.advance(settings.bytes(), &mut dialogue.board.memory)
+                == Progress::InProgress
+            {}
             let lines_before = read_cal(&mut dialogue);
             let answer = dialogue.send_line("load");
             let is_refused = answer == "err 9 nothing is saved that could be loaded";
@@ -260,18 +265,26 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_with_any_trims() {
     dialogue.expect_refused("center 1", "2 ");
     dialogue.expect_accepted("center");
     dialogue.run_frames(200);
-    let neutral = Sample::odd().calibration().map(|servo| servo.neutral.0);
-    for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
+    let neutral = Sample::odd()
+        .calibration()
+        .map(|servo| servo.neutral_width.0);
+    for (width, neutral) in run_frame_and_read_widths(&mut dialogue)
+        .into_iter()
+        .zip(neutral)
+    {
         assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
     }
     dialogue.send_line("stand");
     dialogue.run_frames(200);
     let motion = dialogue.motion();
-    assert_eq!(motion.sent(), &Pose::NEUTRAL.pulses(motion.calibration()));
+    assert_eq!(
+        motion.sent_pulses(),
+        &Pose::NEUTRAL.pulses(motion.calibration())
+    );
 }
 
 #[test]
-fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
+fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
     let names = ["walk 1", "walk 2", "walk 3", "walk 4"];
     let make_robot = || {
         names
@@ -287,30 +300,33 @@ fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
         );
         dialogue.expect_accepted("save");
         let memory = dialogue.board.memory.clone();
-        let mut restarted = Dialogue::with_memory(*make_robot(), memory, Restart::NONE);
-        restarted.run_frames(151);
-        assert_eq!(restarted.status("gait"), name.replace(' ', "-"));
+        let mut restarted_dialogue = Dialogue::with_memory(*make_robot(), memory, Restart::NONE);
+        restarted_dialogue.run_frames(151);
+        assert_eq!(
+            restarted_dialogue.status_value("gait"),
+            name.replace(' ', "-")
+        );
     }
 }
 
 #[test]
-fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
+fn the_servo_whose_saved_travel_is_too_narrow_for_the_gaits_is_found() {
     for servo in Servo::ALL {
         let robot = Sample::odd();
         let mut settings = Settings::of(&robot);
-        let mut adjustment = settings.servo(servo);
-        adjustment.max = Sweep(robot.reach(servo).max.0 - 1);
-        settings.set_servo(servo, adjustment);
+        let mut adjustment = settings.adjustment(servo);
+        adjustment.travel_max = Sweep(robot.needed_travel(servo).max.0 - 1);
+        settings.set_adjustment(servo, adjustment);
         assert_eq!(settings.first_unfit_servo(&robot), Some(servo));
     }
 }
 
 #[test]
-fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
+fn limits_that_exclude_the_pose_the_robot_is_about_to_take_are_refused() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
-    // The pose is far outside of all gaits. The gait brakes first, so the move to the pose has not begun yet.
+    // No gait reaches this pose. The gait brakes first, so the move to the pose has not begun yet.
     dialogue.expect_accepted("pose 152 50 311 224.5");
     dialogue.run_frames(2);
     let message = dialogue.send_line("limit 1 115 150");
@@ -319,37 +335,37 @@ fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
         "{message}"
     );
     dialogue.run_frames(300);
-    assert_eq!(dialogue.status("pose"), "152.00,50.00,311.00,224.50");
+    assert_eq!(dialogue.status_value("pose"), "152.00,50.00,311.00,224.50");
     dialogue.send_line("stand");
     dialogue.run_frames(200);
     dialogue.expect_accepted("limit 1 115 150");
 }
 
 #[test]
-fn after_a_calibration_a_gait_gathers_its_pace_again() {
+fn after_a_change_of_calibration_a_gait_accelerates_gradually_to_its_full_pace() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
-    let full_advance = run_and_measure_phase(&mut dialogue);
+    let full_advance = run_frame_and_measure_advance(&mut dialogue);
     dialogue.send_line("trim 2 3");
     let mut advances = Vec::new();
     for _ in 0..100 {
-        advances.push(run_and_measure_phase(&mut dialogue));
+        advances.push(run_frame_and_measure_advance(&mut dialogue));
     }
-    let first_moving = advances
+    let first_moving_frame = advances
         .iter()
-        .position(|phase| *phase > 0)
-        .expect("it goes on");
+        .position(|advance| *advance > 0)
+        .expect("the gait goes on");
     assert!(
-        first_moving > 0 && advances[first_moving] < full_advance / 4,
+        first_moving_frame > 0 && advances[first_moving_frame] < full_advance / 4,
         "{advances:?}"
     );
     assert_eq!(advances.last(), Some(&full_advance));
 }
 
-/// The advance of the phase in a frame, 1/2^24 cycle.
-fn run_and_measure_phase(dialogue: &mut Dialogue) -> u32 {
+/// Runs a frame; returns the advance of the phase in it, 1/2^24 cycle.
+fn run_frame_and_measure_advance(dialogue: &mut Dialogue) -> u32 {
     let phase_before = dialogue.motion().phase();
-    dialogue.frame();
+    dialogue.run_frame();
     dialogue.motion().phase().wrapping_sub(phase_before) & 0xff_ffff
 }

@@ -1,4 +1,4 @@
-//! Gaits with a count, and the events that end them early.
+//! Counted gaits, which end after a number of cycles, and the events that end them early.
 
 use super::*;
 
@@ -6,28 +6,31 @@ use super::*;
 const LONG_FRAMES: u32 = 400;
 
 #[test]
-fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
+fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
         let mut dialogue = wake_odd_robot();
         assert_eq!(
             dialogue.send_line(&format!("{name}  2")),
             format!("ok {name}  2")
         );
-        assert_eq!(dialogue.status("gait"), name.replace(' ', "-"));
+        assert_eq!(dialogue.status_value("gait"), name.replace(' ', "-"));
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
         assert_eq!(
-            (dialogue.status("gait"), dialogue.status("fault")),
+            (
+                dialogue.status_value("gait"),
+                dialogue.status_value("fault")
+            ),
             ("stop".into(), "none".into())
         );
-        let held_pulses = dialogue.frame();
+        let held_pulses = dialogue.run_frame();
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
-        assert_eq!(dialogue.frame(), held_pulses);
+        assert_eq!(dialogue.run_frame(), held_pulses);
     }
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("sway");
     assert!(
         dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
-        "no count, no end"
+        "a gait without a count does not end"
     );
 }
 
@@ -37,7 +40,7 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
     let message = "a gait takes a count, 1..999";
     for line in ["sway 0", "sway 1000", "sway 2x", "sway 1 1"] {
         dialogue.expect_refused(line, &format!("2 {message}"));
-        assert_eq!(dialogue.status("gait"), "stand");
+        assert_eq!(dialogue.status_value("gait"), "stand");
     }
     dialogue.send_line("rest");
     dialogue.expect_refused("sway 3", "7 servos are resting, send stand first");
@@ -45,19 +48,19 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn whatever_stops_the_robot_ends_a_count_without_done() {
-    let begin_count = || {
+fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
+    let start_counted_gait = || {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("sway 2");
         dialogue.run_frames(30);
         dialogue
     };
-    for line in ["stop", "rest", "stand", NEUTRAL, "sway"] {
-        let mut dialogue = begin_count();
+    for line in ["stop", "rest", "stand", NEUTRAL_COMMAND, "sway"] {
+        let mut dialogue = start_counted_gait();
         dialogue.send_line(line);
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty(), "{line}");
     }
-    let mut silent_dialogue = begin_count();
+    let mut silent_dialogue = start_counted_gait();
     silent_dialogue.send_line("deadman 100");
     let printed_lines = silent_dialogue.run_frames(LONG_FRAMES);
     assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
@@ -65,14 +68,14 @@ fn whatever_stops_the_robot_ends_a_count_without_done() {
         printed_lines[0].starts_with("# fault: no line"),
         "{printed_lines:?}"
     );
-    let mut weak_dialogue = begin_count();
-    supply(&mut weak_dialogue, 4_200);
-    let printed_lines = weak_dialogue.run_frames(LONG_FRAMES);
+    let mut low_supply_dialogue = start_counted_gait();
+    set_supply(&mut low_supply_dialogue, 4_200);
+    let printed_lines = low_supply_dialogue.run_frames(LONG_FRAMES);
     assert!(
         !printed_lines.contains(&"# done".to_string()),
         "{printed_lines:?}"
     );
-    assert_eq!(weak_dialogue.status("fault"), "supply");
+    assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
     let mut unsafe_dialogue = wake_odd_robot();
     unsafe_dialogue.send_line("stray 9");
     let printed_lines = unsafe_dialogue.run_frames(5 * LONG_FRAMES);
@@ -81,20 +84,23 @@ fn whatever_stops_the_robot_ends_a_count_without_done() {
 }
 
 #[test]
-fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
-    let count_frames = |supply_mv: Option<u16>| {
+fn a_low_supply_slows_a_counted_gait_and_does_not_end_it() {
+    let count_frames_until_done = |supply_mv: Option<u16>| {
         let mut dialogue = wake_odd_robot();
         if let Some(supply_mv) = supply_mv {
-            supply(&mut dialogue, supply_mv.into());
+            set_supply(&mut dialogue, supply_mv.into());
             dialogue.run_frames(40);
         }
         dialogue.send_line("sway 2");
         (1..2_000_u32)
             .find(|_| dialogue.run_frames(1) == ["# done"])
-            .expect("an end")
+            .expect("the gait ends")
     };
-    let (full_frames, slow_frames) = (count_frames(None), count_frames(Some(4_400)));
-    // An upper bound: at a lower pace, the cycles take longer, but speeding up and braking hardly do.
+    let (full_frames, slow_frames) = (
+        count_frames_until_done(None),
+        count_frames_until_done(Some(4_400)),
+    );
+    // An upper bound, since a lower pace lengthens the cycles, but hardly the speeding up and the braking.
     let max_frames = full_frames * 100 / u32::from(SLOW_PACE);
     assert!(
         slow_frames > u32::midpoint(full_frames, max_frames) && slow_frames < max_frames,
@@ -103,7 +109,7 @@ fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
 }
 
 #[test]
-fn a_reset_ends_a_count() {
+fn a_reset_ends_a_counted_gait() {
     for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("sway 2");
@@ -114,6 +120,6 @@ fn a_reset_ends_a_count() {
             !printed_lines.contains(&"# done".to_string()),
             "{printed_lines:?}"
         );
-        assert!(["stand", "stop"].contains(&dialogue.status("gait").as_str()));
+        assert!(["stand", "stop"].contains(&dialogue.status_value("gait").as_str()));
     }
 }

@@ -3,17 +3,20 @@
 use super::*;
 use crate::console::word::Effect;
 
-/// Frames within which every effect is visible.
-const FRAMES: usize = 40;
+/// The number of frames within which every effect is visible.
+const FRAME_COUNT: usize = 40;
 
-fn run_frames_and_read_widths(robot: &mut Dialogue) -> Vec<[u16; 4]> {
-    (0..FRAMES).map(|_| widths(robot)).collect()
+/// Runs [`FRAME_COUNT`] frames; returns the pulse widths of each.
+fn run_frames_and_read_widths(dialogue: &mut Dialogue) -> Vec<[u16; 4]> {
+    (0..FRAME_COUNT)
+        .map(|_| run_frame_and_read_widths(dialogue))
+        .collect()
 }
 
-/// Observes the effect of a line on a robot's pulses and calibration.
+/// Finds the effect of a line by its results: the pulses and the calibration of a robot.
 fn observe_effect(line: &str) -> Effect {
     let mut walking_dialogue = wake_robot(Sample::paper());
-    // With these settings `load` and `factory` change something.
+    // These settings make `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
         assert!(
             walking_dialogue.send_line(setting).starts_with("ok "),
@@ -30,23 +33,23 @@ fn observe_effect(line: &str) -> Effect {
         walking_dialogue.send_line(line).starts_with("ok "),
         "{line}"
     );
-    let [changed_frames, undisturbed_frames, standing_frames] = [
+    let [walking_widths, undisturbed_widths, standing_widths] = [
         &mut walking_dialogue,
         &mut undisturbed_dialogue,
         &mut standing_dialogue,
     ]
     .map(run_frames_and_read_widths);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
-    if changed_frames[FRAMES - 1] == [0; 4] {
+    if walking_widths[FRAME_COUNT - 1] == [0; 4] {
         Effect::Rests
     } else if walking_dialogue.motion().calibration() != undisturbed_dialogue.motion().calibration()
     {
         Effect::Calibrates
-    } else if !is_constant(&standing_frames) {
+    } else if !is_constant(&standing_widths) {
         Effect::Moves
-    } else if is_constant(&changed_frames) {
+    } else if is_constant(&walking_widths) {
         Effect::Freezes
-    } else if changed_frames != undisturbed_frames {
+    } else if walking_widths != undisturbed_widths {
         Effect::Paces
     } else {
         Effect::None
@@ -61,7 +64,7 @@ fn every_word_and_every_gait_has_its_declared_effect() {
         assert_eq!(command::effect(line, &robot), word.effect(), "{line}");
         assert_eq!(observe_effect(line), word.effect(), "{line}");
     }
-    for gait in GAITS {
+    for gait in GAIT_NAMES {
         assert_eq!(command::effect(gait, &robot), Effect::Moves, "{gait}");
         assert_eq!(observe_effect(gait), Effect::Moves, "{gait}");
     }

@@ -1,4 +1,4 @@
-//! Faults stop the robot; after a reset it starts in the right state.
+//! Faults, which stop the robot, and resets, after which it starts in a safe state.
 
 use super::*;
 
@@ -21,13 +21,16 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
             unattended_dialogue.run_frames(1),
             [format!("# boot: {boot}")]
         );
-        assert_eq!(unattended_dialogue.status("gait"), boot.replace(' ', "-"));
+        assert_eq!(
+            unattended_dialogue.status_value("gait"),
+            boot.replace(' ', "-")
+        );
         let mut interrupted_dialogue =
             Dialogue::with_memory(*Sample::odd(), eeprom, Restart::default());
         interrupted_dialogue.run_frames(100);
         interrupted_dialogue.board.send(b" ");
         interrupted_dialogue.run_frames(400);
-        assert_eq!(interrupted_dialogue.status("gait"), "stand");
+        assert_eq!(interrupted_dialogue.status_value("gait"), "stand");
     }
 }
 
@@ -46,11 +49,14 @@ fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
         ["# fault: no line for as long as deadman says, stopped"]
     );
     assert_eq!(
-        (dialogue.status("gait"), dialogue.status("fault")),
+        (
+            dialogue.status_value("gait"),
+            dialogue.status_value("fault")
+        ),
         ("stop".into(), "link".into())
     );
     dialogue.send_line("sway");
-    assert_eq!(dialogue.status("fault"), "none");
+    assert_eq!(dialogue.status_value("fault"), "none");
 }
 
 #[test]
@@ -58,7 +64,7 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
     let lines: [&[u8]; 4] = [
         b"OK+CONN",
         b"walk 0",
-        &[b'w', b'a', crate::console::line::GARBLED, b'k'],
+        &[b'w', b'a', crate::console::line::GARBLED_BYTE, b'k'],
         b"nonsense",
     ];
     for line in lines {
@@ -71,24 +77,24 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
             dialogue.run_frames(5);
         }
         dialogue.run_frames(3);
-        assert_eq!(dialogue.status("fault"), "link", "{line:?}");
+        assert_eq!(dialogue.status_value("fault"), "link", "{line:?}");
     }
 }
 
 #[test]
-fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command() {
+fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
     for (deadman_ms, wait_frames, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)]
     {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line(&format!("deadman {deadman_ms}"));
         dialogue.board.send(b"sway 1");
         dialogue.run_frames(wait_frames);
-        // The link broke within `sway 12`, and noise ends the line.
+        // The link has broken within `sway 12`, and noise ends the line.
         dialogue.board.send(b"\n");
         let printed_lines = dialogue.run_frames(2);
         let gait = if is_obeyed { "sway" } else { "stand" };
         assert_eq!(
-            dialogue.status("gait"),
+            dialogue.status_value("gait"),
             gait,
             "{deadman_ms} {wait_frames} {printed_lines:?}"
         );
@@ -102,7 +108,7 @@ fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command(
 }
 
 #[test]
-fn each_byte_of_a_line_begins_the_time_of_deadman_again() {
+fn each_byte_of_a_line_restarts_the_time_after_which_it_is_dropped() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("deadman 400");
     for byte in b"sway 1" {
@@ -111,7 +117,7 @@ fn each_byte_of_a_line_begins_the_time_of_deadman_again() {
     }
     dialogue.board.send(b"\n");
     dialogue.run_frames(2);
-    assert_eq!(dialogue.status("gait"), "sway");
+    assert_eq!(dialogue.status_value("gait"), "sway");
 }
 
 #[test]
@@ -125,7 +131,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
         dialogue.motion().phase().wrapping_sub(phase_before) & 0xff_ffff
     };
     let full_pace = measure_pace(&mut dialogue);
-    supply(&mut dialogue, 4_400);
+    set_supply(&mut dialogue, 4_400);
     let printed_lines = dialogue.run_frames(40);
     assert!(
         printed_lines[0].starts_with("# supply: 4.")
@@ -133,21 +139,21 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
         "{printed_lines:?}"
     );
     let slow_ratio = f64::from(measure_pace(&mut dialogue)) / f64::from(full_pace);
-    let expected = f64::from(SLOW_PACE) / 100.0;
-    assert!((slow_ratio - expected).abs() < 0.02, "{slow_ratio}");
+    let expected_ratio = f64::from(SLOW_PACE) / 100.0;
+    assert!((slow_ratio - expected_ratio).abs() < 0.02, "{slow_ratio}");
     dialogue.expect_refused("save", "8 the supply is too low");
-    supply(&mut dialogue, 4_200);
+    set_supply(&mut dialogue, 4_200);
     let printed_lines = dialogue.run_frames(40);
     assert_eq!(printed_lines.len(), 2);
-    assert_eq!(dialogue.status("gait"), "stop");
-    assert_eq!(dialogue.status("fault"), "supply");
+    assert_eq!(dialogue.status_value("gait"), "stop");
+    assert_eq!(dialogue.status_value("fault"), "supply");
     dialogue.expect_refused("sway", "8 ");
-    dialogue.expect_refused(NEUTRAL, "8 ");
-    supply(&mut dialogue, 4_000);
+    dialogue.expect_refused(NEUTRAL_COMMAND, "8 ");
+    set_supply(&mut dialogue, 4_000);
     dialogue.run_frames(40);
-    assert_eq!(dialogue.status("gait"), "rest");
-    assert_eq!(dialogue.frame(), Pulses::default());
-    supply(&mut dialogue, 5_000);
+    assert_eq!(dialogue.status_value("gait"), "rest");
+    assert_eq!(dialogue.run_frame(), Pulses::default());
+    set_supply(&mut dialogue, 5_000);
     let printed_lines = dialogue.run_frames(100);
     assert!(
         printed_lines
@@ -155,7 +161,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
             .is_some_and(|line| line.ends_with(" V, good")),
         "{printed_lines:?}"
     );
-    assert_eq!(dialogue.status("gait"), "rest");
+    assert_eq!(dialogue.status_value("gait"), "rest");
     dialogue.expect_accepted("stand");
 }
 
@@ -166,15 +172,15 @@ fn held_stance(sweeps: [i16; 4]) -> Stance {
         is_resting: false,
         frames_awake: crate::motion::AWAKE_FRAMES,
         pose,
-        sent: pose.pulses(&Sample::odd().calibration()),
+        sent_pulses: pose.pulses(&Sample::odd().calibration()),
     }
 }
 
-/// The restart number `count` after a hang, with this state of the servos before it.
+/// The restart after the last of `count` hangs in a row, with this state of the servos before it.
 fn restart_after_hang(count: u8, stance: Stance) -> Restart {
     Restart {
         cause: Cause::Watchdog,
-        count,
+        reset_count: count,
         stance_before: Some(stance),
         ..Restart::NONE
     }
@@ -194,19 +200,23 @@ fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
         "{printed_lines:?}"
     );
     for _ in 0..400 {
-        assert_eq!(dialogue.frame(), stance.sent, "at once, and for good");
+        assert_eq!(
+            dialogue.run_frame(),
+            stance.sent_pulses,
+            "the robot holds its pose from the first frame on"
+        );
     }
-    assert_eq!(dialogue.status("reset"), "watchdog");
-    assert_eq!(dialogue.status("resets"), "3");
-    assert_eq!(dialogue.status("fault"), "watchdog");
+    assert_eq!(dialogue.status_value("reset"), "watchdog");
+    assert_eq!(dialogue.status_value("resets"), "3");
+    assert_eq!(dialogue.status_value("fault"), "watchdog");
     dialogue.send_line("stand");
     dialogue.run_frames(100);
-    assert_eq!(dialogue.status("fault"), "none");
-    assert_eq!(dialogue.status("pose"), neutral());
+    assert_eq!(dialogue.status_value("fault"), "none");
+    assert_eq!(dialogue.status_value("pose"), neutral_pose_text());
 }
 
 #[test]
-fn an_unsafe_or_unreachable_pose_is_not_taken_over_and_the_robot_rests() {
+fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
     for sweeps in [[30_000, 0, 0, 0], [-6803, 7663, 0, 0]] {
         for cause in [Cause::Watchdog, Cause::External] {
             let restart = Restart {
@@ -215,23 +225,23 @@ fn an_unsafe_or_unreachable_pose_is_not_taken_over_and_the_robot_rests() {
             };
             let mut dialogue = Dialogue::with_memory(*Sample::odd(), Eeprom::blank(), restart);
             for _ in 0..140 {
-                assert_eq!(dialogue.frame(), Pulses::default());
+                assert_eq!(dialogue.run_frame(), Pulses::default());
             }
-            assert_eq!(dialogue.status("gait"), "rest");
+            assert_eq!(dialogue.status_value("gait"), "rest");
             dialogue.send_line("stand");
             dialogue.run_frames(50);
-            assert_eq!(dialogue.status("pose"), neutral());
+            assert_eq!(dialogue.status_value("pose"), neutral_pose_text());
         }
     }
 }
 
 #[test]
-fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
+fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
     let mut dialogue = wake_odd_robot();
     assert!(dialogue.send_line("limit 1 115 160").starts_with("ok "));
     dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
-    // 132.37 deg plus 30 is safe, but beyond 160.
+    // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
     let wide_stance = held_stance([5461, 0, 0, 0]);
     let mut unlimited_dialogue = Dialogue::with_memory(
         *Sample::odd(),
@@ -239,15 +249,15 @@ fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
         restart_after_hang(1, wide_stance),
     );
     unlimited_dialogue.run_frames(10);
-    assert_eq!(unlimited_dialogue.status("gait"), "stop");
+    assert_eq!(unlimited_dialogue.status_value("gait"), "stop");
     let mut narrow_dialogue =
         Dialogue::with_memory(*Sample::odd(), eeprom, restart_after_hang(1, wide_stance));
     narrow_dialogue.run_frames(10);
-    assert_eq!(narrow_dialogue.status("gait"), "rest");
+    assert_eq!(narrow_dialogue.status_value("gait"), "rest");
 }
 
 #[test]
-fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
+fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset() {
     for (setting, servo, cause) in [
         ("trim 1 15", 0, Cause::Watchdog),
         ("trim 4 -15", 3, Cause::External),
@@ -259,35 +269,36 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
         dialogue.run_frames(100);
         assert!(dialogue.send_line(setting).starts_with("ok "), "{setting}");
         dialogue.run_frames(100);
-        let mut last_pulses = dialogue.frame();
+        let mut last_pulses = dialogue.run_frame();
         dialogue.reset(cause);
         let calibration = *dialogue.motion().calibration();
-        let mut moved_frames = 0;
+        let mut moving_frame_count = 0;
         for _ in 0..200 {
-            let pulses = dialogue.frame();
+            let pulses = dialogue.run_frame();
             for (index, (pulse, last_pulse)) in pulses.0.iter().zip(&mut last_pulses.0).enumerate()
             {
                 if pulse.0 == 0 {
                     continue;
                 }
-                let max_change = calibration[index].slew(Sample::odd().slew().per_frame);
+                let max_change =
+                    calibration[index].max_width_change(Sample::odd().slew().per_frame);
                 let change = pulse.0.abs_diff(last_pulse.0);
                 assert!(
                     change <= max_change + 1,
                     "{setting} A{}: {change} of {max_change}",
                     index + 1
                 );
-                moved_frames += usize::from(index == servo && change > 0);
+                moving_frame_count += usize::from(index == servo && change > 0);
                 *last_pulse = *pulse;
             }
         }
-        assert!(moved_frames > 3, "{setting}: it was undone");
+        assert!(moving_frame_count > 3, "{setting} has not been undone");
         assert_eq!(last_pulses, dialogue.motion().pose().pulses(&calibration));
     }
 }
 
 #[test]
-fn a_reset_while_servos_wake_wakes_no_two_together() {
+fn after_a_reset_while_servos_wake_they_still_wake_one_at_a_time() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         for frames in 1..25 {
             let mut dialogue = wake_odd_robot();
@@ -295,20 +306,20 @@ fn a_reset_while_servos_wake_wakes_no_two_together() {
             dialogue.run_frames(10);
             dialogue.send_line("stand");
             dialogue.run_frames(frames);
-            let mut had_pulses = dialogue.frame().0.map(|width| width.0 > 0);
+            let mut had_pulses = dialogue.run_frame().0.map(|width| width.0 > 0);
             dialogue.reset(cause);
             let had_pulses_at_reset = had_pulses;
             if cause != Cause::Watchdog {
                 had_pulses = [false; 4];
             }
             for _ in 0..60 {
-                let has_pulses = dialogue.frame().0.map(|width| width.0 > 0);
+                let has_pulses = dialogue.run_frame().0.map(|width| width.0 > 0);
                 let woken_servos = (0..4).filter(|servo| has_pulses[*servo] && !had_pulses[*servo]);
-                let unknown_count = woken_servos
+                let newly_woken_count = woken_servos
                     .clone()
                     .filter(|servo| !had_pulses_at_reset[*servo])
                     .count();
-                assert!(unknown_count <= 1, "{cause:?} after {frames}");
+                assert!(newly_woken_count <= 1, "{cause:?} after {frames}");
                 let woken_count = woken_servos.count();
                 assert!(woken_count <= 1, "{cause:?} after {frames}");
                 had_pulses = has_pulses;
@@ -319,7 +330,7 @@ fn a_reset_while_servos_wake_wakes_no_two_together() {
 }
 
 #[test]
-fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
+fn after_a_reset_a_resting_robot_rests_until_boot_which_a_hang_cancels() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("pose 140 50 311 224.5");
@@ -330,40 +341,46 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
         dialogue.reset(cause);
         dialogue.board.memory.log.clear();
         for _ in 0..149 {
-            assert_eq!(dialogue.frame(), Pulses::default(), "{cause:?}");
+            assert_eq!(dialogue.run_frame(), Pulses::default(), "{cause:?}");
         }
         assert_eq!(*dialogue.board.memory.bytes(), memory_bytes, "{cause:?}");
-        assert!(dialogue.board.memory.log.is_empty(), "it is there already");
-        // The `boot` setting is `stand`; a hang cancels it.
+        assert!(
+            dialogue.board.memory.log.is_empty(),
+            "the rest is already recorded"
+        );
+        // `boot` is set to `stand`; a hang cancels it.
         let printed_lines = dialogue.run_frames(1);
         let has_booted = printed_lines.iter().any(|line| line == "# boot: stand");
         assert_eq!(has_booted, cause != Cause::Watchdog, "{printed_lines:?}");
-        assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
+        assert_eq!(dialogue.status_value("pose"), "140.00,50.00,311.00,224.50");
     }
 }
 
 #[test]
-fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
+fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("pose 140 50 311 224.5");
         dialogue.run_frames(150);
-        dialogue.board.memory.slowness = 4;
+        dialogue.board.memory.write_delay = 4;
         dialogue.board.memory.is_timed = true;
         dialogue.board.send(b"rest\r");
-        dialogue.frame();
+        dialogue.run_frame();
         dialogue.reset(cause);
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run_frames(100);
         let eeprom = dialogue.board.memory.clone();
-        let mut restarted = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
-        assert_eq!(restarted.status("pose"), "140.00,50.00,311.00,224.50");
+        let mut restarted_dialogue = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+        assert_eq!(
+            restarted_dialogue.status_value("pose"),
+            "140.00,50.00,311.00,224.50"
+        );
     }
 }
 
 #[test]
-fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
-    // Because a boot loader hides the cause, a press counts like a brown-out.
+fn three_brown_outs_or_button_resets_in_a_row_end_in_rest_until_stand_is_sent() {
+    // A boot loader hides the cause of a reset, so with it, a press of the button counts like a brown-out.
     for (has_boot_loader, cause) in [
         (false, Cause::BrownOut),
         (true, Cause::BrownOut),
@@ -375,7 +392,7 @@ fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
         for reset_count in 1..=5 {
             dialogue.reset(cause);
             let printed_lines = dialogue.run_frames(17);
-            let is_resting = dialogue.frame() == Pulses::default();
+            let is_resting = dialogue.run_frame() == Pulses::default();
             assert_eq!(is_resting, reset_count >= 3, "{reset_count}");
             let notice =
                 "# fault: reset several times in a row by the button or a weak supply, resting";
@@ -385,42 +402,42 @@ fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
             );
         }
         dialogue.run_frames(300);
-        assert_eq!(dialogue.frame(), Pulses::default(), "boot is cancelled");
-        assert_eq!(dialogue.status("fault"), "brownout");
+        assert_eq!(dialogue.run_frame(), Pulses::default(), "boot is cancelled");
+        assert_eq!(dialogue.status_value("fault"), "brownout");
         dialogue.expect_refused("sway", "7 ");
         dialogue.expect_accepted("stand");
         dialogue.run_frames(30);
         dialogue.reset(Cause::BrownOut);
         dialogue.run_frames(30);
         assert_ne!(
-            dialogue.frame(),
+            dialogue.run_frame(),
             Pulses::default(),
-            "the count restarted at zero"
+            "`stand` clears the count of resets"
         );
     }
 }
 
 #[test]
-fn opening_the_port_and_sending_a_line_does_not_count_as_a_weak_supply() {
+fn resets_that_are_each_followed_by_a_line_do_not_count_as_a_weak_supply() {
     let mut dialogue = wake_odd_robot();
     dialogue.board.has_boot_loader = true;
     for _ in 0..20 {
         dialogue.reset(Cause::External);
         dialogue.run_frames(30);
-        assert_eq!(dialogue.status("fault"), "none");
-        assert_ne!(dialogue.frame(), Pulses::default());
+        assert_eq!(dialogue.status_value("fault"), "none");
+        assert_ne!(dialogue.run_frame(), Pulses::default());
     }
 }
 
 #[test]
-fn lines_by_radio_do_not_excuse_a_supply_that_fails_while_servos_wake() {
+fn a_line_before_all_servos_are_awake_does_not_clear_the_count_of_resets() {
     let mut dialogue = wake_odd_robot();
     dialogue.board.has_boot_loader = true;
     for reset_count in 1..=3 {
         dialogue.reset(Cause::External);
         dialogue.run_frames(5);
         let fault = if reset_count < 3 { "none" } else { "brownout" };
-        assert_eq!(dialogue.status("fault"), fault, "{reset_count}");
+        assert_eq!(dialogue.status_value("fault"), fault, "{reset_count}");
         // The third servo wakes.
         dialogue.run_frames(10);
     }
@@ -432,6 +449,6 @@ fn brown_outs_half_a_minute_apart_do_not_count_as_in_a_row() {
     for _ in 0..6 {
         dialogue.reset(Cause::BrownOut);
         dialogue.run_frames(1501);
-        assert_ne!(dialogue.frame(), Pulses::default());
+        assert_ne!(dialogue.run_frame(), Pulses::default());
     }
 }

@@ -1,4 +1,4 @@
-//! Steps of routines that a contact ends: a button that is pressed, or a nose switch that touches a wall.
+//! Steps of routines that end when a contact closes: a button, or a nose switch that touches a wall.
 
 use super::*;
 use crate::numbers::gaits::{Input, Step};
@@ -11,8 +11,9 @@ const WAIT: u8 = Step::WAIT;
 const UNTIL: u8 = Step::UNTIL;
 const ENDLESS: u16 = Step::ENDLESS;
 
-/// A press, then a walk that ends at a wall or after a while, then a turn.
-const PATROL: [(u8, &str, u16); 6] = [
+/// The steps of a patrol, each a kind, a gait or an input, and a count: wait for the button, walk to a wall, walk back,
+/// turn.
+const PATROL_STEPS: [(u8, &str, u16); 6] = [
     (UNTIL, "button", 0),
     (WAIT, "stand", ENDLESS),
     (UNTIL, "nose", 0),
@@ -21,12 +22,13 @@ const PATROL: [(u8, &str, u16); 6] = [
     (CYCLES, "sway left", 1),
 ];
 
-/// Frames after which a closed contact counts as closed.
+/// The number of frames after which a closed contact counts as closed.
 const DEBOUNCE_FRAMES: u32 = 3;
 
 /// More frames than any step with an end takes in these tests.
 const LONG_FRAMES: u32 = 600;
 
+/// A robot that carries out these steps this many times.
 fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
     let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", rounds, steps));
     dialogue.expect_accepted("patrol");
@@ -35,8 +37,8 @@ fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
 
 fn set_contact(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
     let bit = 1 << input.pin();
-    dialogue.board.closed &= !bit;
-    dialogue.board.closed |= bit * u32::from(is_closed);
+    dialogue.board.closed_pins &= !bit;
+    dialogue.board.closed_pins |= bit * u32::from(is_closed);
 }
 
 /// Closes a contact for this many frames, then opens it; returns the lines printed meanwhile.
@@ -47,10 +49,15 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     lines
 }
 
-/// The name of the running gait, or the activity if it is not a gait.
-fn gait_name(dialogue: &Dialogue) -> String {
+/// The name of the running gait; if none runs, that of the activity.
+fn activity_name(dialogue: &Dialogue) -> String {
     match dialogue.motion().activity() {
-        Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
+        Activity::Gait(id) => dialogue
+            .motion()
+            .robot()
+            .gait_name(id)
+            .map(char::from)
+            .collect(),
         activity => format!("{activity:?}"),
     }
 }
@@ -58,79 +65,83 @@ fn gait_name(dialogue: &Dialogue) -> String {
 /// Runs until the robot's activity changes, at most [`LONG_FRAMES`] frames; returns the number of frames and the
 /// activity.
 fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
-    let gait_before = gait_name(dialogue);
+    let activity_before = activity_name(dialogue);
     for frames in 0..LONG_FRAMES {
-        if gait_name(dialogue) != gait_before {
-            return (frames, gait_name(dialogue));
+        if activity_name(dialogue) != activity_before {
+            return (frames, activity_name(dialogue));
         }
         dialogue.run_frames(1);
     }
-    (LONG_FRAMES, gait_before)
+    (LONG_FRAMES, activity_before)
 }
 
 #[test]
-fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
-    let mut dialogue = start_patrol(2, &PATROL);
+fn in_every_round_the_robot_waits_for_the_button_walks_to_the_wall_and_turns() {
+    let mut dialogue = start_patrol(2, &PATROL_STEPS);
     for _ in 0..2 {
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
         assert_eq!(
-            (gait_name(&dialogue), dialogue.status("gait")),
+            (activity_name(&dialogue), dialogue.status_value("gait")),
             ("Stop".into(), "patrol".into())
         );
         assert_eq!(
             press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES),
             ["# waiting for nose"]
         );
-        assert_eq!(gait_name(&dialogue), "sway");
+        assert_eq!(activity_name(&dialogue), "sway");
         assert!(
             dialogue.run_frames(3 * LONG_FRAMES).is_empty(),
-            "no wall, no end"
+            "the walk ends only at a wall"
         );
-        assert_eq!(gait_name(&dialogue), "sway");
+        assert_eq!(activity_name(&dialogue), "sway");
         assert!(press(&mut dialogue, NOSE, DEBOUNCE_FRAMES).is_empty());
-        assert_eq!(gait_name(&dialogue), "back");
+        assert_eq!(activity_name(&dialogue), "back");
         assert_eq!(run_until_change(&mut dialogue).1, "sway left");
     }
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
-    assert_eq!(dialogue.status("gait"), "stop");
+    assert_eq!(dialogue.status_value("gait"), "stop");
 }
 
 #[test]
-fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
-    let mut dialogue = start_patrol(1, &PATROL);
+fn a_bouncing_contact_counts_as_closed_once_it_stays_closed_for_three_frames() {
+    let mut dialogue = start_patrol(1, &PATROL_STEPS);
     dialogue.run_frames(LONG_FRAMES);
     for _ in 0..20 {
         press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES - 1);
         dialogue.run_frames(1);
     }
-    assert_eq!(gait_name(&dialogue), "Stop");
+    assert_eq!(activity_name(&dialogue), "Stop");
     set_contact(&mut dialogue, BUTTON, true);
     let frames = run_until_change(&mut dialogue);
     assert_eq!(frames, (DEBOUNCE_FRAMES, "sway".to_string()));
 }
 
 #[test]
-fn a_stuck_button_never_starts_the_robot_and_has_to_be_released_first() {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL));
+fn a_stuck_button_does_not_start_the_robot_until_it_is_released_and_pressed_again() {
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL_STEPS));
     set_contact(&mut dialogue, BUTTON, true);
     dialogue.expect_accepted("patrol");
     assert_eq!(
         dialogue.run_frames(5 * LONG_FRAMES),
         ["# waiting for button"]
     );
-    assert_eq!(gait_name(&dialogue), "Stop");
+    assert_eq!(activity_name(&dialogue), "Stop");
     set_contact(&mut dialogue, BUTTON, false);
     dialogue.run_frames(DEBOUNCE_FRAMES - 1);
     press(&mut dialogue, BUTTON, LONG_FRAMES);
-    assert_eq!(gait_name(&dialogue), "Stop", "too short to have been open");
+    assert_eq!(
+        activity_name(&dialogue),
+        "Stop",
+        "the button was open for too short a time"
+    );
     dialogue.run_frames(DEBOUNCE_FRAMES);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-    assert_eq!(gait_name(&dialogue), "sway");
+    assert_eq!(activity_name(&dialogue), "sway");
 }
 
 #[test]
-fn a_wall_that_is_there_already_ends_the_way_at_once() {
-    let mut dialogue = start_patrol(1, &PATROL);
+fn a_nose_switch_that_is_already_closed_ends_the_walk_after_the_debounce_time() {
+    let mut dialogue = start_patrol(1, &PATROL_STEPS);
     dialogue.run_frames(LONG_FRAMES);
     set_contact(&mut dialogue, NOSE, true);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
@@ -141,7 +152,7 @@ fn a_wall_that_is_there_already_ends_the_way_at_once() {
 }
 
 #[test]
-fn a_contact_ends_a_step_of_every_kind_and_without_it_count_or_time_do() {
+fn a_step_of_every_kind_ends_by_its_contact_or_else_by_its_count_or_time() {
     let stand = (FRAMES, "stand", 20);
     for (step, activity, expected_frames) in [
         ((CYCLES, "sway", 2), "sway", 100..400),
@@ -152,7 +163,7 @@ fn a_contact_ends_a_step_of_every_kind_and_without_it_count_or_time_do() {
         let steps = [(FRAMES, "back", 40), (UNTIL, "nose", 0), step, stand];
         let run_to_step = || {
             let mut dialogue = start_patrol(1, &steps);
-            while gait_name(&dialogue) != activity {
+            while activity_name(&dialogue) != activity {
                 dialogue.run_frames(1);
             }
             dialogue
@@ -193,9 +204,9 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
             ["# waiting for button"],
             "{step:?}"
         );
-        assert!(["Stop", "Rest"].contains(&gait_name(&dialogue).as_str()));
+        assert!(["Stop", "Rest"].contains(&activity_name(&dialogue).as_str()));
         press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-        assert_eq!(gait_name(&dialogue), "back");
+        assert_eq!(activity_name(&dialogue), "back");
     }
 }
 
@@ -210,36 +221,36 @@ fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
     let mut dialogue = start_patrol(1, &steps);
     dialogue.run_frames(20);
     for _ in 0..LONG_FRAMES {
-        assert_eq!(dialogue.frame(), Pulses::default());
+        assert_eq!(dialogue.run_frame(), Pulses::default());
     }
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-    assert_eq!(gait_name(&dialogue), "back");
+    assert_eq!(activity_name(&dialogue), "back");
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
 }
 
 #[test]
-fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
+fn a_wait_brakes_the_gait_before_it_and_moves_no_servo_faster_than_the_gait() {
     let steps = [
         (FRAMES, "sway", 90),
         (UNTIL, "button", 0),
         (WAIT, "stand", ENDLESS),
     ];
     let mut dialogue = start_patrol(1, &steps);
-    let mut last_widths = widths(&mut dialogue);
+    let mut last_widths = run_frame_and_read_widths(&mut dialogue);
     let mut changes = Vec::new();
     for _ in 0..200 {
-        let new_widths = widths(&mut dialogue);
+        let new_widths = run_frame_and_read_widths(&mut dialogue);
         let change = last_widths
             .iter()
             .zip(new_widths)
             .map(|(a, b)| a.abs_diff(b))
             .max();
-        changes.push(change.expect("four"));
+        changes.push(change.expect("there are four widths"));
         last_widths = new_widths;
     }
     let braking_frames = changes[90..].iter().position(|change| *change == 0);
     assert!(
-        (4..12).contains(&braking_frames.expect("it stands")),
+        (4..12).contains(&braking_frames.expect("the servos stop")),
         "{changes:?}"
     );
     let max_walking_change = changes[80..90].iter().max();
@@ -253,9 +264,9 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
     );
 }
 
-/// Two robots on patrol: one waits for the button, the other walks until the nose switch closes.
+/// Two robots on patrol: the first waits for the button, the second walks until the nose switch closes.
 fn start_waiting() -> [Dialogue; 2] {
-    let mut button_dialogue = start_patrol(0, &PATROL);
+    let mut button_dialogue = start_patrol(0, &PATROL_STEPS);
     button_dialogue.run_frames(100);
     let mut nose_dialogue = button_dialogue.clone();
     press(&mut nose_dialogue, BUTTON, 100);
@@ -264,57 +275,57 @@ fn start_waiting() -> [Dialogue; 2] {
 
 #[test]
 fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
-    let assert_stays = |mut dialogue: Dialogue, event: &str| {
+    let assert_ignores_contacts = |mut dialogue: Dialogue, event: &str| {
         dialogue.run_frames(60);
-        let gait_before = gait_name(&dialogue);
+        let activity_before = activity_name(&dialogue);
         for input in [BUTTON, NOSE] {
             press(&mut dialogue, input, 50);
             assert_eq!(dialogue.run_frames(50), Vec::<String>::new(), "{event}");
-            assert_eq!(gait_name(&dialogue), gait_before, "{event}");
+            assert_eq!(activity_name(&dialogue), activity_before, "{event}");
         }
     };
     for waiting_dialogue in start_waiting() {
-        for line in ["stop", "rest", "stand", NEUTRAL] {
+        for line in ["stop", "rest", "stand", NEUTRAL_COMMAND] {
             let mut dialogue = waiting_dialogue.clone();
             dialogue.expect_accepted(line);
             dialogue.run_frames(300);
-            assert_stays(dialogue, line);
+            assert_ignores_contacts(dialogue, line);
         }
         for mv in [4_200, 3_900] {
-            let mut weak_dialogue = waiting_dialogue.clone();
-            supply(&mut weak_dialogue, mv);
-            weak_dialogue.run_frames(60);
-            assert_eq!(weak_dialogue.status("fault"), "supply");
-            supply(&mut weak_dialogue, 5_000);
-            assert_stays(weak_dialogue, "a weak supply");
+            let mut low_supply_dialogue = waiting_dialogue.clone();
+            set_supply(&mut low_supply_dialogue, mv);
+            low_supply_dialogue.run_frames(60);
+            assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
+            set_supply(&mut low_supply_dialogue, 5_000);
+            assert_ignores_contacts(low_supply_dialogue, "a weak supply");
         }
         let mut late_dialogue = waiting_dialogue.clone();
         late_dialogue.board.late_edges = 1;
-        assert_stays(late_dialogue, "a late edge");
+        assert_ignores_contacts(late_dialogue, "a late edge");
         let mut silent_dialogue = waiting_dialogue.clone();
         silent_dialogue.expect_accepted("deadman 200");
         silent_dialogue.run_frames(20);
-        assert_eq!(silent_dialogue.status("fault"), "link");
-        assert_stays(silent_dialogue, "silence");
+        assert_eq!(silent_dialogue.status_value("fault"), "link");
+        assert_ignores_contacts(silent_dialogue, "silence");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
             let mut reset_dialogue = waiting_dialogue.clone();
             reset_dialogue.reset(cause);
             reset_dialogue.run_frames(300);
-            assert_stays(reset_dialogue, "a reset");
+            assert_ignores_contacts(reset_dialogue, "a reset");
         }
         let mut hung_dialogue = waiting_dialogue.clone();
         assert!(hung_dialogue.stall(1_000));
         hung_dialogue.run_frames(300);
-        assert_stays(hung_dialogue, "a hang");
+        assert_ignores_contacts(hung_dialogue, "a hang");
     }
 }
 
 #[test]
-fn a_low_supply_slows_the_way_and_the_contact_ends_it_as_always() {
+fn on_a_low_supply_the_contact_still_ends_the_walk() {
     let [_, mut dialogue] = start_waiting();
-    supply(&mut dialogue, 4_400);
+    set_supply(&mut dialogue, 4_400);
     dialogue.run_frames(60);
-    assert_eq!(gait_name(&dialogue), "sway");
+    assert_eq!(activity_name(&dialogue), "sway");
     set_contact(&mut dialogue, NOSE, true);
     assert_eq!(
         run_until_change(&mut dialogue),
@@ -323,12 +334,12 @@ fn a_low_supply_slows_the_way_and_the_contact_ends_it_as_always() {
 }
 
 #[test]
-fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that() {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &PATROL));
+fn a_routine_begun_by_boot_waits_for_its_contacts_without_limit_despite_deadman() {
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &PATROL_STEPS));
     for line in ["boot patrol", "deadman 200", "save"] {
         dialogue.expect_accepted(line);
     }
-    let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
+    let robot = *Sample::odd().with_routine("patrol", 0, &PATROL_STEPS);
     let mut unattended_dialogue =
         Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
     let lines = unattended_dialogue.run_frames(10 * LONG_FRAMES);
@@ -338,43 +349,43 @@ fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that()
     );
     let lines = press(&mut unattended_dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(lines, ["# waiting for nose"]);
-    assert_eq!(gait_name(&unattended_dialogue), "sway");
+    assert_eq!(activity_name(&unattended_dialogue), "sway");
     assert!(unattended_dialogue.run_frames(10 * LONG_FRAMES).is_empty());
 }
 
 #[test]
-fn only_the_pin_that_is_waited_for_gets_a_pull_up() {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL));
-    assert_eq!(dialogue.board.pulled_up, 0);
+fn a_pin_gets_its_pull_up_when_it_is_first_waited_for() {
+    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL_STEPS));
+    assert_eq!(dialogue.board.pulled_up_pins, 0);
     dialogue.expect_accepted("patrol");
     dialogue.run_frames(10);
-    assert_eq!(dialogue.board.pulled_up, 1 << BUTTON.pin());
+    assert_eq!(dialogue.board.pulled_up_pins, 1 << BUTTON.pin());
     dialogue.run_frames(DEBOUNCE_FRAMES);
     press(&mut dialogue, BUTTON, 10);
     assert_eq!(
-        dialogue.board.pulled_up,
+        dialogue.board.pulled_up_pins,
         1 << BUTTON.pin() | 1 << NOSE.pin()
     );
 }
 
 #[test]
-fn a_pin_of_a_servo_of_the_rail_or_of_none_is_never_touched() {
+fn only_a_free_pin_of_the_board_gets_a_pull_up() {
     let pins = Sample::odd().content.pins;
     for pin in 0..=127 {
-        let robot = Sample::odd().with_routine("patrol", 1, &PATROL);
-        let robot = robot.with(|content| {
+        let robot = Sample::odd().with_routine("patrol", 1, &PATROL_STEPS);
+        let robot = robot.with_changes(|content| {
             let button = content.steps.iter_mut().find(|step| step.kind == UNTIL);
-            button.expect("the button").gait = pin;
+            button.expect("the patrol waits for the button").gait = pin;
         });
         let mut dialogue = wake_robot(robot);
-        dialogue.board.closed = u32::MAX;
+        dialogue.board.closed_pins = u32::MAX;
         dialogue.expect_accepted("patrol");
         dialogue.run_frames(10);
         let is_free = (2..=12).contains(&pin) || (15..=19).contains(&pin);
         let is_pulled_up = is_free && !pins.contains(&pin);
         let pulled_up = if is_pulled_up { 1 << pin } else { 0 };
-        assert_eq!(dialogue.board.pulled_up, pulled_up, "{pin}");
-        assert_eq!(gait_name(&dialogue), "Stop");
+        assert_eq!(dialogue.board.pulled_up_pins, pulled_up, "{pin}");
+        assert_eq!(activity_name(&dialogue), "Stop");
     }
 }
 
@@ -388,18 +399,18 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
         dialogue.run_frames(90);
         set_contact(&mut dialogue, NOSE, true);
         assert_eq!(dialogue.run_frames(20), ["# done"]);
-        assert_eq!(dialogue.status("gait"), "stop");
-        let held_widths = widths(&mut dialogue);
+        assert_eq!(dialogue.status_value("gait"), "stop");
+        let held_widths = run_frame_and_read_widths(&mut dialogue);
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
-        assert_eq!(widths(&mut dialogue), held_widths);
+        assert_eq!(run_frame_and_read_widths(&mut dialogue), held_widths);
     }
 }
 
 #[test]
 fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
-    let robot = Sample::odd().with_routine("patrol", 3, &PATROL);
-    let robot = robot.with(|content| {
-        let routine = content.gaits.last_mut().expect("the routine");
+    let robot = Sample::odd().with_routine("patrol", 3, &PATROL_STEPS);
+    let robot = robot.with_changes(|content| {
+        let routine = content.gaits.last_mut().expect("the robot has a routine");
         routine.channels[3].offset = 2;
     });
     let mut dialogue = wake_robot(robot);
@@ -407,12 +418,12 @@ fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     for _ in 0..3 {
-        assert_eq!(gait_name(&dialogue), "sway");
+        assert_eq!(activity_name(&dialogue), "sway");
         set_contact(&mut dialogue, NOSE, true);
         assert_eq!(run_until_change(&mut dialogue).1, "back");
         set_contact(&mut dialogue, NOSE, false);
         assert_eq!(run_until_change(&mut dialogue).1, "sway left");
         run_until_change(&mut dialogue);
     }
-    assert_eq!(dialogue.status("gait"), "stop");
+    assert_eq!(dialogue.status_value("gait"), "stop");
 }

@@ -1,4 +1,6 @@
 //! EEPROM writes: their content, their timing, and the record of a rest.
+//!
+//! Byte 128 of the EEPROM marks this record: it is 0xa5 while a pose is recorded, and 0xff otherwise.
 
 use super::*;
 
@@ -9,52 +11,61 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     dialogue.run_frames(2);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     let eeprom = dialogue.board.memory.clone();
-    let mut restarted = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
-    let write_count = restarted.board.memory.log.len();
+    let mut restarted_dialogue = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+    let write_count = restarted_dialogue.board.memory.log.len();
     for _ in 0..60 {
-        restarted.read_lines();
-        let measured_level = restarted.main.control().safety().supply().measured_level();
+        restarted_dialogue.read_lines();
+        let measured_level = restarted_dialogue
+            .main
+            .control()
+            .safety()
+            .supply()
+            .measured_level();
         if measured_level.is_none() {
-            assert_eq!(restarted.board.memory.log.len(), write_count);
+            assert_eq!(restarted_dialogue.board.memory.log.len(), write_count);
         }
-        restarted.frame();
+        restarted_dialogue.run_frame();
     }
     assert_eq!(
-        restarted.board.memory.bytes()[128],
+        restarted_dialogue.board.memory.bytes()[128],
         0xff,
-        "it woke and stands"
+        "the pose is forgotten once the robot stands"
     );
-    restarted.send_line("rest");
-    restarted.run_frames(10);
-    supply(&mut restarted, 4_400);
-    restarted.run_frames(30);
-    let write_count = restarted.board.memory.log.len();
-    restarted.expect_accepted("stand");
-    restarted.run_frames(50);
+    restarted_dialogue.send_line("rest");
+    restarted_dialogue.run_frames(10);
+    set_supply(&mut restarted_dialogue, 4_400);
+    restarted_dialogue.run_frames(30);
+    let write_count = restarted_dialogue.board.memory.log.len();
+    restarted_dialogue.expect_accepted("stand");
+    restarted_dialogue.run_frames(50);
     assert_eq!(
-        restarted.board.memory.log.len(),
+        restarted_dialogue.board.memory.log.len(),
         write_count,
-        "a byte at 4.4 V"
+        "nothing is written at 4.4 V"
     );
-    restarted.expect_refused("save", "8 the supply is too low");
-    supply(&mut restarted, 5_000);
-    restarted.run_frames(80);
-    assert_eq!(restarted.board.memory.bytes()[128], 0xff, "forgotten later");
+    restarted_dialogue.expect_refused("save", "8 the supply is too low");
+    set_supply(&mut restarted_dialogue, 5_000);
+    restarted_dialogue.run_frames(80);
+    assert_eq!(
+        restarted_dialogue.board.memory.bytes()[128],
+        0xff,
+        "the pose is forgotten once the supply is good"
+    );
 }
 
 #[test]
-fn a_save_during_a_low_supply_is_refused_and_the_old_settings_stay() {
+fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("deadman 1000");
     dialogue.expect_accepted("save");
     dialogue.send_line("deadman 2000");
-    dialogue.board.memory.slowness = 1;
+    dialogue.board.memory.write_delay = 1;
     dialogue.board.send(b"save\r");
     for _ in 0..30 {
         dialogue.main.step(&mut dialogue.board);
     }
-    assert!(dialogue.main.control().is_writing());
-    supply(&mut dialogue, 4_400);
+    assert!(dialogue.main.control().is_memory_in_use());
+    set_supply(&mut dialogue, 4_400);
     let mut printed_lines = Vec::new();
     for _ in 0..20 {
         // With one step per frame, the main loop has no time for the memory.
@@ -67,12 +78,15 @@ fn a_save_during_a_low_supply_is_refused_and_the_old_settings_stay() {
         "{printed_lines:?}"
     );
     let eeprom = dialogue.board.memory.clone();
-    let restarted = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
-    assert_eq!(restarted.main.control().settings().deadman(), 1000);
+    let restarted_dialogue = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+    assert_eq!(
+        restarted_dialogue.main.control().settings().deadman_ms(),
+        1000
+    );
 }
 
 #[test]
-fn repeated_rests_write_nothing_and_a_worn_cell_is_reported() {
+fn a_repeated_rest_writes_nothing_and_a_worn_cell_is_reported() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("rest");
     dialogue.run_frames(2);
@@ -95,22 +109,26 @@ fn repeated_rests_write_nothing_and_a_worn_cell_is_reported() {
 }
 
 #[test]
-fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
+fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then_stands() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("pose 140 50 311 224.5");
     dialogue.run_frames(150);
     dialogue.send_line("rest");
     let eeprom = dialogue.board.memory.clone();
-    let mut restarted = Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
-    restarted.read_lines();
-    assert_eq!(restarted.status("pose"), "140.00,50.00,311.00,224.50");
-    let rest_pulses = restarted
+    let mut restarted_dialogue =
+        Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
+    restarted_dialogue.read_lines();
+    assert_eq!(
+        restarted_dialogue.status_value("pose"),
+        "140.00,50.00,311.00,224.50"
+    );
+    let rest_pulses = restarted_dialogue
         .motion()
         .pose()
-        .pulses(restarted.motion().calibration());
+        .pulses(restarted_dialogue.motion().calibration());
     for servo in 0..4 {
         for _ in 0..5 {
-            let widths = widths(&mut restarted);
+            let widths = run_frame_and_read_widths(&mut restarted_dialogue);
             for (index, width) in widths.into_iter().enumerate() {
                 let expected = if index < servo {
                     rest_pulses.0[index].0
@@ -122,12 +140,12 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
             }
         }
     }
-    restarted.run_frames(200);
-    assert_eq!(restarted.status("pose"), neutral());
+    restarted_dialogue.run_frames(200);
+    assert_eq!(restarted_dialogue.status_value("pose"), neutral_pose_text());
     // A robot that has moved no longer keeps the pose of its rest.
     let moved_dialogue = Dialogue::with_memory(
         *Sample::odd(),
-        restarted.board.memory.clone(),
+        restarted_dialogue.board.memory.clone(),
         Restart::default(),
     );
     assert_eq!(moved_dialogue.motion().pose(), &Pose::NEUTRAL);
@@ -142,7 +160,7 @@ fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
     // The answer is written first; then the main loop writes the memory, long before the first servo wakes.
     dialogue.read_lines();
     assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
-    assert_eq!(dialogue.frame(), Pulses::default());
+    assert_eq!(dialogue.run_frame(), Pulses::default());
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Routines: steps one after another, and every event that ends them early.
+//! Routines, which are sequences of steps, and the events that end them early.
 
 use super::*;
 use crate::numbers::gaits::Step;
@@ -7,8 +7,8 @@ const CYCLES: u8 = Step::CYCLES;
 const FRAMES: u8 = Step::FRAMES;
 const REST: u8 = Step::REST;
 
-/// Steps that last a number of cycles or a time; two of `sway` in a row.
-const STEPS: [(u8, &str, u16); 5] = [
+/// Steps, each a kind, a gait and a count of cycles or frames; two in a row are of `sway`.
+const PATROL_STEPS: [(u8, &str, u16); 5] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),
     (CYCLES, "sway", 1),
@@ -19,17 +19,23 @@ const STEPS: [(u8, &str, u16); 5] = [
 /// More frames than a round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
+/// The odd robot with the routine `patrol`, which repeats its steps this many times; without end if `rounds` is 0.
 fn robot_with_routine(rounds: u16) -> Sample {
-    Sample::odd().with_routine("patrol", rounds, &STEPS)
+    Sample::odd().with_routine("patrol", rounds, &PATROL_STEPS)
 }
 
-/// Runs a robot for some frames; returns its gaits, one after another, and the lines that it printed.
+/// Runs a robot for this many frames. Returns its gaits in order, each once per change, and the lines that it printed.
 fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     let (mut gaits, mut printed_lines): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
         printed_lines.extend(dialogue.run_frames(1));
         let gait = match dialogue.motion().activity() {
-            Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
+            Activity::Gait(id) => dialogue
+                .motion()
+                .robot()
+                .gait_name(id)
+                .map(char::from)
+                .collect(),
             activity => format!("{activity:?}"),
         };
         if gaits.last() != Some(&gait) {
@@ -39,14 +45,14 @@ fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Ve
     (gaits, printed_lines)
 }
 
-/// Snapshots of the dialogue at many moments of the routine.
+/// Starts the routine and returns snapshots of the dialogue at many moments of it.
 fn record_snapshots(make_robot: fn() -> Sample) -> Vec<Dialogue> {
     let mut dialogue = wake_robot(make_robot());
     dialogue.send_line("patrol");
     let mut snapshots = Vec::new();
     for _ in 0..40 {
         dialogue.run_frames(17);
-        if dialogue.status("gait") == "patrol" {
+        if dialogue.status_value("gait") == "patrol" {
             snapshots.push(dialogue.clone());
         }
     }
@@ -59,21 +65,21 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
     for rounds in [1, 2, 3] {
         let mut dialogue = wake_robot(robot_with_routine(rounds));
         assert_eq!(dialogue.send_line("Patrol"), "ok patrol");
-        assert_eq!(dialogue.status("gait"), "patrol");
+        assert_eq!(dialogue.status_value("gait"), "patrol");
         let (gaits, printed_lines) =
             run_recording_gaits(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed_lines, ["# done"]);
-        let round = ["stand", "sway", "back", "sway left"];
-        let (last_gait, earlier_gaits) = gaits.split_last().expect("a course");
+        let round_gaits = ["stand", "sway", "back", "sway left"];
+        let (last_gait, earlier_gaits) = gaits.split_last().expect("the robot has had a gait");
         assert_eq!(last_gait, "Stop");
-        let expected = round.repeat(rounds.into());
+        let expected = round_gaits.repeat(rounds.into());
         assert!(earlier_gaits.iter().eq(&expected), "{gaits:?}");
-        assert_eq!(dialogue.status("gait"), "stop");
+        assert_eq!(dialogue.status_value("gait"), "stop");
     }
 }
 
 #[test]
-fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
+fn a_count_sets_the_number_of_rounds_without_which_an_endless_routine_goes_on() {
     let mut counted_dialogue = wake_robot(robot_with_routine(0));
     counted_dialogue.send_line("patrol 2");
     let (gaits, printed_lines) = run_recording_gaits(&mut counted_dialogue, 3 * LONG_FRAMES);
@@ -87,7 +93,7 @@ fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
 }
 
 #[test]
-fn a_step_of_some_time_lasts_that_time() {
+fn a_timed_step_lasts_its_number_of_frames() {
     let mut dialogue = wake_robot(robot_with_routine(1));
     dialogue.send_line("patrol");
     let (gaits, _) = run_recording_gaits(&mut dialogue, 29);
@@ -97,7 +103,7 @@ fn a_step_of_some_time_lasts_that_time() {
 }
 
 #[test]
-fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
+fn help_boot_and_cal_treat_a_routine_as_a_gait() {
     let mut dialogue = wake_robot(robot_with_routine(1));
     assert!(dialogue.send(b"help\r")[0].ends_with("|stray|patrol"));
     assert_eq!(dialogue.send_line("boot patrol"), "ok boot patrol");
@@ -115,7 +121,7 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
         printed_lines.last().map(String::as_str),
         Some("# boot: patrol")
     );
-    assert_eq!(unattended_dialogue.status("gait"), "patrol");
+    assert_eq!(unattended_dialogue.status_value("gait"), "patrol");
     dialogue.send_line("rest");
     dialogue.expect_refused("patrol", "7 servos are resting, send stand first");
 }
@@ -123,7 +129,7 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
     for snapshot in record_snapshots(|| robot_with_routine(0)) {
-        for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
+        for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL_COMMAND] {
             let mut dialogue = snapshot.clone();
             dialogue.expect_accepted(line);
             let (gaits, printed_lines) = run_recording_gaits(&mut dialogue, 600);
@@ -133,7 +139,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
                 usize::from(line == "back 1"),
                 "{line}: {printed_lines:?}"
             );
-            assert_ne!(dialogue.status("gait"), "patrol");
+            assert_ne!(dialogue.status_value("gait"), "patrol");
         }
         let mut repeated_dialogue = snapshot.clone();
         repeated_dialogue.send_line("patrol");
@@ -144,23 +150,26 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
                 .map(String::as_str),
             Some("sway")
         );
-        let mut weak_dialogue = snapshot.clone();
-        supply(&mut weak_dialogue, 4_200);
-        weak_dialogue.run_frames(60);
+        let mut low_supply_dialogue = snapshot.clone();
+        set_supply(&mut low_supply_dialogue, 4_200);
+        low_supply_dialogue.run_frames(60);
         assert_eq!(
-            (weak_dialogue.status("gait"), weak_dialogue.status("fault")),
+            (
+                low_supply_dialogue.status_value("gait"),
+                low_supply_dialogue.status_value("fault")
+            ),
             ("stop".into(), "supply".into())
         );
-        supply(&mut weak_dialogue, 5_000);
+        set_supply(&mut low_supply_dialogue, 5_000);
         assert_eq!(
-            run_recording_gaits(&mut weak_dialogue, 300).0,
+            run_recording_gaits(&mut low_supply_dialogue, 300).0,
             ["Stop"],
-            "it does not go on by itself"
+            "the routine does not go on by itself"
         );
-        let mut empty_dialogue = snapshot.clone();
-        supply(&mut empty_dialogue, 3_900);
-        empty_dialogue.run_frames(60);
-        assert_eq!(empty_dialogue.status("gait"), "rest");
+        let mut failing_supply_dialogue = snapshot.clone();
+        set_supply(&mut failing_supply_dialogue, 3_900);
+        failing_supply_dialogue.run_frames(60);
+        assert_eq!(failing_supply_dialogue.status_value("gait"), "rest");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
             let mut reset_dialogue = snapshot.clone();
             reset_dialogue.reset(cause);
@@ -175,7 +184,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
 #[test]
 fn a_low_supply_slows_a_routine_and_does_not_end_it() {
     let mut dialogue = wake_robot(robot_with_routine(1));
-    supply(&mut dialogue, 4_400);
+    set_supply(&mut dialogue, 4_400);
     dialogue.run_frames(40);
     dialogue.send_line("patrol");
     assert_eq!(
@@ -193,7 +202,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_eq!(printed_lines.len(), 1);
     assert!(printed_lines[0].starts_with("# held"), "{printed_lines:?}");
-    assert_eq!(dialogue.status("fault"), "guard");
+    assert_eq!(dialogue.status_value("fault"), "guard");
 }
 
 #[test]
@@ -206,7 +215,7 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
             printed_lines,
             ["# fault: no line for as long as deadman says, stopped"]
         );
-        assert_eq!(dialogue.status("gait"), "stop");
+        assert_eq!(dialogue.status_value("gait"), "stop");
     }
     let mut dialogue = wake_robot(robot_with_routine(0));
     dialogue.send_line("boot patrol");
@@ -222,18 +231,22 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     let mut idle_dialogue = start_unattended();
     assert!(
         idle_dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
-        "it goes on"
+        "the routine goes on"
     );
     // The first valid line arms the dead-man timer.
     idle_dialogue.send_line("speed 90");
     assert_eq!(idle_dialogue.run_frames(100).len(), 1);
-    assert_eq!(idle_dialogue.status("fault"), "link");
+    assert_eq!(idle_dialogue.status_value("fault"), "link");
     // Neither single bytes nor an invalid line arm the dead-man timer.
     let mut noisy_dialogue = start_unattended();
     noisy_dialogue.board.send(b"x");
     assert!(noisy_dialogue.run_frames(LONG_FRAMES).is_empty());
     noisy_dialogue.board.send(b"x\r");
-    assert_eq!(noisy_dialogue.run_frames(100).len(), 1, "the refusal");
+    assert_eq!(
+        noisy_dialogue.run_frames(100).len(),
+        1,
+        "only the error is printed"
+    );
 }
 
 #[test]
@@ -249,7 +262,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     let mut printed_lines = Vec::new();
     for _ in 0..LONG_FRAMES {
         printed_lines.extend(dialogue.run_frames(1));
-        let pulses = dialogue.board.submitted().0;
+        let pulses = dialogue.board.submitted_pulses().0;
         let count = pulses.iter().filter(|width| width.0 > 0).count();
         frames_without_pulses += usize::from(count == 0);
         if pulsing_counts.last() != Some(&count) {
@@ -275,7 +288,7 @@ fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
             dialogue.run_frames(1);
         }
         dialogue.run_frames(5);
-        assert_eq!(dialogue.status("gait"), "rest");
+        assert_eq!(dialogue.status_value("gait"), "rest");
         dialogue
     };
     for line in ["stop", "rest"] {
@@ -290,5 +303,9 @@ fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     let pose = *dialogue.motion().pose();
     dialogue.lose_power(None);
     dialogue.run_frames(1);
-    assert_eq!(*dialogue.motion().pose(), pose, "it wakes where it rested");
+    assert_eq!(
+        *dialogue.motion().pose(),
+        pose,
+        "the robot wakes where it rested"
+    );
 }

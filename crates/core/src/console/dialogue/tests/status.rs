@@ -1,12 +1,12 @@
-//! The output of `status` and `watch`.
+//! The lines that `status` and `watch` print.
 
 use super::*;
 
 #[test]
-fn status_tells_everything_as_key_and_value() {
+fn status_reports_each_value_under_its_key() {
     let mut dialogue = wake_odd_robot();
     dialogue.board.late_edges = 7;
-    dialogue.board.count_lost(65_535);
+    dialogue.board.count_lost_bytes(65_535);
     dialogue.run_frames(1);
     dialogue.send_line("speed 42");
     dialogue.send_line("sway left");
@@ -16,7 +16,7 @@ fn status_tells_everything_as_key_and_value() {
     let phase = (u64::from(motion.phase()) * 1000) >> 24;
     let angles: Vec<String> = motion
         .pose()
-        .angles(&motion.robot().neutral())
+        .angles(&motion.robot().neutral_angles())
         .iter()
         .map(|angle| {
             let centideg = angle.centideg();
@@ -30,7 +30,7 @@ fn status_tells_everything_as_key_and_value() {
         "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
          late=7 rx_lost=65535 guard=clear fault=none reset=power resets=0 vcc=5.00 rail=6.00",
         angles.join(","),
-        motion.frames(),
+        motion.frame_count(),
     );
     assert_eq!(line, expected);
 }
@@ -42,24 +42,24 @@ fn a_voltage_is_left_out_until_it_is_measured() {
     let line = dialogue.send_line("status");
     assert!(line.ends_with(" resets=0"), "{line}");
     dialogue.run_frames(4);
-    assert_eq!(dialogue.status("vcc"), "5.00");
-    assert_eq!(dialogue.status("rail"), "6.00");
+    assert_eq!(dialogue.status_value("vcc"), "5.00");
+    assert_eq!(dialogue.status_value("rail"), "6.00");
 }
 
 #[test]
 fn status_names_what_the_robot_does() {
     let mut dialogue = wake_odd_robot();
-    assert_eq!(dialogue.status("gait"), "stand");
+    assert_eq!(dialogue.status_value("gait"), "stand");
     for (command, name) in [
         ("sway", "sway"),
         ("sway left", "sway-left"),
-        (NEUTRAL, "pose"),
+        (NEUTRAL_COMMAND, "pose"),
         ("stop", "stop"),
         ("rest", "rest"),
         ("stand", "stand"),
     ] {
         dialogue.send_line(command);
-        assert_eq!(dialogue.status("gait"), name);
+        assert_eq!(dialogue.status_value("gait"), name);
     }
 }
 
@@ -70,11 +70,11 @@ fn the_longest_possible_status_fits_a_line() {
     let robot = Sample::odd().with_gait(name);
     let mut dialogue = wake_robot(robot);
     dialogue.board.late_edges = u16::MAX;
-    dialogue.board.count_lost(u16::MAX);
+    dialogue.board.count_lost_bytes(u16::MAX);
     dialogue.expect_accepted(name);
     let line = dialogue.send_line("status");
-    // The longest value of each key.
-    let values = pairs(line.strip_prefix("ok ").expect("a status"));
+    let values = parse_pairs(line.strip_prefix("ok ").expect("the line is a status"));
+    // The longest possible value of each key whose value may be shorter in this line.
     let longest_values = [
         ("phase", "0.999"),
         ("pose", "359.99,359.99,359.99,359.99"),
@@ -87,7 +87,7 @@ fn the_longest_possible_status_fits_a_line() {
         .iter()
         .map(|(key, longest_value)| longest_value.len() - values[*key].len())
         .sum();
-    assert!(line.len() + extra_bytes + "\r\n".len() <= usize::from(LONGEST_LINE));
+    assert!(line.len() + extra_bytes + "\r\n".len() <= usize::from(MAX_OUTPUT_LINE_BYTES));
 }
 
 #[test]
@@ -96,14 +96,14 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
         let mut dialogue = wake_odd_robot();
         dialogue.send_line("sway");
         dialogue.send_line(&format!("watch {interval}"));
-        let start_frame = dialogue.motion().frames();
+        let start_frame = dialogue.motion().frame_count();
         let mut report_frames = Vec::new();
         for _ in 0..200 {
             for line in dialogue.run_frames(1) {
-                let report = pairs(line.strip_prefix("# ").expect("a report"));
-                let frame: u32 = report["t"].parse().expect("a number");
-                assert_eq!(frame, dialogue.motion().frames());
-                assert_eq!(report["pose"], dialogue.status("pose"));
+                let report = parse_pairs(line.strip_prefix("# ").expect("the line is a report"));
+                let frame: u32 = report["t"].parse().expect("t is a number");
+                assert_eq!(frame, dialogue.motion().frame_count());
+                assert_eq!(report["pose"], dialogue.status_value("pose"));
                 assert_eq!(report.len(), 2);
                 report_frames.push(frame - start_frame);
             }
@@ -116,7 +116,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
 }
 
 #[test]
-fn watch_goes_on_at_rest_and_a_new_one_counts_from_its_own_beginning() {
+fn watch_goes_on_at_rest_and_a_new_watch_begins_its_own_interval() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("watch 5");
     dialogue.send_line("rest");
@@ -128,7 +128,7 @@ fn watch_goes_on_at_rest_and_a_new_one_counts_from_its_own_beginning() {
 }
 
 #[test]
-fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
+fn several_unread_reports_are_written_as_one_and_watch_0_ends_the_reports() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("watch 2");
     dialogue.run_without_reader(20);

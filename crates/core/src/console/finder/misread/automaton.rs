@@ -1,4 +1,4 @@
-//! The lines that a sender may send and those that the parser accepts, as state machines of their bytes.
+//! Finite automata of the lines that a sender may send, and of those that the parser accepts.
 
 use std::borrow::ToOwned;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,13 +9,14 @@ use std::{format, fs, vec};
 
 use crate::console::word::Word;
 
-/// The names of all gaits in robots/ and of a routine, as they are sent.
-pub static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
+/// The names of all gaits in robots/, and of a routine, as they are sent.
+pub static GAIT_NAMES: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
-    let files = fs::read_dir(folder).expect("the folder of robots");
+    let files = fs::read_dir(folder).expect("the folder robots/ is readable");
     let mut names = BTreeSet::from(["patrol".to_owned()]);
     for file in files {
-        let text = fs::read_to_string(file.expect("a file").path()).expect("text");
+        let text = fs::read_to_string(file.expect("robots/ can be listed").path())
+            .expect("a robot file is readable text");
         let tables = text.lines().filter_map(|line| line.strip_prefix("[gait."));
         let gaits = tables.filter_map(|table| table.strip_suffix(']'));
         names.extend(
@@ -28,22 +29,27 @@ pub static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
     names
 });
 
-/// A state machine of text: the bytes that may follow each state, and the states in which a command may end.
+/// A finite automaton that reads a line byte by byte.
 #[derive(Default)]
 pub struct LineAutomaton {
+    /// For each state, the next state for each byte that may follow.
     pub transitions: Vec<BTreeMap<u8, usize>>,
+    /// The states in which a command may end.
     pub accepting_states: BTreeSet<usize>,
 }
 
 impl LineAutomaton {
+    /// The state at the start of a line.
     pub const START: usize = 0;
 
+    /// An automaton with only the start state.
     pub fn new() -> Self {
         let mut automaton = Self::default();
         automaton.add_state();
         automaton
     }
 
+    /// Adds a state without transitions; returns it.
     fn add_state(&mut self) -> usize {
         self.transitions.push(BTreeMap::new());
         self.transitions.len() - 1
@@ -62,7 +68,7 @@ impl LineAutomaton {
         to
     }
 
-    /// Adds a word at the start of a line, unless it is there already; returns the state at its end.
+    /// Adds a word at the start of a line, unless the automaton has it already; returns the state at its end.
     pub fn add_word(&mut self, word: &str) -> usize {
         word.bytes().fold(Self::START, |state, byte| {
             self.transitions[state]
@@ -72,60 +78,60 @@ impl LineAutomaton {
         })
     }
 
-    /// Adds up to `max_digits` digits; returns the states in which the number may end.
+    /// Adds one to `max_digits` digits; returns the states in which the number may end.
     fn add_digits(&mut self, from: &[usize], max_digits: usize) -> Vec<usize> {
         let mut states = from.to_vec();
-        let mut ends = Vec::new();
+        let mut end_states = Vec::new();
         for _ in 0..max_digits {
             states = vec![self.add_transition(&states, b'0'..=b'9')];
-            ends.extend(&states);
+            end_states.extend(&states);
         }
-        ends
+        end_states
     }
 
-    /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals; returns the states in
-    /// which the number may end.
-    fn add_decimal(&mut self, blank: usize) -> Vec<usize> {
-        let sign = self.add_transition(&[blank], *b"+-");
-        let mut ends = self.add_digits(&[blank, sign], 3);
-        let point = self.add_transition(&ends, *b".");
-        ends.extend(self.add_digits(&[point], 2));
-        ends
+    /// Adds degrees or hundredths: an optional sign, one to three digits, and at most two decimals after a point.
+    /// Returns the states in which the number may end.
+    fn add_decimal(&mut self, blank_state: usize) -> Vec<usize> {
+        let sign_state = self.add_transition(&[blank_state], *b"+-");
+        let mut end_states = self.add_digits(&[blank_state, sign_state], 3);
+        let point_state = self.add_transition(&end_states, *b".");
+        end_states.extend(self.add_digits(&[point_state], 2));
+        end_states
     }
 
-    /// The state before this one: the start if no state precedes it, `None` if several do.
+    /// The only state that leads to this one; the start if none does, `None` if several do.
     pub fn previous_state(&self, state: usize) -> Option<usize> {
         let leads_to_state = |from: &usize| self.transitions[*from].values().any(|to| *to == state);
         let mut previous_states = (0..self.transitions.len()).filter(leads_to_state);
-        let first = previous_states.next().unwrap_or(Self::START);
-        previous_states.next().is_none().then_some(first)
+        let first_state = previous_states.next().unwrap_or(Self::START);
+        previous_states.next().is_none().then_some(first_state)
     }
 
-    /// All commands, as programs and people write them.
+    /// An automaton of all commands, as programs and people write them.
     pub fn all_commands() -> Self {
         let mut automaton = Self::new();
-        for gait in &*GAITS {
+        for gait in &*GAIT_NAMES {
             let name_end = automaton.add_word(gait);
             let blank_state = automaton.add_transition(&[name_end], *b" ");
-            let count_ends = automaton.add_digits(&[blank_state], 3);
+            let count_end_states = automaton.add_digits(&[blank_state], 3);
             automaton.accepting_states.insert(name_end);
-            automaton.accepting_states.extend(count_ends);
+            automaton.accepting_states.extend(count_end_states);
         }
         for word in Word::ALL {
             let word_end = automaton.add_word(word.text());
             if *word == Word::Boot {
-                for argument in GAITS.iter().map(String::as_str).chain(["rest"]) {
+                for argument in GAIT_NAMES.iter().map(String::as_str).chain(["rest"]) {
                     let boot_end = automaton.add_word(&format!("boot {argument}"));
                     automaton.accepting_states.insert(boot_end);
                 }
                 continue;
             }
-            let mut ends = vec![word_end];
+            let mut end_states = vec![word_end];
             // The example has as many arguments as the word takes.
             for (index, example) in word.example().split(' ').skip(1).enumerate() {
-                let blank_state = automaton.add_transition(&ends, *b" ");
+                let blank_state = automaton.add_transition(&end_states, *b" ");
                 let is_whole_number = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
-                ends = match (word, index) {
+                end_states = match (word, index) {
                     (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
                         vec![automaton.add_transition(&[blank_state], *b"1234")]
                     }
@@ -136,15 +142,15 @@ impl LineAutomaton {
                     _ => automaton.add_decimal(blank_state),
                 };
             }
-            automaton.accepting_states.extend(ends);
+            automaton.accepting_states.extend(end_states);
         }
         automaton
     }
 
-    /// A superset of the lines that the parser accepts: arguments of any length and number.
+    /// An automaton of a superset of the lines that the parser accepts: arguments may have any length and number.
     pub fn accepted_lines() -> Self {
         let mut automaton = Self::new();
-        for word in GAITS
+        for word in GAIT_NAMES
             .iter()
             .map(String::as_str)
             .chain(Word::ALL.iter().map(|word| word.text()))

@@ -1,4 +1,4 @@
-//! Random commands in any order and at any time, to random robots.
+//! Random orders to random robots, in any sequence and at any time.
 
 use std::vec::Vec;
 
@@ -6,9 +6,9 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// An order to a robot.
+/// An order to a robot; a pose is given as the four sweeps, a speed in percent.
 #[derive(Clone, Copy, Debug)]
-enum Ask {
+enum Order {
     Gait(&'static str),
     Pose([i16; 4]),
     Stop,
@@ -16,15 +16,15 @@ enum Ask {
     Speed(u8),
 }
 
-/// Random orders, each with the number of frames that follow it.
-fn any_orders() -> impl Strategy<Value = Vec<(Ask, u32)>> {
+/// Random orders, each with the number of frames until the next order.
+fn any_orders() -> impl Strategy<Value = Vec<(Order, u32)>> {
     let any_order = prop_oneof![
-        5 => prop::sample::select(GAITS.to_vec()).prop_map(Ask::Gait),
-        3 => prop::array::uniform4(-3000i16..3000).prop_map(Ask::Pose),
-        1 => prop::array::uniform4(-7000i16..7000).prop_map(Ask::Pose),
-        1 => Just(Ask::Stop),
-        1 => Just(Ask::Rest),
-        2 => (10u8..=100).prop_map(Ask::Speed),
+        5 => prop::sample::select(GAIT_NAMES.to_vec()).prop_map(Order::Gait),
+        3 => prop::array::uniform4(-3000i16..3000).prop_map(Order::Pose),
+        1 => prop::array::uniform4(-7000i16..7000).prop_map(Order::Pose),
+        1 => Just(Order::Stop),
+        1 => Just(Order::Rest),
+        2 => (10u8..=100).prop_map(Order::Speed),
     ];
     prop::collection::vec((any_order, 0u32..90), 1..12)
 }
@@ -33,32 +33,32 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn no_frame_is_unsafe_or_faster_than_a_move_or_the_gait_may_be(
+    fn no_frame_is_unsafe_and_no_move_exceeds_the_slew_limit(
         robot in Sample::random(),
         orders in any_orders(),
     ) {
         let mut motion = Motion::awake(robot);
         for (order, frames) in orders {
             match order {
-                Ask::Gait(name) => motion.start(name),
-                Ask::Pose(sweeps) => {
+                Order::Gait(name) => motion.start(name),
+                Order::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
-                    let travel_hazard = pose.first_beyond_travel(motion.calibration()).map(Hazard::Travel);
+                    let travel_hazard = pose.first_servo_beyond_travel(motion.calibration()).map(Hazard::Travel);
                     let hazard = Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot);
                     let hazard = travel_hazard.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
                 }
-                Ask::Stop => motion.stop(),
-                Ask::Rest => motion.rest(),
-                Ask::Speed(percent) => motion.set_speed(percent),
+                Order::Stop => motion.stop(),
+                Order::Rest => motion.rest(),
+                Order::Speed(percent) => motion.set_speed(percent),
             }
             for _ in 0..frames {
                 let (pose_before, was_cycling) = (*motion.pose(), motion.is_cycling());
                 let pulses = motion.tick();
                 let clearance = Clearance::of(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
-                for (actual, held_width) in pulses.0.into_iter().zip(motion.held().0) {
-                    prop_assert!(actual == Width(0) || actual == held_width);
+                for (actual, held_width) in pulses.0.into_iter().zip(motion.held_pulses().0) {
+                    prop_assert!(actual == PulseWidth(0) || actual == held_width);
                 }
                 if !was_cycling {
                     let distance = pose_before.largest_turn_to(motion.pose());

@@ -1,10 +1,10 @@
-//! Gaits with a count: they run that many cycles and then stand still.
+//! Gaits with a count of cycles: they run that many cycles, then the robot stands still.
 
 use super::*;
 
-/// Returns the cycles that a motion covers from a standstill to its end, and the frames that it takes. It counts
-/// independently of the motion, by adding the phase's change in each frame.
-fn count_cycles(motion: &mut Motion) -> (f64, u32) {
+/// Runs a motion to its standstill. Returns the cycles that its last gait covers, and the number of frames. The cycles
+/// are counted independently of the motion, by adding the change of the phase in each frame.
+fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
     let (mut cycles_covered, mut frames) = (0.0, 0);
     loop {
         let phase_before = motion.phase();
@@ -12,11 +12,11 @@ fn count_cycles(motion: &mut Motion) -> (f64, u32) {
         motion.tick();
         frames += 1;
         assert!(frames < 200_000, "it never ends");
-        if motion.has_ended() {
+        if motion.has_come_to_standstill() {
             return (cycles_covered, frames);
         }
         if motion.is_moving() {
-            // The previous gait was braking until here.
+            // Until now, the previous gait was braking.
             cycles_covered = 0.0;
         } else if was_cycling && motion.is_cycling() {
             let step = motion.phase().wrapping_sub(phase_before) & (CYCLE - 1);
@@ -26,21 +26,21 @@ fn count_cycles(motion: &mut Motion) -> (f64, u32) {
     }
 }
 
-/// The share of a cycle that a gait covers in a frame at full pace; negative for a gait that runs backwards.
+/// The share of a cycle that a gait covers in a frame at full pace; negative for a gait that is read backwards.
 fn cycles_per_frame(motion: &Motion, name: &str) -> f64 {
-    f64::from(motion.robot.gait(motion.robot.id(name)).increment) / f64::from(CYCLE)
+    f64::from(motion.robot.gait(motion.robot.gait_id(name)).increment) / f64::from(CYCLE)
 }
 
 #[test]
-fn every_gait_goes_its_count_of_cycles_within_two_frames_at_any_pace() {
-    for name in GAITS.into_iter().filter(|name| *name != "stray") {
+fn every_gait_runs_its_count_of_cycles_to_within_two_frames_at_any_pace() {
+    for name in GAIT_NAMES.into_iter().filter(|name| *name != "stray") {
         for (speed, is_slow) in [(100, false), (100, true), (37, false), (10, false)] {
             for count in [1, 2, 3, 17] {
                 let mut motion = Motion::standing();
                 motion.set_speed(speed);
                 motion.set_slow(is_slow);
                 motion.start_for(name, count);
-                let (cycles_covered, _) = count_cycles(&mut motion);
+                let (cycles_covered, _) = measure_cycles(&mut motion);
                 let frame_cycles = cycles_per_frame(&motion, name);
                 let excess_cycles = cycles_covered / frame_cycles.signum() - f64::from(count);
                 let excess_frames = excess_cycles / frame_cycles.abs();
@@ -49,31 +49,34 @@ fn every_gait_goes_its_count_of_cycles_within_two_frames_at_any_pace() {
                     "{name} {count} at {speed}: {excess_frames} frames too many"
                 );
                 assert_eq!(motion.activity(), Activity::Stop);
-                let held_pulses = motion.held();
+                let held_pulses = motion.held_pulses();
                 for _ in 0..50 {
                     assert_eq!(motion.tick(), held_pulses);
-                    assert!(!motion.has_ended(), "once");
+                    assert!(
+                        !motion.has_come_to_standstill(),
+                        "the standstill is reported once"
+                    );
                 }
             }
         }
     }
     let mut motion = Motion::standing();
     motion.start_for("sway", 999);
-    assert!((count_cycles(&mut motion).0 - 999.0).abs() < 0.1);
+    assert!((measure_cycles(&mut motion).0 - 999.0).abs() < 0.1);
 }
 
 #[test]
-fn a_gait_of_the_shortest_period_ends_too() {
+fn a_gait_of_the_shortest_period_runs_its_count_to_within_two_frames() {
     for (is_forward, count) in [(true, 1), (false, 1), (true, 5), (false, 5)] {
         let robot = Sample::odd();
-        let index = robot.id("sway").index();
+        let index = robot.gait_id("sway").index();
         let increment = CYCLE as i32 / 10;
-        let robot = robot.with(|content| {
+        let robot = robot.with_changes(|content| {
             content.gaits[index].increment = if is_forward { increment } else { -increment };
         });
         let mut motion = Motion::awake(robot);
         motion.start_for("sway", count);
-        let (cycles_covered, _) = count_cycles(&mut motion);
+        let (cycles_covered, _) = measure_cycles(&mut motion);
         let excess_frames = (cycles_covered.abs() - f64::from(count)) * 10.0;
         assert!((-2.0..=1.2).contains(&excess_frames), "{excess_frames}");
         assert_eq!(cycles_covered > 0.0, is_forward);
@@ -81,7 +84,7 @@ fn a_gait_of_the_shortest_period_ends_too() {
 }
 
 #[test]
-fn a_count_ends_like_a_gait_that_brakes_frame_by_frame() {
+fn a_counted_gait_brakes_like_one_that_another_gait_replaces() {
     let mut counted_motion = Motion::standing();
     counted_motion.start_for("sway", 2);
     let mut endless_motion = Motion::standing();
@@ -89,7 +92,7 @@ fn a_count_ends_like_a_gait_that_brakes_frame_by_frame() {
     loop {
         let mut ordered_motion = endless_motion.clone();
         let pulses = counted_motion.tick();
-        if let Some(Target::End) = counted_motion.next {
+        if let Some(Target::Standstill) = counted_motion.next_target {
             ordered_motion.start("back");
             assert_eq!(ordered_motion.tick(), pulses);
             endless_motion = ordered_motion;
@@ -99,34 +102,38 @@ fn a_count_ends_like_a_gait_that_brakes_frame_by_frame() {
     }
     while endless_motion.pace() > 0 {
         assert_eq!(counted_motion.tick(), endless_motion.tick());
-        assert!(!counted_motion.has_ended());
+        assert!(!counted_motion.has_come_to_standstill());
     }
-    let last_pulses = counted_motion.held();
+    let last_pulses = counted_motion.held_pulses();
     assert_eq!(counted_motion.tick(), last_pulses);
-    assert!(counted_motion.has_ended());
+    assert!(counted_motion.has_come_to_standstill());
 }
 
 #[test]
-fn the_same_gait_goes_on_from_where_it_is_and_counts_from_there() {
+fn a_count_ordered_for_a_running_gait_begins_at_its_present_phase() {
     for (start_frames, count) in [(60, 1), (95, 2), (110, 3)] {
         let mut motion = Motion::in_gait("sway", start_frames);
         motion.start_for("sway", count);
-        let (cycles_covered, _) = count_cycles(&mut motion);
+        let (cycles_covered, _) = measure_cycles(&mut motion);
         let excess_frames = (cycles_covered - f64::from(count)) / cycles_per_frame(&motion, "sway");
         assert!((-2.0..=1.2).contains(&excess_frames), "{excess_frames}");
     }
 }
 
 #[test]
-fn a_new_order_replaces_a_count_also_while_it_brakes_to_its_end() {
+fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
     let start_braking = || {
         let mut motion = Motion::standing();
         motion.start_for("sway", 1);
-        while !matches!(motion.next, Some(Target::End)) {
+        while !matches!(motion.next_target, Some(Target::Standstill)) {
             motion.tick();
         }
         motion.run(2);
-        assert_eq!(motion.gait(), Some("sway"), "it still walks");
+        assert_eq!(
+            motion.gait_name(),
+            Some("sway"),
+            "the gait is still under way"
+        );
         motion
     };
     let start_counted = || {
@@ -140,21 +147,21 @@ fn a_new_order_replaces_a_count_also_while_it_brakes_to_its_end() {
         motion.start("sway");
         for _ in 0..2_000 {
             motion.tick();
-            assert!(!motion.has_ended() && motion.gait() == Some("sway"));
+            assert!(!motion.has_come_to_standstill() && motion.gait_name() == Some("sway"));
         }
         second_motion.start_for("back", 2);
-        let (cycles_covered, _) = count_cycles(&mut second_motion);
+        let (cycles_covered, _) = measure_cycles(&mut second_motion);
         assert!((cycles_covered + 2.0).abs() < 0.05, "{cycles_covered}");
     }
     for mut motion in [start_braking(), start_counted()] {
         let (mut stopped_motion, mut posed_motion) = (motion.clone(), motion.clone());
         stopped_motion.stop();
-        posed_motion.head_for_pose(THERE);
+        posed_motion.go_to_sweeps(SWEEPS);
         motion.rest();
         for mut motion in [stopped_motion, posed_motion, motion] {
             for _ in 0..500 {
                 motion.tick();
-                assert!(!motion.has_ended());
+                assert!(!motion.has_come_to_standstill());
             }
         }
     }
@@ -171,7 +178,7 @@ fn a_new_calibration_interrupts_a_count_and_does_not_shorten_it() {
         "{cycles_covered}"
     );
     motion.settle();
-    cycles_covered += count_cycles(&mut motion).0;
+    cycles_covered += measure_cycles(&mut motion).0;
     let excess_frames = (cycles_covered - 2.0) / cycles_per_frame(&motion, "sway");
     assert!((-2.0..=1.2).contains(&excess_frames), "{excess_frames}");
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A robot that the guard has just stopped.
+/// Returns the motion of a robot that the guard has just stopped.
 fn run_until_guarded() -> Motion {
     let mut motion = Motion::standing();
     motion.start("stray");
@@ -12,7 +12,7 @@ fn run_until_guarded() -> Motion {
             return motion;
         }
     }
-    panic!("stray is safe");
+    panic!("the guard has not stopped `stray`");
 }
 
 #[test]
@@ -32,26 +32,26 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         assert_eq!(motion.tick(), last_pose.pulses(&motion.calibration));
         assert_eq!(motion.hazard(), hazard);
     }
-    // The reported hazard is that of the frame that was not sent.
-    let id = motion.robot.id("stray");
+    // The reported hazard is one that the gait's poses have.
+    let id = motion.robot.gait_id("stray");
     let gait = motion.robot.gait(id);
-    let reasons: Vec<Hazard> = (0..CYCLE)
+    let hazards: Vec<Hazard> = (0..CYCLE)
         .step_by(1000)
         .filter_map(|phase| {
             let pose = gait.pose(motion.robot.waves(), phase);
             Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot)
         })
         .collect();
-    let is_same_kind = |reason: &Hazard| match (reason, hazard) {
+    let is_same_kind = |other_hazard: &Hazard| match (other_hazard, hazard) {
         (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => *a == b,
         (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => *a == b,
         _ => false,
     };
-    assert!(reasons.iter().any(is_same_kind), "{hazard:?}");
+    assert!(hazards.iter().any(is_same_kind), "{hazard:?}");
 }
 
 #[test]
-fn the_reason_goes_when_the_next_motion_begins_and_not_before() {
+fn the_hazard_is_cleared_when_the_next_motion_begins_and_not_before() {
     let mut stopped_motion = run_until_guarded();
     stopped_motion.stop();
     stopped_motion.run(20);
@@ -61,28 +61,28 @@ fn the_reason_goes_when_the_next_motion_begins_and_not_before() {
     refused_motion.run(20);
     assert!(
         refused_motion.hazard().is_some(),
-        "nor does a pose that is refused"
+        "a refused pose begins no motion"
     );
     let mut motion = run_until_guarded();
     motion.start("sway");
     assert!(motion.hazard().is_some());
     motion.tick();
     assert_eq!(motion.hazard(), None);
-    motion.run(LONG_ENOUGH);
-    assert_eq!(motion.gait(), Some("sway"));
+    motion.run(TRANSITION_FRAMES);
+    assert_eq!(motion.gait_name(), Some("sway"));
 }
 
 #[test]
-fn a_pose_that_is_refused_changes_nothing_and_says_why() {
-    for name in GAITS {
+fn a_refused_pose_changes_nothing_and_returns_its_hazard() {
+    for name in GAIT_NAMES {
         for frames in [0, 3, 20, 70] {
-            let mut asked_motion = Motion::in_gait(name, frames);
+            let mut refusing_motion = Motion::in_gait(name, frames);
             let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
-            let reason =
-                Clearance::of(&asked_motion.robot, &pose).first_hazard(&asked_motion.robot);
-            assert_eq!(asked_motion.go_to(&pose).err(), reason);
-            assert!(reason.is_some());
-            assert_same(asked_motion, Motion::in_gait(name, frames));
+            let expected_hazard =
+                Clearance::of(&refusing_motion.robot, &pose).first_hazard(&refusing_motion.robot);
+            assert_eq!(refusing_motion.go_to(&pose).err(), expected_hazard);
+            assert!(expected_hazard.is_some());
+            assert_same_motion(refusing_motion, Motion::in_gait(name, frames));
         }
     }
 }

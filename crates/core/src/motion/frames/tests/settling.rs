@@ -1,16 +1,16 @@
-//! Settling: the gradual change of the pulses to a new calibration.
+//! Settling: the gradual change of the pulses to the widths of a new calibration.
 
 use super::*;
-use crate::numbers::units::Width;
+use crate::numbers::units::PulseWidth;
 
 #[test]
 fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     // The gains of this robot differ from servo to servo.
     let mut motion = Motion::standing();
-    let pulses_before = motion.sent().0;
+    let pulses_before = motion.sent_pulses().0;
     let per_frame = f64::from(motion.robot.slew().per_frame);
     let max_changes = motion.calibration.map(|servo| {
-        // CPU cycles per frame at the slew limit, rounded down.
+        // In CPU cycles per frame at the slew limit, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
     for (index, max_change) in max_changes.iter().enumerate() {
@@ -23,14 +23,14 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     }
     for index in 0..4 {
         let mut servo = motion.calibration[index];
-        servo.neutral = Width(servo.neutral.0 + 1000);
+        servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
         motion.calibrate(Servo::at(index), servo);
     }
     motion.settle();
     for frame in 1..=1000u16 {
         motion.tick();
-        for (index, sent) in motion.sent().0.iter().enumerate() {
-            let change = sent.0 - pulses_before[index].0;
+        for (index, sent_width) in motion.sent_pulses().0.iter().enumerate() {
+            let change = sent_width.0 - pulses_before[index].0;
             assert_eq!(
                 change,
                 1000.min(frame.saturating_mul(max_changes[index])),
@@ -42,17 +42,17 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
 }
 
 #[test]
-fn the_first_pulses_after_a_hang_repeat_the_last_ones_however_far_the_settings_differ() {
-    // The last pulses before the hang may never have been sent, because the reset came first.
+fn the_first_pulses_after_a_reset_repeat_the_last_ones_however_far_the_settings_differ() {
+    // The reset may have come after the last pulses were computed and before they were sent.
     let stance_before = *Motion::standing().stance();
     let mut motion = Motion::new(*Sample::odd());
     for index in 0..4 {
         let mut servo = motion.calibration[index];
-        servo.neutral = Width(servo.neutral.0 + 1000);
+        servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
         motion.calibrate(Servo::at(index), servo);
     }
     assert!(motion.resume(&stance_before, false));
-    assert_eq!(motion.tick(), stance_before.sent);
+    assert_eq!(motion.tick(), stance_before.sent_pulses);
     let next_pulses = motion.tick();
-    assert!((0..4).all(|index| next_pulses.0[index].0 > stance_before.sent.0[index].0));
+    assert!((0..4).all(|index| next_pulses.0[index].0 > stance_before.sent_pulses.0[index].0));
 }

@@ -1,9 +1,9 @@
-//! Tests of rest, and of waking the servos one after another when it ends.
+//! Tests of a robot that rests, and of its servos, which wake one after another when the rest ends.
 
 use super::*;
 
 #[test]
-fn while_it_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
+fn while_the_robot_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
     let mut motion = Motion::in_gait("sway", 90);
     let pose = *motion.pose();
     motion.rest();
@@ -16,9 +16,9 @@ fn while_it_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
 }
 
 #[test]
-fn stop_and_rest_change_nothing_while_it_rests() {
+fn stop_and_rest_change_nothing_while_the_robot_rests() {
     for order in [Motion::stop, Motion::rest] {
-        let mut motion = resting();
+        let mut motion = resting_motion();
         order(&mut motion);
         assert_eq!(motion.activity(), Activity::Rest);
         assert_eq!(motion.tick(), Pulses::default());
@@ -26,26 +26,26 @@ fn stop_and_rest_change_nothing_while_it_rests() {
 }
 
 #[test]
-fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
+fn a_gait_or_a_pose_first_wakes_the_servos_where_they_were_left() {
     for is_pose in [false, true] {
-        let mut motion = resting();
+        let mut motion = resting_motion();
         let left_pose = *motion.pose();
         if is_pose {
-            motion.head_for_pose(THERE);
+            motion.go_to_sweeps(SWEEPS);
             assert_eq!(motion.activity(), Activity::Pose);
         } else {
             motion.start("swing");
-            assert_eq!(motion.gait(), Some("swing"));
+            assert_eq!(motion.gait_name(), Some("swing"));
         }
-        for _ in 0..WAKING {
+        for _ in 0..FRAMES_TO_WAKE {
             motion.tick();
             assert_eq!(motion.pose(), &left_pose);
         }
-        assert_eq!(motion.tick(), motion.held());
+        assert_eq!(motion.tick(), motion.held_pulses());
         assert!(motion.is_moving());
-        motion.run(LONG_ENOUGH);
+        motion.run(TRANSITION_FRAMES);
         if is_pose {
-            assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
+            assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));
         } else {
             assert!(motion.is_cycling());
         }
@@ -54,22 +54,22 @@ fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
 
 #[test]
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
-    let mut woken_motion = resting();
+    let mut woken_motion = resting_motion();
     woken_motion.start("stand");
     for mut motion in [Motion::new(*Sample::odd()), woken_motion] {
-        let held_pulses = motion.held();
+        let held_pulses = motion.held_pulses();
         let mut first_frames = [0; 4];
-        for frame in 1..=WAKING {
+        for frame in 1..=FRAMES_TO_WAKE {
             for (index, width) in motion.tick().0.into_iter().enumerate() {
-                if width != Width(0) && first_frames[index] == 0 {
+                if width != PulseWidth(0) && first_frames[index] == 0 {
                     first_frames[index] = frame;
                 }
-                let expected = if first_frames[index] > 0 {
+                let expected_width = if first_frames[index] > 0 {
                     held_pulses.0[index]
                 } else {
-                    Width(0)
+                    PulseWidth(0)
                 };
-                assert_eq!(width, expected);
+                assert_eq!(width, expected_width);
             }
         }
         assert_eq!(first_frames, [5, 10, 15, 20]);
@@ -77,39 +77,48 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
 }
 
 #[test]
-fn a_robot_that_is_told_to_rest_while_it_wakes_wakes_from_the_beginning_later() {
+fn a_rest_during_waking_makes_all_servos_wake_again_later() {
     let mut motion = Motion::new(*Sample::odd());
     motion.run(12);
     motion.rest();
     assert_eq!(motion.tick(), Pulses::default());
     motion.start("stand");
-    let pulse_flags = (0..WAKING).map(|_| motion.tick().0.map(|width| u8::from(width.0 > 0)));
+    let pulse_flags =
+        (0..FRAMES_TO_WAKE).map(|_| motion.tick().0.map(|width| u8::from(width.0 > 0)));
     let awake_counts: Vec<u8> = pulse_flags.map(|servos| servos.iter().sum()).collect();
-    let expected: Vec<u8> = (1..=WAKING).map(|frame| (frame / 5) as u8).collect();
-    assert_eq!(awake_counts, expected);
+    let expected_counts: Vec<u8> = (1..=FRAMES_TO_WAKE)
+        .map(|frame| (frame / 5) as u8)
+        .collect();
+    assert_eq!(awake_counts, expected_counts);
 }
 
 #[test]
-fn stop_while_it_wakes_lets_the_servos_wake_and_nothing_move() {
-    let mut motion = resting();
+fn stop_during_waking_lets_the_servos_wake_but_nothing_move() {
+    let mut motion = resting_motion();
     motion.start("sway");
     motion.run(7);
     motion.stop();
     let pose = *motion.pose();
-    motion.run(LONG_ENOUGH);
+    motion.run(TRANSITION_FRAMES);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.pose(), &pose);
-    assert_eq!(motion.tick(), motion.held());
-    assert!(motion.held().0.iter().all(|width| *width > Width(0)));
+    assert_eq!(motion.tick(), motion.held_pulses());
+    assert!(
+        motion
+            .held_pulses()
+            .0
+            .iter()
+            .all(|width| *width > PulseWidth(0))
+    );
 }
 
 #[test]
 fn a_command_during_waking_waits_until_all_servos_are_awake() {
     let mut motion = Motion::new(*Sample::odd());
     motion.run(3);
-    motion.head_for_pose(THERE);
-    motion.run(WAKING - 3);
+    motion.go_to_sweeps(SWEEPS);
+    motion.run(FRAMES_TO_WAKE - 3);
     assert_eq!(motion.pose(), &Pose::NEUTRAL);
-    motion.run(LONG_ENOUGH);
-    assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
+    motion.run(TRANSITION_FRAMES);
+    assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));
 }

@@ -1,4 +1,4 @@
-//! The steps of a calibration: the robot's movements in each, and the effect of each key.
+//! The guide through a calibration: the robot's movements in each step, and the effect of each key.
 //!
 //! The signs are checked before the trims: with the wrong sign a servo would turn against the
 //! arrow keys.
@@ -10,7 +10,7 @@ use lizard_calibrate::{BadReply, ConsoleError, SCALE_TURNS, SIGN_TURNS};
 use lizard_robot::Status;
 use pollster::block_on;
 
-use super::super::link::{BANNER, Link, LinkError};
+use super::super::link::{BANNER_START, Link, LinkError};
 use step::{STEPS, Step};
 pub use view::View;
 
@@ -21,7 +21,7 @@ pub enum Key {
     Next,
     /// Go to the previous step.
     Back,
-    /// Leave, and drop the changes since the last save.
+    /// Leave the guide, and drop the changes since the last save.
     Leave,
     /// Perform the action of the step.
     Act,
@@ -37,14 +37,15 @@ pub enum Key {
 #[derive(Debug)]
 pub struct Guide<'a, P> {
     robot: lizard_calibrate::Guide<&'a mut Link<P>>,
-    /// The neutral angles, degrees.
-    neutral: [f64; 4],
+    /// The neutral angles of A1 to A4, degrees.
+    neutral_angles: [f64; 4],
     step_index: usize,
     /// The angle by which this step has moved its servo, degrees; `None` if it has not.
     moved_degrees: Option<f64>,
-    /// True if scales and limits are skipped.
-    skips_scales: bool,
+    /// True if the user skips the steps for scales and limits.
+    skips_scales_and_limits: bool,
     is_walking: bool,
+    /// The result of the last key, in words.
     message: String,
 }
 
@@ -57,13 +58,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> std::result::Result<Self, LinkError> {
         let mut robot = block_on(lizard_calibrate::Guide::begin(link))?;
-        let neutral = block_on(robot.stand())?;
+        let neutral_angles = block_on(robot.stand())?;
         Ok(Self {
             robot,
-            neutral,
+            neutral_angles,
             step_index: 0,
             moved_degrees: None,
-            skips_scales: false,
+            skips_scales_and_limits: false,
             is_walking: false,
             message: String::new(),
         })
@@ -73,7 +74,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         STEPS[self.step_index]
     }
 
-    /// True if the active calibration is saved.
+    /// True if the active calibration is saved, which the last step shows.
     pub fn is_saved(&self) -> bool {
         self.step() == Step::Saved
     }
@@ -88,18 +89,18 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         let result = match (key, self.step()) {
             (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
             (Key::Leave, _) => self.leave().map(|()| true),
-            (Key::Back, Step::Walk) if self.skips_scales => {
-                self.go_to_step(Step::More).map(|()| false)
+            (Key::Back, Step::Walk) if self.skips_scales_and_limits => {
+                self.go_to_step(Step::OfferScales).map(|()| false)
             }
             (Key::Back, _) => self
                 .enter_step(self.step_index.saturating_sub(1))
                 .map(|()| false),
-            (Key::Next, Step::More) => {
-                self.skips_scales = true;
+            (Key::Next, Step::OfferScales) => {
+                self.skips_scales_and_limits = true;
                 self.go_to_step(Step::Walk).map(|()| false)
             }
-            (Key::Yes, Step::More) => {
-                self.skips_scales = false;
+            (Key::Yes, Step::OfferScales) => {
+                self.skips_scales_and_limits = false;
                 self.enter_step(self.step_index + 1).map(|()| false)
             }
             (Key::Next, Step::Sign(_)) => {
@@ -137,8 +138,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// # Errors
     /// Fails if the connection breaks.
     pub fn read_messages(&mut self) -> std::result::Result<(), LinkError> {
-        while let Some(line) = self.robot.console().line(Duration::ZERO)? {
-            if line.starts_with(BANNER) {
+        while let Some(line) = self.robot.console().read_line(Duration::ZERO)? {
+            if line.starts_with(BANNER_START) {
                 self.message = "The board was reset: leave with q and begin again.".to_owned();
             } else if let Some(note) = line.strip_prefix("# ") {
                 self.message = format!("The robot says: {note}.");
@@ -163,7 +164,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<()> {
-        let index = STEPS.iter().position(|step_at| *step_at == step);
+        let index = STEPS.iter().position(|candidate| *candidate == step);
         self.enter_step(index.unwrap_or(self.step_index))
     }
 
@@ -181,7 +182,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn stand(&mut self) -> Result<()> {
-        self.neutral = block_on(self.robot.stand())?;
+        self.neutral_angles = block_on(self.robot.stand())?;
         self.is_walking = false;
         self.moved_degrees = None;
         Ok(())
@@ -195,23 +196,26 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Changes the scale of the servo that was moved so that it turns this many degrees further
+    /// Changes the scale of the servo that was moved, so that the servo turns this many degrees further
     /// counter-clockwise.
     fn change_scale(&mut self, servo: usize, degrees: f64) -> Result<()> {
-        let Some(ordered) = self.moved_degrees else {
+        let Some(commanded_degrees) = self.moved_degrees else {
             self.message = "Press the space bar first, and look where it points.".to_owned();
             return Ok(());
         };
         let scale = self.robot.calibration().servos[servo].scale;
-        block_on(self.robot.scale(servo, scale * (1.0 + degrees / ordered)))
+        block_on(
+            self.robot
+                .scale(servo, scale * (1.0 + degrees / commanded_degrees)),
+        )
     }
 
-    /// Moves one limit of a servo's travel by one degree in the direction of `degrees`: the first limit for the
-    /// keys of 0.5 degrees, the second limit for the keys of 0.1.
+    /// Moves one limit of a servo's travel by one degree in the direction of `degrees`: the first limit for a key
+    /// that turns by 0.5 degrees (left, right), the second limit for one that turns by 0.1 degrees (up, down).
     fn change_limit(&mut self, servo: usize, degrees: f64) -> Result<()> {
-        let mut ends = self.robot.calibration().servos[servo].limit;
-        ends[usize::from(degrees.abs() < 0.3)] += degrees.signum();
-        block_on(self.robot.limit(servo, ends))
+        let mut limits = self.robot.calibration().servos[servo].limit;
+        limits[usize::from(degrees.abs() < 0.3)] += degrees.signum();
+        block_on(self.robot.limit(servo, limits))
     }
 
     fn answer_sign(&mut self, servo: usize, answer: Key) -> Result<()> {

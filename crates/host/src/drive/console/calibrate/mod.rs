@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crossterm::style::{Attribute, Print, SetAttribute};
 use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
-use crossterm::{cursor, execute, queue, terminal as mode};
+use crossterm::{cursor, execute, queue, terminal as terminal_mode};
 
-use super::connect::Connect;
+use super::connect::ConnectionArgs;
+use super::dialogue_error::DialogueError;
 use super::terminal;
-use super::turn_error::DialogueError;
 use crate::Failure;
 use guide::{Guide, Key, View};
 
@@ -25,12 +25,12 @@ use guide::{Guide, Key, View};
 #[derive(clap::Args, Debug)]
 pub struct Args {
     #[command(flatten)]
-    connect: Connect,
+    connect: ConnectionArgs,
 }
 
 /// Interval between reads from the robot while no key is pressed.
 const READ_INTERVAL: Duration = Duration::from_millis(200);
-/// Interval between checks of the keys.
+/// Interval between checks for a pressed key.
 const KEY_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Runs `lizard calibrate`.
@@ -42,7 +42,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let message = "calibrate asks for single keys; run it in a terminal";
         return Err(Failure::Input(message.to_owned()));
     }
-    let finder = args.connect.finder("calibrate")?;
+    let finder = args.connect.into_finder("calibrate")?;
     let (mut board, _) = finder.open_and_greet()?;
     let result = Guide::new(&mut board.link).map_err(DialogueError::from);
     let result = result.and_then(|mut guide| run_guide(&mut guide));
@@ -67,8 +67,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Shows the steps until the user is done; returns true if the calibration was saved. Closing
-/// the terminal cancels it.
+/// Shows the steps until the user has finished or cancelled; returns true if the calibration was saved.
+/// Closing the terminal cancels.
 fn run_guide<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, DialogueError> {
     match run_steps(guide) {
         Err(DialogueError::Io(_)) if !terminal::is_open() => {
@@ -103,9 +103,9 @@ fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
             continue;
         }
         match event::read()? {
-            Event::Key(key) if is_suspend(key) => {
+            Event::Key(key) if is_suspend_key(key) => {
                 page.leave()?;
-                terminal::stop()?;
+                terminal::suspend_program()?;
                 page.enter()?;
                 last_view = None;
             }
@@ -123,17 +123,17 @@ fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
 }
 
 /// True if a key is Ctrl-Z, which suspends the program.
-fn is_suspend(key: KeyEvent) -> bool {
+fn is_suspend_key(key: KeyEvent) -> bool {
     key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
-/// The meaning of a key in the guide; `None` if it has none, or was released.
+/// Returns the meaning of a key in the guide; `None` if it has none, or was released.
 fn interpret_key(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
     let is_fine = key.modifiers.contains(KeyModifiers::SHIFT);
-    let step = if is_fine { 0.1 } else { 0.5 };
+    let degrees = if is_fine { 0.1 } else { 0.5 };
     Some(match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => Key::Leave,
         KeyCode::Char('q' | 'Q') | KeyCode::Esc => Key::Leave,
@@ -142,15 +142,15 @@ fn interpret_key(key: KeyEvent) -> Option<Key> {
         KeyCode::Char(' ') => Key::Act,
         KeyCode::Char('y' | 'Y') => Key::Yes,
         KeyCode::Char('n' | 'N') => Key::No,
-        KeyCode::Left => Key::Turn(step),
-        KeyCode::Right => Key::Turn(-step),
+        KeyCode::Left => Key::Turn(degrees),
+        KeyCode::Right => Key::Turn(-degrees),
         KeyCode::Up => Key::Turn(0.1),
         KeyCode::Down => Key::Turn(-0.1),
         _ => return None,
     })
 }
 
-/// The full screen for one step. Dropping it restores the terminal.
+/// The terminal's full screen, which shows one step at a time. Dropping it restores the terminal.
 struct Page(Stdout);
 
 impl Page {
@@ -161,14 +161,14 @@ impl Page {
     }
 
     fn enter(&mut self) -> io::Result<()> {
-        terminal::end_when_gone();
-        mode::enable_raw_mode()?;
+        terminal::exit_when_closed();
+        terminal_mode::enable_raw_mode()?;
         execute!(self.0, EnterAlternateScreen, cursor::Hide)
     }
 
     fn leave(&mut self) -> io::Result<()> {
         execute!(self.0, cursor::Show, LeaveAlternateScreen)?;
-        mode::disable_raw_mode()
+        terminal_mode::disable_raw_mode()
     }
 
     fn show(&mut self, view: &View) -> io::Result<()> {
@@ -182,7 +182,7 @@ impl Page {
             SetAttribute(Attribute::Reset),
             Print("\r\n\r\n"),
         )?;
-        for line in &view.text {
+        for line in &view.instructions {
             queue!(out, Print(line), Print("\r\n"))?;
         }
         queue!(
@@ -204,6 +204,6 @@ impl Drop for Page {
     fn drop(&mut self) {
         // The terminal may be gone; then there is nothing to restore.
         let _ = self.leave();
-        let _ = mode::disable_raw_mode();
+        let _ = terminal_mode::disable_raw_mode();
     }
 }

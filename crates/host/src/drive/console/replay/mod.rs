@@ -1,4 +1,4 @@
-//! `lizard console replay`: prints, sums up and draws a recorded session.
+//! `lizard console replay`: prints, summarizes and draws a recorded session.
 
 mod session;
 mod summary;
@@ -33,7 +33,7 @@ pub struct Args {
 const CAPTION: Caption = Caption {
     title: "Servo angles and footfalls of a session",
     note: "degrees in the chassis frame, as the robot reported them; dashed: the neutral angle",
-    axis: "time since the session began (s)",
+    axis_label: "time since the session began (s)",
 };
 
 /// Runs `lizard console replay`.
@@ -76,11 +76,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     {
         writeln!(
             out,
-            "picture     the session's robot is another than this robot.toml: angles are right, \
-             footfalls may not be"
+            "picture     the session's robot is not that of this robot.toml: the angles are right, \
+             but the footfalls may not be"
         )?;
     }
-    let log = session.frames(&robot);
+    let log = session.frame_log(&robot);
     let (robot, log) = (&robot, &log);
     let picture = timeline::draw(Run { robot, log }, &session.spans(), &CAPTION);
     crate::shared::files::write(&args.svg, picture.as_bytes())?;

@@ -1,4 +1,4 @@
-//! A recorded session that was read from its file: its events, frames and commands.
+//! A recorded session, read from its file: its events, frames and commands.
 
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
@@ -11,13 +11,13 @@ use lizard_robot::Status;
 
 /// Length of a frame, ms.
 const FRAME_MS: u64 = 20;
-/// Longest gap between reported poses, in frames, over which the earlier one is held.
+/// Longest gap between two reported poses, in frames, that is filled with the earlier one.
 const MAX_HELD_FRAMES: usize = 50;
 /// Largest difference, in frames, between the robot's frame count and this machine's clock. A line may arrive late,
 /// and a simulated robot lags behind on a slow machine.
-const MAX_CLOCK_DIFFERENCE: usize = 10;
+const MAX_CLOCK_DIFFERENCE_FRAMES: usize = 10;
 /// Longest valid session, ms: a day.
-const LONGEST_MS: u64 = 86_400_000;
+const MAX_SESSION_MS: u64 = 86_400_000;
 
 /// The reason why a file is not a valid session.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
@@ -27,7 +27,7 @@ pub(super) enum SessionError {
         "this is not a session of `lizard console --record`: its first line has no \"{FORMAT}\""
     )]
     Format,
-    /// A line that is not an event.
+    /// A line is not an event, or is out of place.
     #[error("line {line}: {problem}")]
     Line {
         /// The number of the line, from 1.
@@ -69,11 +69,11 @@ impl Session {
                     "a session begins once, in its first line".to_owned(),
                 ));
             }
-            if entry.ms > LONGEST_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
+            if entry.ms > MAX_SESSION_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
                 return Err(error_of(format!("{} ms is out of order", entry.ms)));
             }
             entries.push(Entry {
-                event: entry.event.plain(),
+                event: entry.event.with_escaped_controls(),
                 ..entry
             });
         }
@@ -96,15 +96,15 @@ impl Session {
         self.entries.last().map_or(0, |last| last.ms)
     }
 
-    /// Pulse widths of the reported poses, one entry per frame since the start of the session; zero while the robot
-    /// rested or was silent.
-    pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
+    /// Returns the pulse widths of the reported poses, one entry per frame since the start of the session; zero while
+    /// the robot rested or was silent.
+    pub(super) fn frame_log(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut is_resting = false;
-        // The robot's frame count and the index in `widths` at the last pose for which the clock matched them.
-        let mut last_match: Option<(u64, usize)> = None;
-        let mut count = 0;
-        // The index in `widths` of the last pose; `None` if the robot has rested or was reset since.
+        // The robot's frame count and the index in `widths` of the pose from which later poses are counted.
+        let mut anchor: Option<(u64, usize)> = None;
+        let mut last_frame_count = 0;
+        // The index in `widths` of the last pose; `None` if the robot has rested or was reset since then.
         let mut last_index: Option<usize> = None;
         for entry in &self.entries {
             match &entry.event {
@@ -116,55 +116,59 @@ impl Session {
                     }
                 }
                 Event::Pose { frame, angles } => {
-                    let slot_now = (entry.ms / FRAME_MS) as usize;
-                    if *frame < count {
-                        (last_match, last_index) = (None, None);
+                    let index_by_clock = (entry.ms / FRAME_MS) as usize;
+                    if *frame < last_frame_count {
+                        (anchor, last_index) = (None, None);
                     }
-                    count = *frame;
+                    last_frame_count = *frame;
                     // The robot's count is steadier than the time at which a line arrives.
-                    let counted_index = last_match.and_then(|(first_frame, first_index)| {
-                        first_index
-                            .checked_add(usize::try_from(frame.checked_sub(first_frame)?).ok()?)
+                    let index_by_count = anchor.and_then(|(anchor_frame, anchor_index)| {
+                        anchor_index
+                            .checked_add(usize::try_from(frame.checked_sub(anchor_frame)?).ok()?)
                     });
-                    let slot_index = counted_index
-                        .filter(|slot_index| slot_index.abs_diff(slot_now) <= MAX_CLOCK_DIFFERENCE)
-                        .unwrap_or(slot_now);
-                    if counted_index != Some(slot_index) {
-                        last_match = Some((*frame, slot_index));
+                    let pose_index = index_by_count
+                        .filter(|index| {
+                            index.abs_diff(index_by_clock) <= MAX_CLOCK_DIFFERENCE_FRAMES
+                        })
+                        .unwrap_or(index_by_clock);
+                    if index_by_count != Some(pose_index) {
+                        anchor = Some((*frame, pose_index));
                     }
-                    let Some(slot) = widths.get_mut(slot_index) else {
+                    let Some(slot) = widths.get_mut(pose_index) else {
                         continue;
                     };
                     if is_resting {
                         last_index = None;
                         continue;
                     }
-                    let pulses = std::array::from_fn(|servo| {
-                        let us = robot.servos()[servo].pulse(angles[servo]);
-                        (us * CYCLES_PER_US as f64).round().clamp(1.0, 65_534.0) as u16
+                    let pulse_widths = std::array::from_fn(|servo| {
+                        let width_us = robot.servos()[servo].pulse(angles[servo]);
+                        (width_us * CYCLES_PER_US as f64)
+                            .round()
+                            .clamp(1.0, 65_534.0) as u16
                     });
-                    *slot = pulses;
-                    if let Some(previous_slot) = last_index.filter(|previous_slot| {
-                        slot_index.saturating_sub(*previous_slot) <= MAX_HELD_FRAMES
-                    }) {
-                        let held_widths = widths[previous_slot];
-                        for slot in widths.iter_mut().take(slot_index).skip(previous_slot + 1) {
+                    *slot = pulse_widths;
+                    if let Some(previous_index) = last_index
+                        .filter(|index| pose_index.saturating_sub(*index) <= MAX_HELD_FRAMES)
+                    {
+                        let held_widths = widths[previous_index];
+                        for slot in widths.iter_mut().take(pose_index).skip(previous_index + 1) {
                             *slot = held_widths;
                         }
                     }
-                    last_index = Some(slot_index);
+                    last_index = Some(pose_index);
                 }
                 _ => {}
             }
         }
         FrameLog {
-            first: 0,
+            first_start: 0,
             widths,
             ..FrameLog::default()
         }
     }
 
-    /// The commands and the time spans in which each was in effect.
+    /// Returns the commands, each with the time span in which it was in effect.
     pub(super) fn spans(&self) -> Vec<Span> {
         let mut steps = Vec::new();
         let mut answers = Vec::new();
@@ -193,7 +197,7 @@ impl Session {
 }
 
 /// A frame is a whole number of milliseconds.
-const _: () = assert!(crate::simulate::sim::frame::FRAME == FRAME_MS * CYCLES_PER_MS);
+const _: () = assert!(crate::simulate::sim::frame::FRAME_CYCLES == FRAME_MS * CYCLES_PER_MS);
 
 #[cfg(test)]
 mod tests {
@@ -203,12 +207,12 @@ mod tests {
     const BEGIN: &str =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
 
-    fn session(lines: &[String]) -> Session {
+    fn session_of(lines: &[String]) -> Session {
         let text = format!("{BEGIN}{}\n", lines.join("\n"));
         Session::parse(&text).expect("it is a session")
     }
 
-    fn pose(ms: u64, frame: u64, a1: f64) -> String {
+    fn pose_line(ms: u64, frame: u64, a1: f64) -> String {
         format!(
             "{{\"ms\":{ms},\"pose\":{{\"frame\":{frame},\"angles\":[{a1},41.41,318.59,221.41]}}}}"
         )
@@ -229,17 +233,17 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_becomes_the_pulses_that_make_it_and_a_missing_one_is_that_before() {
-        let session = session(&[
-            pose(104, 50, 138.590378),
-            pose(131, 51, 139.590378),
+    fn a_pose_becomes_its_pulse_widths_and_a_missing_pose_repeats_the_previous_one() {
+        let session = session_of(&[
+            pose_line(104, 50, 138.590378),
+            pose_line(131, 51, 139.590378),
             // Late by a frame and a half; frame 52 is missing.
-            pose(190, 53, 140.590378),
+            pose_line(190, 53, 140.590378),
         ]);
-        let log = session.frames(&named("paper"));
-        let a1: Vec<u16> = log.widths.iter().map(|widths| widths[0]).collect();
+        let log = session.frame_log(&named("paper"));
+        let a1_widths: Vec<u16> = log.widths.iter().map(|widths| widths[0]).collect();
         assert_eq!(
-            a1,
+            a1_widths,
             [0, 0, 0, 0, 0, 24_000, 24_160, 24_160, 24_320, 0],
             "10 us for a degree, 16 cycles for a us"
         );
@@ -247,36 +251,36 @@ mod tests {
 
     #[test]
     fn a_robot_that_falls_behind_the_clock_has_no_gap() {
-        let slow_poses = (0..100).map(|n| pose(20 + 30 * n, n, 138.590378));
-        let log = session(&slow_poses.collect::<Vec<_>>()).frames(&named("paper"));
+        let slow_poses = (0..100).map(|n| pose_line(20 + 30 * n, n, 138.590378));
+        let log = session_of(&slow_poses.collect::<Vec<_>>()).frame_log(&named("paper"));
         let first = log.widths.iter().position(|widths| widths[0] > 0);
         assert_eq!(first, Some(1));
         assert!(log.widths[1..140].iter().all(|widths| widths[0] == 24_000));
     }
 
     #[test]
-    fn a_robot_that_rests_or_was_reset_has_no_pulses() {
-        let session = session(&[
-            pose(20, 1, 138.590378),
+    fn a_robot_has_no_pulses_while_it_rests_and_until_its_first_pose_after_a_reset() {
+        let session = session_of(&[
+            pose_line(20, 1, 138.590378),
             "{\"ms\":30,\"answer\":\"ok rest\"}".to_owned(),
-            pose(40, 2, 138.590378),
-            pose(60, 3, 138.590378),
+            pose_line(40, 2, 138.590378),
+            pose_line(60, 3, 138.590378),
             "{\"ms\":70,\"answer\":\"ok stand\"}".to_owned(),
-            pose(80, 4, 138.590378),
-            // A reset.
-            pose(160, 0, 138.590378),
-            pose(180, 1, 138.590378),
-            // A frame count that no robot reaches.
-            pose(190, u64::MAX, 138.590378),
+            pose_line(80, 4, 138.590378),
+            // The robot was reset, so its frame count starts again.
+            pose_line(160, 0, 138.590378),
+            pose_line(180, 1, 138.590378),
+            // No robot counts so many frames.
+            pose_line(190, u64::MAX, 138.590378),
         ]);
-        let log = session.frames(&named("paper"));
+        let log = session.frame_log(&named("paper"));
         let pulsed_frames: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
         assert_eq!(pulsed_frames, [1, 4, 8, 9]);
     }
 
     #[test]
     fn commands_are_in_effect_unless_refused() {
-        let session = session(&[
+        let session = session_of(&[
             "{\"ms\":1000,\"sent\":\"walk\"}".to_owned(),
             "{\"ms\":1001,\"answer\":\"ok walk\"}".to_owned(),
             "{\"ms\":2000,\"sent\":\"fly\"}".to_owned(),
@@ -293,7 +297,11 @@ mod tests {
 
     #[test]
     fn an_invalid_session_is_refused_with_the_line_number() {
-        let message_of = |text: &str| Session::parse(text).expect_err("it is wrong").to_string();
+        let message_of = |text: &str| {
+            Session::parse(text)
+                .expect_err("the session is invalid")
+                .to_string()
+        };
         for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {
             assert!(
                 message_of(text).starts_with("this is not a session"),
@@ -319,7 +327,7 @@ mod tests {
     #[test]
     fn a_last_line_that_was_cut_short_is_left_out() {
         let text = format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{{\"ms\":10,\"se");
-        let session = Session::parse(&text).expect("the rest is whole");
+        let session = Session::parse(&text).expect("the other lines are complete");
         assert_eq!(session.entries.len(), 2);
     }
 }

@@ -1,8 +1,8 @@
-//! The summary of a recorded session in a few lines.
+//! The summary of a recorded session, in a few lines.
 
 use std::io::{self, Write};
 
-use super::super::link::BANNER;
+use super::super::link::BANNER_START;
 use super::super::recorder::Event;
 use super::session::Session;
 use lizard_robot::Status;
@@ -10,7 +10,7 @@ use lizard_robot::Status;
 /// Prints the session's length, commands, smallest margin, supply voltages and problems.
 pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     let entries = &session.entries;
-    let count = |is_counted: fn(&Event) -> bool| {
+    let count_events = |is_counted: fn(&Event) -> bool| {
         entries
             .iter()
             .filter(|entry| is_counted(&entry.event))
@@ -24,15 +24,15 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "firmware    {}", banner.trim_start_matches("# "))?;
     }
     let seconds = session.end_ms() as f64 / 1000.0;
-    let frames = session.end_ms() / 20 + 1;
-    let poses = count(|event| matches!(event, Event::Pose { .. }));
+    let frame_count = session.end_ms() / 20 + 1;
+    let pose_count = count_events(|event| matches!(event, Event::Pose { .. }));
     writeln!(
         out,
-        "time        {seconds:.1} s, the pose of {poses} of {frames} frames"
+        "time        {seconds:.1} s, the pose of {pose_count} of {frame_count} frames"
     )?;
     let refused_count =
-        count(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
-    let sent_count = count(|event| matches!(event, Event::Sent(_)));
+        count_events(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
+    let sent_count = count_events(|event| matches!(event, Event::Sent(_)));
     writeln!(
         out,
         "commands    {sent_count}, of these refused: {refused_count}"
@@ -52,7 +52,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         let seconds = *ms as f64 / 1000.0;
         writeln!(
             out,
-            "margin      smallest {margin:.3}, at {seconds:.1} s, of {} looks",
+            "margin      smallest {margin:.3}, at {seconds:.1} s, of {} readings",
             statuses.len()
         )?;
     }
@@ -70,32 +70,32 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         writeln!(
             out,
             "counters    late pulses {}, bytes lost {}",
-            last.late, last.rx_lost
+            last.late_edges, last.lost_bytes
         )?;
     }
-    let mut faults = 0;
+    let mut trouble_count = 0;
     for entry in entries {
         let text = match &entry.event {
-            Event::Note(line) if is_trouble(line) => line.trim_start_matches("# "),
+            Event::Note(line) if reports_trouble(line) => line.trim_start_matches("# "),
             Event::Gone => "the port was gone",
             _ => continue,
         };
-        faults += 1;
+        trouble_count += 1;
         writeln!(
             out,
             "trouble     at {:.1} s: {text}",
             entry.ms as f64 / 1000.0
         )?;
     }
-    if faults == 0 {
+    if trouble_count == 0 {
         writeln!(out, "trouble     none")?;
     }
     Ok(())
 }
 
 /// True if a note reports a problem. A banner in the middle of a session means a reset.
-fn is_trouble(note: &str) -> bool {
-    ["# fault: ", "# supply: ", "# held ", BANNER]
+fn reports_trouble(note: &str) -> bool {
+    ["# fault: ", "# supply: ", "# held ", BANNER_START]
         .iter()
         .any(|start| note.starts_with(start))
 }
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_summary_has_what_was_close_and_what_went_wrong() {
+    fn the_summary_shows_the_smallest_margin_the_supply_range_and_every_trouble() {
         let status = |ms, margin| {
             format!(
                 "{{\"ms\":{ms},\"status\":\"ok gait=walk pose=1,2,3,4 margin={margin} late=1 \
@@ -148,7 +148,7 @@ mod tests {
              firmware    lizard 0.2.0\n\
              time        2.0 s, the pose of 0 of 101 frames\n\
              commands    1, of these refused: 1\n\
-             margin      smallest 0.250, at 0.6 s, of 3 looks\n\
+             margin      smallest 0.250, at 0.6 s, of 3 readings\n\
              supply      4.50..4.70 V\n\
              counters    late pulses 1, bytes lost 0\n\
              trouble     at 1.5 s: a pulse came late\n\

@@ -1,6 +1,6 @@
 use super::*;
 
-const STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
+const WALKING_STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
 
 #[test]
 fn a_users_line_is_sent_after_the_previous_answer() {
@@ -9,8 +9,16 @@ fn a_users_line_is_sent_after_the_previous_answer() {
     assert_eq!(session.next_line(now).as_deref(), Some("status"));
     session.queue("walk");
     session.queue("speed 50");
-    assert_eq!(session.next_line(now), None, "the status has not come");
-    assert_eq!(session.receive(STATUS), None, "the user did not ask for it");
+    assert_eq!(
+        session.next_line(now),
+        None,
+        "the status has not been answered"
+    );
+    assert_eq!(
+        session.receive(WALKING_STATUS),
+        None,
+        "the user did not ask for it"
+    );
     assert_eq!(session.next_line(now).as_deref(), Some("walk"));
     assert_eq!(session.receive("# fault: x").as_deref(), Some("# fault: x"));
     assert_eq!(session.next_line(now), None);
@@ -35,11 +43,14 @@ fn a_status_that_the_user_requests_is_shown() {
     let mut session = Session::new(now, false, false);
     session.queue("status");
     session.next_line(now);
-    assert_eq!(session.receive(STATUS).as_deref(), Some(STATUS));
+    assert_eq!(
+        session.receive(WALKING_STATUS).as_deref(),
+        Some(WALKING_STATUS)
+    );
 }
 
 #[test]
-fn after_a_reset_no_answer_is_expected() {
+fn after_a_reset_the_old_answer_is_not_awaited_and_watch_is_sent_again() {
     let now = Instant::now();
     let mut session = Session::new(now, false, true);
     assert_eq!(session.next_line(now).as_deref(), Some("watch 1"));
@@ -50,12 +61,12 @@ fn after_a_reset_no_answer_is_expected() {
     assert_eq!(
         session.next_line(now).as_deref(),
         Some("watch 1"),
-        "asked for again"
+        "poses are asked for again"
     );
 }
 
 #[test]
-fn poses_are_shown_only_on_request_of_the_user() {
+fn poses_are_shown_only_if_the_user_asks_for_them() {
     let now = Instant::now();
     let mut session = Session::new(now, false, true);
     session.next_line(now);
@@ -75,7 +86,7 @@ fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
     session.queue("stop");
     session.next_line(now);
     assert_eq!(session.end_overdue_question(now), None);
-    let later = now + TIMEOUT;
+    let later = now + ANSWER_TIMEOUT;
     assert_eq!(
         session.end_overdue_question(later).as_deref(),
         Some("(no answer to `walk`)")
@@ -92,7 +103,11 @@ fn stop_waits_for_no_answer_and_drops_waiting_lines() {
     session.queue("walk");
     session.stop(now);
     assert_eq!(session.next_line(now).as_deref(), Some("stop"));
-    assert_eq!(session.receive(STATUS), None, "the answer of before");
+    assert_eq!(
+        session.receive(WALKING_STATUS),
+        None,
+        "the answer to the earlier status"
+    );
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     assert!(session.is_idle());
     assert_eq!(
@@ -102,7 +117,7 @@ fn stop_waits_for_no_answer_and_drops_waiting_lines() {
 }
 
 #[test]
-fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
+fn stop_is_sent_until_it_is_answered_and_its_later_answers_are_ignored() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.stop(now);
@@ -116,13 +131,17 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
         .end_overdue_question(time)
         .expect("the user is told");
     assert!(message.contains("may go on"), "{message}");
-    assert_eq!(session.end_overdue_question(time), None, "once");
+    assert_eq!(session.end_overdue_question(time), None, "only once");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     session.queue("walk");
-    assert_eq!(session.next_line(time), None, "others may still come");
+    assert_eq!(
+        session.next_line(time),
+        None,
+        "late answers may still arrive"
+    );
     time += LATE_ANSWER_TIME;
     assert_eq!(session.next_line(time).as_deref(), Some("walk"));
-    assert_eq!(session.receive("ok stop"), None, "it is not that of walk");
+    assert_eq!(session.receive("ok stop"), None, "it does not answer walk");
     assert!(!session.is_idle());
     assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
     assert!(session.is_idle());
@@ -159,14 +178,14 @@ fn the_beginning_of_a_refusal_that_a_radio_has_cut_off_is_no_answer_to_stop() {
 }
 
 #[test]
-fn a_late_answer_is_not_that_of_the_next_line() {
+fn a_late_answer_is_not_taken_for_that_of_the_next_line() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.queue("trim 1 2");
     session.queue("walk");
     session.next_line(now);
-    session.end_overdue_question(now + TIMEOUT);
-    session.next_line(now + TIMEOUT);
+    session.end_overdue_question(now + ANSWER_TIMEOUT);
+    session.next_line(now + ANSWER_TIMEOUT);
     session.receive("ok trim 1 2.00");
     assert!(!session.is_idle(), "walk has no answer");
     session.receive("ok walk");
@@ -182,7 +201,7 @@ fn every_event_is_kept_in_order() {
     session.receive("# note");
     session.receive("err 1 no");
     session.next_line(now);
-    session.receive(STATUS);
+    session.receive(WALKING_STATUS);
     let events = session.take_events();
     assert_eq!(
         events,
@@ -190,7 +209,7 @@ fn every_event_is_kept_in_order() {
             Event::Sent("walk".to_owned()),
             Event::Note("# note".to_owned()),
             Event::Answer("err 1 no".to_owned()),
-            Event::Status(STATUS.to_owned()),
+            Event::Status(WALKING_STATUS.to_owned()),
         ]
     );
     assert!(session.take_events().is_empty());
@@ -205,7 +224,7 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
         session.next_line(now);
         match answer {
             Some(answer) => drop(session.receive(answer)),
-            None => drop(session.end_overdue_question(now + TIMEOUT)),
+            None => drop(session.end_overdue_question(now + ANSWER_TIMEOUT)),
         }
         session
             .check_all_accepted()
@@ -247,7 +266,7 @@ fn run_session(
 
 fn answer_of_robot(line: &str) -> String {
     match line {
-        "status" => STATUS.to_owned(),
+        "status" => WALKING_STATUS.to_owned(),
         "cal" => "# boot stand\n# deadman 700\nok cal".to_owned(),
         line => format!("ok {}", line.trim()),
     }
@@ -270,7 +289,7 @@ fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
 }
 
 #[test]
-fn a_robot_that_just_began_to_walk_has_deadman_again_after_a_question() {
+fn deadman_is_restored_before_cal_and_set_again_afterwards() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false).with_person();
     for line in ["walk", "cal"] {
@@ -308,20 +327,20 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
         ["deadman 2000", "save", "deadman 901"]
     );
     session.stop(now + Duration::from_secs(2));
-    let answer_of_stopped =
+    let answer_of_stopped_robot =
         |line: &str| answer_with_own_deadman(line).replace("gait=walk", "gait=stop");
     let lines = run_session(
         &mut session,
         now + Duration::from_secs(2),
         2000,
-        answer_of_stopped,
+        answer_of_stopped_robot,
     );
     assert_eq!(lines_except_status(&lines), ["stop", "deadman 2000"]);
     assert_eq!(session.restore_deadman(), None);
 }
 
 #[test]
-fn a_robot_that_its_user_leaves_continues_with_its_own_deadman() {
+fn the_deadman_that_an_earlier_program_left_is_not_restored_but_set_to_zero() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("arc left");
@@ -350,11 +369,16 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
     session.receive("# deadman 0");
     session.receive("ok cal");
     assert_eq!(session.next_line(now).as_deref(), Some("deadman 901"));
-    let later = now + TIMEOUT;
-    let message = session.end_overdue_question(later).expect("it is said");
+    let later = now + ANSWER_TIMEOUT;
+    let message = session
+        .end_overdue_question(later)
+        .expect("the user is told");
     assert!(message.contains("not sent"), "{message}");
     assert_eq!(session.next_line(later), None, "walk is not sent");
-    assert!(session.check_all_accepted().is_err(), "a script learns it");
+    assert!(
+        session.check_all_accepted().is_err(),
+        "the failure is counted"
+    );
     session.queue("walk");
     assert_eq!(session.next_line(later).as_deref(), Some("deadman 901"));
 }
@@ -367,7 +391,7 @@ fn a_silent_robot_is_reported_once_until_it_answers_again() {
         now += STATUS_INTERVAL;
         assert_eq!(session.next_line(now).as_deref(), Some("status"));
         if is_answered {
-            session.receive(STATUS);
+            session.receive(WALKING_STATUS);
         }
         now += STATUS_TIMEOUT;
         session.end_overdue_question(now)

@@ -1,7 +1,7 @@
 //! `lizard draw --wiring`: every wire from the battery's cells to the servos and the board.
 //!
-//! The picture follows the current: the supply at the top, the strip for +5 V on the left and the one for ground on
-//! the right, the servos between them, then the strip for the signals, and the board at the bottom.
+//! The picture follows the current from top to bottom: first the supply, then the servos between the +5 V strip on the
+//! left and the ground strip on the right, then the signal strip, and the board last. All positions are in pixels.
 
 mod inputs;
 mod radio;
@@ -9,20 +9,20 @@ mod strips;
 mod supply;
 mod wire;
 
-use lizard_robot::servo::NAMES;
-use lizard_robot::{FUSE, Robot, SWITCH};
+use lizard_robot::servo::SERVO_NAMES;
+use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Robot};
 use svg::node::element::Group;
 
-use super::route::{GAP, Path, between_rows, route_end, turn_point};
+use super::route::{Path, WIRE_SPACING, path_end, paths_between_rows, turn_point};
 use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
     BROWN, DARK, GREY, ORANGE, PLACES, RED, SERVO, circle, cross, edged, line, page, rectangle,
     text_middle, text_start,
 };
-use wire::{BLACK, THICK, THIN, Wire, draw_terminal};
+use wire::{BLACK, THICK_WIDTH, THIN_WIDTH, Wire, draw_terminal};
 
-const WIDTH: f64 = 700.0;
+const PAGE_WIDTH: f64 = 700.0;
 /// Horizontal position of the middle of the leftmost servo.
 const FIRST_SERVO_X: f64 = 170.0;
 /// Distance between the middles of neighbouring servos.
@@ -33,48 +33,51 @@ const SERVO_TOP_Y: f64 = 420.0;
 const SERVO_SIZE: (f64, f64) = (50.0, 92.0);
 /// Distance from a servo's middle at which its supply wires leave it.
 const LEAD_OFFSET: f64 = 14.0;
-/// Heights of the uppermost horizontal parts of the signal wires, above their strip and below it.
-const SIGNAL_LEVELS: [f64; 2] = [530.0, 694.0];
-/// Heights of the horizontal parts of the ground wires of signals and board, below all other wires.
-const GROUND_LEVELS: [f64; 2] = [582.0, 748.0];
+/// Vertical positions of the uppermost horizontal parts of the signal wires, above the signal strip and below it.
+const SIGNAL_WIRES_Y: [f64; 2] = [530.0, 694.0];
+/// Vertical positions of the horizontal parts of the ground wires to the signal strip and to the board, below the
+/// signal wires.
+const GROUND_WIRES_Y: [f64; 2] = [582.0, 748.0];
 /// Horizontal position at which the wire from the ground strip to the signal strip runs down.
 const GROUND_WIRE_X: f64 = 622.0;
 const UNO: Uno = Uno {
-    corner: (120.0, 776.0),
+    upper_left_corner: (120.0, 776.0),
 };
 /// The middle of the board's round power socket, relative to its corner.
-const SOCKET_OFFSET: (f64, f64) = (-11.0, 252.0);
-/// Distance between the lines of the remarks.
+const POWER_SOCKET_OFFSET: (f64, f64) = (-11.0, 252.0);
+/// Distance between neighbouring lines of the remarks.
 const LINE_HEIGHT: f64 = 19.0;
 
-/// The wiring of a robot, as SVG text.
-pub fn wiring(robot: &Robot) -> String {
+/// Draws the wiring of a robot, as SVG text.
+pub fn draw_wiring(robot: &Robot) -> String {
     let pins = robot.servos().map(|servo| servo.pin);
-    let order = left_to_right(pins);
-    let wires_around = order
+    let order = servos_left_to_right(pins);
+    let around_count = order
         .iter()
         .filter(|servo| is_analogue(pins[**servo]))
         .count();
     let mut used_pins = pins.to_vec();
     used_pins.extend(robot.firmware().rail_pin());
-    used_pins.extend(robot.inputs().each().map(|(_, pin)| pin));
-    let notes_y = UNO.far_corner().1 + GAP * wires_around as f64 + 50.0;
+    used_pins.extend(robot.inputs().named_pins().map(|(_, pin)| pin));
+    let notes_y = UNO.lower_right_corner().1 + WIRE_SPACING * around_count as f64 + 50.0;
     let socket = (
-        UNO.corner.0 + SOCKET_OFFSET.0,
-        UNO.corner.1 + SOCKET_OFFSET.1,
+        UNO.upper_left_corner.0 + POWER_SOCKET_OFFSET.0,
+        UNO.upper_left_corner.1 + POWER_SOCKET_OFFSET.1,
     );
     let mut group = Group::new();
     let mut wires = supply::wires(socket);
-    wires.extend(strips::links());
-    wires.extend(strips::resistors(order.map(|servo| NAMES[servo])));
-    wires.extend(servo_wires(order, pins));
+    wires.extend(strips::link_wires());
+    wires.extend(strips::resistor_wires(
+        order.map(|servo| SERVO_NAMES[servo]),
+    ));
+    wires.extend(servo_and_board_wires(order, pins));
     for wire in wires {
         group = group.add(wire.draw());
     }
     group = group
         .add(supply::draw(socket))
         .add(strips::draw())
-        .add(strips::resistor_bodies())
+        .add(strips::draw_resistor_bodies())
         .add(UNO.draw(&used_pins));
     for (index, servo) in order.into_iter().enumerate() {
         group = group.add(draw_servo(servo, index, pins[servo]));
@@ -85,12 +88,12 @@ pub fn wiring(robot: &Robot) -> String {
         let y = notes_y + LINE_HEIGHT * index as f64;
         group = group.add(text_start(remark, (16.0, y), 14.0));
     }
-    let inputs_y = option_y + radio::HEIGHT;
+    let inputs_y = option_y + radio::PANEL_HEIGHT;
     group = group.add(draw_board_notes()).add(radio::draw(option_y));
-    if inputs::height(robot) > 0.0 {
+    if inputs::panel_height(robot) > 0.0 {
         group = group.add(inputs::draw(robot, inputs_y));
     }
-    page((WIDTH, inputs_y + inputs::height(robot)), group)
+    page((PAGE_WIDTH, inputs_y + inputs::panel_height(robot)), group)
 }
 
 fn is_analogue(pin: u8) -> bool {
@@ -99,7 +102,7 @@ fn is_analogue(pin: u8) -> bool {
 
 /// The servos from left to right, in the order of their pins around the UNO from its upper left, so that no two
 /// signals cross.
-fn left_to_right(pins: [u8; 4]) -> [usize; 4] {
+fn servos_left_to_right(pins: [u8; 4]) -> [usize; 4] {
     let mut order = [0, 1, 2, 3];
     order.sort_by_key(|servo| {
         let pin = pins[*servo];
@@ -113,11 +116,11 @@ fn servo_x(index: usize) -> f64 {
     FIRST_SERVO_X + SERVO_SPACING * index as f64
 }
 
-/// The wires of the servos, and those of their signals to the board. `order` has the servos from left to right.
-fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
+/// The wires of the servos, and those from the signal strip to the board. `order` has the servos from left to right.
+fn servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
-        let (x, name) = (servo_x(index), NAMES[servo]);
+        let (x, name) = (servo_x(index), SERVO_NAMES[servo]);
         let ground_hole = strips::ground_hole(supply::FIRST_SERVO_WAY + index);
         let ground_path = vec![
             (x + LEAD_OFFSET, SERVO_TOP_Y),
@@ -128,77 +131,82 @@ fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
             format!("ground-{name}"),
             ground_path,
             BROWN,
-            THIN,
+            THIN_WIDTH,
         ));
         // The first ways of the strip belong to the converter and the capacitor.
-        let supply_hole = strips::supply_hole(strips::SUPPLIES - 1 - index);
+        let supply_hole = strips::supply_hole(strips::SUPPLY_WAY_COUNT - 1 - index);
         let supply_path = vec![
             (x - LEAD_OFFSET, SERVO_TOP_Y),
             (x - LEAD_OFFSET, supply_hole.1),
             supply_hole,
         ];
-        wires.push(Wire::new(format!("plus-{name}"), supply_path, RED, THIN));
+        wires.push(Wire::new(
+            format!("plus-{name}"),
+            supply_path,
+            RED,
+            THIN_WIDTH,
+        ));
     }
     let indices: [usize; 4] = [0, 1, 2, 3];
     let servo_points = indices.map(|index| (servo_x(index), SERVO_TOP_Y + SERVO_SIZE.1));
-    let paths = between_rows(
+    let paths = paths_between_rows(
         &servo_points,
         &indices.map(strips::servo_hole),
-        SIGNAL_LEVELS[0],
+        SIGNAL_WIRES_Y[0],
     );
     for (servo, path) in order.into_iter().zip(paths) {
-        let name = format!("signal-{}", NAMES[servo]);
-        wires.push(Wire::new(name, path, ORANGE, THIN));
+        let name = format!("signal-{}", SERVO_NAMES[servo]);
+        wires.push(Wire::new(name, path, ORANGE, THIN_WIDTH));
     }
-    let last_hole = strips::ground_hole(strips::GROUNDS - 1);
-    let signal_hole = strips::signal_ground();
-    let level = GROUND_LEVELS[0];
+    let last_hole = strips::ground_hole(strips::LINKED_GROUND_WAY_COUNT - 1);
+    let signal_hole = strips::signal_ground_hole();
+    let y = GROUND_WIRES_Y[0];
     let path = vec![
         last_hole,
         (GROUND_WIRE_X, last_hole.1),
-        (GROUND_WIRE_X, level),
-        (signal_hole.0, level),
+        (GROUND_WIRE_X, y),
+        (signal_hole.0, y),
         signal_hole,
     ];
-    wires.push(Wire::new("signals-ground", path, BLACK, THICK));
+    wires.push(Wire::new("signals-ground", path, BLACK, THICK_WIDTH));
     wires.extend(board_wires(order, pins));
     wires
 }
 
 /// The jumpers from the signal strip to the board.
 fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
-    let (from, to) = (strips::board_ground(), UNO.ground());
-    let level = GROUND_LEVELS[1];
-    let path = vec![from, (from.0, level), (to.0, level), to];
-    let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN)];
+    let (from, to) = (strips::board_ground_hole(), UNO.ground_point());
+    let y = GROUND_WIRES_Y[1];
+    let path = vec![from, (from.0, y), (to.0, y), to];
+    let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN_WIDTH)];
     let strip_holes = [0, 1, 2, 3].map(strips::board_hole);
-    let mut wires_around = 0;
+    let mut around_count = 0;
     let mut ends: Vec<Path> = Vec::new();
     let pin_points = order.map(|servo| {
-        let pin = UNO.pin(pins[servo]);
+        let pin = UNO.pin_point(pins[servo]);
         if !is_analogue(pins[servo]) {
             ends.push(vec![]);
             return pin;
         }
-        ends.push(route_end(UNO.far_corner(), wires_around, pin));
-        wires_around += 1;
-        turn_point(UNO.far_corner(), wires_around - 1)
+        ends.push(path_end(UNO.lower_right_corner(), around_count, pin));
+        around_count += 1;
+        turn_point(UNO.lower_right_corner(), around_count - 1)
     });
-    let paths = between_rows(&strip_holes, &pin_points, SIGNAL_LEVELS[1]);
+    let paths = paths_between_rows(&strip_holes, &pin_points, SIGNAL_WIRES_Y[1]);
     for ((servo, mut path), end) in order.into_iter().zip(paths).zip(ends) {
         path.extend(end.iter().skip(1));
-        let name = format!("pin-wire-{}", NAMES[servo]);
-        wires.push(Wire::new(name, path, ORANGE, THIN));
+        let name = format!("pin-wire-{}", SERVO_NAMES[servo]);
+        wires.push(Wire::new(name, path, ORANGE, THIN_WIDTH));
     }
     wires
 }
 
-/// A servo from above, with its name, its place in the robot and its pin.
+/// Draws a servo from above, with its name, its place in the robot and its pin; `index` counts from left to right.
 fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let x = servo_x(index);
     let colour = SERVO[servo];
     let corner = (x - SERVO_SIZE.0 / 2.0, SERVO_TOP_Y);
-    let name = NAMES[servo];
+    let name = SERVO_NAMES[servo];
     Group::new()
         .add(rectangle(corner, SERVO_SIZE, "white").set("rx", 5))
         .add(edged(
@@ -242,11 +250,11 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
         ))
 }
 
-/// The cable to a computer, and the 5V pin, which stays free.
+/// Draws the cable to a computer, and a cross at the 5V pin, which stays free.
 fn draw_board_notes() -> Group {
-    let pin_5v = UNO.five_volts();
-    let lower_edge_y = UNO.far_corner().1;
-    let usb_y = UNO.corner.1 + 82.0;
+    let pin_5v = UNO.five_volt_point();
+    let lower_edge_y = UNO.lower_right_corner().1;
+    let usb_y = UNO.upper_left_corner.1 + 82.0;
     Group::new()
         .add(cross(pin_5v, 6.0, RED, 2.5))
         .add(text_middle(
@@ -266,8 +274,8 @@ fn remarks(robot: &Robot) -> Vec<String> {
         "A gap is a crossing, no joint.".into(),
         "A terminal strip does not join its ways. The bows beside it are links of 0.5 mm\u{b2}: one".into(),
         "from way 1 to 2, one from 2 to 3, and so on, two ends in a hole. Ways 11, 12 are spare.".into(),
-        format!("The fuse has {FUSE} A: the converter draws 2.8 A at most. It must not be larger than the"),
-        format!("switch's rating: {SWITCH} A, which count by half, because they are for alternating current."),
+        format!("The fuse has {FUSE_RATING_A} A: the converter draws 2.8 A at most. It must not be larger than the"),
+        format!("switch's rating: {MIN_SWITCH_RATING_A} A, which count by half, because they are for alternating current."),
         "The single way is the last of the second strip. It has 7.4 V from the battery: no link.".into(),
         "The capacitor's stripe (\u{2212}) goes to ground. The alarm is on the battery's balance plug.".into(),
         "A resistor of 10 k\u{3a9} joins each signal to ground: until the program begins, pins drive".into(),

@@ -1,30 +1,30 @@
-//! Wiring of an optional radio module that shares the board's serial line with the USB chip.
+//! The panel with an optional radio module that shares the board's serial line with the USB chip.
 //!
-//! The module and the USB chip both drive pin D0, and both hold it high while they are silent; the USB chip does so
-//! through 1 kOhm, so a module that is wired directly to D0 overrides it, and uploads fail. With a diode the module
-//! can only pull D0 low. The module's input takes 3.3 V, which a divider makes.
+//! The module and the USB chip both drive pin D0, and both hold it high while they are silent. The USB chip drives it
+//! through 1 kOhm, so a module that is wired directly to D0 overrides the chip, and uploads fail. With a diode the
+//! module can only pull D0 low. The module's input takes 3.3 V, which a divider derives from the board's 5 V.
 
 use svg::node::element::{Group, Polygon};
 
-use super::wire::{BLACK, LEG, THIN, Wire, draw_terminal};
+use super::wire::{BLACK, LEG_WIDTH, THIN_WIDTH, Wire, draw_terminal};
 use crate::shared::ink::{
     DARK, GREY, ORANGE, RED, circle, curve, edged, line, rectangle, text_end, text_middle,
     text_start,
 };
 
-/// Height of the panel, px.
-pub const HEIGHT: f64 = 246.0;
+/// Height of the panel, pixels.
+pub const PANEL_HEIGHT: f64 = 246.0;
 /// Horizontal position of the board's pins.
-const BOARD_X: f64 = 120.0;
+const BOARD_PINS_X: f64 = 120.0;
 /// Horizontal position of the module's pins.
-const MODULE_X: f64 = 500.0;
+const MODULE_PINS_X: f64 = 500.0;
 /// Horizontal position of the diode.
 const DIODE_X: f64 = 300.0;
 /// Horizontal position of the divider's upper resistor.
 const UPPER_RESISTOR_X: f64 = 260.0;
 /// Horizontal position of the divider's tap and lower resistor.
 const DIVIDER_X: f64 = 390.0;
-/// Rows: the board's pin, the module's pin, and the distance below the panel's top.
+/// Rows: the board's pin, the module's pin, and the distance below the panel's top, pixels.
 const ROWS: [(&str, &str, f64); 4] = [
     ("D0 (RX)", "TXD", 64.0),
     ("D1 (TX)", "RXD", 102.0),
@@ -32,41 +32,51 @@ const ROWS: [(&str, &str, f64); 4] = [
     ("5V", "VCC", 182.0),
 ];
 
-/// Draws the panel with its upper edge at this height.
+/// Draws the panel with its upper edge at y = `top`.
 pub fn draw(top: f64) -> Group {
     let y_of = |row: usize| top + ROWS[row].2;
     let row_path = |row: usize, from: f64, to: f64| vec![(from, y_of(row)), (to, y_of(row))];
-    let frame = rectangle((16.0, top), (668.0, HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
+    let frame = rectangle((16.0, top), (668.0, PANEL_HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
     let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
     let divider_path = vec![(DIVIDER_X, y_of(1)), (DIVIDER_X, y_of(2))];
     let wires = [
         Wire::new(
             "radio-d0",
-            row_path(0, BOARD_X, DIODE_X - 12.0),
+            row_path(0, BOARD_PINS_X, DIODE_X - 12.0),
             ORANGE,
-            THIN,
+            THIN_WIDTH,
         ),
         Wire::new(
             "radio-txd",
-            row_path(0, DIODE_X + 12.0, MODULE_X),
+            row_path(0, DIODE_X + 12.0, MODULE_PINS_X),
             ORANGE,
-            THIN,
+            THIN_WIDTH,
         ),
         Wire::new(
             "radio-d1",
-            row_path(1, BOARD_X, UPPER_RESISTOR_X - 14.0),
+            row_path(1, BOARD_PINS_X, UPPER_RESISTOR_X - 14.0),
             ORANGE,
-            THIN,
+            THIN_WIDTH,
         ),
         Wire::new(
             "radio-rxd",
-            row_path(1, UPPER_RESISTOR_X + 14.0, MODULE_X),
+            row_path(1, UPPER_RESISTOR_X + 14.0, MODULE_PINS_X),
             ORANGE,
-            THIN,
+            THIN_WIDTH,
         ),
-        Wire::new("radio-2k", divider_path, DARK, LEG),
-        Wire::new("radio-ground", row_path(2, BOARD_X, MODULE_X), BLACK, THIN),
-        Wire::new("radio-vcc", row_path(3, BOARD_X, MODULE_X), RED, THIN),
+        Wire::new("radio-2k", divider_path, DARK, LEG_WIDTH),
+        Wire::new(
+            "radio-ground",
+            row_path(2, BOARD_PINS_X, MODULE_PINS_X),
+            BLACK,
+            THIN_WIDTH,
+        ),
+        Wire::new(
+            "radio-vcc",
+            row_path(3, BOARD_PINS_X, MODULE_PINS_X),
+            RED,
+            THIN_WIDTH,
+        ),
     ];
     let mut group = Group::new().add(frame).add(
         text_start(
@@ -101,10 +111,10 @@ pub fn draw(top: f64) -> Group {
             (DIODE_X, y_of(0) - 13.0),
             13.0,
         ));
-    let module = rectangle((MODULE_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
+    let module = rectangle((MODULE_PINS_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
     group = group.add(edged(module, DARK, 1.5)).add(text_end(
         "HM-10, HC-05",
-        (MODULE_X + 142.0, top + 126.0),
+        (MODULE_PINS_X + 142.0, top + 126.0),
         13.0,
     ));
     for (pin, module_pin, offset) in ROWS {
@@ -112,14 +122,22 @@ pub fn draw(top: f64) -> Group {
         group = group
             .add(text_end(
                 &format!("UNO {pin}"),
-                (BOARD_X - 10.0, y + 5.0),
+                (BOARD_PINS_X - 10.0, y + 5.0),
                 13.0,
             ))
-            .add(text_start(module_pin, (MODULE_X + 10.0, y + 5.0), 13.0))
-            .add(draw_terminal(&format!("radio-{pin}"), (BOARD_X, y), DARK))
+            .add(text_start(
+                module_pin,
+                (MODULE_PINS_X + 10.0, y + 5.0),
+                13.0,
+            ))
+            .add(draw_terminal(
+                &format!("radio-{pin}"),
+                (BOARD_PINS_X, y),
+                DARK,
+            ))
             .add(draw_terminal(
                 &format!("radio-module-{module_pin}"),
-                (MODULE_X, y),
+                (MODULE_PINS_X, y),
                 DARK,
             ));
     }
@@ -127,7 +145,7 @@ pub fn draw(top: f64) -> Group {
     group.add(text_start(note, (30.0, top + 220.0), 13.0))
 }
 
-/// A diode that conducts from left to right, with its stripe at the right.
+/// Draws a diode that conducts from left to right, with its stripe at the right.
 fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
     let corners = format!(
         "{},{} {},{} {},{}",
@@ -139,7 +157,7 @@ fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
         y
     );
     group
-        .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEG))
+        .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEG_WIDTH))
         .add(Polygon::new().set("points", corners).set("fill", DARK))
         .add(line((x + 9.0, y - 9.0), (x + 9.0, y + 9.0), DARK, 3.0))
         .add(draw_terminal("diode-anode", (x - 12.0, y), DARK))

@@ -1,11 +1,11 @@
 //! Terminal strips, and the links between their ways (single terminals).
 //!
-//! A strip does not connect its ways: each is a brass tube with a screw at both ends. So short links lead from way
-//! to way on one side of a strip, and the wires are on the other side.
+//! A strip does not connect its ways: each is a brass tube with a screw at both ends. Short links therefore lead from
+//! way to way on one side of a strip, and the wires are on the other side.
 
 use svg::node::element::Group;
 
-use super::wire::{BLACK, LEG, THICK, Wire, draw_terminal};
+use super::wire::{BLACK, LEG_WIDTH, THICK_WIDTH, Wire, draw_terminal};
 use crate::make::draw::route::Path;
 use crate::shared::ink::{
     DARK, ORANGE, RED, circle, edged, line, rectangle, text_middle, text_start,
@@ -18,20 +18,20 @@ const STRIP_WIDTH: f64 = 36.0;
 /// Reach of a link beyond its strip, pixels.
 const LINK_REACH: f64 = 11.0;
 /// Number of ways of the ground strip that have links; two more ways are spare.
-pub const GROUNDS: usize = 10;
+pub const LINKED_GROUND_WAY_COUNT: usize = 10;
 /// Number of all ways of the ground strip.
-const GROUND_WAYS: usize = 12;
+const GROUND_WAY_COUNT: usize = 12;
 /// Number of ways of the +5 V strip.
-pub const SUPPLIES: usize = 6;
-/// First wire hole of the ground strip: x of the strip's inner edge, and y.
+pub const SUPPLY_WAY_COUNT: usize = 6;
+/// First wire hole of the ground strip, at the strip's inner edge: x and y, pixels.
 const FIRST_GROUND_HOLE: (f64, f64) = (640.0, 160.0);
-/// First wire hole of the +5 V strip: x of the strip's inner edge, and y.
+/// First wire hole of the +5 V strip, at the strip's inner edge: x and y, pixels.
 const FIRST_SUPPLY_HOLE: (f64, f64) = (96.0, 259.0);
-/// The ways of the signal strip: x of the first one, and distance to the next.
-const SIGNAL_WAYS: (f64, f64) = (265.0, 48.0);
-/// Heights of the upper and lower edges of the signal strip.
+/// The ways of the signal strip: x of the first one, and the distance to the next, pixels.
+const SIGNAL_WAY_X_AND_PITCH: (f64, f64) = (265.0, 48.0);
+/// y of the upper and the lower edge of the signal strip, pixels.
 const SIGNAL_EDGES_Y: (f64, f64) = (597.0, 633.0);
-/// Distance from the middle of a way to the board's jumper in it, away from the strip's middle way.
+/// Distance from the middle of a way to the board's jumper in it, away from the strip's middle way, pixels.
 const JUMPER_OFFSET: f64 = 5.0;
 
 /// The wire hole of a way of the ground strip; ways count from 0.
@@ -50,28 +50,28 @@ pub fn supply_hole(way: usize) -> (f64, f64) {
     )
 }
 
-/// Index of a servo's way of the signal strip; `index` counts the servos from left to right. The middle way is for
-/// ground.
+/// Index of a servo's way of the signal strip; `index` counts the servos from left to right. The middle way, which is
+/// for ground, is skipped.
 const fn way_of_servo(index: usize) -> usize {
     if index < 2 { index } else { index + 1 }
 }
 
 /// Index of the ground way of the signal strip.
-const MIDDLE_WAY: usize = 2;
+const SIGNAL_GROUND_WAY: usize = 2;
 
 /// Horizontal position of a way of the signal strip.
-fn signal_x(way: usize) -> f64 {
-    SIGNAL_WAYS.0 + SIGNAL_WAYS.1 * way as f64
+fn signal_way_x(way: usize) -> f64 {
+    SIGNAL_WAY_X_AND_PITCH.0 + SIGNAL_WAY_X_AND_PITCH.1 * way as f64
 }
 
 /// The hole of the signal strip for a servo's signal; `index` counts the servos from left to right.
 pub fn servo_hole(index: usize) -> (f64, f64) {
-    (signal_x(way_of_servo(index)), SIGNAL_EDGES_Y.0)
+    (signal_way_x(way_of_servo(index)), SIGNAL_EDGES_Y.0)
 }
 
 /// The hole of the signal strip for the wire from the ground strip.
-pub fn signal_ground() -> (f64, f64) {
-    (signal_x(MIDDLE_WAY), SIGNAL_EDGES_Y.0)
+pub fn signal_ground_hole() -> (f64, f64) {
+    (signal_way_x(SIGNAL_GROUND_WAY), SIGNAL_EDGES_Y.0)
 }
 
 /// The hole of the signal strip for a servo's jumper to the board; `index` counts the servos from left to right.
@@ -81,16 +81,16 @@ pub fn board_hole(index: usize) -> (f64, f64) {
     } else {
         JUMPER_OFFSET
     };
-    (signal_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1)
+    (signal_way_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1)
 }
 
 /// The hole of the signal strip for the board's ground.
-pub fn board_ground() -> (f64, f64) {
-    (signal_x(MIDDLE_WAY), SIGNAL_EDGES_Y.1)
+pub fn board_ground_hole() -> (f64, f64) {
+    (signal_way_x(SIGNAL_GROUND_WAY), SIGNAL_EDGES_Y.1)
 }
 
 /// The links of the ground strip and of the +5 V strip.
-pub fn links() -> Vec<Wire> {
+pub fn link_wires() -> Vec<Wire> {
     let link_wire = |name: String, reach: f64, from: (f64, f64)| {
         let (x, y) = from;
         let path: Path = vec![
@@ -103,10 +103,10 @@ pub fn links() -> Vec<Wire> {
             name,
             path,
             if reach > 0.0 { BLACK } else { RED },
-            THICK - 1.0,
+            THICK_WIDTH - 1.0,
         )
     };
-    let grounds = (1..GROUNDS).map(|way| {
+    let ground_links = (1..LINKED_GROUND_WAY_COUNT).map(|way| {
         let (x, y) = ground_hole(way - 1);
         link_wire(
             format!("link-ground-{way}"),
@@ -114,7 +114,7 @@ pub fn links() -> Vec<Wire> {
             (x + STRIP_WIDTH, y),
         )
     });
-    let supplies = (1..SUPPLIES).map(|way| {
+    let supply_links = (1..SUPPLY_WAY_COUNT).map(|way| {
         let (x, y) = supply_hole(way - 1);
         link_wire(
             format!("link-supply-{way}"),
@@ -122,12 +122,12 @@ pub fn links() -> Vec<Wire> {
             (x - STRIP_WIDTH, y),
         )
     });
-    grounds.chain(supplies).collect()
+    ground_links.chain(supply_links).collect()
 }
 
 /// The leads of the resistors from each servo's way of the signal strip to the ground way. `names` has the servos
 /// from left to right.
-pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
+pub fn resistor_wires(names: [&str; 4]) -> Vec<Wire> {
     let resistor_wire = |(index, name): (usize, &str)| {
         // The leads of the outer resistors run below those of the inner ones, so that they do not cross.
         let (middle_offset, is_inner) = match index {
@@ -141,33 +141,36 @@ pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
         } else {
             -JUMPER_OFFSET
         };
-        let from = (signal_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1);
-        let to = (signal_x(MIDDLE_WAY) + middle_offset, SIGNAL_EDGES_Y.1);
+        let from = (signal_way_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1);
+        let to = (
+            signal_way_x(SIGNAL_GROUND_WAY) + middle_offset,
+            SIGNAL_EDGES_Y.1,
+        );
         let low_y = SIGNAL_EDGES_Y.1 + if is_inner { 17.0 } else { 35.0 };
         let path = vec![from, (from.0, low_y), (to.0, low_y), to];
-        Wire::new(format!("resistor-{name}"), path, DARK, LEG)
+        Wire::new(format!("resistor-{name}"), path, DARK, LEG_WIDTH)
     };
     names.into_iter().enumerate().map(resistor_wire).collect()
 }
 
-/// The bodies of the resistors at the signal strip.
-pub fn resistor_bodies() -> Group {
+/// Draws the bodies of the resistors at the signal strip.
+pub fn draw_resistor_bodies() -> Group {
     let mut group = Group::new();
     for (way, y_offset) in [(0, 35.0), (1, 17.0), (2, 17.0), (3, 35.0)] {
-        let x = (signal_x(way) + signal_x(way + 1)) / 2.0;
+        let x = (signal_way_x(way) + signal_way_x(way + 1)) / 2.0;
         let (width, height) = (22.0, 9.0);
         let corner = (x - width / 2.0, SIGNAL_EDGES_Y.1 + y_offset - height / 2.0);
         let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
         group = group.add(edged(body, DARK, 1.5));
     }
-    let point = (signal_x(4) + 22.0, SIGNAL_EDGES_Y.1 + 31.0);
+    let point = (signal_way_x(4) + 22.0, SIGNAL_EDGES_Y.1 + 31.0);
     group
         .add(text_start("4 x 10 k\u{3a9}", point, 13.0))
         .add(text_start("own legs", (point.0, point.1 + 16.0), 12.0))
 }
 
-/// Draws a way of a strip: its brass tube and its number.
-fn draw_brass_strip(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
+/// Adds a way of a strip, its brass tube and its number, to `group`.
+fn draw_way(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
     let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
     group
         .add(line(from, to, "#c9b26b", 7.0))
@@ -183,7 +186,7 @@ fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectan
     edged(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
 }
 
-/// The three strips.
+/// Draws the three strips.
 pub fn draw() -> Group {
     let mut group = Group::new();
     let draw_upright_strip = |ways: usize, left: f64, top: f64| {
@@ -192,16 +195,16 @@ pub fn draw() -> Group {
     };
     group = group
         .add(draw_upright_strip(
-            GROUND_WAYS,
+            GROUND_WAY_COUNT,
             FIRST_GROUND_HOLE.0,
             FIRST_GROUND_HOLE.1,
         ))
         .add(draw_upright_strip(
-            SUPPLIES,
+            SUPPLY_WAY_COUNT,
             FIRST_SUPPLY_HOLE.0 - STRIP_WIDTH,
             FIRST_SUPPLY_HOLE.1,
         ));
-    let upright_strips = [("ground", GROUND_WAYS), ("supply", SUPPLIES)];
+    let upright_strips = [("ground", GROUND_WAY_COUNT), ("supply", SUPPLY_WAY_COUNT)];
     for (name, ways) in upright_strips {
         for way in 0..ways {
             let (hole, link_offset) = match name {
@@ -209,7 +212,7 @@ pub fn draw() -> Group {
                 _ => (supply_hole(way), -STRIP_WIDTH),
             };
             let link_point = (hole.0 + link_offset, hole.1);
-            group = draw_brass_strip(group, hole, link_point, way + 1)
+            group = draw_way(group, hole, link_point, way + 1)
                 .add(draw_terminal(
                     &format!("{name}-{}-wire", way + 1),
                     hole,
@@ -223,14 +226,14 @@ pub fn draw() -> Group {
         }
     }
     let (top, bottom) = SIGNAL_EDGES_Y;
-    let half_pitch = SIGNAL_WAYS.1 / 2.0;
+    let half_pitch = SIGNAL_WAY_X_AND_PITCH.1 / 2.0;
     group = group.add(draw_case(
-        (SIGNAL_WAYS.0 - half_pitch, top),
-        (5.0 * SIGNAL_WAYS.1, bottom - top),
+        (SIGNAL_WAY_X_AND_PITCH.0 - half_pitch, top),
+        (5.0 * SIGNAL_WAY_X_AND_PITCH.1, bottom - top),
     ));
     for way in 0..5 {
-        let x = signal_x(way);
-        group = draw_brass_strip(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
+        let x = signal_way_x(way);
+        group = draw_way(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
             .add(draw_terminal(
                 &format!("signals-{}-servo", way + 1),
                 (x, top),
@@ -242,7 +245,7 @@ pub fn draw() -> Group {
                 ORANGE,
             ));
     }
-    let lower_end_y = FIRST_GROUND_HOLE.1 + PITCH * GROUND_WAYS as f64;
+    let lower_end_y = FIRST_GROUND_HOLE.1 + PITCH * GROUND_WAY_COUNT as f64;
     group
         .add(text_middle(
             "ground",

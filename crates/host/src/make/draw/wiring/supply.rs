@@ -1,50 +1,49 @@
-//! The supply, from the battery's cells to the strips: plug, fuse, switch, converter, capacitor, alarm, and the
-//! board's round plug.
+//! The supply, from the battery's cells to the strips: plug, fuse, switch, converter, capacitor, low-voltage alarm, and
+//! the round plug that supplies the board. Positions are in pixels, and grow downwards and to the right.
 
-use lizard_robot::{FUSE, SWITCH};
+use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 use svg::node::element::Group;
 
 use super::strips::{ground_hole, supply_hole};
-use super::wire::{BLACK, GREY_WIRE, LEG, THICK, THIN, Wire, draw_terminal};
+use super::wire::{BLACK, GREY_WIRE, LEG_WIDTH, THICK_WIDTH, THIN_WIDTH, Wire, draw_terminal};
 use crate::make::draw::route::Path;
 use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middle, text_start};
 
 type Point = (f64, f64);
 
 /// The battery's left edge.
-const BATTERY_X: f64 = 560.0;
-/// Vertical position of the battery's plus contact, and of the fuse, the switch and the single way (terminal) after
-/// them. Positions grow downwards.
+const BATTERY_LEFT_X: f64 = 560.0;
+/// Vertical position of the battery's plus contact, the fuse, the switch, and the single way (terminal) after them.
 const PLUS_Y: f64 = 40.0;
 /// Vertical position of the battery's minus contact.
-const MINUS_Y: f64 = 112.0;
+const BATTERY_MINUS_Y: f64 = 112.0;
 /// Vertical positions of the contacts of the battery's balance plug.
-const BALANCE_Y: [f64; 3] = [62.0, 76.0, 90.0];
+const BALANCE_CONTACTS_Y: [f64; 3] = [62.0, 76.0, 90.0];
 /// The left edge of the battery's cells.
-const CELLS_X: f64 = 600.0;
+const CELLS_LEFT_X: f64 = 600.0;
 /// The alarm's right edge.
-const ALARM_X: f64 = 500.0;
+const ALARM_RIGHT_X: f64 = 500.0;
 /// Horizontal positions of the fuse's left and right contacts.
-const FUSE_X: [f64; 2] = [458.0, 518.0];
+const FUSE_CONTACTS_X: [f64; 2] = [458.0, 518.0];
 /// Horizontal positions of the switch's left and right contacts.
-const SWITCH_X: [f64; 2] = [362.0, 428.0];
+const SWITCH_CONTACTS_X: [f64; 2] = [362.0, 428.0];
 /// Horizontal positions of the left and right holes of the single way after the switch.
-const WAY_X: [f64; 2] = [286.0, 322.0];
+const SINGLE_WAY_HOLES_X: [f64; 2] = [286.0, 322.0];
 /// Distance from the middle of the single way to each of the two wires at its left hole.
-const WIRE_OFFSET: f64 = 5.0;
+const SINGLE_WAY_WIRE_OFFSET: f64 = 5.0;
 /// The converter's left and right edges.
-const CONVERTER_X: [f64; 2] = [130.0, 235.0];
+const CONVERTER_EDGES_X: [f64; 2] = [130.0, 235.0];
 /// Vertical position of the contact IN+ of the converter.
-const CONVERTER_IN_PLUS_Y: f64 = PLUS_Y - WIRE_OFFSET;
+const CONVERTER_IN_PLUS_Y: f64 = PLUS_Y - SINGLE_WAY_WIRE_OFFSET;
 /// Vertical position of the contacts IN- and OUT- of the converter.
 const CONVERTER_MINUS_Y: f64 = 104.0;
 /// The capacitor's horizontal position.
 const CAPACITOR_X: f64 = 150.0;
 /// Horizontal positions of the two wires that lead down to the round plug.
-const MARGIN_WIRES_X: [f64; 2] = [20.0, 34.0];
+const ROUND_PLUG_WIRES_X: [f64; 2] = [20.0, 34.0];
 
 /// Parts of the supply, each with its way (terminal) of the ground strip, counted from 0.
-const WAY_OF_PART: [(&str, usize); 5] = [
+const GROUND_WAY_OF_PART: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
     ("converter-out", 2),
@@ -52,12 +51,14 @@ const WAY_OF_PART: [(&str, usize); 5] = [
     ("capacitor", 4),
 ];
 
-/// The index of the ground strip's first way (terminal) for a servo.
-pub const FIRST_SERVO_WAY: usize = WAY_OF_PART.len();
+/// Index of the ground strip's first way for a servo.
+pub const FIRST_SERVO_WAY: usize = GROUND_WAY_OF_PART.len();
 
 /// The wire hole of the ground strip for a part of the supply.
-fn ground_hole_of(name_of_part: &str) -> Point {
-    let entry = WAY_OF_PART.iter().find(|(name, _)| *name == name_of_part);
+fn ground_hole_of(part_name: &str) -> Point {
+    let entry = GROUND_WAY_OF_PART
+        .iter()
+        .find(|(name, _)| *name == part_name);
     ground_hole(entry.map_or(0, |(_, way)| *way))
 }
 
@@ -65,8 +66,8 @@ fn ground_hole_of(name_of_part: &str) -> Point {
 pub fn wires(socket: Point) -> Vec<Wire> {
     let [plug_plus, plug_minus] = round_plug_terminals(socket);
     let segment = |a: Point, b: Point| vec![a, b];
-    let thick_wire = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
-    let supply_end = supply_hole(0);
+    let thick_wire = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK_WIDTH);
+    let first_supply_hole = supply_hole(0);
     let battery_hole = ground_hole_of("battery");
     let converter_in_hole = ground_hole_of("converter-in");
     let converter_out_hole = ground_hole_of("converter-out");
@@ -74,32 +75,35 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     let mut wires = vec![
         thick_wire(
             "battery-fuse",
-            segment((BATTERY_X, PLUS_Y), (FUSE_X[1], PLUS_Y)),
+            segment((BATTERY_LEFT_X, PLUS_Y), (FUSE_CONTACTS_X[1], PLUS_Y)),
             RED,
         ),
         thick_wire(
             "fuse-switch",
-            segment((FUSE_X[0], PLUS_Y), (SWITCH_X[1], PLUS_Y)),
+            segment((FUSE_CONTACTS_X[0], PLUS_Y), (SWITCH_CONTACTS_X[1], PLUS_Y)),
             RED,
         ),
         thick_wire(
             "switch-way",
-            segment((SWITCH_X[0], PLUS_Y), (WAY_X[1], PLUS_Y)),
+            segment(
+                (SWITCH_CONTACTS_X[0], PLUS_Y),
+                (SINGLE_WAY_HOLES_X[1], PLUS_Y),
+            ),
             RED,
         ),
         thick_wire(
             "way-converter",
             segment(
-                (WAY_X[0], CONVERTER_IN_PLUS_Y),
-                (CONVERTER_X[1], CONVERTER_IN_PLUS_Y),
+                (SINGLE_WAY_HOLES_X[0], CONVERTER_IN_PLUS_Y),
+                (CONVERTER_EDGES_X[1], CONVERTER_IN_PLUS_Y),
             ),
             RED,
         ),
         thick_wire(
             "battery-ground",
             vec![
-                (BATTERY_X, MINUS_Y),
-                (546.0, MINUS_Y),
+                (BATTERY_LEFT_X, BATTERY_MINUS_Y),
+                (546.0, BATTERY_MINUS_Y),
                 (546.0, battery_hole.1),
                 battery_hole,
             ],
@@ -108,7 +112,7 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         thick_wire(
             "converter-in-ground",
             vec![
-                (CONVERTER_X[1], CONVERTER_MINUS_Y),
+                (CONVERTER_EDGES_X[1], CONVERTER_MINUS_Y),
                 (252.0, CONVERTER_MINUS_Y),
                 (252.0, converter_in_hole.1),
                 converter_in_hole,
@@ -118,7 +122,7 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         thick_wire(
             "converter-out-ground",
             vec![
-                (CONVERTER_X[0], CONVERTER_MINUS_Y),
+                (CONVERTER_EDGES_X[0], CONVERTER_MINUS_Y),
                 (119.0, CONVERTER_MINUS_Y),
                 (119.0, converter_out_hole.1),
                 converter_out_hole,
@@ -128,36 +132,36 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         thick_wire(
             "converter-supply",
             vec![
-                (CONVERTER_X[0], PLUS_Y),
+                (CONVERTER_EDGES_X[0], PLUS_Y),
                 (106.0, PLUS_Y),
-                (106.0, supply_end.1),
-                supply_end,
+                (106.0, first_supply_hole.1),
+                first_supply_hole,
             ],
             RED,
         ),
         Wire::new(
             "round-plug-plus",
             vec![
-                (WAY_X[0], PLUS_Y + WIRE_OFFSET),
-                (268.0, PLUS_Y + WIRE_OFFSET),
+                (SINGLE_WAY_HOLES_X[0], PLUS_Y + SINGLE_WAY_WIRE_OFFSET),
+                (268.0, PLUS_Y + SINGLE_WAY_WIRE_OFFSET),
                 (268.0, 138.0),
-                (MARGIN_WIRES_X[0], 138.0),
-                (MARGIN_WIRES_X[0], plug_plus.1),
+                (ROUND_PLUG_WIRES_X[0], 138.0),
+                (ROUND_PLUG_WIRES_X[0], plug_plus.1),
                 plug_plus,
             ],
             RED,
-            THIN,
+            THIN_WIDTH,
         ),
         Wire::new(
             "round-plug-ground",
             vec![
                 plug_hole,
-                (MARGIN_WIRES_X[1], plug_hole.1),
-                (MARGIN_WIRES_X[1], plug_minus.1),
+                (ROUND_PLUG_WIRES_X[1], plug_hole.1),
+                (ROUND_PLUG_WIRES_X[1], plug_minus.1),
                 plug_minus,
             ],
             BLACK,
-            THIN,
+            THIN_WIDTH,
         ),
     ];
     let [upper_leg, lower_leg] = capacitor_legs();
@@ -171,9 +175,16 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         segment(lower_leg, supply_hole(1)),
         RED,
     ));
-    for (number, (y, colour)) in (1..).zip(BALANCE_Y.into_iter().zip([RED, GREY_WIRE, BLACK])) {
-        let path = segment((BATTERY_X, y), (ALARM_X, y));
-        wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
+    for (number, (y, colour)) in
+        (1..).zip(BALANCE_CONTACTS_Y.into_iter().zip([RED, GREY_WIRE, BLACK]))
+    {
+        let path = segment((BATTERY_LEFT_X, y), (ALARM_RIGHT_X, y));
+        wires.push(Wire::new(
+            format!("balance-{number}"),
+            path,
+            colour,
+            LEG_WIDTH,
+        ));
     }
     wires
 }
@@ -195,7 +206,7 @@ fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     group.add(edged(rectangle(corner, size, fill).set("rx", 5), DARK, 1.5))
 }
 
-/// Draws all parts that the wires connect.
+/// Draws all parts of the supply; `socket` is the middle of the board's round socket.
 pub fn draw(socket: Point) -> Group {
     let mut group = draw_battery(Group::new());
     group = draw_alarm(group);
@@ -241,34 +252,50 @@ pub fn draw(socket: Point) -> Group {
 }
 
 fn draw_battery(group: Group) -> Group {
-    let mut group = draw_case(group, (BATTERY_X, 18.0), (132.0, 114.0), "#f4efe2");
+    let mut group = draw_case(group, (BATTERY_LEFT_X, 18.0), (132.0, 114.0), "#f4efe2");
     for (number, top) in [(2, 30.0), (1, 82.0)] {
-        group = draw_case(group, (CELLS_X, top), (82.0, 38.0), "white").add(text_middle(
+        group = draw_case(group, (CELLS_LEFT_X, top), (82.0, 38.0), "white").add(text_middle(
             &format!("cell {number}: 3.7 V"),
-            (CELLS_X + 41.0, top + 23.0),
+            (CELLS_LEFT_X + 41.0, top + 23.0),
             12.0,
         ));
     }
     let add_line = |group: Group, from: Point, to: Point| group.add(line(from, to, DARK, 1.6));
-    group = add_line(group, (BATTERY_X, PLUS_Y), (CELLS_X, PLUS_Y));
-    group = add_line(group, (BATTERY_X, BALANCE_Y[0]), (CELLS_X, BALANCE_Y[0]));
-    group = add_line(group, (CELLS_X + 41.0, 68.0), (CELLS_X + 41.0, 82.0));
+    group = add_line(group, (BATTERY_LEFT_X, PLUS_Y), (CELLS_LEFT_X, PLUS_Y));
     group = add_line(
         group,
-        (BATTERY_X, BALANCE_Y[1]),
-        (CELLS_X + 41.0, BALANCE_Y[1]),
+        (BATTERY_LEFT_X, BALANCE_CONTACTS_Y[0]),
+        (CELLS_LEFT_X, BALANCE_CONTACTS_Y[0]),
     );
-    group = add_line(group, (BATTERY_X, BALANCE_Y[2]), (CELLS_X, BALANCE_Y[2]));
-    group = add_line(group, (BATTERY_X, MINUS_Y), (CELLS_X, MINUS_Y));
-    for (number, y) in (1..).zip(BALANCE_Y) {
+    group = add_line(
+        group,
+        (CELLS_LEFT_X + 41.0, 68.0),
+        (CELLS_LEFT_X + 41.0, 82.0),
+    );
+    group = add_line(
+        group,
+        (BATTERY_LEFT_X, BALANCE_CONTACTS_Y[1]),
+        (CELLS_LEFT_X + 41.0, BALANCE_CONTACTS_Y[1]),
+    );
+    group = add_line(
+        group,
+        (BATTERY_LEFT_X, BALANCE_CONTACTS_Y[2]),
+        (CELLS_LEFT_X, BALANCE_CONTACTS_Y[2]),
+    );
+    group = add_line(
+        group,
+        (BATTERY_LEFT_X, BATTERY_MINUS_Y),
+        (CELLS_LEFT_X, BATTERY_MINUS_Y),
+    );
+    for (number, y) in (1..).zip(BALANCE_CONTACTS_Y) {
         group = group.add(draw_terminal(
             &format!("battery-balance-{number}"),
-            (BATTERY_X, y),
+            (BATTERY_LEFT_X, y),
             DARK,
         ));
     }
     // The plug that disconnects both wires.
-    for y in [PLUS_Y, MINUS_Y] {
+    for y in [PLUS_Y, BATTERY_MINUS_Y] {
         group = group.add(edged(
             rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808"),
             DARK,
@@ -276,25 +303,33 @@ fn draw_battery(group: Group) -> Group {
         ));
     }
     group
-        .add(draw_terminal("battery-plus", (BATTERY_X, PLUS_Y), RED))
-        .add(draw_terminal("battery-minus", (BATTERY_X, MINUS_Y), DARK))
+        .add(draw_terminal("battery-plus", (BATTERY_LEFT_X, PLUS_Y), RED))
+        .add(draw_terminal(
+            "battery-minus",
+            (BATTERY_LEFT_X, BATTERY_MINUS_Y),
+            DARK,
+        ))
         .add(text_end("plug", (556.0, 24.0), 12.0))
         .add(text_end("battery, 7.4 V", (690.0, 147.0), 13.0))
 }
 
 fn draw_alarm(group: Group) -> Group {
-    let mut group = draw_case(group, (ALARM_X - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
-        .add(text_start("low-voltage", (ALARM_X - 84.0, 74.0), 13.0))
-        .add(text_start("alarm", (ALARM_X - 84.0, 90.0), 13.0))
+    let mut group = draw_case(group, (ALARM_RIGHT_X - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
+        .add(text_start(
+            "low-voltage",
+            (ALARM_RIGHT_X - 84.0, 74.0),
+            13.0,
+        ))
+        .add(text_start("alarm", (ALARM_RIGHT_X - 84.0, 90.0), 13.0))
         .add(text_end(
             "balance plug, its own wires",
-            (ALARM_X + 26.0, 113.0),
+            (ALARM_RIGHT_X + 26.0, 113.0),
             12.0,
         ));
-    for (number, y) in (1..).zip(BALANCE_Y) {
+    for (number, y) in (1..).zip(BALANCE_CONTACTS_Y) {
         group = group.add(draw_terminal(
             &format!("alarm-{number}"),
-            (ALARM_X, y),
+            (ALARM_RIGHT_X, y),
             DARK,
         ));
     }
@@ -305,33 +340,50 @@ fn draw_alarm(group: Group) -> Group {
 fn draw_supply_line(group: Group) -> Group {
     let mut group = group;
     for ([left, right], fill) in [
-        (FUSE_X, "#fde9e9"),
-        (SWITCH_X, "#e9f3e9"),
-        (WAY_X, "#f2f2f2"),
+        (FUSE_CONTACTS_X, "#fde9e9"),
+        (SWITCH_CONTACTS_X, "#e9f3e9"),
+        (SINGLE_WAY_HOLES_X, "#f2f2f2"),
     ] {
         group = draw_case(group, (left, PLUS_Y - 13.0), (right - left, 26.0), fill);
     }
     let middle_of = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
     let lever = [
-        (SWITCH_X[0] + 16.0, PLUS_Y + 4.0),
-        (SWITCH_X[1] - 18.0, PLUS_Y - 8.0),
+        (SWITCH_CONTACTS_X[0] + 16.0, PLUS_Y + 4.0),
+        (SWITCH_CONTACTS_X[1] - 18.0, PLUS_Y - 8.0),
     ];
     group = group
-        .add(line((WAY_X[0], PLUS_Y), (WAY_X[1], PLUS_Y), "#c9b26b", 9.0))
+        .add(line(
+            (SINGLE_WAY_HOLES_X[0], PLUS_Y),
+            (SINGLE_WAY_HOLES_X[1], PLUS_Y),
+            "#c9b26b",
+            9.0,
+        ))
         .add(line(lever[0], lever[1], DARK, 2.5))
-        .add(text_middle("fuse", (middle_of(FUSE_X), 20.0), 13.0))
         .add(text_middle(
-            &format!("{FUSE} A"),
-            (middle_of(FUSE_X), PLUS_Y + 5.0),
+            "fuse",
+            (middle_of(FUSE_CONTACTS_X), 20.0),
+            13.0,
+        ))
+        .add(text_middle(
+            &format!("{FUSE_RATING_A} A"),
+            (middle_of(FUSE_CONTACTS_X), PLUS_Y + 5.0),
             14.0,
         ))
         .add(text_middle(
-            &format!("switch, {SWITCH} A"),
-            (middle_of(SWITCH_X), 20.0),
+            &format!("switch, {MIN_SWITCH_RATING_A} A"),
+            (middle_of(SWITCH_CONTACTS_X), 20.0),
             13.0,
         ))
-        .add(text_middle("single way", (middle_of(WAY_X), 20.0), 13.0));
-    let ends = [("fuse", FUSE_X), ("switch", SWITCH_X), ("way", WAY_X)];
+        .add(text_middle(
+            "single way",
+            (middle_of(SINGLE_WAY_HOLES_X), 20.0),
+            13.0,
+        ));
+    let ends = [
+        ("fuse", FUSE_CONTACTS_X),
+        ("switch", SWITCH_CONTACTS_X),
+        ("way", SINGLE_WAY_HOLES_X),
+    ];
     for (name, [left, right]) in ends {
         group = group
             .add(draw_terminal(&format!("{name}-1"), (left, PLUS_Y), RED))
@@ -341,7 +393,7 @@ fn draw_supply_line(group: Group) -> Group {
 }
 
 fn draw_converter(group: Group) -> Group {
-    let [left, right] = CONVERTER_X;
+    let [left, right] = CONVERTER_EDGES_X;
     let middle = (left + right) / 2.0;
     draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
         .add(text_middle("converter", (middle, 66.0), 14.0))

@@ -1,19 +1,19 @@
 //! The greatest depth of the stack, computed from the machine code.
 //!
-//! On a chip without memory protection, a stack that grows into the static data changes a
-//! servo's width or a decision of the guard, and nothing reports it. A measurement shows
-//! how deep the stack got, and not how deep it can get: perhaps no interrupt came at the
-//! worst moment, or a rare refusal was not printed. So this module follows every path
-//! through the code and adds up what it pushes.
+//! On a chip without memory protection, a stack that grows into the static data can change a
+//! pulse width or a decision of the guard, and nothing reports it. A measurement shows
+//! how deep the stack got, not how deep it can get: perhaps no interrupt came at the
+//! worst moment, or a rare error message was not printed. So this module follows every path
+//! through the code and adds up the bytes that it pushes.
 //!
-//! It decodes the code itself and does not read avr-objdump's listing: only some thirty
-//! instructions matter to the stack, which takes fewer lines than a parser of that
+//! It decodes the instructions itself instead of reading avr-objdump's listing: only some
+//! thirty instructions matter to the stack, so the decoder is shorter than a parser of that
 //! listing, and the program needs no other tool.
 //!
 //! The bound assumes the following. Interrupts do not nest, which is checked; only a handler that never returns,
 //! such as the watchdog's, may be interrupted once more. No function calls itself, nothing jumps to a computed
-//! address, and the stack pointer changes only by `push`, `pop`, calls, returns, and frames that r28 and r29 point
-//! to. Anything else is refused, with the name of the function.
+//! address, and the stack pointer changes only by `push`, `pop`, calls, returns, and stack frames that r29:r28 points
+//! to. Anything else is an error that names the function.
 
 mod instruction;
 mod walk;
@@ -22,32 +22,33 @@ use simulated_uno::{Image, SRAM_END};
 
 use walk::{Context, Walk};
 
-/// Vectors of an ATmega328P, reset included, each a `jmp` of four bytes.
+/// Number of vectors of an ATmega328P, including reset. Each is a `jmp` of four bytes.
 const VECTOR_COUNT: u32 = 26;
-/// Bytes that an interrupt pushes: its return address.
-const ENTRY_BYTES: u16 = 2;
+/// Bytes that the entry into an interrupt pushes: its return address.
+const INTERRUPT_ENTRY_BYTES: u16 = 2;
 
 /// The reason why a depth cannot be computed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the depth of the stack cannot be computed: {function}, at {address:#06x}, {what}")]
+#[error("the depth of the stack cannot be computed: {function}, at {address:#06x}, {reason}")]
 pub struct StackError {
     /// The function that cannot be analysed.
     pub function: String,
-    /// Byte address of its instruction in flash.
+    /// Byte address, in flash, of the instruction that cannot be analysed.
     pub address: u32,
-    /// The reason why that instruction cannot be analysed, in words.
-    pub what: &'static str,
+    /// The reason, as a phrase whose subject is the function, such as `calls itself`.
+    pub reason: &'static str,
 }
 
-/// The worst depths, bytes.
+/// The greatest stack depths, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StackDepth {
     /// The depth of the program from reset on, without interrupts.
     pub main: u16,
-    /// The depth of the deepest interrupt, with its return address; 0 without interrupts.
+    /// The depth of the deepest interrupt handler, including its return address; 0 without interrupts.
     pub handler: u16,
-    /// The depth of the deepest interrupt that enables others and never returns; 0 without one.
-    pub final_handler: u16,
+    /// The depth of the deepest handler that enables other interrupts and never returns, including its return address;
+    /// 0 without one.
+    pub nonreturning_handler: u16,
     /// First address of SRAM that the stack may use.
     floor: u16,
 }
@@ -60,22 +61,27 @@ impl StackDepth {
     /// See [`StackError`].
     pub fn of(image: &Image) -> Result<Self, StackError> {
         let flash = image.flash();
-        let unused_target = image.symbol("__bad_interrupt");
-        let unused_target = unused_target.map(|symbol| symbol.address as u32);
-        let (mut handler_depth, mut final_depth) = (0, 0);
+        let bad_interrupt = image.symbol("__bad_interrupt");
+        let bad_interrupt_address = bad_interrupt.map(|symbol| symbol.address as u32);
+        let (mut handler_depth, mut nonreturning_depth) = (0, 0);
         let mut walk = Walk::new(image, &flash, Context::Interrupt);
         for vector in 1..VECTOR_COUNT {
             let target = instruction::jump_target(&flash, 0)
                 .and_then(|_| instruction::jump_target(&flash, vector * 4));
-            if let Some(target) = target.filter(|target| Some(*target) != unused_target) {
-                let function = walk.analyse_function(target)?;
-                match function.interrupts_enabled_at {
-                    None => handler_depth = handler_depth.max(ENTRY_BYTES + function.depth),
-                    Some(address) if function.can_return => {
+            if let Some(target) = target.filter(|target| Some(*target) != bad_interrupt_address) {
+                let summary = walk.analyse_function(target)?;
+                match summary.interrupts_enabled_at {
+                    None => {
+                        handler_depth = handler_depth.max(INTERRUPT_ENTRY_BYTES + summary.depth)
+                    }
+                    Some(address) if summary.can_return => {
                         let reason = "lets interrupts into an interrupt";
                         return Err(walk.error_at(target, address, reason));
                     }
-                    Some(_) => final_depth = final_depth.max(ENTRY_BYTES + function.depth),
+                    Some(_) => {
+                        nonreturning_depth =
+                            nonreturning_depth.max(INTERRUPT_ENTRY_BYTES + summary.depth)
+                    }
                 }
             }
         }
@@ -86,19 +92,19 @@ impl StackDepth {
         Ok(Self {
             main: main_depth,
             handler: handler_depth,
-            final_handler: final_depth,
+            nonreturning_handler: nonreturning_depth,
             floor,
         })
     }
 
-    /// The deepest stack of all: main at its deepest, on top of it the interrupt that never returns, if there is
-    /// one, and another interrupt.
-    pub fn worst(&self) -> u16 {
-        self.main + self.final_handler + self.handler
+    /// The greatest depth of all: main at its deepest, on top of it the handler that never returns, if there is one,
+    /// and on top of that another interrupt.
+    pub fn max_depth(&self) -> u16 {
+        self.main + self.nonreturning_handler + self.handler
     }
 
     /// Bytes between static data and the deepest stack; negative if they collide.
     pub fn margin(&self) -> i32 {
-        i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.worst())
+        i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.max_depth())
     }
 }

@@ -24,45 +24,50 @@ pub enum Context {
 enum Pointer {
     /// An unknown value.
     Unknown,
-    /// The stack pointer when this many bytes were pushed since the function's beginning.
+    /// The value of the stack pointer after this many bytes were pushed since the function's beginning.
     Depth(i32),
     /// A constant address.
     Address(u16),
 }
 
-/// The facts known before an instruction.
+/// The facts that are known before an instruction is executed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct State {
     /// Bytes pushed since the function's beginning.
     depth: i32,
+    /// The contents of r29:r28.
     pointer: Pointer,
-    /// The low half of a subtraction from r29:r28 whose high half follows.
-    low: u8,
-    /// The constant that the previous instruction loaded into r26.
+    /// The low byte of the constant in a 16-bit subtraction from r29:r28; the instruction for the high byte follows.
+    low_byte: u8,
+    /// The constant that the previous instruction loaded into r26; `None` if it was another instruction.
     frame_size: Option<u8>,
 }
 
-/// Shared prologues and epilogues (`tools/linker/src/frames.S`): the bytes that each saves or restores, by its
-/// address.
+/// Shared prologues and epilogues (`tools/linker/src/frames.S`): the number of bytes that each saves or restores, by
+/// the routine's address.
 struct SharedRoutines {
-    save: HashMap<u32, i32>,
-    restore: HashMap<u32, i32>,
+    saved_bytes: HashMap<u32, i32>,
+    restored_bytes: HashMap<u32, i32>,
 }
 
 impl SharedRoutines {
     /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are
-    /// 20 - K bytes, besides the room given in r26.
+    /// 20 - K bytes, and reserves a frame of the size given in r26.
     fn of(image: &Image) -> Self {
         let routines_with = |prefix: &str| {
-            let saved_bytes = |symbol: &simulated_uno::Symbol| {
+            let address_and_size = |symbol: &simulated_uno::Symbol| {
                 let first_register: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
                 Some((symbol.address as u32, 20 - first_register))
             };
-            image.symbols().iter().filter_map(saved_bytes).collect()
+            image
+                .symbols()
+                .iter()
+                .filter_map(address_and_size)
+                .collect()
         };
         Self {
-            save: routines_with("__frame_save_"),
-            restore: routines_with("__frame_restore_"),
+            saved_bytes: routines_with("__frame_save_"),
+            restored_bytes: routines_with("__frame_restore_"),
         }
     }
 }
@@ -73,49 +78,50 @@ pub struct Walk<'a> {
     flash: &'a [u8],
     context: Context,
     shared: SharedRoutines,
-    /// Each function walked, by address; `None` while it is being walked.
-    functions: HashMap<u32, Option<Function>>,
+    /// The summary of each function by its address; `None` while the function is being analysed.
+    summaries: HashMap<u32, Option<FunctionSummary>>,
 }
 
 /// The effect of a function on the stack.
 #[derive(Debug, Clone, Copy)]
-pub struct Function {
-    /// The most bytes of stack that the function and all its callees use, without its own return
-    /// address.
+pub struct FunctionSummary {
+    /// The most bytes of stack that the function and its callees use, without the function's own
+    /// return address.
     pub depth: u16,
     /// True if the function returns. Code after a call of a function that does not return is not
     /// part of the caller.
     pub can_return: bool,
-    /// The byte address at which a handler enables other interrupts; `None` if it does not.
+    /// The byte address at which an interrupt handler enables other interrupts; `None` if it does not.
     pub interrupts_enabled_at: Option<u32>,
 }
 
 impl<'a> Walk<'a> {
+    /// An analysis of the code in `flash`, which belongs to `image`. No function is analysed yet.
     pub fn new(image: &'a Image, flash: &'a [u8], context: Context) -> Self {
         Self {
             image,
             flash,
             context,
             shared: SharedRoutines::of(image),
-            functions: HashMap::new(),
+            summaries: HashMap::new(),
         }
     }
 
-    /// Analyses the function at `entry` and all functions that it calls.
-    pub fn analyse_function(&mut self, entry: u32) -> Result<Function, StackError> {
-        match self.functions.get(&entry) {
-            Some(Some(function)) => return Ok(*function),
+    /// Analyses the function at byte address `entry` and all functions that it calls.
+    pub fn analyse_function(&mut self, entry: u32) -> Result<FunctionSummary, StackError> {
+        match self.summaries.get(&entry) {
+            Some(Some(summary)) => return Ok(*summary),
             Some(None) => return Err(self.error_at(entry, entry, "calls itself")),
             None => {}
         }
-        self.functions.insert(entry, None);
-        let function = self.follow_paths(entry)?;
-        self.functions.insert(entry, Some(function));
-        Ok(function)
+        self.summaries.insert(entry, None);
+        let summary = self.follow_paths(entry)?;
+        self.summaries.insert(entry, Some(summary));
+        Ok(summary)
     }
 
     /// Follows every path through the function at `entry`.
-    fn follow_paths(&mut self, entry: u32) -> Result<Function, StackError> {
+    fn follow_paths(&mut self, entry: u32) -> Result<FunctionSummary, StackError> {
         let mut max_depth = 0;
         let mut can_return = false;
         let mut interrupts_enabled_at = None;
@@ -123,7 +129,7 @@ impl<'a> Walk<'a> {
         let start_state = State {
             depth: 0,
             pointer: Pointer::Unknown,
-            low: 0,
+            low_byte: 0,
             frame_size: None,
         };
         let mut pending = vec![(entry, start_state)];
@@ -147,24 +153,24 @@ impl<'a> Walk<'a> {
             let frame_bytes = state.frame_size.take().map(i32::from);
             let mut next_addresses = vec![next_address];
             match instruction.effect {
-                // A call of the next instruction: short code that makes room for two bytes.
+                // A call of the next instruction is a short way to reserve two bytes.
                 Effect::Call(target) if target == next_address => {
                     state.depth += RETURN_ADDRESS_BYTES
                 }
-                Effect::Call(target) if self.shared.save.contains_key(&target) => {
+                Effect::Call(target) if self.shared.saved_bytes.contains_key(&target) => {
                     let Some(frame_bytes) = frame_bytes else {
-                        return Err(self.error_at(entry, address, UNKNOWN_ROOM));
+                        return Err(self.error_at(entry, address, UNKNOWN_FRAME_SIZE));
                     };
-                    state.depth += self.shared.save[&target] + frame_bytes;
+                    state.depth += self.shared.saved_bytes[&target] + frame_bytes;
                     state.pointer = Pointer::Depth(state.depth);
-                    // The return address of the shared prologue lies below the room that the prologue makes.
+                    // The return address of the shared prologue lies below the frame that the prologue reserves.
                     max_depth = max_depth.max(state.depth + RETURN_ADDRESS_BYTES);
                 }
-                Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
+                Effect::Jump(target) if self.shared.restored_bytes.contains_key(&target) => {
                     let Some(frame_bytes) = frame_bytes else {
-                        return Err(self.error_at(entry, address, UNKNOWN_ROOM));
+                        return Err(self.error_at(entry, address, UNKNOWN_FRAME_SIZE));
                     };
-                    if state.depth != self.shared.restore[&target] + frame_bytes {
+                    if state.depth != self.shared.restored_bytes[&target] + frame_bytes {
                         let reason = "restores other registers than it saved";
                         return Err(self.error_at(entry, address, reason));
                     }
@@ -208,11 +214,11 @@ impl<'a> Walk<'a> {
                     interrupts_enabled_at = Some(address);
                 }
                 Effect::StackFromOther => {
-                    return Err(self.error_at(entry, address, UNKNOWN_POINTER));
+                    return Err(self.error_at(entry, address, UNKNOWN_STACK_POINTER));
                 }
                 effect => {
                     if !state.apply(effect) {
-                        return Err(self.error_at(entry, address, UNKNOWN_POINTER));
+                        return Err(self.error_at(entry, address, UNKNOWN_STACK_POINTER));
                     }
                 }
             }
@@ -221,15 +227,15 @@ impl<'a> Walk<'a> {
         }
         let depth = u16::try_from(max_depth)
             .map_err(|_| self.error_at(entry, entry, "needs more stack than there is"))?;
-        Ok(Function {
+        Ok(FunctionSummary {
             depth,
             can_return,
             interrupts_enabled_at,
         })
     }
 
-    /// Makes an error of the function at `entry`, found at the instruction at `address`.
-    pub fn error_at(&self, entry: u32, address: u32, what: &'static str) -> StackError {
+    /// An error in the function at `entry`, caused by the instruction at `address`.
+    pub fn error_at(&self, entry: u32, address: u32, reason: &'static str) -> StackError {
         let is_before = |symbol: &&simulated_uno::Symbol| {
             symbol.is_function && u64::from(entry) >= symbol.address
         };
@@ -238,19 +244,19 @@ impl<'a> Walk<'a> {
         StackError {
             function: nearest_symbol.map_or_else(|| "the code".to_owned(), |symbol| symbol.path()),
             address,
-            what,
+            reason,
         }
     }
 }
 
-const UNKNOWN_ROOM: &str = "makes room of an unknown size";
-const UNKNOWN_POINTER: &str = "sets the stack pointer to something unknown";
+const UNKNOWN_FRAME_SIZE: &str = "reserves a frame of an unknown size";
+const UNKNOWN_STACK_POINTER: &str = "sets the stack pointer to an unknown value";
 
 impl State {
-    /// Applies an instruction that only changes the stack or its pointer. Returns false
-    /// if the stack pointer would become unknown.
+    /// Applies an instruction that only changes the stack, the stack pointer or r29:r28. Returns
+    /// false if the stack pointer would become unknown.
     fn apply(&mut self, effect: Effect) -> bool {
-        let add_to = |pointer: Pointer, change: i16| match pointer {
+        let move_pointer = |pointer: Pointer, change: i16| match pointer {
             Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(change)),
             Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(change)),
             Pointer::Unknown => Pointer::Unknown,
@@ -262,16 +268,16 @@ impl State {
             Effect::StackFromPointer => {
                 self.depth = match self.pointer {
                     Pointer::Depth(depth) => depth,
-                    // Startup code sets a constant: the stack grows down from the end of SRAM.
+                    // The startup code sets a constant. The stack grows down from the end of SRAM.
                     Pointer::Address(address) => i32::from(SRAM_END - 1) - i32::from(address),
                     Pointer::Unknown => return false,
                 }
             }
-            Effect::AddToPointer(change) => self.pointer = add_to(self.pointer, change),
-            Effect::SubtractLow(low) => self.low = low,
+            Effect::AddToPointer(change) => self.pointer = move_pointer(self.pointer, change),
+            Effect::SubtractLow(low) => self.low_byte = low,
             Effect::SubtractHigh(high) => {
-                let amount = i16::from_le_bytes([self.low, high]);
-                self.pointer = add_to(self.pointer, amount.wrapping_neg());
+                let amount = i16::from_le_bytes([self.low_byte, high]);
+                self.pointer = move_pointer(self.pointer, amount.wrapping_neg());
             }
             Effect::LoadLow(low) => self.pointer = Pointer::Address(low.into()),
             Effect::LoadHigh(high) => {
@@ -280,7 +286,7 @@ impl State {
                     _ => Pointer::Unknown,
                 }
             }
-            Effect::LoadFrameSize(room) => self.frame_size = Some(room),
+            Effect::LoadFrameSize(size) => self.frame_size = Some(size),
             Effect::LosePointer => self.pointer = Pointer::Unknown,
             _ => {}
         }

@@ -1,4 +1,4 @@
-//! Tests of the figures that are computed from frames, with hand-made frames.
+//! Tests of the figures that are computed from frames, on frames made for the purpose.
 
 use super::*;
 
@@ -14,15 +14,15 @@ fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> Fra
         std::array::from_fn(|i| width_of(i, angles[i]))
     };
     FrameLog {
-        first: FREQUENCY,
+        first_start: FREQUENCY,
         widths: (0..count).map(widths_at).collect(),
         ..FrameLog::default()
     }
 }
 
 fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
-    let gait = robot.gait(name).expect("it is in robot.toml");
-    frames_of(robot, count, |seconds| gait.angles(gait.phase(seconds)))
+    let gait = robot.gait(name).expect("the gait is in robot.toml");
+    frames_of(robot, count, |seconds| gait.angles(gait.phase_at(seconds)))
 }
 
 #[test]
@@ -34,10 +34,10 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
     let first_frame = Run { robot, log }
         .servo_frames()
         .next()
-        .expect("two frames");
-    let angles = first_frame.angles.expect("all four have a pulse");
+        .expect("the log has two frames");
+    let angles = first_frame.angles.expect("all four servos have a pulse");
     for i in 0..4 {
-        // Half a cycle of 62.5 ns at 10 us per degree.
+        // A width is rounded by at most half a cycle of 62.5 ns; a degree is 10 us.
         assert!(
             (angles[i] - pose[i]).abs() <= 0.0032,
             "{} {}",
@@ -49,7 +49,7 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
 }
 
 #[test]
-fn walking_and_turning_lead_where_the_contact_model_says() {
+fn walk_goes_forward_and_back_backward_and_left_turns_in_place() {
     let robot = paper_robot();
     for (gait, forward, turn) in [
         ("walk", 34.16, 0.0),
@@ -67,7 +67,9 @@ fn walking_and_turning_lead_where_the_contact_model_says() {
             log: &frames,
         };
         let paths = command_paths(run, &[span]);
-        let whole_path = paths.last().expect("the whole run");
+        let whole_path = paths
+            .last()
+            .expect("the last path is that of the whole run");
         let error_of =
             |actual: Option<f64>, expected: f64| actual.map(|actual| (actual - expected).abs());
         assert!(
@@ -101,7 +103,7 @@ fn a_path_that_depends_on_a_tie_is_not_reported() {
 }
 
 #[test]
-fn the_steps_of_a_path_add_up_to_the_path() {
+fn the_paths_of_two_commands_compose_to_the_path_of_the_run() {
     let robot = paper_robot();
     for gait in ["arc-left", "right"] {
         let log = gait_frames(&robot, gait, 400);
@@ -123,9 +125,9 @@ fn the_steps_of_a_path_add_up_to_the_path() {
             panic!("two commands and the whole: {paths:?}")
         };
         let travel_of = |path: &CommandPath| Travel {
-            forward: path.forward.expect("it is decided"),
-            left: path.left.expect("it is decided"),
-            turn: path.turn.expect("it is decided"),
+            forward: path.forward.expect("the path is determined"),
+            left: path.left.expect("the path is determined"),
+            turn: path.turn.expect("the path is determined"),
         };
         let distance_between = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
@@ -140,14 +142,14 @@ fn the_steps_of_a_path_add_up_to_the_path() {
 }
 
 #[test]
-fn the_table_has_widths_periods_slew_and_errors() {
+fn the_servo_reports_have_pulse_widths_slew_rates_and_errors() {
     let robot = paper_robot();
     let mut frames = frames_of(&robot, 3, |seconds| {
-        let mut angles: [f64; 4] = robot.neutral().into();
+        let mut angles: [f64; 4] = robot.neutral_pose().into();
         angles[0] += 100.0 * seconds;
         angles
     });
-    frames.period_error[1] = 7;
+    frames.max_period_error[1] = 7;
     frames.widths[1][2] -= 3;
     let commands: Vec<[u16; 4]> = (0..3)
         .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
@@ -170,7 +172,7 @@ fn the_table_has_widths_periods_slew_and_errors() {
 }
 
 #[test]
-fn a_pose_near_a_singularity_is_reported() {
+fn a_pose_near_a_singularity_is_reported_as_a_violation() {
     let robot = paper_robot();
     let safety_of = |log: &FrameLog| check_safety(Run { robot: &robot, log });
     let walk_safety = safety_of(&gait_frames(&robot, "walk", 50));

@@ -1,18 +1,27 @@
 //! The steps of a calibration, in their order.
 
-/// A step of a calibration; the number is the index of its servo, 0 to 3.
+/// A step of a calibration. A step with a number is about one servo; the number is its index, 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
+    /// Says what the user needs.
     Begin,
+    /// Holds all servos in their middle, so that the horns can be fitted.
     Horns,
+    /// Asks for the direction in which the servo has turned.
     Sign(usize),
+    /// Turns the crank to its neutral angle.
     Trim(usize),
     /// Asks whether to set scales and limits as well.
-    More,
+    OfferScales,
+    /// Adjusts the pulse width per degree.
     Scale(usize),
+    /// Adjusts the two limits of the travel.
     Limit(usize),
+    /// Walks as a test.
     Walk,
+    /// Shows the calibration that Enter will save.
     Save,
+    /// Says that the calibration is saved.
     Saved,
 }
 
@@ -28,7 +37,7 @@ pub(super) const STEPS: [Step; 22] = [
     Step::Trim(1),
     Step::Trim(2),
     Step::Trim(3),
-    Step::More,
+    Step::OfferScales,
     Step::Scale(0),
     Step::Scale(1),
     Step::Scale(2),

@@ -13,7 +13,7 @@ pub struct View {
     /// The title of the step.
     pub title: String,
     /// The lines of instructions for the user.
-    pub text: Vec<String>,
+    pub instructions: Vec<String>,
     /// The keys that have an effect in this step.
     pub keys: String,
     /// The result of the last key, in words.
@@ -25,7 +25,7 @@ impl<P: Read + Write> Guide<'_, P> {
     pub fn view(&self) -> View {
         let servo_name = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
         let next_keys = "Enter: next    b: back    q: cancel, nothing is saved";
-        let (name, text, keys): (String, String, &str) = match self.step() {
+        let (title, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
                 "before you begin".to_owned(),
                 "The servos need a supply of their own, 5 V and 3 A.\n\
@@ -39,7 +39,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     format!(
                         "    {:<16} {:6.2} deg\n",
                         servo_name(index),
-                        self.neutral[index]
+                        self.neutral_angles[index]
                     )
                 };
                 let angles: String = (0..4).map(angle_line).collect();
@@ -54,8 +54,8 @@ impl<P: Read + Write> Guide<'_, P> {
                 ("fit the horns".to_owned(), text, next_keys)
             }
             Step::Sign(index) => {
-                let ordered = self.moved_degrees.unwrap_or(SIGN_TURNS[0]);
-                let direction = if ordered < 0.0 {
+                let commanded_degrees = self.moved_degrees.unwrap_or(SIGN_TURNS[0]);
+                let direction = if commanded_degrees < 0.0 {
                     "clockwise"
                 } else {
                     "counter-clockwise"
@@ -64,7 +64,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     "The space bar moves A{} alone, by {:.0} degrees.\n\
                      Seen from above: did it turn {direction}?",
                     index + 1,
-                    ordered.abs()
+                    commanded_degrees.abs()
                 );
                 (
                     format!("which way does {} turn?", servo_name(index)),
@@ -79,7 +79,7 @@ impl<P: Read + Write> Guide<'_, P> {
                      counter-clockwise, seen from above; right and down clockwise.\n\n    \
                      trim {:+.2} deg",
                     index + 1,
-                    self.neutral[index],
+                    self.neutral_angles[index],
                     self.robot.calibration().servos[index].trim
                 );
                 (
@@ -88,7 +88,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     "left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
                 )
             }
-            Step::More => (
+            Step::OfferScales => (
                 "scales and limits".to_owned(),
                 "Most servos turn one degree for 10 us, and parts as designed touch\n\
                  nowhere: then go on. If a crank turns too far or not far enough, or if a\n\
@@ -97,15 +97,15 @@ impl<P: Read + Write> Guide<'_, P> {
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
             Step::Scale(index) => {
-                let ordered = self.moved_degrees.unwrap_or(SCALE_TURNS[0]);
+                let commanded_degrees = self.moved_degrees.unwrap_or(SCALE_TURNS[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\
                      arrow keys.\n\n    \
                      scale {:.2} us per degree",
                     index + 1,
-                    ordered.abs(),
-                    (self.neutral[index] + ordered).rem_euclid(360.0),
+                    commanded_degrees.abs(),
+                    (self.neutral_angles[index] + commanded_degrees).rem_euclid(360.0),
                     self.robot.calibration().servos[index].scale
                 );
                 (
@@ -168,8 +168,8 @@ impl<P: Read + Write> Guide<'_, P> {
             ),
         };
         View {
-            title: format!("Step {} of {}: {name}", self.step_index + 1, STEPS.len()),
-            text: text.lines().map(str::to_owned).collect(),
+            title: format!("Step {} of {}: {title}", self.step_index + 1, STEPS.len()),
+            instructions: text.lines().map(str::to_owned).collect(),
             keys: keys.to_owned(),
             message: self.message.clone(),
         }

@@ -1,0 +1,214 @@
+//! Tests of resets between any two stores, of random RAM contents, and of every reset cause.
+
+use std::cell::{Cell, RefCell};
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::numbers::pose::{Pose, Pulses};
+use crate::numbers::units::{PulseWidth, Sweep};
+
+/// RAM that survives a reset; the reset may come after any number of stores.
+struct Ram {
+    bytes: RefCell<Vec<u8>>,
+    /// The number of stores until the reset; later ones are lost.
+    stores_left: Cell<usize>,
+    /// The number of all stores, including the lost ones.
+    store_count: Cell<usize>,
+}
+
+impl Ram {
+    fn with_bytes(bytes: Vec<u8>) -> Self {
+        Self {
+            bytes: RefCell::new(bytes),
+            stores_left: Cell::new(usize::MAX),
+            store_count: Cell::new(0),
+        }
+    }
+
+    /// The RAM after the first `begin` since power-on.
+    fn after_power_on() -> Self {
+        let ram = Self::with_bytes(std::vec![0; CELL_COUNT]);
+        let restart = begin(&ram, Some(Cause::Power));
+        assert_eq!(restart, Restart::NONE);
+        ram
+    }
+
+    /// A copy of the RAM that loses all stores after the first `stores`.
+    fn with_reset_after(&self, stores: usize) -> Self {
+        let ram = Self::with_bytes(self.bytes.borrow().clone());
+        ram.stores_left.set(stores);
+        ram
+    }
+
+    /// The RAM as the next run of the program finds it.
+    fn copy_after_reset(&self) -> Self {
+        Self::with_bytes(self.bytes.borrow().clone())
+    }
+}
+
+impl Cells for Ram {
+    fn get(&self, index: usize) -> u8 {
+        self.bytes.borrow()[index]
+    }
+
+    fn set(&self, index: usize, byte: u8) {
+        self.store_count.set(self.store_count.get() + 1);
+        if self.stores_left.get() > 0 {
+            self.stores_left.set(self.stores_left.get() - 1);
+            self.bytes.borrow_mut()[index] = byte;
+        }
+    }
+}
+
+const REPORTED_CAUSES: [Option<Cause>; 4] = [
+    None,
+    Some(Cause::External),
+    Some(Cause::BrownOut),
+    Some(Cause::Watchdog),
+];
+
+fn make_stance(n: i16) -> Stance {
+    Stance {
+        is_resting: n % 3 == 0,
+        frames_awake: (n % 21) as u8,
+        pose: Pose([n, -n, 7 * n, -32_768 + n].map(Sweep)),
+        sent_pulses: Pulses([24_000, 1 + n as u16, 65_535 - n as u16, 0].map(PulseWidth)),
+    }
+}
+
+#[test]
+fn a_stored_stance_survives_a_reset_but_not_a_loss_of_power() {
+    let ram = Ram::after_power_on();
+    for n in 1..100 {
+        store_stance(&ram, &make_stance(n), n as u8);
+        for reported_cause in REPORTED_CAUSES {
+            let restarted_ram = ram.copy_after_reset();
+            let restart = begin(&restarted_ram, reported_cause);
+            assert_eq!(restart.stance_before, Some(make_stance(n)));
+            assert_eq!(restart.brown_outs, n as u8);
+            // A second reset, before the program has stored anything.
+            assert_eq!(
+                begin(&restarted_ram, reported_cause).stance_before,
+                Some(make_stance(n))
+            );
+        }
+        let unpowered_ram = ram.copy_after_reset();
+        assert_eq!(begin(&unpowered_ram, Some(Cause::Power)), Restart::NONE);
+        assert_eq!(
+            begin(&unpowered_ram, Some(Cause::External)).stance_before,
+            None,
+            "no stance was stored since"
+        );
+    }
+}
+
+#[test]
+fn a_reset_between_any_two_stores_leaves_the_old_stance_or_the_new_one() {
+    let ram = Ram::after_power_on();
+    store_stance(&ram, &make_stance(1), 1);
+    let mut seen_counts = [0; 2];
+    for n in 2..9 {
+        let complete_ram = ram.with_reset_after(usize::MAX);
+        store_stance(&complete_ram, &make_stance(n), n as u8);
+        for stores in 0..=complete_ram.store_count.get() {
+            let torn_ram = ram.with_reset_after(stores);
+            store_stance(&torn_ram, &make_stance(n), n as u8);
+            let found_stance = begin(&torn_ram.copy_after_reset(), None).stance_before;
+            let index = usize::from(found_stance == Some(make_stance(n)));
+            assert!(
+                index == 1 || found_stance == Some(make_stance(n - 1)),
+                "{n} {stores}"
+            );
+            seen_counts[index] += 1;
+        }
+        store_stance(&ram, &make_stance(n), n as u8);
+    }
+    assert!(
+        seen_counts[0] > 100 && seen_counts[1] == 7,
+        "{seen_counts:?}"
+    );
+}
+
+#[test]
+fn a_reset_between_any_two_stores_of_begin_loses_nothing() {
+    let ram = Ram::after_power_on();
+    store_stance(&ram, &make_stance(5), 5);
+    mark_hung(&ram);
+    let complete_ram = ram.with_reset_after(usize::MAX);
+    begin(&complete_ram, None);
+    assert!(complete_ram.store_count.get() >= 3);
+    for stores in 0..=complete_ram.store_count.get() {
+        let torn_ram = ram.with_reset_after(stores);
+        begin(&torn_ram, None);
+        let restart = begin(&torn_ram.copy_after_reset(), None);
+        assert_eq!(restart.stance_before, Some(make_stance(5)), "{stores}");
+        assert!((1..=2).contains(&restart.reset_count));
+        assert!(matches!(restart.cause, Cause::Watchdog | Cause::External));
+    }
+}
+
+#[test]
+fn every_cause_is_known_from_its_flag_or_from_ram() {
+    for (reported_cause, has_hung, cause, is_supply_suspected) in [
+        (Some(Cause::External), false, Cause::External, false),
+        (Some(Cause::BrownOut), false, Cause::BrownOut, true),
+        (Some(Cause::Watchdog), false, Cause::Watchdog, false),
+        (Some(Cause::Power), false, Cause::Power, false),
+        (None, false, Cause::External, true),
+        (None, true, Cause::Watchdog, false),
+        (Some(Cause::External), true, Cause::External, false),
+    ] {
+        let ram = Ram::after_power_on();
+        if has_hung {
+            mark_hung(&ram);
+        }
+        let restart = begin(&ram, reported_cause);
+        assert_eq!(
+            (restart.cause, restart.is_supply_suspected),
+            (cause, is_supply_suspected)
+        );
+    }
+}
+
+#[test]
+fn resets_are_counted_up_to_255() {
+    let ram = Ram::after_power_on();
+    for n in 1..=600u32 {
+        assert_eq!(
+            u32::from(begin(&ram, Some(Cause::External)).reset_count),
+            n.min(255)
+        );
+    }
+    assert_eq!(begin(&ram, Some(Cause::Power)).reset_count, 0);
+}
+
+proptest! {
+    #[test]
+    fn the_contents_of_ram_at_power_on_are_not_trusted(
+        bytes in prop::collection::vec(any::<u8>(), CELL_COUNT),
+        reported_cause in prop::sample::select(&REPORTED_CAUSES[..]),
+    ) {
+        let mut bytes = bytes;
+        // In one of 256 cases random bytes contain the mark.
+        prop_assume!(bytes[MARK_CELL] != POWERED_MARK);
+        let ram = Ram::with_bytes(bytes.clone());
+        let restart = begin(&ram, reported_cause);
+        prop_assert_eq!((restart.reset_count, restart.stance_before), (0, None));
+        prop_assert_eq!(begin(&ram, Some(Cause::External)).stance_before, None);
+        bytes[MARK_CELL] = POWERED_MARK;
+        // Neither RUNNING nor HUNG.
+        bytes[STATE_CELL] = 0x5b;
+        prop_assert_eq!(begin(&Ram::with_bytes(bytes), reported_cause).stance_before, None);
+    }
+
+    #[test]
+    fn a_flipped_bit_in_a_stored_stance_is_detected(bit in 0..8 * CELLS_PER_COPY, n in 1i16..100) {
+        let ram = Ram::after_power_on();
+        store_stance(&ram, &make_stance(n), n as u8);
+        let copy_cell = FIRST_COPY_CELL + CELLS_PER_COPY * usize::from(ram.get(VALID_COPY_CELL) & 1);
+        ram.set(copy_cell + bit / 8, ram.get(copy_cell + bit / 8) ^ (1 << (bit % 8)));
+        prop_assert_eq!(begin(&ram, None).stance_before, None);
+    }
+}

@@ -1,0 +1,248 @@
+//! A robot that runs on a virtual board, with a user at the other end of its serial line.
+
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use lizard_avr::Region;
+
+use super::{Converter, Eeprom, VirtualBoard, compute_reading};
+use crate::console::MAX_OUTPUT_LINE_BYTES;
+use crate::memory::restart::{Cause, Restart};
+use crate::motion::Motion;
+use crate::numbers::pose::Pulses;
+use crate::numbers::robot::Robot;
+use crate::step::{Main, Step};
+
+/// The firmware's main loop and its board.
+#[derive(Clone, Debug)]
+pub struct RunningRobot {
+    /// The firmware's main loop.
+    pub main: Main,
+    /// The board that it runs on.
+    pub board: VirtualBoard,
+    /// The flash that holds the robot's section.
+    flash: Region<'static>,
+}
+
+impl RunningRobot {
+    /// A robot at power-on, with good supplies and nothing saved.
+    pub fn power_on(robot: Robot<'static>) -> Self {
+        Self::with_memory(robot, Eeprom::blank(), Restart::default())
+    }
+
+    /// A robot with this memory, after a restart with this cause and state.
+    pub fn with_memory(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
+        let supplies = robot.supplies();
+        // A rail voltage well above its thresholds.
+        let rail_mv = u32::from(supplies.rail.slow_mv) + 1_000;
+        let reading = compute_reading(&supplies, 5_000, rail_mv.max(6_000));
+        let board = VirtualBoard {
+            converter: Converter::new(reading, supplies.rail_reference_mv != 0),
+            ..VirtualBoard::new(memory).after_restart(restart)
+        };
+        Self::with_flash(robot.section(), board)
+    }
+
+    /// The firmware on this board, with the bytes `flash` in place of a robot's section.
+    pub fn with_flash(flash: Region<'static>, mut board: VirtualBoard) -> Self {
+        let mut main = Main::new();
+        main.begin(flash, &mut board);
+        Self { main, board, flash }
+    }
+
+    /// The motion of the robot.
+    pub const fn motion(&self) -> &Motion {
+        self.main.control().motion()
+    }
+
+    /// True while there is output to write.
+    pub const fn has_output(&self) -> bool {
+        self.main.console().has_output(self.main.control())
+    }
+
+    /// True once the watchdog has ended the pulses: the main loop has stopped and waits for the reset.
+    pub const fn is_stopped_by_watchdog(&self) -> bool {
+        self.board.are_pulses_ended()
+    }
+
+    /// Steps the main loop until it has nothing more to do before time passes.
+    ///
+    /// # Panics
+    /// If the main loop never becomes idle.
+    pub fn settle(&mut self) {
+        if self.is_stopped_by_watchdog() {
+            return;
+        }
+        for _ in 0..100_000 {
+            let step = self.main.step(&mut self.board);
+            if step != Step::Worked || self.board.memory.was_polled_busy() {
+                return;
+            }
+        }
+        panic!("the main loop never becomes idle");
+    }
+
+    /// Runs a frame: passes the time until 19 ms after the next tick, so that the main loop computes the frame and
+    /// its four pulses begin. Returns these pulses.
+    pub fn run_frame(&mut self) -> Pulses {
+        self.settle();
+        self.board.pass_time(self.board.ms_until_tick());
+        self.settle();
+        // The main loop also runs between the pulses.
+        for ms in [4, 4, 4, 4, 3] {
+            self.board.pass_time(ms);
+            self.settle();
+        }
+        self.board.started_pulses()
+    }
+
+    /// Runs frames and returns their output.
+    pub fn run_frames(&mut self, frames: u32) -> Vec<String> {
+        let mut printed_lines = Vec::new();
+        for _ in 0..frames {
+            self.run_frame();
+            printed_lines.extend(self.read_lines());
+        }
+        printed_lines
+    }
+
+    /// Runs frames while nobody reads the output.
+    pub fn run_without_reader(&mut self, frames: u32) {
+        self.board.transmitter.is_held = true;
+        for _ in 0..frames {
+            self.run_frame();
+        }
+        self.board.transmitter.is_held = false;
+    }
+
+    /// Reads all waiting lines and checks their form.
+    ///
+    /// # Panics
+    /// If a line has a wrong form.
+    pub fn read_lines(&mut self) -> Vec<String> {
+        self.settle();
+        let text = core::mem::take(&mut self.board.transmitter.text);
+        let mut lines = Vec::new();
+        for line in text.split_inclusive("\r\n") {
+            assert!(line.len() <= usize::from(MAX_OUTPUT_LINE_BYTES), "{line}");
+            let line = line
+                .strip_suffix("\r\n")
+                .expect("every line ends with CR and LF");
+            let is_plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
+            assert!(line.bytes().all(is_plain), "{line:?}");
+            assert!(line.starts_with("# ") || is_answer(line), "{line:?}");
+            lines.push(line.to_string());
+        }
+        lines
+    }
+
+    /// Sends bytes one by one, reading the output before each, and returns all output.
+    pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
+        let mut lines = self.read_lines();
+        for byte in bytes {
+            self.board.send(&[*byte]);
+            lines.extend(self.read_lines());
+        }
+        lines
+    }
+
+    /// Sends a line and returns its answer. The lines after the answer remain to be read.
+    ///
+    /// # Panics
+    /// If the line gets no answer or several answers.
+    pub fn send_line(&mut self, line: &str) -> String {
+        self.read_lines();
+        let mut printed_lines = self.send(line.as_bytes());
+        printed_lines.extend(self.send(b"\r"));
+        let answer_index = printed_lines.iter().position(|line| is_answer(line));
+        let later_lines = printed_lines.split_off(answer_index.expect("the line is answered") + 1);
+        self.board.transmitter.text = later_lines
+            .iter()
+            .map(|line| std::format!("{line}\r\n"))
+            .collect();
+        let answer = printed_lines.pop().expect("the line is answered");
+        let mut other_lines = printed_lines.iter().chain(&later_lines);
+        assert!(
+            other_lines.all(|line| line.starts_with("# ")),
+            "{printed_lines:?} {later_lines:?}"
+        );
+        answer
+    }
+
+    /// Sends a line, which must be accepted.
+    ///
+    /// # Panics
+    /// If the answer is not `ok` followed by the line.
+    #[track_caller]
+    pub fn expect_accepted(&mut self, line: &str) {
+        assert_eq!(self.send_line(line), std::format!("ok {line}"));
+    }
+
+    /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
+    ///
+    /// # Panics
+    /// If the line is accepted, or refused for another reason.
+    #[track_caller]
+    pub fn expect_refused(&mut self, line: &str, reason: &str) {
+        let answer = self.send_line(line);
+        let is_refused = answer
+            .strip_prefix("err ")
+            .is_some_and(|text| text.starts_with(reason));
+        assert!(is_refused, "{line}: {answer}, not {reason}");
+    }
+
+    /// Asks for the status and returns the value of a key in it.
+    ///
+    /// # Panics
+    /// If the status has no such key.
+    pub fn status_value(&mut self, key: &str) -> String {
+        let line = self.send_line("status");
+        let pairs = line.split(' ').filter_map(|word| word.split_once('='));
+        let value = pairs.into_iter().find(|(name, _)| *name == key);
+        value.expect("the status has this key").1.to_string()
+    }
+}
+
+impl RunningRobot {
+    /// Stalls the main loop for some milliseconds. Once the watchdog has ended the pulses, the loop stays stopped
+    /// until the reset. Returns true if the processor was reset.
+    pub fn stall(&mut self, ms: u16) -> bool {
+        let mut is_reset = self.board.pass_time(ms);
+        while self.is_stopped_by_watchdog() && !is_reset {
+            is_reset = self.board.pass_time(1);
+        }
+        if is_reset {
+            self.reset(Cause::Watchdog);
+        }
+        is_reset
+    }
+
+    /// Resets the processor with this cause.
+    pub fn reset(&mut self, cause: Cause) {
+        self.board.reset(cause);
+        self.restart_main();
+    }
+
+    /// Turns the power off and on; see [`VirtualBoard::lose_power`].
+    pub fn lose_power(&mut self, torn_byte: Option<u8>) {
+        self.board.lose_power(torn_byte);
+        self.restart_main();
+    }
+
+    fn restart_main(&mut self) {
+        self.main = Main::new();
+        self.main.begin(self.flash, &mut self.board);
+    }
+}
+
+/// True if a line is the answer to a command: `ok` and the command, or `err`, a code and a reason.
+pub fn is_answer(line: &str) -> bool {
+    let code_and_reason = line
+        .strip_prefix("err ")
+        .and_then(|rest| rest.split_once(' '));
+    line.starts_with("ok ")
+        || code_and_reason.is_some_and(|(code, reason)| {
+            matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9")
+                && !reason.is_empty()
+        })
+}

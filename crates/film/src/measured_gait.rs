@@ -1,0 +1,74 @@
+//! A measured gait: the mean of its cycles over one walk or several.
+
+use lizard_contact::Travel;
+
+use crate::cycle_path::{self, CyclePoint};
+use crate::gait::Gait;
+use crate::mean::{self, Mean};
+use crate::walk::{Walk, travel_components};
+
+/// A measured gait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredGait {
+    /// Displacement per cycle along the robot's forward direction at the start of the cycle, mm.
+    pub forward: Mean,
+    /// Displacement per cycle to the left, mm.
+    pub left: Mean,
+    /// Turn per cycle, deg, counter-clockwise positive.
+    pub turn: Mean,
+    /// Duration of a cycle, s, and its standard error.
+    pub period: [f64; 2],
+    /// The movement of each cycle.
+    pub cycles: Vec<Travel>,
+    /// The times of the calm phases that separate the cycles of each walk, s.
+    pub calm_times: Vec<f64>,
+    /// The mean path within a cycle, beside the predicted one.
+    pub cycle_path: Vec<CyclePoint>,
+    /// The walks from which the means are computed.
+    walks: Vec<Walk>,
+}
+
+impl MeasuredGait {
+    /// Computes the means over walks.
+    pub(crate) fn of(walks: Vec<Walk>, gait: &Gait) -> Self {
+        let mean_of = |i: usize| {
+            let values_of = |walk: &Walk| {
+                (
+                    travel_components(&walk.cycles.travels)[i].clone(),
+                    walk.common_errors()[i],
+                )
+            };
+            mean::mean_of_walks(&walks.iter().map(values_of).collect::<Vec<_>>())
+        };
+        let cycles: Vec<Travel> = walks
+            .iter()
+            .flat_map(|walk| walk.cycles.travels.clone())
+            .collect();
+        let share_of = |walk: &Walk| walk.cycles.travels.len() as f64 / cycles.len() as f64;
+        let mean_period = |i: usize| {
+            walks
+                .iter()
+                .map(|walk| share_of(walk) * walk.cycles.period[i])
+                .sum()
+        };
+        Self {
+            forward: mean_of(0),
+            left: mean_of(1),
+            turn: mean_of(2),
+            period: [mean_period(0), mean_period(1)],
+            calm_times: walks
+                .iter()
+                .flat_map(|walk| walk.cycles.calm_times.clone())
+                .collect(),
+            cycle_path: cycle_path::compute_points(&walks, gait),
+            cycles,
+            walks,
+        }
+    }
+
+    /// Computes the means over all walks of several results of one gait, from one film or several.
+    pub fn combine(results: &[Self], gait: &Gait) -> Self {
+        let walks = results.iter().flat_map(|result| result.walks.clone());
+        Self::of(walks.collect(), gait)
+    }
+}

@@ -1,0 +1,217 @@
+//! The parts that make the robot look like a lizard: two long links behind the tail's
+//! point, as the paper's robot has them, and a head ahead of the head's point.
+//!
+//! They drive nothing. The screw of the end point and a second screw fix each of these parts to a coupler: the left
+//! tail link under the lower coupler, the right tail link and the head on the upper coupler. At neutral the head
+//! points straight ahead, and the tail links point back, spread by a few degrees.
+
+use lizard_kinematics::{End, Solution, Vector};
+
+use crate::bodies::builder::{Bolt, Builder, Direction};
+use crate::bodies::names::servo_and_leg_names;
+use crate::layers::body::{Mount, Prism, coupler_length, end_and_hand};
+use crate::layers::shape::Shape;
+use crate::layers::stack::HEAD_PLAY;
+
+/// Thickness of a decorative part, mm.
+const THICKNESS: f64 = 3.0;
+/// Distance from the end point to the second screw, mm.
+const SECOND_SCREW_DISTANCE: f64 = 14.0;
+/// Length of the second screw, mm, which cuts its own thread.
+const SECOND_SCREW_LENGTH: f64 = 6.0;
+/// Angle of each tail link from straight back at neutral, deg.
+const TAIL_LINK_ANGLE: f64 = 3.5;
+
+/// The decorative parts that an end carries beyond its couplers.
+#[derive(Default)]
+pub struct EndDecoration {
+    /// Thickness of the part under the lower coupler at the end point, mm; 0 if there is none.
+    pub lower_thickness: f64,
+    /// Thickness of the part on the upper coupler, mm; 0 if there is none.
+    pub upper_thickness: f64,
+    /// Names of the bodies on the upper coupler.
+    pub upper_bodies: Vec<String>,
+}
+
+/// Length of an end's decorative part beyond its end point, mm; 0 if there is none.
+fn decoration_length(builder: &Builder, end: End) -> f64 {
+    match end {
+        End::Head => builder.parts.head,
+        End::Tail => builder.parts.tail,
+    }
+}
+
+/// The holes for the second screw in a coupler's lower and upper layer. In the left coupler of the tail, the head of
+/// the screw is sunk into the upper layer. `None` for a coupler that carries no decorative part.
+pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
+    let (end, hand) = end_and_hand(servo);
+    let position = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+    match (decoration_length(builder, end) > 0.0, end, hand) {
+        (true, End::Tail, 0) => Some([
+            builder.clearance_hole(position),
+            builder.head_recess(position),
+        ]),
+        (true, _, 1) => Some([builder.thread_hole(position), builder.thread_hole(position)]),
+        _ => None,
+    }
+}
+
+/// Adds the decorative parts of an end, with their second screws.
+pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
+    let length = decoration_length(builder, end);
+    let neutral = builder.robot.lizard().solve(&builder.robot.neutral_pose());
+    let (true, Ok(neutral)) = (length > 0.0, neutral) else {
+        return EndDecoration::default();
+    };
+    let [left, right] = end.servos();
+    let (below, name, upper_part) = match end {
+        End::Head => {
+            let shape = head_part(builder, right, &neutral, length);
+            (0.0, "head plate".to_owned(), shape)
+        }
+        End::Tail => {
+            let shape = tail_part(builder, left, &neutral, length);
+            add_under_lower_coupler(builder, left, shape);
+            let shape = tail_part(builder, right, &neutral, length);
+            (
+                THICKNESS,
+                format!("tail {}", servo_and_leg_names(right).0),
+                shape,
+            )
+        }
+    };
+    add_on_upper_coupler(builder, right, &name, upper_part);
+    EndDecoration {
+        lower_thickness: below,
+        upper_thickness: THICKNESS,
+        upper_bodies: vec![name],
+    }
+}
+
+/// A flat part: its filled shapes and its holes.
+type FlatPart = (Vec<Shape>, Vec<Shape>);
+
+/// An end's point, and the direction that points outward at neutral, both in a coupler's frame.
+fn point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
+    let (end, hand) = end_and_hand(servo);
+    let bars = neutral.end(end);
+    let coupler_direction = end.mirror([bars.left_coupler, bars.right_coupler][hand]);
+    let chassis_direction = Vector::new(0.0, end.sign());
+    let point = Vector::new(coupler_length(builder.robot, servo), 0.0);
+    [
+        point,
+        Vector::new(
+            chassis_direction.dot(coupler_direction),
+            coupler_direction.cross(chassis_direction),
+        ),
+    ]
+}
+
+/// A direction after a turn of `angle_deg` counter-clockwise.
+fn rotate(direction: Vector, angle_deg: f64) -> Vector {
+    let turn = Vector::direction(angle_deg);
+    direction * turn.x + direction.rotated_left() * turn.y
+}
+
+fn tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+    let [point, straight_direction] = point_and_direction(builder, servo, neutral);
+    // The left tail link points to the robot's left, the right one to its right.
+    let (_, hand) = end_and_hand(servo);
+    let link_direction = rotate(
+        straight_direction,
+        if hand == 0 {
+            -TAIL_LINK_ANGLE
+        } else {
+            TAIL_LINK_ANGLE
+        },
+    );
+    let half = builder.half_bar_width();
+    let side_offset = link_direction.rotated_left() * (half - 1.5);
+    let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+    let corners = [
+        point + side_offset,
+        point - side_offset,
+        point + link_direction * (length - 1.5),
+    ];
+    let filled = vec![
+        Shape::bar(second_screw, point, half),
+        Shape::hull(&corners, 1.5),
+    ];
+    (filled, vec![builder.clearance_hole(point)])
+}
+
+fn head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+    /// Radius of the corners, mm.
+    const CORNER_RADIUS: f64 = 7.0;
+    /// Radius of an eye, mm.
+    const EYE_RADIUS: f64 = 2.5;
+    let [point, direction] = point_and_direction(builder, servo, neutral);
+    let point_at =
+        |ahead: f64, left: f64| point + direction * ahead + direction.rotated_left() * left;
+    let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+    let half_width = 0.24 * length;
+    let [cheek, neck] = [0.34 * length, -0.1 * length];
+    let snout = (length - CORNER_RADIUS, 0.0);
+    let sides = [
+        (cheek, half_width),
+        (cheek, -half_width),
+        (neck, 0.4 * half_width),
+        (neck, -0.4 * half_width),
+    ];
+    let corners = sides.into_iter().chain([snout]);
+    let corners: Vec<_> = corners.map(|(ahead, left)| point_at(ahead, left)).collect();
+    let face = Shape::hull(&corners, CORNER_RADIUS);
+    let eyes = [half_width, -half_width]
+        .map(|left| Shape::disc(point_at(0.42 * length, left), EYE_RADIUS));
+    let mut cut = vec![builder.clearance_hole(point)];
+    cut.extend(eyes);
+    let filled = vec![
+        Shape::bar(second_screw, point, builder.half_bar_width()),
+        face,
+    ];
+    (filled, cut)
+}
+
+/// The position of the second screw in a coupler's frame.
+fn second_screw_position(builder: &Builder, servo: usize) -> Vector {
+    Vector::new(
+        coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE,
+        0.0,
+    )
+}
+
+fn add_on_upper_coupler(
+    builder: &mut Builder,
+    servo: usize,
+    name: &str,
+    (filled, mut cut): FlatPart,
+) {
+    let low = builder.stack.upper_coupler[1];
+    cut.push(builder.clearance_hole(second_screw_position(builder, servo)));
+    let z = [low, low + THICKNESS];
+    builder.add_printed(name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
+    add_screw(builder, name, servo, z[1]);
+}
+
+fn add_under_lower_coupler(builder: &mut Builder, servo: usize, (filled, mut cut): FlatPart) {
+    let high = builder.stack.lower_coupler[0];
+    cut.push(builder.thread_hole(second_screw_position(builder, servo)));
+    let z = [high - THICKNESS, high];
+    let name = format!("tail {}", servo_and_leg_names(servo).0);
+    builder.add_printed(&name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
+    // The screw's head is sunk, since the upper coupler turns above it.
+    let seat_z = builder.stack.lower_coupler[1] - builder.parts.screw.head_height - HEAD_PLAY;
+    add_screw(builder, &name, servo, seat_z);
+}
+
+fn add_screw(builder: &mut Builder, part_name: &str, servo: usize, head: f64) {
+    let position = second_screw_position(builder, servo);
+    let bolt = Bolt::new(
+        part_name,
+        Mount::Coupler(servo),
+        position,
+        head,
+        Direction::Down,
+    );
+    builder.add_screw(&bolt, SECOND_SCREW_LENGTH);
+}

@@ -1,0 +1,143 @@
+//! Tests of disturbances of the simulated UNO: foreign interrupts, which have no source on the chip, a main program
+//! that makes no progress, registers written from outside.
+
+use simulated_uno::Uno;
+use simulated_uno::avr_gcc::{assemble, compile_c};
+
+use super::{
+    FIDELITIES, LED, intervals, mark_cycles, mark_values, new_uno, pulse_widths, unos_after,
+};
+
+/// Program in which the LED is on for 100 cycles with interrupts disabled, and off for about 99 with interrupts
+/// enabled.
+const PULSES_PROGRAM: &str = "
+        ldi r16, 0x08 $ out SPH, r16
+        ldi r16, 0xff $ out SPL, r16
+        sbi DDRB, 5
+    loop:
+        cli
+        sbi PORTB, 5
+        ldi r20, 32
+    up: dec r20 $ brne up
+        nop
+        cbi PORTB, 5
+        sei
+        ldi r20, 32
+    low: dec r20 $ brne low
+        rjmp loop";
+
+/// Program in which Timer1 counts to 9999, its interrupt adds one to GPIOR0, and the main program toggles D13.
+const COUNTING_PROGRAM: &str = "#include <avr/io.h>
+    #include <avr/interrupt.h>
+    ISR(TIMER1_COMPA_vect) { GPIOR0++; }
+    int main(void) {
+        DDRB = 0x20; OCR1A = 9999; TIMSK1 = 2; TCCR1B = 9;
+        sei();
+        for (;;) PINB = 0x20;
+    }";
+
+#[test]
+fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
+    let image = assemble(PULSES_PROGRAM);
+    for fidelity in FIDELITIES {
+        for cycle in 300..600 {
+            let mut uno = Uno::with_image(image.clone(), fidelity);
+            uno.run_until_cycle(cycle);
+            uno.block_interrupts(5000);
+            uno.run_until_cycle(10_000);
+            let widths = pulse_widths(&uno);
+            assert!(widths.iter().all(|width| *width == widths[0]), "at {cycle}");
+            let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
+            let periods = intervals(&starts);
+            let longer_periods: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
+            assert_eq!(longer_periods, [&(periods[0] + 5000)], "at {cycle}");
+        }
+    }
+}
+
+#[test]
+fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
+    let image = compile_c(
+        "#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1 >> 4; }
+        int main(void) {
+            SMCR = 1; OCR1A = 9999; TIMSK1 = 2; TCCR1B = 9;
+            sei();
+            for (;;) asm volatile (\"sleep\");
+        }",
+    );
+    for mut uno in unos_after(9_000, &image) {
+        uno.block_interrupts(3_000);
+        uno.run_until_cycle(35_000);
+        let marks = mark_values(&uno);
+        // The first interrupt of Timer1 is about 2000 cycles late, the following ones are on time.
+        assert!((120..135).contains(&marks[0]), "{marks:?}");
+        assert!(marks[1..].iter().all(|mark| *mark < 4), "{marks:?}");
+        assert_eq!(marks.len(), 3);
+    }
+}
+
+#[test]
+fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
+    let image = compile_c(
+        "#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(USART_RX_vect) { GPIOR0 = UDR0; }
+        int main(void) {
+            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
+            sei();
+            for (;;) {}
+        }",
+    );
+    let mut uno = new_uno(image);
+    uno.run_until_cycle(1000);
+    uno.send(b"abcdefgh");
+    // Three bytes have arrived. During the next five, the receive buffer keeps two and the shift register the last.
+    uno.run_until_cycle(1000 + 3 * 1389 + 100);
+    uno.block_interrupts(5 * 1389);
+    uno.run_until_cycle(30_000);
+    assert_eq!(mark_values(&uno), b"abcdeh");
+    assert_eq!(uno.overruns(), 2);
+}
+
+#[test]
+fn a_stalled_main_stands_still_while_interrupts_are_served() {
+    for fidelity in FIDELITIES {
+        let mut uno = Uno::with_image(compile_c(COUNTING_PROGRAM), fidelity);
+        uno.run_until_cycle(25_000);
+        uno.take_edges();
+        uno.stall_main(100_000);
+        uno.run_until_cycle(124_000);
+        assert_eq!(uno.edges().len(), 0, "main toggles no pin");
+        let cycles = mark_cycles(&uno);
+        assert_eq!(cycles.len(), 12, "twelve interrupts are served");
+        assert!(
+            intervals(&cycles)
+                .iter()
+                .all(|interval| interval.abs_diff(10_000) < 8)
+        );
+        uno.run_until_cycle(126_000);
+        assert!(uno.edges().len() > 100, "main continues after the stall");
+    }
+}
+
+#[test]
+fn a_poked_register_does_what_a_store_does() {
+    for fidelity in FIDELITIES {
+        let mut uno = Uno::with_image(assemble("sbi DDRB, 5\nend: rjmp end"), fidelity);
+        uno.run_until_cycle(1000);
+        uno.poke(0x25, 0x20);
+        assert!(uno.is_high(LED));
+        uno.poke(0x25, 0);
+        assert!(!uno.is_high(LED));
+        assert_eq!(pulse_widths(&uno).len(), 1);
+        // Timer1 begins to count.
+        uno.poke(0x81, 1);
+        uno.run_until_cycle(2000);
+        uno.poke(0x8ff, 0x5a);
+        assert_eq!(uno.peek(0x8ff), 0x5a);
+        uno.poke(0x900, 0x5a);
+        assert_eq!(uno.peek(0x900), 0);
+    }
+}

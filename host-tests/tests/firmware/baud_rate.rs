@@ -1,0 +1,187 @@
+//! Tests of autobaud: the firmware finds the baud rate of whoever sends to it.
+
+use fastrand::Rng;
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::{CYCLES_PER_MS, Fidelity};
+
+use crate::pulses::servo_edges;
+use crate::{Status, boot_and_command, boot_standing, first_moving_gait, run_in_both_simulations};
+
+/// The rates, baud, each with the number of `status` lines that are sent from a cold start until one is
+/// answered. One line is lost at each rate that the robot tries before this one, and one more of which the robot
+/// hears only a part.
+const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
+
+/// Sends `status` until the robot answers, and returns the number of lines sent.
+pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
+    for sent_count in 1..=40 {
+        let line_count = bench.lines().len();
+        bench.uno.send(b"status\n");
+        bench.run_ms(350);
+        if bench.lines()[line_count..]
+            .iter()
+            .any(|line| line.text.starts_with("ok gait="))
+        {
+            return sent_count;
+        }
+    }
+    panic!("no answer at any rate");
+}
+
+/// Returns a robot that has found this rate.
+fn boot_at(baud: f64) -> FirmwareBench {
+    let mut bench = boot_standing(Fidelity::DataSheet);
+    bench.uno.set_baud(baud);
+    ask_until_answered(&mut bench);
+    assert!((bench.uno.chip_baud() / baud - 1.0).abs() < 0.022, "{baud}");
+    bench
+}
+
+#[test]
+fn a_robot_answers_at_each_baud_rate_after_a_few_lines_and_then_at_once() {
+    // Only in the simulation by the data sheet: stock simavr delivers every byte, whatever its rate.
+    for (baud, expected_count) in RATES {
+        // Slow and fast senders.
+        for factor in [0.985, 1.0, 1.02] {
+            let mut bench = boot_standing(Fidelity::DataSheet);
+            bench.uno.set_baud(baud * factor);
+            assert_eq!(
+                ask_until_answered(&mut bench),
+                expected_count,
+                "{baud} baud"
+            );
+            assert_eq!(ask_until_answered(&mut bench), 1);
+        }
+    }
+}
+
+#[test]
+fn a_command_at_another_rate_is_reported_as_garbled_and_not_obeyed() {
+    let mut bench = boot_standing(Fidelity::DataSheet);
+    bench.uno.set_baud(9_600.0);
+    let garbled_answer = "err 1 the line came garbled, send it again";
+    let mut answers = Vec::new();
+    for _ in 0..12 {
+        let line_count = bench.lines().len();
+        bench.uno.send(b"cal\n");
+        bench.run_ms(350);
+        answers.extend(
+            bench.lines()[line_count..]
+                .iter()
+                .map(|line| line.text.clone()),
+        );
+    }
+    let garbled_count = answers
+        .iter()
+        .filter(|answer| *answer == garbled_answer)
+        .count();
+    assert!(garbled_count >= 2, "{answers:?}");
+    assert!(answers.iter().all(|answer| !answer.starts_with("ok")));
+    ask_until_answered(&mut bench);
+    assert!(bench.say("cal").starts_with("ok"));
+}
+
+#[test]
+fn a_robot_that_has_found_one_rate_finds_any_other() {
+    for (first_baud, _) in RATES {
+        for (second_baud, _) in RATES {
+            let mut bench = boot_at(first_baud);
+            bench.uno.set_baud(second_baud);
+            ask_until_answered(&mut bench);
+        }
+    }
+}
+
+#[test]
+fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
+    for (baud, _) in RATES {
+        let mut bench = boot_at(baud);
+        let resets = bench.uno.watchdog_resets();
+        bench.uno.stall_main(1_000 * CYCLES_PER_MS);
+        let was_reset = bench.uno.run_until(400 * CYCLES_PER_MS, 1_000, |uno| {
+            uno.watchdog_resets() > resets
+        });
+        assert!(was_reset, "no reset");
+        bench.uno.stall_main(0);
+        bench.run_ms(1_000);
+        assert_eq!(
+            ask_until_answered(&mut bench),
+            1,
+            "{baud} baud after a hang"
+        );
+        assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
+        bench.uno.reset();
+        bench.uno.set_baud(115_200.0);
+        bench.run_ms(1_000);
+        assert_eq!(ask_until_answered(&mut bench), 1, "{baud} baud, then USB");
+        bench.uno.set_baud(baud);
+        ask_until_answered(&mut bench);
+        bench.uno.power_cycle();
+        bench.uno.set_baud(115_200.0);
+        bench.run_ms(1_000);
+        assert_eq!(ask_until_answered(&mut bench), 1, "{baud} baud, then power");
+    }
+}
+
+#[test]
+fn no_pulse_moves_by_a_cycle_while_the_baud_rate_is_sought() {
+    run_in_both_simulations(|fidelity| {
+        let gait = first_moving_gait();
+        let [undisturbed_edges, sought_edges] = [false, true].map(|is_sought| {
+            let mut bench = boot_and_command(&gait, fidelity);
+            bench.uno.take_edges();
+            let mut rng = Rng::with_seed(3);
+            let mut used_rates = std::collections::BTreeSet::new();
+            for _ in 0..120 {
+                if is_sought {
+                    // The chip never uses 4800 baud, so it cannot read the bytes as commands.
+                    bench.uno.set_baud(4_800.0);
+                    let line: Vec<u8> = (0..rng.usize(1..30)).map(|_| rng.u8(..)).collect();
+                    bench.uno.send(&line);
+                }
+                bench.run_ms(97);
+                used_rates.insert(bench.uno.chip_baud() as u64);
+            }
+            assert_eq!(used_rates.len(), if is_sought { 4 } else { 1 });
+            servo_edges(&bench)
+        });
+        assert!(undisturbed_edges.len() > 4_000);
+        assert!(undisturbed_edges == sought_edges, "an edge has moved");
+    });
+}
+
+#[test]
+fn noise_is_never_obeyed_and_the_rate_is_found_again() {
+    let mut bench = boot_standing(Fidelity::DataSheet);
+    let line_count = bench.lines().len();
+    let mut rng = Rng::with_seed(5);
+    for _ in 0..400 {
+        bench.uno.set_baud(300.0 + 200_000.0 * rng.f64());
+        let noise: Vec<u8> = (0..rng.usize(1..9)).map(|_| rng.u8(..)).collect();
+        bench.uno.send_with_framing_error(&noise);
+        bench.run_ms(rng.u64(1..60));
+    }
+    let was_obeyed = bench.lines()[line_count..]
+        .iter()
+        .any(|line| line.text.starts_with("ok "));
+    assert!(!was_obeyed);
+    bench.uno.set_baud(115_200.0);
+    assert!(ask_until_answered(&mut bench) <= 8);
+    assert_eq!(Status::of(&mut bench).number("late"), 0.0);
+}
+
+#[test]
+fn garbled_bytes_between_commands_do_not_change_the_rate() {
+    let gait = first_moving_gait();
+    let mut bench = boot_at(9_600.0);
+    for _ in 0..40 {
+        bench.uno.send_with_framing_error(&[0x55; 31]);
+        bench.run_ms(100);
+        assert_eq!(bench.say(""), "err 1 the line came garbled, send it again");
+        assert_eq!(bench.say(&gait), format!("ok {gait}"));
+        bench.uno.send_with_framing_error(&[0x55; 31]);
+        bench.uno.send(b"\n");
+        bench.run_ms(100);
+        assert_eq!(bench.say("stop"), "ok stop");
+    }
+}

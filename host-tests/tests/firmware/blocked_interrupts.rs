@@ -1,0 +1,282 @@
+//! Tests of the servo pulses while interrupts are blocked, for at most [`MAX_BLOCKED_CYCLES`] cycles and for longer.
+
+use fastrand::Rng;
+use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
+use simulated_uno::{CYCLES_PER_MS, most_pins_high};
+
+use crate::pulses::servo_edges;
+use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
+use crate::{neutral_widths, run_in_both_simulations};
+
+/// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
+const MAX_BLOCKED_CYCLES: u64 = 160;
+
+/// An interval of `length` cycles with interrupts blocked that begins `cycles_before_edge` cycles before an edge.
+#[derive(Clone, Copy, Debug)]
+struct BlockedInterval {
+    cycles_before_edge: u64,
+    length: u64,
+}
+
+/// The pulse edges that the blocked intervals delay.
+#[derive(Clone, Copy, PartialEq)]
+enum DelayedEdges {
+    Rising,
+    Falling,
+    Both,
+}
+
+/// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames with
+/// the widths that they should have.
+fn run_blocked_frames(
+    run: &mut ReferenceRun,
+    edges: DelayedEdges,
+    intervals: &[BlockedInterval],
+) -> Vec<(Frame, [u64; 4])> {
+    let start = run.next_frame();
+    let commands = run.expected_widths(start, intervals.len() as u64);
+    for (n, (interval, command)) in intervals.iter().zip(commands).enumerate() {
+        for (servo, width) in command.into_iter().enumerate() {
+            let rise = start + n as u64 * FRAME_CYCLES + servo as u64 * SLOT_CYCLES;
+            let edge_cycles = [
+                (DelayedEdges::Rising, rise),
+                (DelayedEdges::Falling, rise + width),
+            ];
+            for (edge, cycle) in edge_cycles {
+                if edges == DelayedEdges::Both || edges == edge {
+                    run.run_to(cycle - interval.cycles_before_edge);
+                    run.bench.uno.block_interrupts(interval.length);
+                }
+            }
+        }
+    }
+    run.run_to(start + intervals.len() as u64 * FRAME_CYCLES - SLOT_CYCLES / 2);
+    run.frames_since(start)
+}
+
+/// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. For each length, their starts are a
+/// few cycles apart: the first interval begins at the edge, the last one ends before it.
+fn intervals_above_allowed_length() -> Vec<BlockedInterval> {
+    [200, 230, 300, 500, 900]
+        .into_iter()
+        .flat_map(|length| {
+            let starts = (0..length + 300).step_by(7);
+            starts.map(move |cycles_before_edge| BlockedInterval {
+                cycles_before_edge,
+                length,
+            })
+        })
+        .collect()
+}
+
+#[test]
+fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
+    run_in_both_simulations(|fidelity| {
+        let mut run = ReferenceRun::start_walking(fidelity);
+        let length = MAX_BLOCKED_CYCLES;
+        let intervals: Vec<BlockedInterval> = (0..450)
+            .map(|cycles_before_edge| BlockedInterval {
+                cycles_before_edge,
+                length,
+            })
+            .collect();
+        for (n, (frame, expected)) in run_blocked_frames(&mut run, DelayedEdges::Both, &intervals)
+            .iter()
+            .enumerate()
+        {
+            assert_eq!(
+                frame.all_widths(),
+                Some(*expected),
+                "{:?}: {frame:?}",
+                intervals[n]
+            );
+        }
+        assert_eq!(run.late_edge_count(), 0);
+    });
+}
+
+// A late edge is a fault that stops a gait, so in the following tests the robot stands.
+
+#[test]
+fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
+    run_in_both_simulations(|fidelity| {
+        let mut run = ReferenceRun::start_standing(fidelity);
+        let intervals = intervals_above_allowed_length();
+        let mut dropped_count = 0;
+        for (n, (frame, expected)) in run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals)
+            .iter()
+            .enumerate()
+        {
+            for (sent_width, expected) in frame.widths.into_iter().zip(expected) {
+                dropped_count += u64::from(sent_width.is_none());
+                assert!(
+                    sent_width.is_none_or(|sent_width| sent_width == *expected),
+                    "{:?}: {frame:?}",
+                    intervals[n]
+                );
+            }
+        }
+        let edge_count = 4 * intervals.len() as u64;
+        assert!(
+            (edge_count / 4..edge_count * 3 / 4).contains(&dropped_count),
+            "{dropped_count} of {edge_count}"
+        );
+        assert_eq!(run.late_edge_count(), dropped_count);
+    });
+}
+
+#[test]
+fn a_late_falling_edge_is_made_at_once_and_counted() {
+    run_in_both_simulations(|fidelity| {
+        let mut run = ReferenceRun::start_standing(fidelity);
+        let intervals = intervals_above_allowed_length();
+        let mut late_count = 0;
+        for (n, (frame, expected)) in
+            run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals)
+                .iter()
+                .enumerate()
+        {
+            let BlockedInterval {
+                cycles_before_edge,
+                length,
+            } = intervals[n];
+            for (sent_width, expected) in frame.widths().into_iter().zip(expected) {
+                late_count += u64::from(sent_width != *expected);
+                // After the blocked interval, the handler's prologue still takes its time.
+                let max_width = (expected + length + 90)
+                    .saturating_sub(cycles_before_edge)
+                    .max(*expected);
+                assert!(
+                    (*expected..=max_width).contains(&sent_width),
+                    "{:?}: {frame:?}",
+                    intervals[n]
+                );
+            }
+        }
+        let edge_count = 4 * intervals.len() as u64;
+        assert!(
+            (edge_count / 4..edge_count * 3 / 4).contains(&late_count),
+            "{late_count} of {edge_count}"
+        );
+        assert_eq!(run.late_edge_count(), late_count);
+    });
+}
+
+#[test]
+fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
+    run_in_both_simulations(|fidelity| {
+        let mut run = ReferenceRun::start_standing(fidelity);
+        for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
+            let start = run.next_frame();
+            let late_before = run.late_edge_count();
+            run.run_to(start + servo * SLOT_CYCLES - 600);
+            run.bench.uno.block_interrupts(length);
+            run.run_to(start + 3 * FRAME_CYCLES - SLOT_CYCLES / 2);
+            for (n, (frame, commanded)) in run.frames_since(start).into_iter().enumerate() {
+                let mut expected = commanded.map(Some);
+                if n == 0 {
+                    expected[servo as usize] = None;
+                }
+                assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
+                // Each pulse starts exactly on the grid of slots.
+                let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT_CYCLES);
+                let is_on_grid =
+                    |(actual, due): (Option<u64>, u64)| actual.is_none_or(|actual| actual == due);
+                assert!(
+                    frame.starts.into_iter().zip(starts).all(is_on_grid),
+                    "{frame:?}"
+                );
+            }
+            assert_eq!(run.late_edge_count(), late_before + 1);
+        }
+    });
+}
+
+#[test]
+fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
+    run_in_both_simulations(|fidelity| {
+        let mut run = ReferenceRun::start_standing(fidelity);
+        let pins = run.bench.pins();
+        let neutral = neutral_widths();
+        // The blocked interval ends between 220 cycles before the next slot's edge and 360 cycles after it.
+        for excess_cycles in (0..600).step_by(20) {
+            for servo in 0..4 {
+                run.bench.run_for_frames(1);
+                run.bench.uno.take_edges();
+                let servo_pin = pins[servo];
+                let is_high = |uno: &simulated_uno::Uno| uno.is_high(servo_pin);
+                assert!(run.bench.uno.run_until(2 * FRAME_CYCLES, 100, is_high));
+                run.bench.uno.run_cycles(neutral[servo] - 500);
+                let rise_cycle = run
+                    .bench
+                    .uno
+                    .edges()
+                    .last()
+                    .expect("the pulse has risen")
+                    .cycle;
+                let late_before = run.late_edge_count();
+                let end_cycle = rise_cycle + SLOT_CYCLES - 220 + excess_cycles;
+                let length = end_cycle - run.bench.uno.cycle();
+                run.bench.uno.block_interrupts(length);
+                run.bench.run_ms(40);
+                let message = format!("A{} and {excess_cycles}", servo + 1);
+                assert_eq!(run.late_edge_count(), late_before + 1, "{message}");
+                let widths: Vec<u64> = run
+                    .bench
+                    .uno
+                    .pulses(servo_pin)
+                    .iter()
+                    .map(|p| p.width)
+                    .collect();
+                assert!(
+                    (SLOT_CYCLES - 300..SLOT_CYCLES + excess_cycles + 100).contains(&widths[0]),
+                    "{message}: {widths:?}"
+                );
+                assert!(
+                    widths[1..].iter().all(|width| *width == neutral[servo]),
+                    "{message}"
+                );
+                // No other servo misses its pulse.
+                let edges = servo_edges(&run.bench);
+                let mut rise_pins = edges
+                    .iter()
+                    .filter(|edge| edge.is_rising)
+                    .map(|edge| edge.pin);
+                assert!(rise_pins.any(|pin| pin == servo_pin));
+                let next_pins = (1..8).map(|n| pins[(servo + n) % 4]);
+                assert!(rise_pins.take(7).eq(next_pins), "{message}");
+            }
+        }
+    });
+}
+
+#[test]
+fn milliseconds_without_interrupts_shorten_no_pulse_and_never_raise_two_pins() {
+    run_in_both_simulations(|fidelity| {
+        let mut run = ReferenceRun::start_standing(fidelity);
+        let mut rng = Rng::with_seed(5);
+        for _ in 0..200 {
+            run.bench.run_for_frames(0);
+            run.bench.uno.run_cycles(rng.u64(..FRAME_CYCLES));
+            let length = rng.u64(1_000..5 * CYCLES_PER_MS);
+            run.bench.uno.block_interrupts(length);
+            run.bench.run_ms(30);
+            let pins = run.bench.pins();
+            let edges = servo_edges(&run.bench);
+            assert_eq!(most_pins_high(&edges), 1);
+            for (pin, neutral) in pins.into_iter().zip(neutral_widths()) {
+                for pulse in run.bench.uno.pulses(pin) {
+                    // In the worst case, interrupts are enabled again in the middle of the next slot.
+                    let max_width = neutral.max(SLOT_CYCLES + 300).max(neutral + length);
+                    assert!(
+                        (neutral..=max_width).contains(&pulse.width),
+                        "{pin}: {pulse:?} after {length} cycles"
+                    );
+                }
+            }
+        }
+        for frame in run.bench.run_for_frames(3) {
+            assert_eq!(frame.widths(), neutral_widths());
+        }
+    });
+}

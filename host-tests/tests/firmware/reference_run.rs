@@ -1,0 +1,105 @@
+//! A robot in a gait, and the pulse widths that it should send, for tests that sweep an event over every cycle.
+
+use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::Fidelity;
+
+use crate::pulses::{commanded_widths, first_pulse_cycle};
+use crate::{boot_standing, first_moving_gait};
+
+/// Cycles from one servo's pulse to the next one's.
+pub const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
+
+/// A robot that walks its first gait or stands, and the bytes and the first pulse from which its widths follow.
+pub struct ReferenceRun {
+    pub bench: FirmwareBench,
+    fidelity: Fidelity,
+    first_pulse_cycle: u64,
+    received_byte_count: usize,
+}
+
+impl ReferenceRun {
+    /// Starts the robot's first gait and runs it for a second.
+    pub fn start_walking(fidelity: Fidelity) -> Self {
+        Self::start_with(&first_moving_gait(), fidelity)
+    }
+
+    /// Makes the robot stand in its neutral pose and runs it for a second.
+    pub fn start_standing(fidelity: Fidelity) -> Self {
+        Self::start_with("stand", fidelity)
+    }
+
+    fn start_with(line: &str, fidelity: Fidelity) -> Self {
+        let mut bench = boot_standing(fidelity);
+        let first_pulse_cycle = first_pulse_cycle(&bench);
+        bench.say(line);
+        let received_byte_count = bench.uno.received_by_uno().len();
+        bench.run_ms(1000);
+        Self {
+            bench,
+            fidelity,
+            first_pulse_cycle,
+            received_byte_count,
+        }
+    }
+
+    /// Runs to just before the next frame's first pulse and returns the cycle of that pulse.
+    /// Discards the edges so far.
+    pub fn next_frame(&mut self) -> u64 {
+        self.bench.run_for_frames(0);
+        let cycles_since_pulse = self.bench.uno.cycle() - self.first_pulse_cycle;
+        self.first_pulse_cycle + cycles_since_pulse.div_ceil(FRAME_CYCLES) * FRAME_CYCLES
+    }
+
+    /// Returns the frames from cycle `start` to now, and the widths that they should have.
+    pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
+        let count = (self.bench.uno.cycle() + SLOT_CYCLES / 2 - start) / FRAME_CYCLES;
+        let edges = self.bench.uno.edges();
+        let sent_frames = group_frames(&edges, servo_pins(robot()), start, count);
+        let expected = self.expected_widths(start, count);
+        sent_frames.into_iter().zip(expected).collect()
+    }
+
+    /// Returns the widths that `count` frames from cycle `start` on should have.
+    pub fn expected_widths(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
+        let silent_frame = Frame {
+            start,
+            starts: [None; 4],
+            widths: [None; 4],
+        };
+        let frames = vec![silent_frame; count as usize];
+        commanded_widths(
+            &self.bench,
+            self.first_pulse_cycle,
+            self.received_byte_count,
+            &frames,
+        )
+    }
+
+    /// True if the simulation is the one corrected by the data sheet.
+    pub fn is_data_sheet_simulation(&self) -> bool {
+        self.fidelity == Fidelity::DataSheet
+    }
+
+    /// Runs to a cycle.
+    pub fn run_to(&mut self, cycle: u64) {
+        self.bench.uno.run_until_cycle(cycle);
+    }
+
+    /// Returns the address of one of the firmware's variables, such as `pulses::LATE_EDGES`.
+    pub fn address(&self, variable: &str) -> u16 {
+        let address = self.bench.uno.image().variable(variable);
+        address.unwrap_or_else(|| panic!("the firmware has no variable {variable}"))
+    }
+
+    /// Returns the value of one of the firmware's 16-bit variables.
+    pub fn word(&self, variable: &str) -> u16 {
+        let address = self.address(variable);
+        u16::from_le_bytes([0, 1].map(|n| self.bench.uno.peek(address + n)))
+    }
+
+    /// Returns the number of edges that the firmware has counted as late.
+    pub fn late_edge_count(&self) -> u64 {
+        self.word("pulses::LATE_EDGES").into()
+    }
+}

@@ -1,0 +1,50 @@
+//! Tests of the settings of the serial line, read from the chip and measured on the wire.
+
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::Fidelity;
+
+use crate::run_in_both_simulations;
+
+/// Registers of the USART, data sheet 20.11.
+const UCSR0A: u16 = 0xc0;
+const UCSR0C: u16 = 0xc2;
+const UBRR0: [u16; 2] = [0xc4, 0xc5];
+
+#[test]
+fn the_line_has_eight_data_bits_no_parity_and_one_stop_bit() {
+    run_in_both_simulations(|fidelity| {
+        let bench = FirmwareBench::boot_with(fidelity);
+        // Asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
+        assert_eq!(bench.uno.peek(UCSR0C), 0b0000_0110);
+    });
+}
+
+#[test]
+fn the_baud_rate_differs_from_115_200_by_less_than_2_2_percent() {
+    run_in_both_simulations(|fidelity| {
+        let bench = FirmwareBench::boot_with(fidelity);
+        let divisor = u16::from_le_bytes(UBRR0.map(|register| bench.uno.peek(register)));
+        let is_double_speed = bench.uno.peek(UCSR0A) & 2 != 0;
+        let samples_per_bit = if is_double_speed { 8.0 } else { 16.0 };
+        let baud = 16e6 / samples_per_bit / f64::from(divisor + 1);
+        assert!((baud / 115_200.0 - 1.0).abs() < 0.022, "{baud} baud");
+    });
+}
+
+#[test]
+fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
+    let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
+    bench.say("help");
+    let cycles: Vec<u64> = bench.bytes().iter().map(|byte| byte.cycle).collect();
+    let distances: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert_eq!(distances.iter().min(), Some(&1360));
+    let back_to_back_count = distances
+        .iter()
+        .filter(|distance| **distance == 1360)
+        .count();
+    assert!(
+        back_to_back_count > distances.len() * 9 / 10,
+        "of {}",
+        distances.len()
+    );
+}

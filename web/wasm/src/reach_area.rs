@@ -1,0 +1,143 @@
+//! The reach of head and tail: the part of the plane in which a path of the end point can be drawn.
+//!
+//! The other end is at neutral. A point is allowed if the inverse kinematics has crank angles for it
+//! and the limits allow the pose at these angles.
+
+use lizard_kinematics::{End, Vector, wrap};
+use lizard_robot::Robot;
+use serde::Serialize;
+use tsify::Tsify;
+
+/// Number of grid steps across the plane, whose width is twice the longest reach.
+const STEPS_ACROSS: i32 = 160;
+/// Number of points that are kept on each side around the allowed points.
+const RIM_POINT_COUNT: i32 = 2;
+/// Largest distance between two points that count as the same, mm.
+const POINT_TOLERANCE_MM: f64 = 1e-6;
+
+/// The area that the end point of head or tail can reach, as a grid: mm in the end's own frame, whose origin is the
+/// middle of the end's base and whose y axis points outward.
+#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
+pub struct ReachArea {
+    /// The first point of the first row.
+    pub from: [f64; 2],
+    /// Distance between neighbouring points, mm.
+    pub step: f64,
+    /// Number of points in a row.
+    pub columns: usize,
+    /// True at allowed points, row by row.
+    pub allowed: Vec<bool>,
+    /// The end point in the neutral pose.
+    pub neutral: [f64; 2],
+    /// The shafts of the two cranks.
+    pub shafts: [[f64; 2]; 2],
+}
+
+impl ReachArea {
+    /// Computes the area that the end point of head or tail can reach.
+    #[must_use]
+    pub fn of(robot: &Robot, end: End) -> Self {
+        let bars = robot.lizard().end(end);
+        let reach = bars.base / 2.0
+            + bars.left_crank_length.max(bars.right_crank_length)
+            + bars.left_coupler_length.max(bars.right_coupler_length);
+        let step = 2.0 * reach / f64::from(STEPS_ACROSS);
+        let point_at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
+        let half_steps = STEPS_ACROSS / 2;
+        let reachable_row = |row: i32| -> Vec<bool> {
+            let columns = -half_steps..=half_steps;
+            columns
+                .map(|column| is_reachable(robot, end, point_at(column, row)))
+                .collect()
+        };
+        let plane: Vec<Vec<bool>> = (-half_steps..=half_steps).map(reachable_row).collect();
+        let is_allowed = |column: i32, row: i32| {
+            let row = usize::try_from(row + half_steps)
+                .ok()
+                .and_then(|row| plane.get(row));
+            let column = usize::try_from(column + half_steps).ok();
+            row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
+        };
+        // The range of columns or rows from the first with allowed points to the last, with the rim on both sides.
+        let range_with_rim = |has_allowed_points: &dyn Fn(i32) -> bool| {
+            let smallest = (-half_steps..=half_steps)
+                .find(|index| has_allowed_points(*index))
+                .unwrap_or(0);
+            let largest = (-half_steps..=half_steps)
+                .rev()
+                .find(|index| has_allowed_points(*index))
+                .unwrap_or(0);
+            (smallest - RIM_POINT_COUNT)..=(largest + RIM_POINT_COUNT)
+        };
+        let columns =
+            range_with_rim(&|column| (-half_steps..=half_steps).any(|row| is_allowed(column, row)));
+        let rows =
+            range_with_rim(&|row| (-half_steps..=half_steps).any(|column| is_allowed(column, row)));
+        let cells_of_row = |row| columns.clone().map(move |column| (column, row));
+        let allowed = rows
+            .clone()
+            .flat_map(cells_of_row)
+            .map(|(column, row)| is_allowed(column, row));
+        let half_base = bars.base / 2.0;
+        Self {
+            from: point_at(*columns.start(), *rows.start()),
+            step,
+            columns: columns.clone().count(),
+            allowed: allowed.collect(),
+            neutral: neutral_point(robot, end),
+            shafts: [[-half_base, 0.0], [half_base, 0.0]],
+        }
+    }
+}
+
+/// Returns the end point of head or tail in the neutral pose, mm, in the end's own frame.
+pub fn neutral_point(robot: &Robot, end: End) -> [f64; 2] {
+    let solution = robot.lizard().solve(&robot.neutral_pose());
+    let point = solution.map(|solution| solution.end(end).end_point);
+    point.map_or([0.0; 2], |point| [point.x, point.y])
+}
+
+/// True if the limits allow the pose with the end point here and the other end at neutral.
+fn is_reachable(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
+    let Ok(crank_angles) = robot.lizard().point_angles(end, Vector::new(x, y)) else {
+        return false;
+    };
+    let mut angles: [f64; 4] = robot.neutral_pose().into();
+    for servo in end.servos() {
+        angles[servo] += wrap(crank_angles[servo % 2] - angles[servo]);
+    }
+    // With these crank angles, the robot's assembly mode may put the end point elsewhere.
+    robot.solve_if_allowed(angles).is_some_and(|solution| {
+        let end_point = solution.end(end).end_point;
+        (end_point.x - x).hypot(end_point.y - y) < POINT_TOLERANCE_MM
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_neutral_point_is_allowed_and_points_out_of_reach_are_not() {
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
+        for end in End::ALL {
+            let area = ReachArea::of(&robot, end);
+            let is_allowed_at = |[x, y]: [f64; 2]| {
+                let [column, row] = [
+                    (x - area.from[0]) / area.step,
+                    (y - area.from[1]) / area.step,
+                ];
+                area.allowed[row.round() as usize * area.columns + column.round() as usize]
+            };
+            assert!(is_allowed_at(area.neutral), "{end}");
+            assert_eq!(area.allowed.len() % area.columns, 0);
+            // The first row belongs to the rim of points that are not allowed, so that the area's edge is visible.
+            assert!(area.allowed[..area.columns].iter().all(|allowed| !allowed));
+            // The gesture `look` stays in the area: 10 mm to either side of 54 mm outward.
+            for x in [-10.0, 0.0, 10.0] {
+                assert!(is_allowed_at([x, 54.0]), "{end} {x}");
+            }
+        }
+    }
+}
