@@ -51,7 +51,7 @@ impl Camera {
     }
 
     /// Converts a direction from the camera's axes to the floor's axes.
-    pub(crate) fn to_floor_axes(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn to_floor_axes(self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.rotation.tr_mul(direction)
     }
 

@@ -26,7 +26,7 @@ impl Bill {
         }
     }
 
-    /// Formats [`Bill::body`] as a table of robot.toml.
+    /// Formats [`Bill::body_values`] as a table of robot.toml.
     pub fn body_toml(&self) -> String {
         let Body {
             mass,

@@ -28,7 +28,7 @@ pub struct Row {
     pub measured: Option<f64>,
     /// The budget of the figure.
     pub budget: Bound,
-    /// The same figure of the Arduino Servo library, as [`SERVO_LIBRARY`] describes it; `None` if it is not known.
+    /// The same figure of the Arduino Servo library, as `SERVO_LIBRARY` describes it; `None` if it is not known.
     pub servo_library: Option<&'static str>,
     /// True if the figure depends on the machine that runs the measurement.
     pub wall_clock: bool,
