@@ -264,8 +264,9 @@ WALKS := target/walks.log
 # Uncommitted changes are packaged, too, so that they can be tried before a commit.
 .package:
 	@rm -f crates/target/package/*.crate
-# Cargo unpacks a package that another needs once per path and version: an older text of it would stay.
+# Cargo unpacks a package that another needs once per path and version, and compiles it once: an older text of it would stay.
 	@rm -rf "$${CARGO_HOME:-$$HOME/.cargo}"/registry/src/-*/lizard-*
+	@for list in $$(grep -ls 'registry/src/-' crates/target/*/debug/deps/lizard_*.d); do rm "$${list%/*}"/*"$$(basename "$$list" .d)"*; done
 	@cd crates && cargo package --allow-dirty --quiet -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
 	@scripts/try-packages
 	@cd crates && for package in target/package/*.crate; do echo "$$package"; done
