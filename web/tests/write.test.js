@@ -1,4 +1,4 @@
-// The robot alone is written after the firmware that a board has.
+// Writing only the robot's section, behind the firmware that is already on the board.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -244,7 +244,7 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
   const expected = await sectionOf('own-gaits');
   assert.deepEqual(await readFlash(page, START, START + expected.length), expected);
   assert.equal(dialogMessages.length, 2);
-  // A small robot does not reach so far, so nobody is asked.
+  // The section of a small robot ends below the Nano's boot loader, so no dialog opens.
   await page.locator('#robot').selectOption('robot');
   await page.clock.runFor(3000);
   await writeRobotAlone(page);

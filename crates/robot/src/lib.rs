@@ -7,9 +7,9 @@
 //! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).
 //!
-//! The folders, in the order in which a file passes through them: `file/` has the text and its mistakes,
-//! `measures/` the measurements and their ranges, `gaits/` the gaits in floating point, `tables/` the
-//! integers for the chip, `checks/` the check of every sample, `reports/` tables for people.
+//! A file passes through the folders in this order: `file/` parses the text and reports errors in it,
+//! `measures/` checks the ranges of the measurements, `gaits/` computes the gaits in floating point, `tables/`
+//! rounds them to the integers of the chip, `checks/` checks every sample, and `reports/` formats tables for people.
 //! `lizard-contact` computes the movement over the floor; its types are exported here, too.
 //!
 //! All of the file except its gaits becomes `Measures`. The `Measures` and the gaits' `Tables` become the

@@ -1,4 +1,4 @@
-//! Tests that docs/faults.md prints the tables, and that all entries of the tables obey some rules.
+//! Tests that docs/faults.md has the tables, and that every entry of the tables satisfies the safety rules.
 
 use std::format;
 use std::string::String;

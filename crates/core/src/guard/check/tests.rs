@@ -1,5 +1,5 @@
-//! Sections with a correct CRC that would harm a servo or the board. One number at a time is wrong; the nearest
-//! harmless value of it is tested, too.
+//! Sections with a correct CRC that would harm a servo or the board. Each test corrupts one
+//! number, and also checks the nearest harmless value.
 
 use std::vec::Vec;
 
