@@ -54,11 +54,6 @@ impl LegPose {
 }
 
 impl Leg {
-    /// The pose of a leg of this end at a crank angle (degrees, chassis frame).
-    pub fn pose_at_angle(&self, end: End, theta: f64) -> LegPose {
-        self.pose_of_direction(end, theta, Vector::direction(theta))
-    }
-
     /// The pose of a leg of this end at a crank angle (degrees) whose direction (length one) is
     /// already known; both in the chassis frame.
     #[inline(always)]

@@ -14,7 +14,6 @@
 
 #define CHIP_FREQUENCY 16000000u /* Hz */
 #define CHIP_CYCLES_PER_US (CHIP_FREQUENCY / 1000000u)
-#define CHIP_EEPROM_SIZE 1024u /* bytes */
 #define CHIP_SRAM_START 0x100u /* first data address after the registers */
 #define CHIP_VECTOR_COUNT 26 /* interrupt vectors, including reset */
 

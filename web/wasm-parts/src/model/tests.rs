@@ -1,5 +1,5 @@
 use lizard_kinematics::Vector;
-use lizard_twin::{ServoModel, Shape, Twin};
+use lizard_twin::Shape;
 
 use super::*;
 use crate::solids::Triangles;
@@ -24,8 +24,6 @@ fn lagging_legs_are_where_the_shape_has_them() {
     let neutral: [f64; 4] = robot.neutral_pose().into();
     let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
     let lags = [0.0, 2.5, -3.0, 7.0];
-    let mut twin = Twin::new(&robot, ServoModel::Ideal);
-    twin.push_angles(angles);
     let sweeps = [0, 1, 2, 3].map(|i| FORWARD_TURN_SIGN[i] * (angles[i] - neutral[i]) - lags[i]);
     let shape = Shape::of(&robot, angles, sweeps).expect("every loop closes");
     let places = model.mount_places(angles, lags).expect("every loop closes");

@@ -62,10 +62,10 @@ impl Deadman {
     }
 
     /// Returns the text of a line.
-    pub(super) fn console_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
+    pub(super) fn console_line(&mut self, deadman_line: DeadmanLine) -> String {
         let own_ms = self.own_ms.unwrap_or(0);
         let ms = match deadman_line {
-            DeadmanLine::Read => return Some("cal".to_owned()),
+            DeadmanLine::Read => return "cal".to_owned(),
             DeadmanLine::Set if own_ms == 0 => DRIVING_DEADMAN_MS,
             DeadmanLine::Set => own_ms.min(DRIVING_DEADMAN_MS),
             DeadmanLine::RestoreForOneLine => own_ms,
@@ -74,7 +74,7 @@ impl Deadman {
                 own_ms
             }
         };
-        Some(format!("deadman {ms}"))
+        format!("deadman {ms}")
     }
 
     /// Reads a line of the answer to `cal`; returns false if the line does not belong to one.

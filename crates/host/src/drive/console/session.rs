@@ -178,7 +178,7 @@ impl Session {
     /// the robot continues its gait; `None` if `deadman` is not set.
     pub fn restore_deadman(&mut self) -> Option<String> {
         let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
-        deadman.console_line(deadman::DeadmanLine::Restore)
+        Some(deadman.console_line(deadman::DeadmanLine::Restore))
     }
 
     /// Makes the next `status` due at once; queued lines still go first.
@@ -247,11 +247,8 @@ impl Session {
                     return Some((Question::Line(line.clone()), line));
                 }
                 QueuedLine::Deadman(deadman_line) => {
-                    if let Some(line) = self
-                        .deadman
-                        .as_mut()
-                        .and_then(|deadman| deadman.console_line(deadman_line))
-                    {
+                    if let Some(deadman) = &mut self.deadman {
+                        let line = deadman.console_line(deadman_line);
                         return Some((Question::Deadman(line.clone()), line));
                     }
                 }

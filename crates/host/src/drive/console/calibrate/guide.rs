@@ -29,8 +29,10 @@ pub enum Key {
     Yes,
     /// Answer no.
     No,
-    /// Turn the servo by this many degrees, counter-clockwise if positive.
-    Turn(f64),
+    /// The left or right arrow: turn the servo by this many degrees, counter-clockwise if positive.
+    LeftRight(f64),
+    /// The up or down arrow: turn the servo by this many degrees.
+    UpDown(f64),
 }
 
 /// A calibration in progress.
@@ -111,14 +113,17 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::Next, _) => self.enter_step(self.step_index + 1).map(|()| false),
             (Key::Act, Step::Sign(servo)) => self.move_servo(servo, &SIGN_TURNS).map(|()| false),
             (Key::Act, Step::Scale(servo)) => self.move_servo(servo, &SCALE_TURNS).map(|()| false),
-            (Key::Turn(degrees), Step::Scale(servo)) => {
+            (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Scale(servo)) => {
                 self.change_scale(servo, degrees).map(|()| false)
             }
-            (Key::Turn(degrees), Step::Limit(servo)) => {
-                self.change_limit(servo, degrees).map(|()| false)
-            }
+            (Key::LeftRight(degrees), Step::Limit(servo)) => self
+                .change_limit(servo, 0, degrees.signum())
+                .map(|()| false),
+            (Key::UpDown(degrees), Step::Limit(servo)) => self
+                .change_limit(servo, 1, degrees.signum())
+                .map(|()| false),
             (Key::Yes | Key::No, Step::Sign(servo)) => self.answer_sign(servo, key).map(|()| false),
-            (Key::Turn(degrees), Step::Trim(servo)) => {
+            (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Trim(servo)) => {
                 block_on(self.robot.trim(servo, degrees)).map(|()| false)
             }
             (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
@@ -210,11 +215,10 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         )
     }
 
-    /// Moves one limit of a servo's travel by one degree in the direction of `degrees`: the first limit for a key
-    /// that turns by 0.5 degrees (left, right), the second limit for one that turns by 0.1 degrees (up, down).
-    fn change_limit(&mut self, servo: usize, degrees: f64) -> Result<()> {
+    /// Moves the first (0) or the second (1) limit of a servo's travel by this many degrees.
+    fn change_limit(&mut self, servo: usize, which: usize, degrees: f64) -> Result<()> {
         let mut limits = self.robot.calibration().servos[servo].limit;
-        limits[usize::from(degrees.abs() < 0.3)] += degrees.signum();
+        limits[which] += degrees;
         block_on(self.robot.limit(servo, limits))
     }
 

@@ -142,10 +142,10 @@ fn interpret_key(key: KeyEvent) -> Option<Key> {
         KeyCode::Char(' ') => Key::Act,
         KeyCode::Char('y' | 'Y') => Key::Yes,
         KeyCode::Char('n' | 'N') => Key::No,
-        KeyCode::Left => Key::Turn(degrees),
-        KeyCode::Right => Key::Turn(-degrees),
-        KeyCode::Up => Key::Turn(0.1),
-        KeyCode::Down => Key::Turn(-0.1),
+        KeyCode::Left => Key::LeftRight(degrees),
+        KeyCode::Right => Key::LeftRight(-degrees),
+        KeyCode::Up => Key::UpDown(0.1),
+        KeyCode::Down => Key::UpDown(-0.1),
         _ => return None,
     })
 }

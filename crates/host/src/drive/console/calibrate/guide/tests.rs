@@ -37,11 +37,16 @@ fn a_whole_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
     );
     press_keys(
         &mut guide,
-        &[Key::Turn(0.5), Key::Turn(0.5), Key::Turn(-0.1), Key::Next],
+        &[
+            Key::LeftRight(0.5),
+            Key::LeftRight(0.5),
+            Key::UpDown(-0.1),
+            Key::Next,
+        ],
     );
     press_keys(
         &mut guide,
-        &[Key::Turn(-0.5), Key::Next, Key::Next, Key::Next],
+        &[Key::LeftRight(-0.5), Key::Next, Key::Next, Key::Next],
     );
     assert!(guide.view().title.contains("scales and limits"));
     press_keys(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
@@ -80,7 +85,7 @@ fn cancelling_early_or_late_restores_the_calibration_and_saves_nothing() {
         .chain([Key::Act, Key::No, Key::Act, Key::Yes])
         .chain(CONFIRM_SIGN_KEYS.repeat(3))
         .chain([
-            Key::Turn(4.0),
+            Key::LeftRight(4.0),
             Key::Next,
             Key::Next,
             Key::Next,
@@ -174,7 +179,7 @@ fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
     for _ in 0..4 {
         press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
     }
-    press_keys(&mut guide, &[Key::Turn(19.9), Key::Turn(0.5)]);
+    press_keys(&mut guide, &[Key::LeftRight(19.9), Key::LeftRight(0.5)]);
     let view = guide.view();
     assert!(
         view.message
@@ -210,13 +215,13 @@ fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() 
             .title
             .contains("how far does A1, front left turn")
     );
-    press_keys(&mut guide, &[Key::Turn(0.5)]);
+    press_keys(&mut guide, &[Key::LeftRight(0.5)]);
     assert!(guide.view().message.contains("space bar first"));
     press_keys(&mut guide, &[Key::Act]);
     let moved_degrees = guide.moved_degrees.expect("it was moved");
     assert!(moved_degrees.abs() >= 20.0, "{moved_degrees}");
     // Four corrections of half a degree each, of a turn by `moved_degrees`.
-    press_keys(&mut guide, &[Key::Turn(0.5); 4]);
+    press_keys(&mut guide, &[Key::LeftRight(0.5); 4]);
     let expected_scale = 10.0 * (1.0 + 0.5 / moved_degrees).powi(4);
     let settings = calibration_of(&mut link).servos[0];
     assert!(
@@ -239,14 +244,22 @@ fn each_limit_can_be_moved_but_not_into_the_travel_that_the_gaits_need() {
     press_keys(&mut guide, &[Key::Next; 4]);
     let title = guide.view().title;
     assert!(title.contains("how far may A1, front left turn"), "{title}");
-    press_keys(&mut guide, &[Key::Turn(0.5); 3]);
-    press_keys(&mut guide, &[Key::Turn(-0.1); 2]);
+    // With Shift, an arrow turns a servo by 0.1 degrees; it moves the same limit as without.
+    press_keys(
+        &mut guide,
+        &[
+            Key::LeftRight(0.5),
+            Key::LeftRight(0.1),
+            Key::LeftRight(0.5),
+        ],
+    );
+    press_keys(&mut guide, &[Key::UpDown(-0.1); 2]);
     let settings = guide.robot.calibration().servos[0];
     assert_eq!(
         settings.limit,
         [before.limit[0] + 3.0, before.limit[1] - 2.0]
     );
-    press_keys(&mut guide, &[Key::Turn(-0.1); 90]);
+    press_keys(&mut guide, &[Key::UpDown(-0.1); 90]);
     let view = guide.view();
     assert!(view.message.contains("refuses `limit 1"), "{view:?}");
     let settings = calibration_of(&mut link).servos[0];
