@@ -6,7 +6,7 @@ import { type SavedChanges, browserStorage } from './kept';
 import { BootLine } from './link/boot-line';
 import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, BANNER_PREFIX } from './link/dialogue';
-import type { Link, SimulatedLink } from './link/link';
+import { GONE_MESSAGE, type Link, type SimulatedLink } from './link/link';
 import { UnoLink } from './link/uno-link';
 import {
   type Description,
@@ -589,7 +589,7 @@ export class Session {
   /** Gives the line to the boot loader until `act` has ended. Throws an error for the user. */
   private async withBootLoader<T>(link: Link, act: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
     const board = await loadBoard();
-    if (this.link !== link) throw new Error(`the ${link.name} is not connected any more`);
+    if (this.link !== link) throw new Error(GONE_MESSAGE);
     this.dialogue.end();
     const line = new BootLine(link);
     try {

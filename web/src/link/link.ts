@@ -2,6 +2,8 @@
 
 /** The baud rate of the firmware, and of every link that is not told another one. */
 export const BAUD = 115_200;
+/** The message when a board was unplugged. */
+export const GONE_MESSAGE = 'the board is not connected any more';
 
 export const sleep = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 

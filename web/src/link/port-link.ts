@@ -1,7 +1,7 @@
 // The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on USB,
 // or through an HC-05, a Bluetooth module that the system knows as a serial port.
 import { messageOf } from '../trouble';
-import { BAUD, sleep, type Link } from './link';
+import { BAUD, GONE_MESSAGE, sleep, type Link } from './link';
 
 /** The parts of Web Serial that the page uses; TypeScript's library does not declare them. */
 interface SerialPort {
@@ -23,7 +23,6 @@ const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 const ARDUINO_VENDORS = [0x2341, 0x2a03];
 /** The message for a browser without Web Serial. */
 export const NO_SERIAL_MESSAGE = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
-const GONE_MESSAGE = 'the board is not connected any more';
 /** Length of the pulse on the reset line, ms. */
 const RESET_PULSE_MS = 50;
 
