@@ -1,14 +1,17 @@
-// Puts the project's addresses, which crates/Cargo.toml has, into the page.
+// A Vite plugin that puts the addresses of the repository and of the page, from crates/Cargo.toml, into the page.
 import { readFileSync } from 'node:fs';
 
-/** Fills in the addresses of the repository and of the page, or removes what mentions one while it is empty. */
-export const quoted = (html, cargo) =>
-  ['repository', 'homepage'].reduce((html, name) => {
-    const [, address] = new RegExp(`^${name} = "(.*?)"`, 'm').exec(cargo);
-    return html.replace(new RegExp(`<!-- with a ${name}: (.*) -->`, 'g'), (_, shown) => (address ? shown.replaceAll(name.toUpperCase(), address) : ''));
+const CARGO_TOML = new URL('../crates/Cargo.toml', import.meta.url);
+
+/** Fills in the addresses of the repository and of the page; where an address is empty, removes the text around it. */
+const fillAddresses = (html, cargoToml) =>
+  ['repository', 'homepage'].reduce((filled, name) => {
+    const [, address] = new RegExp(`^${name} = "(.*?)"`, 'm').exec(cargoToml);
+    const comment = new RegExp(`<!-- with a ${name}: (.*) -->`, 'g');
+    return filled.replace(comment, (_, content) => (address ? content.replaceAll(name.toUpperCase(), address) : ''));
   }, html);
 
 export const addresses = () => ({
   name: 'addresses',
-  transformIndexHtml: (html) => quoted(html, readFileSync(new URL('../crates/Cargo.toml', import.meta.url), 'utf8')),
+  transformIndexHtml: (html) => fillAddresses(html, readFileSync(CARGO_TOML, 'utf8')),
 });

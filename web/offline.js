@@ -3,8 +3,8 @@ import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-const NAME = 'service-worker.js';
-/** For those who show links to the page, and not for the page. */
+const WORKER_NAME = 'service-worker.js';
+/** The picture that a chat shows beside a link to the page; the page itself does not use it. */
 const PREVIEW = 'preview.png';
 
 /** Writes the service worker of the page in a folder. */
@@ -12,14 +12,15 @@ export function writeServiceWorker(folder) {
   const paths = readdirSync(folder, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile())
     .map((entry) => join(entry.parentPath ?? entry.path, entry.name).slice(join(folder, '/').length).replaceAll('\\', '/'))
-    .filter((path) => path !== NAME && path !== PREVIEW)
+    .filter((path) => path !== WORKER_NAME && path !== PREVIEW)
     .sort();
-  const hash = (path) => createHash('sha256').update(readFileSync(join(folder, path))).digest('hex');
-  const list = paths.map((path) => `  [${JSON.stringify(path)}, '${hash(path)}'],`).join('\n');
-  const source = readFileSync(new URL(NAME, import.meta.url), 'utf8');
-  const build = createHash('sha256').update(list).digest('hex');
-  writeFileSync(join(folder, NAME), `const BUILD = '${build}';\nconst FILES = [\n${list}\n];\n\n${source}`);
+  const hashOf = (path) => createHash('sha256').update(readFileSync(join(folder, path))).digest('hex');
+  const fileList = paths.map((path) => `  [${JSON.stringify(path)}, '${hashOf(path)}'],`).join('\n');
+  const workerSource = readFileSync(new URL(WORKER_NAME, import.meta.url), 'utf8');
+  const buildHash = createHash('sha256').update(fileList).digest('hex');
+  const constants = `const BUILD = '${buildHash}';\nconst FILES = [\n${fileList}\n];\n\n`;
+  writeFileSync(join(folder, WORKER_NAME), constants + workerSource);
 }
 
-/** A plugin that writes the service worker when Vite has built everything else. */
+/** A Vite plugin that writes the service worker after the build of all other files. */
 export const offline = () => ({ name: 'offline', apply: 'build', closeBundle: () => writeServiceWorker(new URL('dist', import.meta.url).pathname) });

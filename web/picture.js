@@ -1,46 +1,49 @@
-// The frames of two animations: of the README, one cycle of a walk in the page; of docs/web.md, the gait editor. And the picture
-// that a chat shows beside a link. Writes them into a folder; scripts/page-picture makes the animations.
+// Writes pictures of the page into a folder: the frames of the README's animation, which is one cycle of a walk; the
+// gait editor of docs/web.md; and the preview that a chat shows beside a link. scripts/page-picture makes the files.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
-import { address, close, open, page } from './tests/browser.js';
+import { address, closeBrowser, openBrowser, openPage } from './tests/browser.js';
 
 const [, , folder] = process.argv;
-/** A cycle of walk, after as many as it takes to be even; and pictures of one. */
-const [CYCLE, BEFORE, PICTURES] = [1000, 3, 16];
+/** Duration of a cycle of `walk`. */
+const CYCLE_MS = 1000;
+/** Cycles after which all cycles are equal. */
+const WARM_UP_CYCLES = 3;
+const FRAME_COUNT = 16;
 
 await mkdir(folder, { recursive: true });
-await open();
-// This script drives the page's clock, so that frames are evenly spaced and the view follows the robot.
-const opened = await page({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
-await opened.goto(`${address()}#room=drive`);
-await opened.clock.runFor(3000);
-await opened.locator('#gaits button[data-command="walk"]').click();
-await opened.evaluate(() => {
+await openBrowser();
+// This script advances the page's clock, so that the frames are evenly spaced and the view follows the robot.
+const page = await openPage({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
+await page.goto(`${address()}#room=drive`);
+await page.clock.runFor(3000);
+await page.locator('#gaits button[data-command="walk"]').click();
+await page.evaluate(() => {
   document.activeElement.blur();
   scrollTo(0, 0);
 });
 // Waits until every gait that moves shows its prediction.
-await opened.waitForFunction(() => [...document.querySelectorAll('#gaits button:not([data-command="stand"]) small')].every((way) => way.textContent !== ''));
-await opened.clock.runFor(BEFORE * CYCLE);
-for (let n = 0; n < PICTURES; n++) {
-  await opened.clock.runFor(CYCLE / PICTURES);
-  await opened.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
+await page.waitForFunction(() => [...document.querySelectorAll('#gaits button:not([data-command="stand"]) small')].every((note) => note.textContent !== ''));
+await page.clock.runFor(WARM_UP_CYCLES * CYCLE_MS);
+for (let n = 0; n < FRAME_COUNT; n++) {
+  await page.clock.runFor(CYCLE_MS / FRAME_COUNT);
+  await page.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
 }
 // A short search, and its result on the screen.
-await opened.setViewportSize({ width: 1240, height: 1300 });
-await opened.goto(`${address()}#room=gaits`);
-await opened.getByLabel('Rounds of 40 gaits').fill('1');
-await opened.getByRole('button', { name: 'Make it faster' }).click();
-await opened.waitForFunction(() => document.querySelector('#faster-said').textContent.startsWith('Faster on'));
-await opened.getByRole('button', { name: 'Use this gait' }).click();
-await opened.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
-await opened.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
+await page.setViewportSize({ width: 1240, height: 1300 });
+await page.goto(`${address()}#room=gaits`);
+await page.getByLabel('Rounds of 40 gaits').fill('1');
+await page.getByRole('button', { name: 'Make it faster' }).click();
+await page.waitForFunction(() => document.querySelector('#faster-said').textContent.startsWith('Faster on'));
+await page.getByRole('button', { name: 'Use this gait' }).click();
+await page.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
+await page.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
 // The first screen with the robot in 3D.
-await opened.setViewportSize({ width: 1600, height: 840 });
-await opened.goto(`${address()}#room=start`);
-await opened.locator('#solid').click();
-await opened.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
-await opened.clock.runFor(1500);
-await opened.screenshot({ path: join(folder, 'preview.png') });
-await close();
+await page.setViewportSize({ width: 1600, height: 840 });
+await page.goto(`${address()}#room=start`);
+await page.locator('#solid').click();
+await page.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
+await page.clock.runFor(1500);
+await page.screenshot({ path: join(folder, 'preview.png') });
+await closeBrowser();

@@ -1,5 +1,5 @@
-// Computes the predictions of the page's robots when the page is built, so that a phone need not: NAME.predictions.json beside
-// NAME.toml in a folder, which also has the robot in WebAssembly.
+// Predicts the gaits of the page's robots when the page is built, so that a phone need not do so. Writes
+// NAME.predictions.json beside each NAME.toml in a folder, which also has lizard.wasm.
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 

@@ -1,27 +1,28 @@
-// Stores all files of one build of the page when it is first opened, so that it works without a network. The build puts two constants
-// in front of this code: FILES, each path with the SHA-256 of its bytes, and BUILD, the SHA-256 of that list.
+// Stores all files of one build of the page when it is first opened, so that the page works without a network. The
+// build puts two constants in front of this code: FILES, which has each path with the SHA-256 of its bytes, and BUILD,
+// the SHA-256 of that list.
 
-/** Other pages of the same origin have caches of their own. */
-const PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
-const VERSION = PREFIX + BUILD;
+/** First part of the names of this page's caches; other pages of the same origin have other caches. */
+const CACHE_PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
+const CACHE_NAME = CACHE_PREFIX + BUILD;
 
 const addressOf = (path) => new URL(path, self.registration.scope).href;
 
 async function hashOf(bytes) {
-  const sum = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
-  return Array.from(sum, (byte) => byte.toString(16).padStart(2, '0')).join('');
+  const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
+  return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
 /** Returns a file of this build, from an older cache or from the server. Throws if the server has another version. */
-async function verifiedFile(path, hash) {
+async function loadVerifiedFile(path, hash) {
   for (const name of await caches.keys()) {
-    if (!name.startsWith(PREFIX)) continue;
-    const kept = await (await caches.open(name)).match(addressOf(path));
-    if (kept && (await hashOf(await kept.clone().arrayBuffer())) === hash) return kept;
+    if (!name.startsWith(CACHE_PREFIX)) continue;
+    const cached = await (await caches.open(name)).match(addressOf(path));
+    if (cached && (await hashOf(await cached.clone().arrayBuffer())) === hash) return cached;
   }
   const response = await fetch(addressOf(path), { cache: 'no-cache' });
-  const isRight = response.ok && (await hashOf(await response.clone().arrayBuffer())) === hash;
-  if (!isRight) throw new Error(`${path} is not what was built together with the page`);
+  const isExpected = response.ok && (await hashOf(await response.clone().arrayBuffer())) === hash;
+  if (!isExpected) throw new Error(`${path} is not what was built together with the page`);
   return response;
 }
 
@@ -29,9 +30,9 @@ async function verifiedFile(path, hash) {
 self.addEventListener('install', (event) => {
   event.waitUntil(
     (async () => {
-      const found = await Promise.all(FILES.map(async ([path, hash]) => [path, await verifiedFile(path, hash)]));
-      const cache = await caches.open(VERSION);
-      for (const [path, response] of found) await cache.put(addressOf(path), response);
+      const files = await Promise.all(FILES.map(async ([path, hash]) => [path, await loadVerifiedFile(path, hash)]));
+      const cache = await caches.open(CACHE_NAME);
+      for (const [path, response] of files) await cache.put(addressOf(path), response);
     })(),
   );
 });
@@ -39,7 +40,7 @@ self.addEventListener('install', (event) => {
 self.addEventListener('activate', (event) => {
   event.waitUntil(
     (async () => {
-      for (const name of await caches.keys()) if (name.startsWith(PREFIX) && name !== VERSION) await caches.delete(name);
+      for (const name of await caches.keys()) if (name.startsWith(CACHE_PREFIX) && name !== CACHE_NAME) await caches.delete(name);
       await self.clients.claim();
     })(),
   );
@@ -57,7 +58,7 @@ self.addEventListener('fetch', (event) => {
     (async () => {
       const url = new URL(request.url);
       const address = url.href === self.registration.scope || request.mode === 'navigate' ? addressOf('index.html') : url.origin + url.pathname;
-      return (await (await caches.open(VERSION)).match(address)) ?? fetch(request);
+      return (await (await caches.open(CACHE_NAME)).match(address)) ?? fetch(request);
     })(),
   );
 });

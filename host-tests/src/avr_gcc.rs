@@ -13,7 +13,7 @@ const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"]
 ///
 /// # Errors
 /// Returns avr-gcc's own message if avr-gcc rejects the program.
-pub fn object_of_c(source: &str) -> Result<Vec<u8>, String> {
+pub fn compile_to_object(source: &str) -> Result<Vec<u8>, String> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [input, object] = ["program.c", "program.o"].map(|name| folder.path().join(name));
     fs::write(&input, source).expect("the source is written");

@@ -1,8 +1,8 @@
 //! Test bench for the firmware: powers it on, talks to it and measures its pulses.
 //!
 //! A test of the running firmware should read like the actions of a person with a board: `boot`, `say("walk")`,
-//! wait some frames, check the pulses. The bench is a [`SimulatedBoard`] with the robot under test; every failure
-//! panics and so ends the test.
+//! wait some frames, check the pulses. The bench is a [`SimulatedBoard`] with the robot under test. Every failure
+//! panics, which ends the test.
 
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ impl FirmwareBench {
             .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
     }
 
-    /// Powers the board on, with the data sheet's corrections, and waits for the banner.
+    /// Powers the board on, in the simulation corrected by the data sheet, and waits for the banner.
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
@@ -58,13 +58,13 @@ impl FirmwareBench {
     /// Powers the board on as [`FirmwareBench::boot`] does, in a chosen fidelity.
     ///
     /// # Panics
-    /// See [`FirmwareBench::boot`].
+    /// If there is no firmware, or no banner within 500 ms.
     pub fn boot_with(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
         Self(value_or_panic(board))
     }
 
-    /// Powers the board on and runs no cycle yet.
+    /// Powers the board on without running it.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -73,7 +73,7 @@ impl FirmwareBench {
         Self(board)
     }
 
-    /// Returns a bench around any board, for programs other than the firmware.
+    /// Returns a bench around a board, for tests of another robot or another program.
     pub fn with_board(board: SimulatedBoard) -> Self {
         Self(board)
     }

@@ -32,14 +32,18 @@ pub struct PinPulse {
     /// The pin.
     pub pin: Pin,
     /// Cycle of the rising edge.
-    pub rise: u64,
+    pub rise_cycle: u64,
     /// Cycles until the falling edge.
     pub width: u64,
 }
 
 impl fmt::Display for PinPulse {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { pin, rise, width } = self;
+        let Self {
+            pin,
+            rise_cycle: rise,
+            width,
+        } = self;
         write!(f, "{pin} rises at cycle {rise} for {width} cycles")
     }
 }
@@ -52,7 +56,7 @@ pub struct Outputs {
     /// The bytes that the UNO sent, each with the cycle at which its stop bit ends.
     pub sent: Vec<SerialByte>,
     /// The cycle at which the run ended.
-    pub end: u64,
+    pub end_cycle: u64,
 }
 
 impl Outputs {
@@ -67,7 +71,7 @@ impl Outputs {
             } else if let Some(rise) = rise.take() {
                 pulses.push(PinPulse {
                     pin: edge.pin,
-                    rise,
+                    rise_cycle: rise,
                     width: edge.cycle - rise,
                 });
             }
@@ -75,7 +79,7 @@ impl Outputs {
         Self {
             pulses,
             sent: sent.to_vec(),
-            end,
+            end_cycle: end,
         }
     }
 }
@@ -84,7 +88,7 @@ impl Outputs {
 #[derive(Debug, Clone, Default)]
 pub struct Avr8jsRun {
     /// The firmware's outputs in the run.
-    pub account: Outputs,
+    pub outputs: Outputs,
     /// The 1024 bytes of EEPROM at the end.
     pub eeprom: Vec<u8>,
     /// Processor time of the simulation, ms.
@@ -99,16 +103,16 @@ pub struct Avr8jsRun {
 pub fn run_on_avr8js(
     image: &Image,
     received: &[SerialByte],
-    end: u64,
+    end_cycle: u64,
     robot: &Robot,
 ) -> Result<Avr8jsRun, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let hex = folder.path().join("firmware.hex");
-    let flash = folder.path().join("firmware.bin");
-    std::fs::write(&flash, image.flash()).map_err(|error| error.to_string())?;
+    let hex_path = folder.path().join("firmware.hex");
+    let flash_path = folder.path().join("firmware.bin");
+    std::fs::write(&flash_path, image.flash()).map_err(|error| error.to_string())?;
     let mut objcopy = Command::new("avr-objcopy");
     objcopy.args(["-I", "binary", "-O", "ihex"]);
-    run_program(objcopy.args([&flash, &hex]), "binutils-avr", "")?;
+    run_program(objcopy.args([&flash_path, &hex_path]), "binutils-avr", "")?;
     let mut script = String::new();
     if let Some((pin, mv)) = supplies::healthy_rail(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());
@@ -116,15 +120,15 @@ pub fn run_on_avr8js(
     for SerialByte { cycle, byte } in received {
         script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(AVR8JS_LAG));
     }
-    script += &format!("end {end}\n");
+    script += &format!("end {end_cycle}\n");
     let output_text = run_program(
-        node()?.arg(judge_folder().join("run.js")).arg(hex),
+        node()?.arg(judge_folder().join("run.js")).arg(hex_path),
         "nodejs",
         &script,
     )?;
     let mut run = parse_run(&output_text)
         .ok_or_else(|| format!("the judge's output is malformed:\n{output_text}"))?;
-    run.account.end = end;
+    run.outputs.end_cycle = end_cycle;
     Ok(run)
 }
 
@@ -156,9 +160,13 @@ fn node() -> Result<Command, String> {
 
 /// Runs a program on `input` and returns its output. `debian_package` is the Debian package that contains the
 /// program, for the error message.
-fn run_program(command: &mut Command, debian_package: &str, input: &str) -> Result<String, String> {
+fn run_program(
+    command: &mut Command,
+    debian_package: &str,
+    input_text: &str,
+) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let output = LIMIT.output(command, input.as_bytes());
+    let output = LIMIT.output(command, input_text.as_bytes());
     let output = output.map_err(|error| match error.kind() {
         ErrorKind::NotFound => format!(
             "{program} is missing: scripts/setup and scripts/setup-judge install it \
@@ -184,12 +192,12 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
     for line in output_text.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
-            ["pulse", pin, rise, width] => run.account.pulses.push(PinPulse {
+            ["pulse", pin, rise, width] => run.outputs.pulses.push(PinPulse {
                 pin: Pin::arduino(pin.parse().ok()?),
-                rise: rise.parse().ok()?,
+                rise_cycle: rise.parse().ok()?,
                 width: width.parse().ok()?,
             }),
-            ["sent", cycle, byte] => run.account.sent.push(SerialByte {
+            ["sent", cycle, byte] => run.outputs.sent.push(SerialByte {
                 cycle: cycle.parse().ok()?,
                 byte: u8::from_str_radix(byte, 16).ok()?,
             }),
@@ -211,22 +219,22 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
     /// The kind of records compared: pulses or bytes.
-    pub what: &'static str,
+    pub record_kind: &'static str,
     /// The number of records.
     pub count: usize,
     /// Cycles by which the records of avr8js are later than those of simavr.
-    pub offset: i64,
+    pub offset_cycles: i64,
     /// The largest deviation of a record from `offset`, cycles.
-    pub jitter: u64,
+    pub jitter_cycles: u64,
 }
 
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            what,
+            record_kind: what,
             count,
-            offset,
-            jitter,
+            offset_cycles: offset,
+            jitter_cycles: jitter,
         } = self;
         write!(
             f,
@@ -246,8 +254,8 @@ pub fn compare_pulses(
     avr8js: &Outputs,
     servos: &[Pin],
 ) -> Result<Agreement, String> {
-    let pulses_of_servos = |account: &Outputs| -> Vec<PinPulse> {
-        let pulses = account.pulses.iter().copied();
+    let pulses_of_servos = |outputs: &Outputs| -> Vec<PinPulse> {
+        let pulses = outputs.pulses.iter().copied();
         pulses.filter(|pulse| servos.contains(&pulse.pin)).collect()
     };
     let (simavr_pulses, avr8js_pulses) = (pulses_of_servos(simavr), pulses_of_servos(avr8js));
@@ -255,15 +263,15 @@ pub fn compare_pulses(
     else {
         return Err("on one of them no servo gets a pulse".into());
     };
-    let offset = first_avr8js.rise as i64 - first_simavr.rise as i64;
+    let offset = first_avr8js.rise_cycle as i64 - first_simavr.rise_cycle as i64;
     let avr8js_pulses: Vec<PinPulse> = avr8js_pulses
         .iter()
         .map(|pulse| PinPulse {
-            rise: pulse.rise.saturating_add_signed(-offset),
+            rise_cycle: pulse.rise_cycle.saturating_add_signed(-offset),
             ..*pulse
         })
         .collect();
-    let limit_cycle = simavr.end.min(avr8js.end) - IGNORED_END_CYCLES;
+    let limit_cycle = simavr.end_cycle.min(avr8js.end_cycle) - IGNORED_END_CYCLES;
     let (simavr_pulses, avr8js_pulses) = (
         ended_pulses(&simavr_pulses, limit_cycle),
         ended_pulses(&avr8js_pulses, limit_cycle),
@@ -284,10 +292,10 @@ pub fn compare_pulses(
         }
     }
     Ok(Agreement {
-        what: "pulses",
+        record_kind: "pulses",
         count,
-        offset,
-        jitter: 0,
+        offset_cycles: offset,
+        jitter_cycles: 0,
     })
 }
 
@@ -320,19 +328,19 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
         );
     }
     let count = simavr.sent.len().min(avr8js.sent.len());
-    for (name, account) in [("simavr", simavr), ("avr8js", avr8js)] {
-        if account.sent.len() > count {
-            let text = tail(&account.sent, count);
+    for (name, outputs) in [("simavr", simavr), ("avr8js", avr8js)] {
+        if outputs.sent.len() > count {
+            let text = tail(&outputs.sent, count);
             return Err(format!(
                 "byte {count} of the console is on {name} alone: {text:?}"
             ));
         }
     }
     Ok(Agreement {
-        what: "bytes",
+        record_kind: "bytes",
         count,
-        offset,
-        jitter,
+        offset_cycles: offset,
+        jitter_cycles: jitter,
     })
 }
 
@@ -340,7 +348,7 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
 fn ended_pulses(pulses: &[PinPulse], limit_cycle: u64) -> Vec<PinPulse> {
     let pulses = pulses.iter().copied();
     pulses
-        .filter(|pulse| pulse.rise + pulse.width <= limit_cycle)
+        .filter(|pulse| pulse.rise_cycle + pulse.width <= limit_cycle)
         .collect()
 }
 

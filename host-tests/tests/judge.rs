@@ -54,10 +54,10 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
         end,
         robot(),
     ));
-    let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
+    let pulses = compare_pulses(&simavr, &verdict.outputs, &servo_pins(robot()));
     let pulses = pulses.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
     assert_eq!(
-        pulses.offset, AVR8JS_LAG,
+        pulses.offset_cycles, AVR8JS_LAG,
         "{case_name}: the pulses' cycle in the slot"
     );
     let limit = match tolerance {
@@ -66,10 +66,10 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
         TimeTolerance::Any => None,
     };
     if let Some(limit) = limit {
-        let console = compare_console(&simavr, &verdict.account);
+        let console = compare_console(&simavr, &verdict.outputs);
         let console = console.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
         assert!(
-            console.offset.abs() <= 1 && console.jitter <= limit,
+            console.offset_cycles.abs() <= 1 && console.jitter_cycles <= limit,
             "{case_name}: the console's times differ: {console:?}"
         );
         println!("{case_name}: {console}");
@@ -170,7 +170,11 @@ fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
 
 fn pulse(rise: u64, width: u64) -> PinPulse {
     let pin = Pin::d(9);
-    PinPulse { pin, rise, width }
+    PinPulse {
+        pin,
+        rise_cycle: rise,
+        width,
+    }
 }
 
 fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
@@ -178,7 +182,7 @@ fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
     Outputs {
         pulses: pulses.to_vec(),
         sent: sent.collect(),
-        end: 10_000_000,
+        end_cycle: 10_000_000,
     }
 }
 
@@ -186,11 +190,17 @@ fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
 fn the_first_difference_between_two_accounts_is_named() {
     let pulses = [pulse(1_000, 24_000), pulse(321_000, 24_000)];
     let our_outputs = outputs_of(&pulses, "ok walk");
-    let later_pulses = pulses.map(|PinPulse { rise, width, .. }| pulse(rise + 1, width));
+    let later_pulses = pulses.map(
+        |PinPulse {
+             rise_cycle: rise,
+             width,
+             ..
+         }| pulse(rise + 1, width),
+    );
     let compare_with_ours = |pulses: &[PinPulse]| {
         let their_outputs = outputs_of(pulses, "ok walk");
         compare_pulses(&our_outputs, &their_outputs, &[Pin::d(9)])
-            .map(|agreed| (agreed.count, agreed.offset))
+            .map(|agreed| (agreed.count, agreed.offset_cycles))
     };
     assert_eq!(compare_with_ours(&later_pulses), Ok((2, 1)));
     for (their_pulses, expected_text) in [

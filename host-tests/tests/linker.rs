@@ -1,12 +1,12 @@
 //! Tests that a program computes the same after our linker has reordered its functions.
 
-use lizard_host_tests::avr_gcc::{link, object_of_c};
+use lizard_host_tests::avr_gcc::{compile_to_object, link};
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
 /// Links a program unchanged, and after our linker has shrunk it. Returns both images with their savings.
 fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
-    let object = object_of_c(program).expect("it compiles");
+    let object = compile_to_object(program).expect("it compiles");
     let (shrunk, savings) = shrink(&object)
         .expect("it is an object")
         .expect("of an AVR");

@@ -1,7 +1,7 @@
 // Runs a firmware on avr8js: node run.js FIRMWARE.hex < SCRIPT
 //
-// src/script.js explains SCRIPT. Prints these lines, with all cycles counted from power-on:
-//   pulse <pin> <rise> <width>   a pin was high; 14 to 19 are A0 to A5
+// src/script.js explains SCRIPT. Prints these lines; all cycles count from power-on:
+//   pulse <pin> <rise> <width>   a pin was high; pins 14 to 19 are A0 to A5
 //   sent <cycle> <hex byte>      the UNO has sent a byte; the cycle is the end of its stop bit
 //   eeprom <2048 hex digits>     at the end
 //   cpu <ms>                     processor time of the simulation
@@ -9,32 +9,32 @@
 import { readFileSync } from 'node:fs';
 
 import { corrections } from './src/corrections/index.js';
-import { load } from './src/hex.js';
+import { loadHex } from './src/hex.js';
 import { Scope } from './src/scope.js';
-import { read } from './src/script.js';
+import { readScript } from './src/script.js';
 import { Uno } from './src/uno.js';
 
 const hex = (byte) => byte.toString(16).padStart(2, '0');
 
 function run(file, script) {
   const uno = new Uno(corrections);
-  load(readFileSync(file, 'utf8'), uno.flash);
-  const { analogue, bytes, end } = read(script);
+  loadHex(readFileSync(file, 'utf8'), uno.flash);
+  const { analogue, bytes, endCycle } = readScript(script);
   for (const { channel, volts } of analogue) uno.adc.channelValues[channel] = volts;
   const lines = [];
   new Scope(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
   uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${hex(byte)}`);
   uno.deliver(bytes);
-  uno.run(end);
-  lines.push(`eeprom ${Array.from(uno.memory, hex).join('')}`);
+  uno.run(endCycle);
+  lines.push(`eeprom ${Array.from(uno.eepromBytes, hex).join('')}`);
   return lines;
 }
 
 try {
   if (process.argv.length !== 3) throw new Error('usage: node run.js FIRMWARE.hex < SCRIPT');
-  const before = process.cpuUsage();
+  const usageBefore = process.cpuUsage();
   const lines = run(process.argv[2], readFileSync(0, 'utf8'));
-  const { user, system } = process.cpuUsage(before);
+  const { user, system } = process.cpuUsage(usageBefore);
   lines.push(`cpu ${Math.round((user + system) / 1000)}`);
   process.stdout.write(lines.join('\n') + '\n');
 } catch (error) {

@@ -1,13 +1,13 @@
-// The page for everyone: axe-core finds nothing, a phone shows all of it, keys reach all of it.
+// Accessibility: axe-core finds nothing, a phone shows the whole page, and the floor is moved by keys.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, openStanding, closePages, unfold } from './browser.js';
+import { advance, closeBrowser, complaints, openBrowser, openStanding, closePages, unfold } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true };
@@ -21,8 +21,8 @@ const ROOMS = {
   learn: ['#maps', '#margins-panel', '#pulses', '#console'],
 };
 
-/** Opens the page and calls `act` in each room, with all its panels unfolded. */
-async function inEveryRoom(options, act) {
+/** Opens the page and calls `check` in each room, with all its panels unfolded. */
+async function checkEveryRoom(options, check) {
   // The page's own policy would not allow axe-core to be put into it.
   const page = await openStanding({ ...options, bypassCSP: true });
   for (const [room, panels] of Object.entries(ROOMS)) {
@@ -36,7 +36,7 @@ async function inEveryRoom(options, act) {
     if (room === 'build') await page.getByText('Click a part for its name').waitFor();
     await advance(page, 500);
     if (room === 'board') await page.getByRole('group', { name: 'A4' }).waitFor();
-    await act(page, room);
+    await check(page, room);
   }
 }
 
@@ -46,7 +46,7 @@ for (const [name, options] of [
   ['on a phone', PHONE],
 ]) {
   test(`axe-core finds nothing, ${name}`, async () => {
-    await inEveryRoom(options, async (page, room) => {
+    await checkEveryRoom(options, async (page, room) => {
       if (room === 'drive') await page.addScriptTag({ path: AXE });
       const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
       const violationTexts = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
@@ -58,7 +58,7 @@ for (const [name, options] of [
 for (const [name, options] of [
   ['light', { colorScheme: 'light' }],
   ['dark, on a phone', { ...PHONE, colorScheme: 'dark' }],
-  ['in colours of the user\'s own', { forcedColors: 'active' }],
+  ['in forced colours', { forcedColors: 'active' }],
 ]) {
   test(`axe-core finds nothing in any step of the first connection, ${name}`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
@@ -79,7 +79,7 @@ for (const [name, options] of [
 // Fonts differ from machine to machine, and some are wider.
 test('no screen scrolls sideways, with narrow or wide fonts', async () => {
   const overflows = [];
-  await inEveryRoom({ ...PHONE, deviceScaleFactor: 1 }, async (page, room) => {
+  await checkEveryRoom({ ...PHONE, deviceScaleFactor: 1 }, async (page, room) => {
     for (const width of [320, 340, 360, 375, 390, 412, 430, 480, 560, 641, 700, 761, 1001, 1400]) {
       await page.setViewportSize({ width, height: 844 });
       for (const spacing of ['0', '0.05em', '0.1em']) {
@@ -97,7 +97,7 @@ test('no screen scrolls sideways, with narrow or wide fonts', async () => {
   assert.deepEqual(overflows, []);
 });
 
-test('the floor is moved by keys, and drags by a pointer', async () => {
+test('the floor is moved by keys, and dragged by a pointer', async () => {
   const page = await openStanding();
   const floor = page.locator('#floor');
   const follow = page.getByRole('button', { name: 'Follow' });

@@ -1,114 +1,114 @@
-// A robot off its cable, by Web Bluetooth: modules as they are bought, and what goes wrong with them.
+// A robot by Web Bluetooth: modules with their default settings, and failures of the link.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, closePages, complaints, openWithBluetooth, page as openPage, text, unfold } from './browser.js';
+import { closeBrowser, closePages, complaints, openBrowserWithBluetooth, openPage, text, unfold } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
 
-before(openWithBluetooth);
+before(openBrowserWithBluetooth);
 afterEach(async () => {
   await closePages();
-  await radio?.end();
+  await radio?.close();
   radio = undefined;
 });
-after(close);
+after(closeBrowser);
 
 const activityOf = (page) => page.evaluate(() => window.lizard.gait);
 const pageTimeOf = (page) => page.evaluate(() => performance.now());
 
-async function openDriven(module) {
-  radio = await Radio.near(module);
-  const { opened: page } = radio;
+async function openWalking(module) {
+  radio = await Radio.open(module);
+  const { page } = radio;
   await radio.pick();
-  await radio.until('it is found', async () => (await text(page, '#where')).includes(`board at ${module.name} that has not restarted`));
-  await radio.until('it stands', async () => (await activityOf(page)) === 'stand');
+  await radio.runUntil('the robot is found', async () => (await text(page, '#where')).includes(`board at ${module.name} that has not restarted`));
+  await radio.runUntil('the robot stands', async () => (await activityOf(page)) === 'stand');
   await page.locator('#gaits button[data-command="walk"]').click();
-  await radio.until('it walks', async () => (await activityOf(page)) === 'walk');
+  await radio.runUntil('the robot walks', async () => (await activityOf(page)) === 'walk');
   return page;
 }
 
 for (const module of [HM10, NORDIC]) {
-  test(`a robot behind a module of the kind ${module.name} is driven and stopped`, async () => {
-    const page = await openDriven(module);
+  test(`a robot is driven and stopped through the module ${module.name}`, async () => {
+    const page = await openWalking(module);
     await radio.run(3000);
-    assert.equal(await activityOf(page), 'walk', 'it is kept walking');
-    assert.ok((await pageTimeOf(page)) - (await page.evaluate(() => window.moved)) < 100, 'it walks');
+    assert.equal(await activityOf(page), 'walk', 'the page shows it walking');
+    assert.ok((await pageTimeOf(page)) - (await page.evaluate(() => window.lastMoveMs)) < 100, 'its servos move');
     await page.keyboard.press('Escape');
-    await radio.until('it stops', async () => (await activityOf(page)) === 'stop');
-    assert.ok(Math.max(...radio.packets) <= 20, 'packets of at most 20 bytes');
-    const heardText = await page.evaluate(() => window.heard);
-    assert.ok(heardText.indexOf('deadman 901\n') < heardText.indexOf('walk\n'), heardText);
-    assert.match(heardText, /OK\+CONN.*\n/);
+    await radio.runUntil('the robot stops', async () => (await activityOf(page)) === 'stop');
+    assert.ok(Math.max(...radio.packetLengths) <= 20, 'packets of at most 20 bytes');
+    const receivedText = await page.evaluate(() => window.receivedText);
+    assert.ok(receivedText.indexOf('deadman 901\n') < receivedText.indexOf('walk\n'), receivedText);
+    assert.match(receivedText, /OK\+CONN.*\n/);
     assert.equal(await page.locator('#trouble').isVisible(), false);
-    assert.equal(await page.locator('#setup').isVisible(), false, 'nobody is sent to write firmware by radio');
+    assert.equal(await page.locator('#setup').isVisible(), false, 'no dialog offers to write firmware by radio');
     for (const control of ['#flash-write', '#flash-robot', '#flash-file', '#reset']) assert.ok(await page.locator(control).isDisabled(), control);
   });
 }
 
 test('a robot whose link is cut stands still, and the page reconnects by itself', async () => {
-  const page = await openDriven(HM10);
+  const page = await openWalking(HM10);
   await radio.run(1000);
   const cutMs = await pageTimeOf(page);
-  await radio.cut();
-  await radio.until('it is said', async () => (await text(page, '#trouble')).includes('The board at HMSoft is out of reach.'));
+  await radio.takeOutOfReach();
+  await radio.runUntil('the loss of the link is shown', async () => (await text(page, '#trouble')).includes('The board at HMSoft is out of reach.'));
   await radio.run(2000);
   assert.match(await text(page, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
-  const lastMoveMs = await page.evaluate(() => window.moved);
+  const lastMoveMs = await page.evaluate(() => window.lastMoveMs);
   assert.ok(lastMoveMs - cutMs <= 901 + 40, `it moved for ${lastMoveMs - cutMs} ms`);
-  await radio.back();
-  await radio.until('it is stopped', async () => (await activityOf(page)) === 'stop');
+  await radio.bringBack();
+  await radio.runUntil('the robot is stopped', async () => (await activityOf(page)) === 'stop');
   await page.locator('#trouble', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
   assert.ok(!(await text(page, '#trouble')).includes('out of reach'));
   assert.equal(await page.locator('#alarm').isVisible(), false);
   await page.locator('#gaits button[data-command="walk"]').click();
-  await radio.until('it walks again', async () => (await activityOf(page)) === 'walk');
+  await radio.runUntil('the robot walks again', async () => (await activityOf(page)) === 'walk');
 });
 
-test('a trim set while out of reach is shown with the robot\'s value once the robot answers again', async () => {
-  radio = await Radio.near(HM10);
-  const { opened: page } = radio;
+test('a trim that was set out of reach shows the robot\'s value when the robot answers again', async () => {
+  radio = await Radio.open(HM10);
+  const { page } = radio;
   await radio.pick();
-  await radio.until('it stands', async () => (await activityOf(page)) === 'stand');
+  await radio.runUntil('the robot stands', async () => (await activityOf(page)) === 'stand');
   await unfold(page, '#calibrate');
   const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
-  await radio.until('it is read', () => trim.isVisible());
-  await radio.cut();
+  await radio.runUntil('the trim is read', () => trim.isVisible());
+  await radio.takeOutOfReach();
   await trim.fill('5');
   await radio.run(4000);
   await page.locator('#trouble', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
   assert.equal(await trim.inputValue(), '5');
-  await radio.back();
-  await radio.until('it is read again', async () => (await trim.inputValue()) === '0');
+  await radio.bringBack();
+  await radio.runUntil('the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
-test('a stop pressed while out of reach is the first line that the robot receives', async () => {
-  const page = await openDriven(HM10);
-  await radio.cut();
+test('a stop that is pressed out of reach is the first line that the robot receives afterwards', async () => {
+  const page = await openWalking(HM10);
+  await radio.takeOutOfReach();
   await radio.run(300);
   await page.keyboard.press('Escape');
-  const heardLength = (await page.evaluate(() => window.heard)).length;
+  const previousLength = (await page.evaluate(() => window.receivedText)).length;
   await radio.run(1000);
   assert.ok(await page.evaluate(() => document.body.classList.contains('stopping')));
-  await radio.back();
-  await radio.until('it is stopped', async () => !(await page.evaluate(() => document.body.classList.contains('stopping'))));
-  const lines = (await page.evaluate(() => window.heard)).slice(heardLength).split('\n');
+  await radio.bringBack();
+  await radio.runUntil('the stop is answered', async () => !(await page.evaluate(() => document.body.classList.contains('stopping'))));
+  const lines = (await page.evaluate(() => window.receivedText)).slice(previousLength).split('\n');
   assert.equal(lines.find((line) => line !== '' && !line.startsWith('OK+')), 'stop', lines.join('|'));
 });
 
-test('a module behind which no robot answers is named', async () => {
-  radio = await Radio.near(HM10, { robot: false });
-  const { opened: page } = radio;
+test('a module through which no robot answers is named', async () => {
+  radio = await Radio.open(HM10, { hasRobot: false });
+  const { page } = radio;
   await radio.pick();
-  await radio.until('it is said', async () => (await text(page, '#trouble')).includes('no robot answers'));
+  await radio.runUntil('the silence is shown', async () => (await text(page, '#trouble')).includes('no robot answers'));
   assert.match(await text(page, '#trouble'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
   assert.equal(await page.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
 });
 
 test('picking no Bluetooth module reports no problem', async () => {
-  radio = await Radio.near(HM10);
-  const { opened: page } = radio;
+  radio = await Radio.open(HM10);
+  const { page } = radio;
   await radio.pick(false);
   await radio.run(500);
   assert.equal(await page.locator('#trouble').isVisible(), false);
@@ -116,46 +116,46 @@ test('picking no Bluetooth module reports no problem', async () => {
 });
 
 test('a machine without Bluetooth says so', async () => {
-  radio = await Radio.near(HM10, { adapter: 'absent' });
-  await radio.opened.locator('#radio').click();
-  await radio.opened.locator('#trouble', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
+  radio = await Radio.open(HM10, { adapter: 'absent' });
+  await radio.page.locator('#radio').click();
+  await radio.page.locator('#trouble', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
 });
 
 test('if Bluetooth is forbidden, the page says where to allow it', async () => {
-  radio = await Radio.near(HM10, { allowed: false, robot: false });
-  const { opened: page } = radio;
+  radio = await Radio.open(HM10, { isAllowed: false, hasRobot: false });
+  const { page } = radio;
   await page.locator('#radio').click();
   await page.locator('#trouble', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
   assert.match(await text(page, '#trouble'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
 test('a phone whose screen goes off stops its robot with its last line', async () => {
-  const page = await openDriven(HM10);
+  const page = await openWalking(HM10);
   await radio.run(1000);
   const hiddenMs = await page.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
     document.dispatchEvent(new Event('visibilitychange'));
-    return window.boardMs();
+    return window.readBoardMs();
   });
   await radio.run(60);
   await radio.sleep(3000);
-  const { last, heard } = await page.evaluate(() => ({ last: window.movedAt, heard: window.heard }));
-  assert.match(heard, /stop\n(deadman 0\n)?$/);
-  assert.ok(last - hiddenMs < 400, `it moved for ${last - hiddenMs} ms`);
+  const [lastMoveMs, receivedText] = await page.evaluate(() => [window.lastMoveBoardMs, window.receivedText]);
+  assert.match(receivedText, /stop\n(deadman 0\n)?$/);
+  assert.ok(lastMoveMs - hiddenMs < 400, `it moved for ${lastMoveMs - hiddenMs} ms`);
 });
 
-test('when a phone falls asleep without notice, its robot stands still, and the page learns of it on waking', async () => {
-  const page = await openDriven(HM10);
-  const sleepMs = await page.evaluate(() => window.boardMs());
+test('when a phone falls asleep without notice, its robot stops, and the page reports that afterwards', async () => {
+  const page = await openWalking(HM10);
+  const sleepMs = await page.evaluate(() => window.readBoardMs());
   await radio.sleep(3000);
-  const lastMoveMs = await page.evaluate(() => window.movedAt);
+  const lastMoveMs = await page.evaluate(() => window.lastMoveBoardMs);
   assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `it moved for ${lastMoveMs - sleepMs} ms`);
   await page.clock.fastForward(3000);
-  await radio.until('it is said', async () => (await text(page, '#trouble')).includes('no line had reached it for too long'));
+  await radio.runUntil('the reason is shown', async () => (await text(page, '#trouble')).includes('no line had reached it for too long'));
   assert.equal(await activityOf(page), 'stop');
 });
 
-test('an iPhone\'s user is told which browser works, before pressing anything', async () => {
+test('on an iPhone the page names the browser that works before the user presses anything', async () => {
   const page = await openPage({ userAgent: 'Mozilla/5.0 (iPhone; CPU iPhone OS 26_0 like Mac OS X) AppleWebKit/605.1.15' }, () => {
     for (const name of ['serial', 'bluetooth']) Object.defineProperty(navigator, name, { value: undefined });
     delete Object.getPrototypeOf(navigator).serial;

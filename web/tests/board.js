@@ -1,27 +1,28 @@
 // A board at the page's Web Serial port, run by the page's own clock.
-import { page as openPage, within } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import { openPage, withTimeout } from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 
 /**
- * Opens the page and connects a board with the firmware and a robot, or an empty one for null; `ms` pass after that.
+ * Opens the page, connects a board, and advances the page's clock by `ms`. The board has the firmware and the named
+ * robot in its flash, or an erased flash if the name is null.
  */
-export async function openWithBoard(robot, ms) {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate((robot) => (window.flashed = robot), robot);
+export async function openWithBoard(robotName, ms) {
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate((name) => (window.flashedRobot = name), robotName);
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
+  await page.waitForFunction(() => window.attachedBoard);
   await page.clock.runFor(ms);
   return page;
 }
 
 /**
- * Advances the page's clock until `isSo` holds. There is no limit in page time, since the page may also wait for the
- * machine.
+ * Advances the page's clock until `condition` returns true. Only real time is limited, because the page may also wait
+ * for the machine.
  */
-export async function until(page, condition, isSo, step = 100) {
+export async function runUntil(page, waitName, condition, stepMs = 100) {
   let isWaiting = true;
   const advance = async () => {
-    while (isWaiting && !(await isSo())) await page.clock.runFor(step);
+    while (isWaiting && !(await condition())) await page.clock.runFor(stepMs);
   };
-  await within(condition, advance()).finally(() => (isWaiting = false));
+  await withTimeout(waitName, advance()).finally(() => (isWaiting = false));
 }

@@ -2,18 +2,17 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, closePages, complaints, open, page as openPage, text, unfold } from './browser.js';
-import { openWithBoard, until } from './board.js';
-import { fakeSerial } from './fake-serial.js';
+import { closeBrowser, closePages, complaints, openBrowser, openPage, text, unfold } from './browser.js';
+import { openWithBoard, runUntil } from './board.js';
+import { installFakeSerial } from './fake-serial.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-
-/** Waits until the console has `times` lines with this text. */
-const waitForLine = (page, line, times = 1) =>
-  until(page, `${line} is said ${times} times`, async () => (await page.locator('#log div', { hasText: line }).count()) >= times);
+/** Waits until the log has `count` lines that match. */
+const waitForLine = (page, line, count = 1) =>
+  runUntil(page, `${line} is logged ${count} times`, async () => (await page.locator('#log div', { hasText: line }).count()) >= count);
 
 async function openWalking() {
   const page = await openWithBoard('robot', 4000);
@@ -29,31 +28,31 @@ test('a new UNO is identified after some seconds, and one button writes the firm
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
   await page.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
   for (const control of ['#robot', '#connect']) {
-    assert.ok(await page.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
+    assert.ok(await page.locator(control).isDisabled(), `${control} would take the port from the boot loader`);
   }
-  await until(page, 'it is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#flash-said')));
+  await runUntil(page, 'the board is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#flash-said')));
   await page.clock.runFor(8000);
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await page.locator(control).isEnabled(), control);
-  assert.equal(await page.locator('#trouble').isVisible(), false, 'it greets: the trouble is over');
+  assert.equal(await page.locator('#trouble').isVisible(), false, 'the board greets, so the trouble is over');
   await page.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
 });
 
-test('a board that does not answer leads to a question about it', async () => {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate(() => (window.flashed = null));
+test('for a board that does not answer, the page asks whether it is a UNO or a Nano', async () => {
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate(() => (window.flashedRobot = null));
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
-  await page.evaluate(() => (window.otherBoard.send = () => {}));
+  await page.waitForFunction(() => window.attachedBoard);
+  await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.clock.runFor(9000);
   await page.locator('#trouble', { hasText: 'no boot loader answers. Is it a UNO or a Nano?' }).waitFor();
 });
 
 test('a board that its port does not reset is asked for its state and tracked', async () => {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate(() => (window.awake = true));
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate(() => (window.boardKeepsRunning = true));
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
+  await page.waitForFunction(() => window.attachedBoard);
   await page.clock.runFor(5000);
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   assert.match(await text(page, '#where'), /^on a board on USB that has not restarted/);
@@ -61,7 +60,7 @@ test('a board that its port does not reset is asked for its state and tracked', 
   assert.equal(await page.locator('#trouble').isVisible(), false);
 });
 
-test('a robot is chosen for a board that is connected, and the board stays', async () => {
+test('choosing another robot keeps the board connected', async () => {
   const page = await openWalking();
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
@@ -71,7 +70,7 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
   await page.waitForFunction(() => window.lizard.file === 'robot');
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await page.clock.runFor(500);
-  assert.ok(await page.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'it is still followed');
+  assert.ok(await page.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'the robot is tracked');
 });
 
 test('a board with another robot of the list is reported, and one press shows its own robot', async () => {
@@ -84,7 +83,7 @@ test('a board with another robot of the list is reported, and one press shows it
   assert.match(await text(page, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await page.locator('#trouble', { hasText: 'another robot' }).waitFor({ state: 'detached' });
   assert.equal(await page.evaluate(() => window.lizard.isReal), true);
-  // No file has its lengths any more.
+  // From here on no file of the page equals this robot.
   await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
   await page.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
   await page.evaluate(() => {
@@ -100,13 +99,13 @@ test('disconnecting a board stops it', async () => {
   await page.locator('#connect').click();
   await page.clock.runFor(1500);
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
-  assert.match(await page.evaluate(() => window.heard), /\nstop\n(deadman 0\n)?$/, 'the last that the board has heard');
+  assert.match(await page.evaluate(() => window.receivedText), /\nstop\n(deadman 0\n)?$/, 'the last lines of the page');
   assert.match(await text(page, '#where'), /simulated UNO/);
 });
 
 test('a board that does not confirm the stop is reported', async () => {
   const page = await openWalking();
-  await page.evaluate(() => (window.otherBoard.send = () => {}));
+  await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.locator('#connect').click();
   await page.clock.runFor(3000);
   await page.locator('#trouble', { hasText: 'did not say that it stops' }).waitFor();
@@ -115,7 +114,7 @@ test('a board that does not confirm the stop is reported', async () => {
 test('a page that is closed while a board walks stops it, and the browser asks', async () => {
   const page = await openWalking();
   const dialogEvent = page.waitForEvent('dialog');
-  // The browser's answer belongs to the dialog and comes after it.
+  // This call returns only after the dialog is answered.
   const reload = page.evaluate(() => location.reload());
   const dialog = await dialogEvent;
   assert.equal(dialog.type(), 'beforeunload');
@@ -134,7 +133,7 @@ test('after a reset the board is tracked again', async () => {
   await page.locator('#gaits button[data-command="walk"]').click();
   await waitForLine(page, /^ok walk$/, 2);
   const startY = await readY();
-  await until(page, 'the robot of the page has gone 5 mm', async () => (await readY()) - startY > 5);
+  await runUntil(page, 'the robot of the page has walked 5 mm', async () => (await readY()) - startY > 5);
 });
 
 test('a board that restarts in the middle of an answer is tracked again', async () => {
@@ -142,7 +141,7 @@ test('a board that restarts in the middle of an answer is tracked again', async 
   await waitForLine(page, /^ok watch 2$/);
   // The page asks for the status twice a second.
   await page.evaluate(() => {
-    const board = window.otherBoard;
+    const board = window.attachedBoard;
     const { onByte } = board;
     let answer = '';
     board.onByte = (byte) => {
@@ -156,7 +155,7 @@ test('a board that restarts in the middle of an answer is tracked again', async 
   await waitForLine(page, /^ok watch 2$/, 2);
 });
 
-test('pulses are not invented for a board that does not show them', async () => {
+test('the page shows no pulses for a board that does not report them', async () => {
   const page = await openWithBoard('robot', 5000);
   await unfold(page, '#pulses');
   await page.clock.runFor(500);
@@ -169,22 +168,22 @@ test('a HEX file of another program is identified, and written only when the use
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#flash');
   // A program that loops forever: rjmp .-2.
-  const blinkHex = ':02000000FFCF30\n:00000001FF\n';
-  const choose = () =>
-    page.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(blinkHex) });
-  await choose();
+  const loopHex = ':02000000FFCF30\n:00000001FF\n';
+  const chooseFile = () =>
+    page.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(loopHex) });
+  await chooseFile();
   const question = page.locator('#flash-what', { hasText: 'blink.hex, 2 bytes. It is not this firmware' });
   await question.waitFor();
-  const readFirstByte = () => page.evaluate(() => window.otherBoard.flash[0]);
+  const readFirstByte = () => page.evaluate(() => window.attachedBoard.flash[0]);
   const firstByte = await readFirstByte();
   assert.notEqual(firstByte, 0xff);
   await page.clock.runFor(3000);
   assert.equal(await readFirstByte(), firstByte, 'nothing is written yet');
   await page.locator('#flash-no').click();
   assert.equal(await question.isVisible(), false);
-  await choose();
+  await chooseFile();
   await page.locator('#flash-yes').click();
-  await until(page, 'it is written', async () => /^(not )?written/.test(await text(page, '#flash-said')));
+  await runUntil(page, 'the board is written', async () => /^(not )?written/.test(await text(page, '#flash-said')));
   await page.clock.runFor(3000);
   await page.locator('#trouble', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();

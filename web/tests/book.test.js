@@ -6,19 +6,19 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 
-import { openBlank, close, open, closePages } from './browser.js';
+import { openBlank, closeBrowser, openBrowser, closePages } from './browser.js';
 
 let folder;
 
 before(async () => {
-  await open();
+  await openBrowser();
   folder = await mkdtemp(join(tmpdir(), 'lizard-book-'));
   const build = spawnSync('mkdocs', ['build', '--strict', '--quiet', '--site-dir', folder], { cwd: new URL('../..', import.meta.url), encoding: 'utf8' });
   assert.equal(build.status, 0, build.stderr);
 });
 after(async () => {
   await closePages();
-  await close();
+  await closeBrowser();
   await rm(folder, { recursive: true });
 });
 

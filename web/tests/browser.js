@@ -1,4 +1,4 @@
-// The browser of the tests, and a web server that serves the page below a folder, as any server may.
+// The browser of the tests, and a web server that serves the page from a subfolder.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
@@ -7,8 +7,8 @@ import { extname, join, normalize } from 'node:path';
 import { chromium, firefox } from 'playwright-core';
 
 export const DIST = new URL('../dist/', import.meta.url).pathname;
-const FOLDER = '/somewhere/below/';
-const TYPES = {
+const BASE_PATH = '/somewhere/below/';
+const CONTENT_TYPES = {
   '.html': 'text/html',
   '.js': 'text/javascript',
   '.css': 'text/css',
@@ -18,11 +18,11 @@ const TYPES = {
   '.png': 'image/png',
   '.webmanifest': 'application/manifest+json',
 };
-/** Debian's Chromium without a window, which opens a page with half the work; the variable CHROMIUM names another. */
+/** Debian's headless Chromium, which opens pages faster. The environment variable CHROMIUM names another browser. */
 const CHROMIUM = { type: chromium, executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell', args: ['--no-sandbox'] };
 /**
- * Debian's Firefox, driven by WebDriver BiDi; the variable FIREFOX names another. Emulated media features come from its
- * preferences, because the command that playwright-core 1.65 sends for them needs a newer Firefox.
+ * Debian's Firefox, driven by WebDriver BiDi. The environment variable FIREFOX names another. Preferences emulate media
+ * features, because playwright-core 1.65 sends a command for them that needs a newer Firefox.
  */
 const FIREFOX = {
   type: firefox,
@@ -31,26 +31,26 @@ const FIREFOX = {
   firefoxUserPrefs: { 'ui.prefersReducedMotion': 1 },
 };
 /**
- * Time limit of a wait, ms: long, so that only a hang fails on a busy machine. PATIENCE sets another while a test is
- * written.
+ * Time limit of a wait: long, so that only a hang fails on a busy machine. The environment variable PATIENCE sets
+ * another, which is useful while a test is written.
  */
-export const PATIENCE = Number(process.env.PATIENCE ?? 300_000);
+export const TIMEOUT_MS = Number(process.env.PATIENCE ?? 300_000);
 
-/** Awaits a promise; fails with the name of the wait if it does not settle in time. */
-export function within(waitName, promise) {
+/** Awaits a promise; fails with the name of the wait if the promise does not settle in time. */
+export function withTimeout(waitName, promise) {
   let timer;
   const timeout = new Promise((_, reject) => {
-    const message = `waited ${PATIENCE / 1000} s for ${waitName}`;
-    timer = setTimeout(() => reject(new Error(message)), PATIENCE);
+    const message = `timeout after ${TIMEOUT_MS / 1000} s: ${waitName}`;
+    timer = setTimeout(() => reject(new Error(message)), TIMEOUT_MS);
   });
   return Promise.race([promise, timeout]).finally(() => clearTimeout(timer));
 }
 
-/** Adds time limits to calls that Playwright leaves without one. */
-function limit(object, name, methods) {
+/** Adds a time limit to methods that have none in Playwright. */
+function addTimeouts(object, name, methods) {
   for (const method of methods) {
     const original = object[method].bind(object);
-    object[method] = (...args) => within(`${name}.${method} of the browser`, original(...args));
+    object[method] = (...args) => withTimeout(`${name}.${method} of the browser`, original(...args));
   }
 }
 
@@ -61,54 +61,54 @@ let browser;
 let server;
 const pages = [];
 /** The servers of single tests. */
-const servers = [];
+const testServers = [];
 
 /** Opens a session of the browser's DevTools protocol. */
-export const devTools = () => browser.newBrowserCDPSession();
+export const openDevTools = () => browser.newBrowserCDPSession();
 
-/** Closes the pages of a test, which would go on walking. */
+/** Closes the pages of a test; otherwise their robots would walk on. */
 export async function closePages() {
-  await within('the pages to close', Promise.all(pages.splice(0).map((openedPage) => openedPage.close())));
-  for (const strictServer of servers.splice(0)) strictServer.close();
+  await withTimeout('the pages to close', Promise.all(pages.splice(0).map((page) => page.close())));
+  for (const testServer of testServers.splice(0)) testServer.close();
 }
 
 /**
- * Starts a web server for a folder's files with some headers, below a path of its own; `requestedPaths` lists the paths
- * of the requests.
+ * Starts a web server for a folder's files at BASE_PATH, with additional headers. Appends the paths of the requests to
+ * `requestedPaths`.
  */
 export async function serve(folder, requestedPaths = [], headers = {}) {
   const webServer = createServer(async (request, response) => {
-    const path = request.url.split('?')[0].replace(FOLDER, '/');
+    const path = request.url.split('?')[0].replace(BASE_PATH, '/');
     requestedPaths.push(path);
     for (const [name, value] of Object.entries(headers)) response.setHeader(name, value);
     const file = join(folder, normalize(path === '/' ? '/index.html' : path));
     try {
       const bytes = await readFile(file);
-      response.setHeader('content-type', TYPES[extname(file)] ?? 'text/plain');
+      response.setHeader('content-type', CONTENT_TYPES[extname(file)] ?? 'text/plain');
       response.end(bytes);
     } catch {
       response.statusCode = 404;
       response.end();
     }
   });
-  await within('a web server', new Promise((resolve) => webServer.listen(0, '127.0.0.1', resolve)));
+  await withTimeout('a web server', new Promise((resolve) => webServer.listen(0, '127.0.0.1', resolve)));
   return webServer;
 }
 
-async function start({ type, ...options }) {
+async function startBrowser({ type, ...options }) {
   server = await serve(DIST);
-  browser = await type.launch({ ...options, timeout: PATIENCE });
+  browser = await type.launch({ ...options, timeout: TIMEOUT_MS });
 }
 
-export const open = () => start(CHROMIUM);
+export const openBrowser = () => startBrowser(CHROMIUM);
 /** Opens the browser with Web Bluetooth, which Chromium on Linux hides behind a flag. */
-export const openWithBluetooth = () => start({ ...CHROMIUM, args: [...CHROMIUM.args, '--enable-features=WebBluetooth'] });
-/** Opens the browser with a film in Y4M as its camera, or without a camera if there is no film. */
-export const openWithCamera = (film) => start({ ...CHROMIUM, args: [...CHROMIUM.args, ...(film ? ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream', `--use-file-for-fake-video-capture=${film}`] : [])] });
-export const openFirefox = () => start(FIREFOX);
+export const openBrowserWithBluetooth = () => startBrowser({ ...CHROMIUM, args: [...CHROMIUM.args, '--enable-features=WebBluetooth'] });
+/** Opens the browser with a Y4M film as its camera, or without a camera if there is no film. */
+export const openBrowserWithCamera = (film) => startBrowser({ ...CHROMIUM, args: [...CHROMIUM.args, ...(film ? ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream', `--use-file-for-fake-video-capture=${film}`] : [])] });
+export const openFirefox = () => startBrowser(FIREFOX);
 
-export async function close() {
-  if (browser) await within('the browser to close', browser.close());
+export async function closeBrowser() {
+  if (browser) await withTimeout('the browser to close', browser.close());
   server?.close();
 }
 
@@ -129,14 +129,14 @@ async function reveal(locator) {
   });
 }
 
-/** Unfolds a panel in its room, unless it is unfolded. */
-export async function unfold(openedPage, panel) {
-  await reveal(openedPage.locator(`${panel} > :not(summary)`).first());
+/** Opens the room of a panel and unfolds the panel. */
+export async function unfold(page, panel) {
+  await reveal(page.locator(`${panel} > :not(summary)`).first());
 }
 
-/** Opens the room of any element that a test uses, so that tests need not mention rooms. */
-function openRooms(openedPage) {
-  const prototype = Object.getPrototypeOf(openedPage.locator('body'));
+/** Makes Playwright open the room of each element that a test uses, so that tests need not mention rooms. */
+function openRoomsOnUse(page) {
+  const prototype = Object.getPrototypeOf(page.locator('body'));
   if (prototype.opensRooms) return;
   prototype.opensRooms = true;
   for (const name of ['click', 'fill', 'selectOption', 'tap', 'press', 'focus', 'check', 'uncheck', 'boundingBox', 'screenshot', 'dragTo', 'hover', 'scrollIntoViewIfNeeded']) {
@@ -156,52 +156,52 @@ function openRooms(openedPage) {
   };
 }
 
-/** Returns the address of the page. */
-export const address = (target = server) => `http://127.0.0.1:${target.address().port}${FOLDER}`;
+/** Returns the address of the page on a server. */
+export const address = (webServer = server) => `http://127.0.0.1:${webServer.address().port}${BASE_PATH}`;
 
 /**
  * Opens an empty page with reduced motion, so that nothing moves unless a test asks for it. Files come from the server,
  * unless a test asks for service workers.
  */
 export async function openBlank(options = {}) {
-  const openedPage = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
-  pages.push(openedPage);
-  openRooms(openedPage);
-  limit(openedPage, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
-  limit(openedPage.clock, 'clock', ['install', 'pauseAt', 'runFor']);
-  limit(openedPage.keyboard, 'keyboard', ['press', 'down', 'up']);
-  limit(openedPage.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
-  openedPage.setDefaultTimeout(PATIENCE);
-  const originalWait = openedPage.waitForFunction.bind(openedPage);
-  openedPage.waitForFunction = (condition, ...args) => {
-    assert.notEqual(condition.constructor.name, 'AsyncFunction', 'a promise passes for a yes here: use until');
+  const page = await withTimeout('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
+  pages.push(page);
+  openRoomsOnUse(page);
+  addTimeouts(page, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
+  addTimeouts(page.clock, 'clock', ['install', 'pauseAt', 'runFor']);
+  addTimeouts(page.keyboard, 'keyboard', ['press', 'down', 'up']);
+  addTimeouts(page.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
+  page.setDefaultTimeout(TIMEOUT_MS);
+  const originalWait = page.waitForFunction.bind(page);
+  page.waitForFunction = (condition, ...args) => {
+    assert.notEqual(condition.constructor.name, 'AsyncFunction', 'waitForFunction does not await: use waitUntil');
     return originalWait(condition, ...args);
   };
-  return openedPage;
+  return page;
 }
 
 /** Returns the number of pixels by which the page is wider than its window; 0 if it fits. */
-export const overflow = (openedPage) =>
-  openedPage.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+export const overflow = (page) =>
+  page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
 /** Returns the text of an element. */
-export const text = (openedPage, selector) => openedPage.locator(selector).innerText();
+export const text = (page, selector) => page.locator(selector).innerText();
 
-/** Waits until a question to the page is answered with true. */
-export function until(openedPage, condition, value) {
-  const waitForYes = async () => {
-    while (!(await openedPage.evaluate(condition, value))) await new Promise((resolve) => setTimeout(resolve, 50));
+/** Waits until a function in the page returns true, or a promise of true. */
+export function waitUntil(page, condition, value) {
+  const pollCondition = async () => {
+    while (!(await page.evaluate(condition, value))) await new Promise((resolve) => setTimeout(resolve, 50));
   };
-  return within(`${condition} in Chromium`, waitForYes());
+  return withTimeout(`${condition} in the page`, pollCondition());
 }
 
 /**
- * Loads the page. `initScript` runs in it before anything else; the page's timers then run only when the test says so.
- * `url` is the address.
+ * Loads the page from `url`. An `initScript` runs in the page before any other script, and the page's clock then runs
+ * only when the test advances it.
  */
-export async function page(options = {}, initScript = undefined, url = address()) {
-  const openedPage = await openBlank(options);
-  openedPage.on('console', (message) => {
+export async function openPage(options = {}, initScript = undefined, url = address()) {
+  const page = await openBlank(options);
+  page.on('console', (message) => {
     // Expected: these pages take their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
     // Without a graphics chip the browser warns that its software painter is slow.
@@ -211,10 +211,10 @@ export async function page(options = {}, initScript = undefined, url = address()
     if (message.text().startsWith('Web Bluetooth is experimental on this platform')) return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
-  openedPage.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
+  page.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
   if (initScript) {
-    // The clock needs an event-loop turn for each timer, and the browser limits nested ones to one in 4 ms.
-    await openedPage.addInitScript(() => {
+    // The clock needs an event-loop turn for each timer, and the browser runs nested timers only every 4 ms.
+    await page.addInitScript(() => {
       const { setTimeout } = window;
       window.setTimeout = (callback, ms, ...args) => {
         if (ms) return setTimeout(callback, ms, ...args);
@@ -223,28 +223,28 @@ export async function page(options = {}, initScript = undefined, url = address()
         port2.postMessage(null);
       };
     });
-    await openedPage.clock.install({ time: 0 });
-    // Otherwise the clock would also advance by itself, at a pace that depends on the machine, and it has done so since
-    // it was installed: it is paused at a time that even a busy machine has not reached.
-    await openedPage.clock.pauseAt(60_000);
-    await openedPage.addInitScript(initScript);
+    await page.clock.install({ time: 0 });
+    // Without a pause the clock would also advance by itself. It has run since it was installed, so it is paused at a
+    // time that even a busy machine has not reached.
+    await page.clock.pauseAt(60_000);
+    await page.addInitScript(initScript);
   }
-  await openedPage.goto(url);
-  await openedPage.waitForFunction(() => window.lizard);
-  return openedPage;
+  await page.goto(url);
+  await page.waitForFunction(() => window.lizard);
+  return page;
 }
 
 /** Opens the page from a server whose policy forbids a browser feature, such as `serial`. */
 export async function openForbidden(feature, initScript) {
   const strictServer = await serve(DIST, [], { 'permissions-policy': `${feature}=()` });
-  servers.push(strictServer);
-  return page({}, initScript, address(strictServer));
+  testServers.push(strictServer);
+  return openPage({}, initScript, address(strictServer));
 }
 
-/** Runs the simulation as fast as possible. */
-export async function advance(openedPage, ms) {
-  // In short steps, so that answers and their consequences come in between.
-  await openedPage.evaluate(async (ms) => {
+/** Advances the simulation by some ms, as fast as possible. */
+export async function advance(page, ms) {
+  // In short steps, so that the page handles each answer before the next step.
+  await page.evaluate(async (ms) => {
     for (let remainingMs = ms; remainingMs > 0; remainingMs -= 4) {
       window.lizard.advance(Math.min(4, remainingMs));
       await Promise.resolve();
@@ -254,33 +254,34 @@ export async function advance(openedPage, ms) {
 
 /** Opens the page and waits until its robot stands. */
 export async function openStanding(options) {
-  const openedPage = await page(options);
-  await advance(openedPage, 2500);
-  return openedPage;
+  const page = await openPage(options);
+  await advance(page, 2500);
+  return page;
 }
 
-/**
- * Asserts that the robot stays where it was after Esc, except for a hair's width while the servos reach their targets.
- */
-export async function assertStops(openedPage) {
-  const readPlace = () => openedPage.evaluate(() => window.lizard.last.place);
-  await openedPage.keyboard.press('Escape');
-  await advance(openedPage, 500);
+/** Presses Esc, and asserts that the robot then stays where it is, within 0.05 mm. */
+export async function assertStops(page) {
+  const readPlace = () => page.evaluate(() => window.lizard.last.place);
+  await page.keyboard.press('Escape');
+  await advance(page, 500);
   const stopPlace = await readPlace();
-  await advance(openedPage, 1000);
+  await advance(page, 1000);
   const laterPlace = await readPlace();
   for (const key of ['x', 'y']) assert.ok(Math.abs(laterPlace[key] - stopPlace[key]) < 0.05, `${key}: ${stopPlace[key]} mm, then ${laterPlace[key]}`);
 }
 
-/** Types a line, waits for a line of the log that begins with `answer`, and returns to the room that was open. */
-export async function type(openedPage, line, answer) {
-  const room = await openedPage.evaluate(() => document.body.dataset.at);
-  await openedPage.getByLabel('A line for the robot').fill(line);
-  await openedPage.getByRole('button', { name: 'Send' }).click();
-  await advance(openedPage, 300);
-  const logLine = openedPage.locator('#log div', { hasText: answer }).last();
+/**
+ * Sends a line to the robot, waits for a line of the log that has `answer`, and returns that line. The open room stays
+ * open.
+ */
+export async function sendLine(page, line, answer) {
+  const room = await page.evaluate(() => document.body.dataset.at);
+  await page.getByLabel('A line for the robot').fill(line);
+  await page.getByRole('button', { name: 'Send' }).click();
+  await advance(page, 300);
+  const logLine = page.locator('#log div', { hasText: answer }).last();
   await logLine.waitFor();
   const lineText = await logLine.innerText();
-  await reveal(openedPage.locator(`#${room} h2`));
+  await reveal(page.locator(`#${room} h2`));
   return lineText;
 }

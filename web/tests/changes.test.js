@@ -3,11 +3,13 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, close, complaints, open, openStanding, closePages, type, unfold } from './browser.js';
+import {
+  address, advance, closeBrowser, complaints, openBrowser, openStanding, closePages, sendLine, unfold,
+} from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 /** Sets a slider to a value, as a user would. */
 async function setSlider(page, label, value) {
@@ -24,14 +26,14 @@ async function download(page, button = 'Download robot.toml') {
 /** Reads the number of a key in a table of a robot.toml line by line, without a parser. */
 function readNumber(toml, table, key) {
   const lines = toml.split('\n');
-  const beginIndex = lines.findIndex((line) => line.startsWith(`[${table}]`));
-  const lineCount = lines.slice(beginIndex + 1).findIndex((line) => line.startsWith('['));
-  const tableLines = lines.slice(beginIndex + 1, lineCount < 0 ? undefined : beginIndex + 1 + lineCount);
+  const tableIndex = lines.findIndex((line) => line.startsWith(`[${table}]`));
+  const lineCount = lines.slice(tableIndex + 1).findIndex((line) => line.startsWith('['));
+  const tableLines = lines.slice(tableIndex + 1, lineCount < 0 ? undefined : tableIndex + 1 + lineCount);
   const line = tableLines.find((line) => line.startsWith(`${key} =`));
   return line && parseFloat(line.split('=')[1]);
 }
 
-async function openChanged() {
+async function openWithChanges() {
   const page = await openStanding();
   await page.getByLabel('Driven by').selectOption('strut');
   await setSlider(page, 'Pull in the strut', '2.5');
@@ -50,7 +52,7 @@ async function openChanged() {
 }
 
 test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async () => {
-  const page = await openChanged();
+  const page = await openWithChanges();
   const toml = await download(page);
   const values = [
     ['leg', 'crank'],
@@ -66,8 +68,8 @@ test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async
   assert.match(toml, /^kind = "strut"$/m);
 });
 
-/** Types a length that is refused; returns the message, and the text of the button with the nearest valid one. */
-async function typeRefused(page, key, value) {
+/** Types a length that is refused; returns the message, and the text of the button that offers another length. */
+async function typeRefusedLength(page, key, value) {
   const input = page.locator(`#lengths input[name="${key}"]`);
   await input.fill(String(value));
   await input.press('Enter');
@@ -82,7 +84,7 @@ test('a refused length is explained by its effect on the robot, with the nearest
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   await page.locator('#sketch circle').first().waitFor();
-  const [refusalText, offerText] = await typeRefused(page, 'links.l12', 80);
+  const [refusalText, offerText] = await typeRefusedLength(page, 'links.l12', 80);
   assert.equal(refusalText, '80 mm is too long: in the neutral pose the left slider would run into its end.');
   const nearest = Number(/^Try ([0-9.]+) mm$/.exec(offerText)?.[1]);
   assert.ok(nearest > 45 && nearest < 80, offerText);
@@ -101,7 +103,7 @@ test('a button drops the gait that forbids a length, and the length is accepted'
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   await page.locator('#sketch circle').first().waitFor();
-  assert.deepEqual(await typeRefused(page, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
+  assert.deepEqual(await typeRefusedLength(page, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
   await page.locator('#lengths-instead button', { hasText: 'Drop' }).click();
   await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 60);
   const gaits = await page.evaluate(() => window.lizard.description.gaits.map(({ name }) => name));
@@ -119,7 +121,7 @@ test('an unchanged file is downloaded unchanged', async () => {
 });
 
 test('a reload keeps the user\'s changes', async () => {
-  const page = await openChanged();
+  const page = await openWithChanges();
   await page.locator('#servos').selectOption('ideal');
   await page.reload();
   await page.waitForFunction(() => window.lizard);
@@ -138,34 +140,34 @@ test('a reload keeps the user\'s changes', async () => {
 });
 
 test('stored changes to a file that has changed since are dropped, with a message', async () => {
-  const page = await openChanged();
+  const page = await openWithChanges();
   await page.evaluate(() => {
     const key = Object.keys(localStorage)[0];
     const saved = JSON.parse(localStorage.getItem(key));
     localStorage.setItem(key, JSON.stringify({ ...saved, original: `${saved.original}\n` }));
   });
-  // While the address holds the robot, nothing would be lost.
+  // The robot in the address would restore the changes, so the page is opened without it.
   await page.waitForFunction(() => location.hash.includes('robot='));
   await page.goto(address());
   await page.waitForFunction(() => window.lizard);
   await page.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));
   const lostToml = await download(page, 'Download what was changed');
-  assert.deepEqual([readNumber(lostToml, 'leg', 'crank'), readNumber(lostToml, 'body', 'mass')], [40, 412], 'they are not lost');
+  assert.deepEqual([readNumber(lostToml, 'leg', 'crank'), readNumber(lostToml, 'body', 'mass')], [40, 412], 'the changes are not lost');
 });
 
 test('the pace slider shows the robot\'s pace after a typed line and after a reset', async () => {
   const page = await openStanding();
   await advance(page, 3000);
-  await type(page, 'speed 35', 'ok speed 35');
+  await sendLine(page, 'speed 35', 'ok speed 35');
   const slider = page.getByLabel('Pace');
   assert.equal(await slider.inputValue(), '35');
   await page.locator('#reset').click();
-  // No status has been asked for yet.
+  // The page has not asked for a status yet.
   await advance(page, 2000);
   assert.equal(await slider.inputValue(), '100');
   assert.equal(await page.locator('#speed-out').innerText(), '100 %');
-  assert.match(await type(page, 'status', 'ok gait=stand'), / speed=100( |$)/);
+  assert.match(await sendLine(page, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
 test("the share of the servos' line is that of the robot's pace and of the servos' supply", async () => {
@@ -178,27 +180,27 @@ test("the share of the servos' line is that of the robot's pace and of the servo
   };
   await advance(page, 3000);
   const fullShare = await readShare(100);
-  await type(page, 'speed 50', 'ok speed 50');
+  await sendLine(page, 'speed 50', 'ok speed 50');
   const halfShare = await readShare(50);
-  // docs/gaits.md: the hardest gait uses 0.82 and 0.51.
+  // The shares of the hardest gait in docs/gaits.md.
   assert.deepEqual([fullShare, halfShare], [0.82, 0.51]);
-  // Those of docs/gaits.md to a hundredth, with a mark from 0.9.
-  const assertShares = async (...shares) => {
+  // Compares with the shares of docs/gaits.md to a hundredth; a share of 0.9 or more has a mark.
+  const assertShares = async (...expectedShares) => {
     const lines = await page.locator('#gaits .line').allInnerTexts();
-    assert.equal(lines.length, shares.length);
+    assert.equal(lines.length, expectedShares.length);
     for (const [n, line] of lines.entries()) {
       const share = Number(line.match(/line (\d\.\d\d)$/)[1]);
-      assert.ok(Math.abs(share - shares[n]) < 0.011, `${line}, not ${shares[n]}`);
+      assert.ok(Math.abs(share - expectedShares[n]) < 0.011, `${line}, not ${expectedShares[n]}`);
       assert.equal(line.startsWith('⚠'), share >= 0.9, line);
     }
   };
   await assertShares(0.45, 0.49, 0.51, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
-  await type(page, 'speed 100', 'ok speed 100');
+  await sendLine(page, 'speed 100', 'ok speed 100');
   await setSlider(page, 'Supply of the servos', '4.2');
   await page.locator('#line-note.warning').waitFor();
   await page.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'line 0.3');
   await assertShares(0.83, 0.92, 0.93, 0.83, 0.93, 0.93, 0.82, 0.82, 0.33);
-  // Another model comes with a supply of its own.
+  // Another servo model sets its own supply.
   await page.locator('#servos').selectOption('MG90S');
   assert.equal(await page.getByLabel('Supply of the servos').inputValue(), '4.8');
 });
@@ -207,7 +209,7 @@ test('sliders without an effect on rigid legs with ideal servos are disabled, wi
   const page = await openStanding();
   for (const panel of ['#world', '#power']) await unfold(page, panel);
   const note = page.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
-  assert.equal(await note.isVisible(), false, 'the torque of real servos is not for nothing');
+  assert.equal(await note.isVisible(), false, 'with real servos, friction and mass matter');
   assert.ok(await page.getByLabel('Pad friction').isEnabled());
   await page.locator('#servos').selectOption('ideal');
   assert.ok(await note.isVisible());
@@ -245,7 +247,7 @@ test('predictions come with the page for an unchanged robot, and are computed fo
       assert.equal(shownNotes[n], [...forwardTexts, ...turnTexts].join(', '), `${name}, gait ${n}`);
     }
   }
-  assert.equal(countWorkers(), 0, 'nothing was computed for it');
+  assert.equal(countWorkers(), 0, 'no worker was started');
 
   await page.locator('#robot').selectOption('robot');
   await page.waitForFunction(() => window.lizard.file === 'robot');

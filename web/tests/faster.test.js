@@ -1,4 +1,4 @@
-// "Make it faster": the page finds the gait that `lizard tune` finds, can be stopped, and says what cannot be.
+// "Make it faster": the search finds the gait that `lizard tune` finds, can be stopped, and refuses what is impossible.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { createRequire } from 'node:module';
@@ -6,15 +6,16 @@ import { join, resolve } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { advance, close, complaints, open, overflow, openStanding, closePages, unfold, within } from './browser.js';
+import {
+  advance, closeBrowser, complaints, openBrowser, overflow, openStanding, closePages, text, unfold, withTimeout,
+} from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-const text = (page, id) => page.locator(`#${id}`).innerText();
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 
 /** Opens the gait editor with a gait of the robot, and sets the number of rounds of a search. */
@@ -29,8 +30,8 @@ async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {
   return page;
 }
 
-const start = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
-const waitForEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
+const startSearch = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
+const waitForSearchEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
 /** Waits until a number of gaits have been tried. */
 const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
 
@@ -40,26 +41,26 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
   const args = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
   const [{ stdout }] = await Promise.all([
-    within('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), args)),
-    start(page).then(() => waitForEnd(page)),
+    withTimeout('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), args)),
+    startSearch(page).then(() => waitForSearchEnd(page)),
   ]);
-  assert.equal(loadedPaths.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search comes when it is asked for');
+  assert.equal(loadedPaths.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search is loaded when it is started');
   const tuneResult = JSON.parse(stdout);
-  const gain = Math.round(100 * (tuneResult.tuned.speeds[0] / tuneResult.gait.speeds[0] - 1));
+  const gainPercent = Math.round(100 * (tuneResult.tuned.speeds[0] / tuneResult.gait.speeds[0] - 1));
   assert.equal(
-    await text(page, 'faster-said'),
-    `Faster on ${tuneResult.faster} of 200 random robots and floors, and ${gain} % faster where only 5 % are slower. No servo turns faster than ${tuneResult.rate.toFixed(0)} °/s.`,
+    await text(page, '#faster-said'),
+    `Faster on ${tuneResult.faster} of 200 random robots and floors, and ${gainPercent} % faster where only 5 % are slower. No servo turns faster than ${tuneResult.rate.toFixed(0)} °/s.`,
   );
-  const previousTable = await text(page, 'gait-table');
-  const distanceText = await text(page, 'gait-way');
+  const previousTable = await text(page, '#gait-table');
+  const distanceText = await text(page, '#gait-way');
   const readRows = () => page.locator('#faster-rows tr').allInnerTexts();
   const [, distanceRow] = (await readRows()).map((row) => row.split('\t'));
   assert.deepEqual(distanceRow.slice(0, 2), ['distance per cycle', distanceText]);
   await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent !== previousTable, previousTable);
-  assert.equal(await text(page, 'gait-table'), tuneResult.fragment);
-  assert.equal(await text(page, 'gait-way'), distanceRow[2]);
-  // Back, and again.
+  assert.equal(await text(page, '#gait-table'), tuneResult.fragment);
+  assert.equal(await text(page, '#gait-way'), distanceRow[2]);
+  // Undoes it, and uses it again.
   await page.getByRole('button', { name: 'Back to the previous gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent === previousTable, previousTable);
   await page.getByRole('button', { name: 'Use this gait' }).click();
@@ -76,36 +77,36 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
 
 test('a search stopped midway returns the best gait so far, and the page can search again', async () => {
   const page = await openEditor({ rounds: 200 });
-  await start(page);
+  await startSearch(page);
   await waitForTries(page, 21);
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForEnd(page);
-  const message = await text(page, 'faster-said');
-  const [, done] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
-  assert.ok(Number(done) >= 21 && Number(done) < 8040, message);
+  await waitForSearchEnd(page);
+  const message = await text(page, '#faster-said');
+  const [, triedCount] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
+  assert.ok(Number(triedCount) >= 21 && Number(triedCount) < 8040, message);
   assert.ok(await page.locator('#faster-progress').isHidden());
   await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction(() => Number(document.querySelector('#gait-amplitude').value) > 20);
-  // From the gait that was taken.
-  await start(page);
+  // The next search starts from the gait in use.
+  await startSearch(page);
   await waitForTries(page, 1);
   assert.ok(await page.locator('#faster-result').isHidden());
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForEnd(page);
+  await waitForSearchEnd(page);
 });
 
-test('the found gait walks beside the previous one, and goes farther by the promised share', async () => {
+test('the found gait walks beside the previous one, and is faster by the promised ratio', async () => {
   const page = await openEditor({ rounds: 200 });
   await page.locator('#solid').click();
-  await start(page);
+  await startSearch(page);
   await waitForTries(page, 21);
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForEnd(page);
+  await waitForSearchEnd(page);
   const rows = await page.locator('#faster-rows tr').allInnerTexts();
   const [, previousSpeed, foundSpeed] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
   assert.ok(foundSpeed > previousSpeed, rows.join());
   await page.getByRole('button', { name: 'See both walk' }).click();
-  assert.ok(await page.locator('#space').isHidden(), 'the drawing has both');
+  assert.ok(await page.locator('#space').isHidden(), 'the drawing from above shows both robots');
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'mine');
@@ -113,24 +114,24 @@ test('the found gait walks beside the previous one, and goes farther by the prom
   await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-ways').textContent));
   await page.keyboard.press('Escape');
   await advance(page, 1000);
-  const comparison = await text(page, 'faster-ways');
+  const comparison = await text(page, '#faster-ways');
   const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed} mm/s`);
   assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
   assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
 });
 
-test('for a turn the page shows both angles, and the found gait turns faster by the promised share', async () => {
+test('for a turn the page shows both angles, and the found gait turns faster by the promised ratio', async () => {
   const page = await openEditor({ gait: 'left', rounds: 200 });
-  // The search cannot surpass the robot's own turn, so it starts from one with half the stroke in front.
+  // The robot's own turn cannot be made faster, so the search starts from one with half the stroke of the front legs.
   for (const [leg, share] of [['LF', '-0.5'], ['RF', '0.5']]) {
     await page.getByLabel(`${leg} share`).fill(share);
     await page.keyboard.press('Tab');
   }
-  await start(page);
+  await startSearch(page);
   await waitForTries(page, 41);
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForEnd(page);
+  await waitForSearchEnd(page);
   const rows = (await page.locator('#faster-rows tr').allInnerTexts()).map((row) => row.split('\t'));
   const [, previousSpeed, foundSpeed] = rows.find(([name]) => name === 'speed');
   assert.ok([previousSpeed, foundSpeed].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${previousSpeed} and ${foundSpeed}`);
@@ -143,7 +144,7 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
   await advance(page, 40_000);
   await page.keyboard.press('Escape');
   await advance(page, 1000);
-  const comparison = await text(page, 'faster-ways');
+  const comparison = await text(page, '#faster-ways');
   const [, foundAngle, previousAngle] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed}`);
   assert.ok(Number(foundAngle) > 360, `${foundAngle} is more than a whole turn`);
@@ -151,41 +152,41 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
 
 test('changing the robot ends a search for the previous one', async () => {
   const page = await openEditor({ rounds: 200 });
-  await start(page);
+  await startSearch(page);
   await waitForTries(page, 1);
   await unfold(page, '#lengths-panel');
   await page.locator('#lengths input[name="links.l12"]').fill('46');
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
-  await waitForEnd(page);
-  assert.equal(await text(page, 'faster-said'), 'The robot has changed, so the search for the previous one has ended.');
+  await waitForSearchEnd(page);
+  assert.equal(await text(page, '#faster-said'), 'The robot has changed, so the search for the previous one has ended.');
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
 });
 
-test('a gait that cannot be made faster says so', async () => {
+test('the page says so if a gait cannot be made faster', async () => {
   // With servos this slow no stride is better than that of `left`.
   const page = await openEditor({ gait: 'left', rate: 200, seed: 1 });
-  await start(page);
-  await waitForEnd(page);
-  assert.equal(await text(page, 'faster-said'), 'No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.');
+  await startSearch(page);
+  await waitForSearchEnd(page);
+  assert.equal(await text(page, '#faster-said'), 'No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.');
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
 test('an impossible search is refused with a message, and a number out of range is ignored', async () => {
   const page = await openEditor({ gait: 'arc-left' });
-  await start(page);
-  await waitForEnd(page);
-  assert.match(await text(page, 'faster-said'), /^This gait cannot be made faster: the gait `mine` goes ahead and turns; /);
+  await startSearch(page);
+  await waitForSearchEnd(page);
+  assert.match(await text(page, '#faster-said'), /^This gait cannot be made faster: the gait `mine` goes ahead and turns; /);
   await page.locator('#gait-from').selectOption({ label: 'walk' });
   const rate = page.getByLabel('Servos at most');
   await rate.fill('900');
-  await start(page);
+  await startSearch(page);
   await page.waitForFunction(() => document.querySelector('#faster-said').textContent.includes('900'));
-  assert.equal(await text(page, 'faster-said'), 'This gait cannot be made faster: servos of at most 900: from 10 to 310 deg/s, which is limits.gait_slew in robot.toml.');
+  assert.equal(await text(page, '#faster-said'), 'This gait cannot be made faster: servos of at most 900: from 10 to 310 deg/s, which is limits.gait_slew in robot.toml.');
   await rate.fill('5');
   assert.equal(await rate.getAttribute('aria-invalid'), 'true');
   await page.keyboard.press('Tab');
-  assert.equal(await rate.inputValue(), '900', 'the last one that was taken');
+  assert.equal(await rate.inputValue(), '900', 'the last valid number');
 });
 
 test('the room works by keyboard alone, fits a phone, and axe-core finds nothing in it', async () => {
@@ -200,8 +201,8 @@ test('the room works by keyboard alone, fits a phone, and axe-core finds nothing
   const { violations } = await page.evaluate(() => window.axe.run('.faster', { resultTypes: ['violations'] }));
   assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`), []);
   await page.keyboard.press('Enter');
-  await waitForEnd(page);
-  assert.match(await text(page, 'faster-said'), /^Stopped after /);
+  await waitForSearchEnd(page);
+  assert.match(await text(page, '#faster-said'), /^Stopped after /);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start', 'the focus stays');
 });
 

@@ -1,13 +1,13 @@
-// The page in Debian's Firefox. Boards at a port are tested in Chromium only, whose clock a test can stop: on a busy
-// machine a simulated board is slower than real time.
+// The page in Debian's Firefox. Boards at a port are tested in Chromium only: on a busy machine a simulated board is
+// slower than real time, and only in Chromium a test can stop the page's clock.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { DIST, address, advance, openBlank, close, complaints, openFirefox, serve, overflow, openStanding, assertStops, closePages, until, within } from './browser.js';
+import { DIST, address, advance, openBlank, closeBrowser, complaints, openFirefox, serve, overflow, openStanding, assertStops, closePages, waitUntil, withTimeout } from './browser.js';
 
 before(openFirefox);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const click = (page, selector) => page.evaluate((selector) => document.querySelector(selector).click(), selector);
 const text = (page, selector) => page.evaluate((selector) => document.querySelector(selector).textContent, selector);
@@ -29,20 +29,21 @@ test('the image walks as predicted, and Esc stops it', async () => {
 
 test('the page says that no board can be connected exactly if this Firefox lacks Web Serial', async () => {
   const page = await openStanding();
-  const { has: hasSerial, note, isOff } = await page.evaluate(() => ({
-    has: typeof navigator.serial?.requestPort === 'function',
+  const { hasSerial, note, isConnectDisabled } = await page.evaluate(() => ({
+    hasSerial: typeof navigator.serial?.requestPort === 'function',
     note: document.querySelector('#no-serial').hidden ? '' : document.querySelector('#no-serial').textContent,
-    isOff: document.querySelector('#connect').disabled,
+    isConnectDisabled: document.querySelector('#connect').disabled,
   }));
-  assert.deepEqual([isOff, note.startsWith('This browser cannot reach a board on USB')], [!hasSerial, !hasSerial]);
+  assert.equal(isConnectDisabled, !hasSerial);
+  assert.equal(note.startsWith('This browser cannot reach a board on USB'), !hasSerial);
 });
 
 test('every step of the first connection can be tried with the simulated board', async () => {
   const page = await openStanding();
   await click(page, '#setup-open');
-  const count = await page.evaluate(() => document.querySelectorAll('#setup-steps button').length);
-  assert.equal(count, 9);
-  for (let n = 0; n < count; n++) {
+  const stepCount = await page.evaluate(() => document.querySelectorAll('#setup-steps button').length);
+  assert.equal(stepCount, 9);
+  for (let n = 0; n < stepCount; n++) {
     await page.evaluate((n) => document.querySelectorAll('#setup-steps button')[n].click(), n);
     await advance(page, 2000);
     assert.match(await text(page, '#setup-step'), new RegExp(`^${n + 1} of 9: `));
@@ -55,19 +56,20 @@ test('every step of the first connection can be tried with the simulated board',
   assert.match(await text(page, '#setup-said'), /^Every servo holds its middle now/);
 });
 
-test('a phone\'s width shows it without scrolling sideways, and so does a large screen', async () => {
+test('the page fits a phone and a large screen without scrolling sideways', async () => {
   for (const [width, height] of [[500, 800], [3840, 2160]]) {
     assert.equal(await overflow(await openStanding({ viewport: { width, height } })), 0);
   }
 });
 
-test('once opened, it walks without a server', async () => {
+test('once opened, the page works without a server', async () => {
   const server = await serve(DIST);
   const page = await openBlank({ serviceWorkers: 'allow' });
   await page.goto(address(server));
-  await until(page, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
+  await waitUntil(page, async () =>
+    (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
   server.closeAllConnections();
-  await within('the server to close', new Promise((resolve) => server.close(resolve)));
+  await withTimeout('the server to close', new Promise((resolve) => server.close(resolve)));
   await page.reload();
   await page.waitForFunction(() => window.lizard);
   await advance(page, 2500);

@@ -1,13 +1,13 @@
-// A gait is made by dragging bars: its prediction comes true, and one that breaks a limit is refused with the nearest
+// A gait is made by dragging bars: it walks as predicted, and a gait that breaks a limit is refused with the nearest
 // valid value.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, openStanding, closePages, unfold } from './browser.js';
+import { advance, closeBrowser, complaints, openBrowser, openStanding, closePages, unfold } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 async function openEditor(options) {
   const page = await openStanding(options);
@@ -16,20 +16,21 @@ async function openEditor(options) {
   return page;
 }
 
-const text = (page, id) => page.locator(`#gait-${id}`).innerText();
+const editorText = (page, id) => page.locator(`#gait-${id}`).innerText();
 /** Waits until the shown gait has been tried. */
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 const waitForChange = (page, id, previousText) => page.waitForFunction(([id, previousText]) => document.querySelector(`#gait-${id}`).textContent !== previousText, [id, previousText]);
 
-/** Drags from one phase to another, 0 to 1, on a ring of the circle, 0 to 3 from the outside. */
-async function drag(page, ring, from, to) {
+/** Drags from one phase to another, 0 to 1, on a ring of the circle. Rings count from 0, the outermost, to 3. */
+async function drag(page, ring, fromPhase, toPhase) {
   await page.locator('#gait-circle').scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator('#gait-circle').boundingBox();
   const radius = ([104, 82, 60, 38][ring] * Math.min(width, height)) / 240;
   const pointAt = (phase) => [x + width / 2 + radius * Math.sin(2 * Math.PI * phase), y + height / 2 - radius * Math.cos(2 * Math.PI * phase)];
-  await page.mouse.move(...pointAt(from));
+  await page.mouse.move(...pointAt(fromPhase));
   await page.mouse.down();
-  for (let step = 1; step <= 10; step++) await page.mouse.move(...pointAt(from + ((to - from) * step) / 10));
+  const stepPhase = (toPhase - fromPhase) / 10;
+  for (let step = 1; step <= 10; step++) await page.mouse.move(...pointAt(fromPhase + stepPhase * step));
   await page.mouse.up();
 }
 
@@ -37,13 +38,13 @@ test('the editor\'s prediction of an unchanged gait is that of its button in Dri
   const page = await openEditor();
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
-  assert.equal(await text(page, 'way'), await button.innerText());
-  assert.match(await text(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
+  assert.equal(await editorText(page, 'way'), await button.innerText());
+  assert.match(await editorText(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
 });
 
 test('a bar and its end are dragged, and the numbers follow', async () => {
   const page = await openEditor();
-  const previousDistance = await text(page, 'way');
+  const previousDistance = await editorText(page, 'way');
   // walk has LF from 0.25 to 0.25 + 0.75.
   await drag(page, 0, 0.5, 0.6);
   assert.ok(Math.abs(Number(await page.getByLabel('LF starts at').inputValue()) - 0.35) < 0.011);
@@ -66,14 +67,14 @@ test('an edited gait survives a reload, and an invalid stored one is dropped', a
   await waitForPrediction(page);
   assert.equal(await page.locator('#gait-name').inputValue(), 'waddle');
   assert.equal(await page.getByLabel('LF starts at').inputValue(), '0.35');
-  assert.match(await text(page, 'table'), /^\[gait\.waddle\]/);
+  assert.match(await editorText(page, 'table'), /^\[gait\.waddle\]/);
   for (const stored of ['{', '3', '{"name":"x","held":false,"period":1,"duty":0.5,"amplitude":20,"start":[0,0,0],"gain":[1,1,1,1]}']) {
     await page.evaluate((stored) => localStorage.setItem(`lizard ${location.pathname} gait`, stored), stored);
     await page.reload();
     await page.waitForFunction(() => window.lizard);
     await unfold(page, '#gait-editor');
     await waitForPrediction(page);
-    assert.match(await text(page, 'table'), /^\[gait\.mine\]/);
+    assert.match(await editorText(page, 'table'), /^\[gait\.mine\]/);
   }
 });
 
@@ -82,22 +83,22 @@ test('a value that breaks a limit is refused, and a button offers the nearest va
   await page.locator('#gait-amplitude').fill('40');
   const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
   await button.waitFor();
-  assert.match(await text(page, 'refusal'), /^in "mine" the left front leg would lock: margin leg_lf [0-9.]+ is below 0\.300/);
+  assert.match(await editorText(page, 'refusal'), /^in "mine" the left front leg would lock: margin leg_lf [0-9.]+ is below 0\.300/);
   assert.ok(await page.locator('#gait-try').isDisabled());
   const value = Number(/Amplitude ([0-9.]+)°/.exec(await button.innerText())[1]);
   await button.click();
   await waitForPrediction(page);
   assert.equal(Number(await page.locator('#gait-amplitude').inputValue()), value);
   assert.ok(await page.locator('#gait-no').isHidden());
-  // It is the nearest: a tenth of a degree more is refused again.
+  // A tenth of a degree more is refused again, so the offered value is the nearest.
   await page.locator('#gait-amplitude').fill(String(value + 0.1));
   await button.waitFor();
 });
 
 test('a number out of range is marked and ignored, and restored when the box is left', async () => {
   const page = await openEditor();
-  const table = await text(page, 'table');
-  for (const [input, wrongValue, ownValue] of [
+  const table = await editorText(page, 'table');
+  for (const [input, wrongValue, validValue] of [
     [page.locator('#gait-amplitude'), '61', '20'],
     [page.locator('#gait-period'), '0.05', '1'],
     [page.getByLabel('LF starts at'), '1.5', '0.25'],
@@ -106,21 +107,21 @@ test('a number out of range is marked and ignored, and restored when the box is 
     await input.fill(wrongValue);
     assert.equal(await input.getAttribute('aria-invalid'), 'true', wrongValue);
     await page.keyboard.press('Tab');
-    assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [ownValue, null]);
+    assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [validValue, null]);
   }
-  // By now the worker has answered everything, in order.
+  // The worker answers in order, so after this change it has answered all the earlier ones.
   await page.locator('#gait-name').fill('other');
   await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.other]'));
-  assert.equal(await text(page, 'table'), table.replace('mine', 'other'));
+  assert.equal(await editorText(page, 'table'), table.replace('mine', 'other'));
 });
 
 test('an edited gait walks as far as predicted, and is written into robot.toml', async () => {
   const page = await openEditor();
-  const previousDistance = await text(page, 'way');
+  const previousDistance = await editorText(page, 'way');
   await page.locator('#gait-name').fill('stride');
   await page.locator('#gait-amplitude').fill('16');
   await waitForChange(page, 'way', previousDistance);
-  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await text(page, 'way'))[1]);
+  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await editorText(page, 'way'))[1]);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.stride]'));
   await advance(page, 3000);
@@ -129,7 +130,7 @@ test('an edited gait walks as far as predicted, and is written into robot.toml',
   const walkedMm = await page.evaluate(() => window.lizard.measured().forward);
   assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `${walkedMm} mm of ${predictedMm}`);
   const toml = await page.evaluate(() => window.lizard.toml);
-  assert.ok(toml.includes(await text(page, 'table')), toml.slice(-400));
+  assert.ok(toml.includes(await editorText(page, 'table')), toml.slice(-400));
   // One click restores the previous robot.
   await unfold(page, '#lengths-panel');
   await page.locator('#lengths-reset').click();
@@ -138,10 +139,10 @@ test('an edited gait walks as far as predicted, and is written into robot.toml',
 
 test('a backward gait can be edited, and any gait reversed', async () => {
   const page = await openEditor();
-  const forwardMm = Number.parseFloat(await text(page, 'way'));
+  const forwardMm = Number.parseFloat(await editorText(page, 'way'));
   await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
-  assert.ok(Math.abs(forwardMm + Number.parseFloat(await text(page, 'way'))) < 0.3);
+  assert.ok(Math.abs(forwardMm + Number.parseFloat(await editorText(page, 'way'))) < 0.3);
   assert.equal(await page.locator('#gait-circle .bar.against').count(), 4);
   assert.equal(await page.getByLabel('LF share').inputValue(), '-1');
   // `back` of robot.toml is walk in reverse.
@@ -150,17 +151,17 @@ test('a backward gait can be edited, and any gait reversed', async () => {
   await page.locator('#gait-from').selectOption({ label: 'back' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
   const backMm = Number.parseFloat(await page.locator('#gaits button[data-command="back"] small').innerText());
-  assert.ok(Math.abs(backMm - Number.parseFloat(await text(page, 'way'))) < 0.3);
+  assert.ok(Math.abs(backMm - Number.parseFloat(await editorText(page, 'way'))) < 0.3);
 });
 
 test('left and right are exchanged', async () => {
   const page = await openEditor();
   await page.locator('#gait-from').selectOption({ label: 'arc-left' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) > 1);
-  const turn = Number.parseFloat(await text(page, 'turn'));
+  const turn = Number.parseFloat(await editorText(page, 'turn'));
   await page.getByRole('button', { name: 'Exchange left and right' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) < -1);
-  assert.ok(Math.abs(turn + Number.parseFloat(await text(page, 'turn'))) < 0.2);
+  assert.ok(Math.abs(turn + Number.parseFloat(await editorText(page, 'turn'))) < 0.2);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

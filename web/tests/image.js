@@ -1,13 +1,13 @@
-// Images of robots as the page makes them, made here from the page's own files.
-import { file, Robot } from './wasm.js';
+// Makes flash images of robots as the page does, from the page's own files.
+import { readPageFile, Robot } from './wasm.js';
 
-/** Makes the image of flash for a robot file of the page. */
-export async function imageOf(name) {
+/** Makes the flash image for a robot file of the page. */
+export async function imageOf(robotName) {
   const robot = new Robot();
-  const { start } = robot.read(await file(`${name}.toml`, 'utf8'));
+  const { start } = robot.read(await readPageFile(`${robotName}.toml`, 'utf8'));
   const section = robot.section();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
-  flash.set(await file('code.bin'));
+  flash.set(await readPageFile('code.bin'));
   flash.set(section, start);
   return flash.subarray(0, start + section.length);
 }
@@ -18,7 +18,7 @@ export function hexOf(bytes) {
   for (let address = 0; address < bytes.length; address += 16) {
     const data = bytes.subarray(address, address + 16);
     const record = [data.length, address >> 8, address & 0xff, 0, ...data];
-    const sum = record.reduce((sum, byte) => sum + byte, 0);
+    const sum = record.reduce((total, byte) => total + byte, 0);
     lines.push(`:${[...record, -sum & 0xff].map((byte) => byte.toString(16).padStart(2, '0')).join('')}`);
   }
   return [...lines, ':00000001FF', ''].join('\n');

@@ -3,14 +3,14 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, openBlank, close, open, openStanding, closePages } from './browser.js';
+import { address, advance, openBlank, closeBrowser, openBrowser, openStanding, closePages, complaints } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-/** Returns left, top, width and height of everything that has a border, CSS pixels. */
-const placesOf = (page) =>
+/** Returns left, top, width and height of the main elements, CSS pixels. */
+const boundsOf = (page) =>
   page.evaluate(() =>
     [...document.querySelectorAll('header, section, details, canvas, button, select, input')].map((node) => {
       const { left, top, width, height } = node.getBoundingClientRect();
@@ -18,8 +18,8 @@ const placesOf = (page) =>
     }),
   );
 
-/** Gives all letters a height relative to the font's size; their width goes with it. */
-function setLetters(height) {
+/** Sets the height of all letters relative to the font's size; their width changes with it. */
+function setLetterHeight(height) {
   const sheet = new CSSStyleSheet();
   sheet.replaceSync(`* { font-size-adjust: ${height} }`);
   document.adoptedStyleSheets = [sheet];
@@ -36,25 +36,25 @@ for (const [letters, height] of [
   ]) {
     test(`nothing moves after the first picture: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
       const page = await openBlank({ viewport: { width, height: viewHeight } });
-      await page.addInitScript(setLetters, height);
+      await page.addInitScript(setLetterHeight, height);
       // Without the predictions that come with the page, as for a user's own robot.
       await page.route(/predictions/, (route) => route.fulfill({ status: 404 }));
-      let predict;
-      const predictionStart = new Promise((resolve) => (predict = resolve));
-      await page.route(/robot-worker/, (route) => predictionStart.then(() => route.continue()));
+      let allowPredictions;
+      const predictionsAllowed = new Promise((resolve) => (allowPredictions = resolve));
+      await page.route(/robot-worker/, (route) => predictionsAllowed.then(() => route.continue()));
       await page.goto(`${address()}#room=drive`);
       await page.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
-      const firstPlaces = await placesOf(page);
-      assert.ok(firstPlaces.length > 100);
+      const firstBounds = await boundsOf(page);
+      assert.ok(firstBounds.length > 100);
       await advance(page, 2500);
       await page.waitForFunction(() => /^on a simulated UNO/.test(document.querySelector('#where').textContent));
-      assert.deepEqual(await placesOf(page), firstPlaces, 'the robot has started');
-      predict();
+      assert.deepEqual(await boundsOf(page), firstBounds, 'the robot has started');
+      allowPredictions();
       await page.waitForFunction(() => {
         const distanceTextOf = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
         return window.lizard.description.gaits.filter(({ moves }) => moves).every(distanceTextOf);
       });
-      assert.deepEqual(await placesOf(page), firstPlaces, 'the predictions are there');
+      assert.deepEqual(await boundsOf(page), firstBounds, 'the predictions are there');
     });
   }
 }
@@ -68,7 +68,7 @@ const zoomsOf = (page) =>
     return [dataset.zoom, (Math.min(clientWidth, clientHeight) / 420).toFixed(4)];
   });
 
-test('the view follows the size of the floor until the user zooms, and again from the start', async () => {
+test('the view follows the size of the floor until the user zooms, and again after Back to start', async () => {
   const [large, small] = [{ width: 1400, height: 700 }, { width: 390, height: 568 }];
   const page = await openStanding({ viewport: large });
   const [firstZoom, largeFit] = await zoomsOf(page);
@@ -86,3 +86,5 @@ test('the view follows the size of the floor until the user zooms, and again fro
   await page.setViewportSize(small);
   assert.deepEqual(await zoomsOf(page), [smallFit, smallFit]);
 });
+
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

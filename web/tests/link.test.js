@@ -1,73 +1,74 @@
-// A link that loses lines: the robot stops when it is told to, and the page shows only what the robot has reported.
+// A link that loses lines: a stop reaches the robot, and the page shows only the states that the robot has reported.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { openWithBoard, until } from './board.js';
-import { advance, close, closePages, complaints, open, openStanding, page as openPage, text } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import { openWithBoard, runUntil } from './board.js';
+import { advance, closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text } from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-const receivedTextOf = (page) => page.evaluate(() => window.heard);
+const receivedTextOf = (page) => page.evaluate(() => window.receivedText);
 const isStopping = (page) => page.evaluate(() => document.body.classList.contains('stopping'));
 
-/** Drops lines of the page that contain one of these words; all lines for an empty list. */
+/** Drops the lines of the page that contain one of these words, or all its lines if the list is empty. */
 const dropLines = (page, words) =>
   page.evaluate((words) => {
-    const board = window.otherBoard;
-    window.send ??= board.send;
-    window.lost = 0;
+    const board = window.attachedBoard;
+    window.originalSend ??= board.send;
+    window.droppedCount = 0;
     board.send = (bytes) => {
       const text = String.fromCharCode(...bytes);
-      if (words.length > 0 && !words.some((word) => text.includes(word))) return window.send.call(board, bytes);
-      window.lost += 1;
+      if (words.length > 0 && !words.some((word) => text.includes(word))) return window.originalSend.call(board, bytes);
+      window.droppedCount += 1;
     };
   }, words);
-const dropNothing = (page) => page.evaluate(() => (window.otherBoard.send = window.send));
+const restoreLink = (page) => page.evaluate(() => (window.attachedBoard.send = window.originalSend));
 
-async function type(page, line) {
+async function sendLine(page, line) {
   const countAnswers = () => page.locator('#log div', { hasText: `ok ${line}` }).count();
   const previousCount = await countAnswers();
   await page.locator('#typed').fill(line);
   await page.getByRole('button', { name: 'Send' }).click();
-  await until(page, `${line} is answered`, async () => (await countAnswers()) > previousCount);
+  await runUntil(page, `${line} is answered`, async () => (await countAnswers()) > previousCount);
   await page.locator('#log').focus();
 }
 
 async function openWalking() {
   const page = await openWithBoard('robot', 8000);
   await page.locator('#gaits button[data-command="walk"]').click();
-  await until(page, 'it walks', async () => (await text(page, '#doing')) === 'walk');
+  await runUntil(page, 'the robot walks', async () => (await text(page, '#doing')) === 'walk');
   return page;
 }
 
-test('stop goes out at once, and a line that waits behind a lost answer is not sent after it', async () => {
+test('"stop" is sent at once, and a line that waits for a lost answer is not sent after it', async () => {
   const page = await openWalking();
   await dropLines(page, ['status']);
-  await until(page, 'a question has no answer', async () => (await page.evaluate(() => window.lost)) > 0, 20);
+  await runUntil(page, 'a status request is lost', async () =>
+    (await page.evaluate(() => window.droppedCount)) > 0, 20);
   await page.locator('#gaits button[data-command="left"]').click();
   const receivedLength = (await receivedTextOf(page)).length;
   await page.keyboard.press('Escape');
   await page.clock.runFor(40);
   assert.ok((await receivedTextOf(page)).slice(receivedLength).startsWith('stop\n'));
   await page.clock.runFor(4000);
-  assert.ok(!(await receivedTextOf(page)).slice(receivedLength).includes('left'), 'it does not go on after stop');
+  assert.ok(!(await receivedTextOf(page)).slice(receivedLength).includes('left'), 'no line is sent after "stop"');
   assert.equal(await text(page, '#doing'), 'stop');
 });
 
-test('a lost stop is sent again until it is answered, and the page is red until then', async () => {
+test('a lost "stop" is sent again until the robot answers, and the page is red until then', async () => {
   const page = await openWalking();
   await dropLines(page, []);
   await page.keyboard.press('Escape');
   await page.clock.runFor(600);
   assert.ok(await isStopping(page));
-  assert.equal(await text(page, '#doing'), 'walk', 'the robot has not said anything else');
+  assert.equal(await text(page, '#doing'), 'walk', 'the robot has not reported anything else');
   await page.clock.runFor(700);
   await page.locator('#alarm', { hasText: /^No answer: it may walk on\. "stop" is sent until it answers\. 1\.\d s$/ }).waitFor();
-  await dropNothing(page);
-  await until(page, 'it is answered', async () => (await page.locator('#log div', { hasText: /^ok stop$/ }).count()) > 0);
+  await restoreLink(page);
+  await runUntil(page, 'the stop is answered', async () => (await page.locator('#log div', { hasText: /^ok stop$/ }).count()) > 0);
   await page.clock.runFor(100);
   assert.equal(await text(page, '#doing'), 'stop');
   assert.equal(await isStopping(page), false);
@@ -76,7 +77,7 @@ test('a lost stop is sent again until it is answered, and the page is red until 
 
 test('a robot that rests is not asked to stop again', async () => {
   const page = await openWithBoard('robot', 8000);
-  await type(page, 'rest');
+  await sendLine(page, 'rest');
   const receivedLength = (await receivedTextOf(page)).length;
   await page.keyboard.press('Escape');
   await page.clock.runFor(1500);
@@ -85,32 +86,32 @@ test('a robot that rests is not asked to stop again', async () => {
   assert.equal(await isStopping(page), false);
 });
 
-test('a refusal that a radio has cut off is no answer to stop', async () => {
+test('a refusal that the radio has truncated is not taken for the answer to "stop"', async () => {
   const page = await openWalking();
   await dropLines(page, ['stop']);
   await page.keyboard.press('Escape');
   await page.evaluate(() => {
-    for (const letter of 'err 7 servos are resting, senok walk\r\n') window.otherBoard.onByte(letter.charCodeAt(0));
+    for (const letter of 'err 7 servos are resting, senok walk\r\n') window.attachedBoard.onByte(letter.charCodeAt(0));
   });
   await page.clock.runFor(600);
   assert.ok(await isStopping(page));
-  await dropNothing(page);
-  await until(page, 'it is answered', async () => !(await isStopping(page)));
+  await restoreLink(page);
+  await runUntil(page, 'the stop is answered', async () => !(await isStopping(page)));
 });
 
 test('answers to repeated stops are not taken for answers to the next lines', async () => {
   const page = await openWalking();
   await page.evaluate(() => {
-    const board = window.otherBoard;
+    const board = window.attachedBoard;
     const { onByte } = board;
     // The robot's lines arrive a second late.
     board.onByte = (byte) => setTimeout(() => onByte(byte), 1000);
   });
   await page.keyboard.press('Escape');
   await page.clock.runFor(1100);
-  assert.ok((await receivedTextOf(page)).split('stop').length > 4, 'it was sent again');
+  assert.ok((await receivedTextOf(page)).split('stop').length > 4, '"stop" was sent again');
   await page.locator('#gaits button[data-command="left"]').click();
-  await until(page, 'it turns', async () => (await text(page, '#doing')) === 'left');
+  await runUntil(page, 'the robot turns', async () => (await text(page, '#doing')) === 'left');
   await page.keyboard.press('Escape');
   await page.clock.runFor(3000);
   assert.equal(await text(page, '#doing'), 'stop');
@@ -119,9 +120,10 @@ test('answers to repeated stops are not taken for answers to the next lines', as
 test('a robot that is silent for 0.8 s is reported, with the time', async () => {
   const page = await openWalking();
   await dropLines(page, []);
-  await page.evaluate(() => (window.otherBoard.onByte = () => {}));
-  await page.clock.runFor(700);
-  await page.clock.runFor(1600);
+  await page.evaluate(() => (window.attachedBoard.onByte = () => {}));
+  await page.clock.runFor(600);
+  assert.equal(await page.locator('#alarm').isVisible(), false);
+  await page.clock.runFor(1700);
   await page.locator('#alarm', { hasText: /^No answer from the robot\. [12]\.\d s$/ }).waitFor();
   await page.locator('#age', { hasText: /^[12]\.\d s ago$/ }).waitFor();
 });
@@ -129,7 +131,7 @@ test('a robot that is silent for 0.8 s is reported, with the time', async () => 
 test('a gait that ended during a silence is shown as ended', async () => {
   const page = await openWalking();
   await page.evaluate(() => {
-    const board = window.otherBoard;
+    const board = window.attachedBoard;
     const { onByte } = board;
     board.onByte = () => {};
     board.send([...'stop\n'].map((letter) => letter.charCodeAt(0)));
@@ -146,24 +148,24 @@ test('the simulated UNO is stopped in the same way', async () => {
   await page.evaluate(() => {
     const { board } = window.lizard.link;
     const { send } = board;
-    let lost = 0;
-    board.send = (bytes) => (++lost > 5 ? send.call(board, bytes) : undefined);
+    let sendCount = 0;
+    board.send = (bytes) => (++sendCount > 5 ? send.call(board, bytes) : undefined);
   });
   await page.keyboard.press('Escape');
   await advance(page, 2500);
   assert.equal(await text(page, '#doing'), 'stop');
 });
 
-/** Records the times between the ends of lines that the board received, ms of page time. */
-const recordGaps = (page) =>
+/** Records the times between the lines that the board receives, ms of page time. */
+const recordLineGaps = (page) =>
   page.evaluate(() => {
     const times = [];
-    const { onReceived } = window.otherBoard;
-    window.otherBoard.onReceived = (byte, cycle) => {
+    const { onReceived } = window.attachedBoard;
+    window.attachedBoard.onReceived = (byte, cycle) => {
       onReceived(byte, cycle);
       if (byte === 10) times.push(performance.now());
     };
-    window.gaps = () => times.slice(1).map((time, n) => time - times[n]);
+    window.readLineGapsMs = () => times.slice(1).map((time, n) => time - times[n]);
   });
 
 /** True if a servo turns within some ms, that is, if a pulse changes by more than 1 us. */
@@ -171,31 +173,31 @@ async function isMoving(page, ms) {
   const observedWidths = [];
   for (let remainingMs = ms; remainingMs > 0; remainingMs -= 20) {
     // The LED's pin belongs to no servo.
-    observedWidths.push(await page.evaluate(() => window.lizard.description.servos.map(({ pin }) => window.pulses[pin])));
+    observedWidths.push(await page.evaluate(() => window.lizard.description.servos.map(({ pin }) => window.pulseWidthsUs[pin])));
     await page.clock.runFor(20);
   }
   return observedWidths.some((widths) => widths.some((width, servo) => Math.abs(width - observedWidths[0][servo]) > 1));
 }
 
-test('while a user drives, deadman is set, and a line is sent within every third of it', async () => {
+test('while a user drives, deadman is set, and a line is sent at least in every third of its time', async () => {
   const page = await openWalking();
   const lines = (await receivedTextOf(page)).split('\n');
-  assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'before it walks');
-  await recordGaps(page);
+  assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'before the walk');
+  await recordLineGaps(page);
   await page.clock.runFor(5000);
-  const longestGap = Math.max(...(await page.evaluate(() => window.gaps())));
+  const longestGap = Math.max(...(await page.evaluate(() => window.readLineGapsMs())));
   assert.ok(longestGap <= 310, `${longestGap} ms without a line`);
   assert.equal(await text(page, '#doing'), 'walk');
-  assert.ok(!(await text(page, '#log')).includes('deadman 901'), 'it is not shown');
+  assert.ok(!(await text(page, '#log')).includes('deadman 901'), 'the log does not show the page\'s own lines');
 });
 
-test('a robot out of reach stands still, and reports why when it is in reach again', async () => {
+test('a robot out of reach stops, and reports the reason when it is in reach again', async () => {
   const page = await openWalking();
   assert.ok(await isMoving(page, 500));
   await dropLines(page, []);
   await page.clock.runFor(901 + 40);
   assert.equal(await isMoving(page, 500), false);
-  await dropNothing(page);
+  await restoreLink(page);
   await page.clock.runFor(3000);
   assert.equal(await text(page, '#doing'), 'stop');
   await page.locator('#log div', { hasText: '# fault: no line for as long as deadman says' }).waitFor();
@@ -203,12 +205,12 @@ test('a robot out of reach stands still, and reports why when it is in reach aga
 
 test('stopping the robot restores its own deadman', async () => {
   const page = await openWithBoard('robot', 8000);
-  await type(page, 'deadman 5000');
+  await sendLine(page, 'deadman 5000');
   await page.locator('#gaits button[data-command="walk"]').click();
   await page.clock.runFor(1500);
   // The robot's own setting is saved.
-  await type(page, 'save');
-  await type(page, 'cal');
+  await sendLine(page, 'save');
+  await sendLine(page, 'cal');
   await page.locator('#log div', { hasText: /^# deadman 5000$/ }).waitFor();
   assert.equal(await text(page, '#doing'), 'walk');
   await page.keyboard.press('Escape');
@@ -218,7 +220,7 @@ test('stopping the robot restores its own deadman', async () => {
 
 test('a deadman left behind by a page is not taken for the robot\'s own', async () => {
   const page = await openWithBoard('robot', 8000);
-  await page.evaluate(() => window.otherBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
+  await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
   await page.clock.runFor(500);
   await page.locator('#gaits button[data-command="walk"]').click();
   await page.clock.runFor(1000);
@@ -228,24 +230,25 @@ test('a deadman left behind by a page is not taken for the robot\'s own', async 
 });
 
 test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven as a radio', async () => {
-  const page = await openPage({}, fakeSerial);
-  const serialProfile = '00001101-0000-1000-8000-00805f9b34fb';
-  await page.evaluate((profile) => Object.assign(window, { awake: true, baud: 9600, profile }), serialProfile);
+  const page = await openPage({}, installFakeSerial);
+  const bluetoothService = '00001101-0000-1000-8000-00805f9b34fb';
+  const settings = { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService };
+  await page.evaluate((settings) => Object.assign(window, settings), settings);
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
-  await until(page, 'it is found', async () => (await text(page, '#where')).startsWith('on a board on Bluetooth that has not restarted'));
-  assert.deepEqual(await page.evaluate(() => window.wanted.allowedBluetoothServiceClassIds), [serialProfile]);
-  assert.match(await receivedTextOf(page), /^(status\n)+watch 10\n/, 'it is not waited for a reset');
-  const rate = await page.evaluate(() => window.otherBoard.uno.usart.baudRate);
-  assert.ok(Math.abs(rate / 9600 - 1) < 0.03, `the chip has found the rate: ${rate} baud`);
+  await page.waitForFunction(() => window.attachedBoard);
+  await runUntil(page, 'the robot is found', async () => (await text(page, '#where')).startsWith('on a board on Bluetooth that has not restarted'));
+  assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [bluetoothService]);
+  assert.match(await receivedTextOf(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
+  const baudRate = await page.evaluate(() => window.attachedBoard.uno.usart.baudRate);
+  assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has found the rate: ${baudRate} baud`);
   assert.ok(await page.locator('#flash-write').isDisabled());
   await page.locator('#gaits button[data-command="walk"]').click();
-  await until(page, 'it walks', async () => (await text(page, '#doing')) === 'walk');
+  await runUntil(page, 'the robot walks', async () => (await text(page, '#doing')) === 'walk');
   await page.keyboard.press('Escape');
-  await until(page, 'it stops', async () => (await text(page, '#doing')) === 'stop');
+  await runUntil(page, 'the robot stops', async () => (await text(page, '#doing')) === 'stop');
 });
 
-test('a hidden page releases the robot', async () => {
+test('a hidden page stops the robot', async () => {
   const page = await openWalking();
   await page.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });

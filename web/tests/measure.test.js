@@ -1,4 +1,4 @@
-// The measuring room, with a rendered film as the browser's camera, so that the truth is known.
+// The measuring room, with a rendered film as the browser's camera, so that the true motion is known.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -6,20 +6,22 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, openBlank, close, complaints, openWithCamera, page as openPage, closePages } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import {
+  address, openBlank, closeBrowser, complaints, openBrowserWithCamera, openPage, closePages,
+} from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
 const folder = mkdtempSync(join(tmpdir(), 'lizard-film-'));
-/** Largest differences of a mean from the truth, mm and deg: those of crates/film's own tests. */
+/** Largest differences of a mean from the true value, mm and deg; the same as in the tests of crates/film. */
 const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 
-/** Films with a width and number of cycles, and with hidden tags. */
+/** Renders a film into a folder; the arguments are its width, its number of cycles and the numbers of hidden tags. */
 function renderFilm(name, ...args) {
-  const path = join(folder, name);
-  execFileSync(join(dirname(LIZARD), 'studio'), [path, ...args.map(String)]);
-  return path;
+  const filmFolder = join(folder, name);
+  execFileSync(join(dirname(LIZARD), 'studio'), [filmFolder, ...args.map(String)]);
+  return filmFolder;
 }
 
 let walkFolder;
@@ -30,7 +32,7 @@ before(() => {
 });
 afterEach(async () => {
   await closePages();
-  await close();
+  await closeBrowser();
 });
 after(() => rmSync(folder, { recursive: true }));
 
@@ -40,7 +42,6 @@ const roomUrl = () => `${address()}#room=measure&file=paper`;
 async function openRoom(options = {}) {
   const page = await openPage(options, undefined, roomUrl());
   await page.waitForFunction(() => window.lizard?.gait === 'stand' && window.lizard.mayAsk);
-  // The box of the height takes keys as a user types them.
   await page.locator('#measure-height').pressSequentially('95');
   return page;
 }
@@ -59,47 +60,47 @@ async function typeNumber(page, id, number) {
   await box.pressSequentially(String(number));
 }
 
-/** Switches the camera on last, lets so many ms of the film pass, and lets the page drive. */
-async function startDriving(page, gaits, cycles, ms = 0) {
+/** Selects gaits, switches the camera on, and lets the page drive after `filmMs` of the film. */
+async function startDriving(page, gaits, cycleCount, filmMs = 0) {
   await page.locator('#measure-driver').selectOption('page');
   for (const box of await page.locator('#measure-gaits input').all()) await box.setChecked(gaits.includes(await box.getAttribute('name')));
-  await typeNumber(page, 'cycles', cycles);
+  await typeNumber(page, 'cycles', cycleCount);
   await typeNumber(page, 'pause', 0.5);
   await switchCameraOn(page);
-  await page.waitForTimeout(ms);
+  await page.waitForTimeout(filmMs);
   await page.locator('#measure-start').click();
 }
 
-/** Downloads the results and returns the content of the file. */
-async function download(page, button) {
-  const [downloaded] = await Promise.all([page.waitForEvent('download'), page.locator(`#measured-${button}`).click()]);
+/** Downloads the results in a format and returns the content of the file. */
+async function download(page, format) {
+  const [downloaded] = await Promise.all([page.waitForEvent('download'), page.locator(`#measured-${format}`).click()]);
   return readFileSync(await downloaded.path());
 }
 
-/** Returns the report of `lizard measure` on the same pictures. */
-const runCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
+/** Measures the same pictures with `lizard measure` and returns the report. */
+const measureWithCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
 
-function assertTrue(report) {
+function assertNearTruth(report) {
   for (const [quantity, tolerance] of Object.entries(TOLERANCES)) {
-    assert.ok(Math.abs(report[quantity].mean - truth[quantity]) < tolerance, `${quantity}: ${report[quantity].mean} and not ${truth[quantity]}`);
+    assert.ok(Math.abs(report[quantity].mean - truth[quantity]) < tolerance, `${quantity}: ${report[quantity].mean}, not ${truth[quantity]}`);
     assert.ok(report[quantity].error > 0 && report[quantity].error < tolerance, JSON.stringify(report[quantity]));
   }
 }
 
-test('the page drives the simulated robot before a camera, and measures the gait in the film as the command does', async () => {
-  await openWithCamera(join(walkFolder, 'film.y4m'));
+test('the page drives the simulated robot in front of a camera, and measures the gait in the film as lizard measure does', async () => {
+  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
   const page = await openRoom({ acceptDownloads: true });
   await startDriving(page, ['walk'], 5);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await download(page, 'json'));
-  assertTrue(report);
-  const expected = runCommand();
-  assertTrue(expected);
+  assertNearTruth(report);
+  const expected = measureWithCommand();
+  assertNearTruth(expected);
   for (const quantity of Object.keys(TOLERANCES)) {
-    // Two libraries compute a sine to the last bit but one.
+    // The sine functions of the two programs may differ in the last bits.
     assert.ok(Math.abs(report[quantity].predicted - expected[quantity].predicted) < 1e-9, quantity);
-    // The browser's decoder shows some of the same cycles at other times.
+    // The browser shows the pictures at other times, and may miss some cycles.
     assert.ok(Math.abs(report[quantity].mean - expected[quantity].mean) < 2 * (report[quantity].error + expected[quantity].error), quantity);
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
@@ -114,21 +115,21 @@ test('the page drives the simulated robot before a camera, and measures the gait
 });
 
 test('the gait in a film file recorded by the browser is found by its path; with another gait it is not measured', async () => {
-  await openWithCamera(join(walkFolder, 'film.y4m'));
-  const recorder = await openBlank();
-  await recorder.goto(address());
-  const bytes = await recorder.evaluate(async () => {
+  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
+  const recorderPage = await openBlank();
+  await recorderPage.goto(address());
+  const bytes = await recorderPage.evaluate(async () => {
     const stream = await navigator.mediaDevices.getUserMedia({ video: { width: 640, height: 360 } });
-    const pieces = [];
-    const film = new MediaRecorder(stream, { mimeType: 'video/webm;codecs=vp8', videoBitsPerSecond: 5e6 });
-    film.ondataavailable = ({ data }) => pieces.push(data);
-    film.start();
+    const chunks = [];
+    const recorder = new MediaRecorder(stream, { mimeType: 'video/webm;codecs=vp8', videoBitsPerSecond: 5e6 });
+    recorder.ondataavailable = ({ data }) => chunks.push(data);
+    recorder.start();
     await new Promise((resolve) => setTimeout(resolve, 9000));
-    await new Promise((resolve) => Object.assign(film, { onstop: resolve }).stop());
+    await new Promise((resolve) => Object.assign(recorder, { onstop: resolve }).stop());
     for (const track of stream.getTracks()) track.stop();
     const reader = new FileReader();
     const loading = new Promise((resolve) => (reader.onload = resolve));
-    reader.readAsDataURL(new Blob(pieces));
+    reader.readAsDataURL(new Blob(chunks));
     await loading;
     return reader.result.split(',')[1];
   });
@@ -137,7 +138,7 @@ test('the gait in a film file recorded by the browser is found by its path; with
   await page.locator('#measure-file').setInputFiles(join(folder, 'film.webm'));
   await page.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await download(page, 'json'));
-  assertTrue(report);
+  assertNearTruth(report);
   assert.equal(report.gait, 'walk');
   await page.locator('#measure-gait').selectOption('left');
   await page.getByRole('button', { name: 'Measure again' }).click();
@@ -148,19 +149,19 @@ test('the gait in a film file recorded by the browser is found by its path; with
   await waitForMessage(page, 'said', /^words\.mp4 is no film that this browser can play/);
 });
 
-test('if another program drives, the film recorded until Done is measured', async () => {
-  await openWithCamera(join(walkFolder, 'film.y4m'));
+test('if another program drives, the film that is recorded until Done is measured', async () => {
+  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
   const page = await openRoom({ acceptDownloads: true });
   await switchCameraOn(page);
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(6000);
   await page.getByRole('button', { name: 'Done' }).click();
   await page.locator('#measure-results').waitFor();
-  assertTrue(JSON.parse(await download(page, 'json')).gaits[0]);
+  assertNearTruth(JSON.parse(await download(page, 'json')).gaits[0]);
 });
 
 test('a hidden tag is named while the camera is on, and no figure is computed', async () => {
-  await openWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
+  await openBrowserWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
   const page = await openRoom();
   await switchCameraOn(page, 'Not seen: the left tag of strip 2.');
   await page.getByRole('button', { name: 'Record' }).click();
@@ -170,14 +171,14 @@ test('a hidden tag is named while the camera is on, and no figure is computed', 
   assert.ok(!(await page.locator('#measure-results').isVisible()));
 });
 
-test('a film without any tag says so', async () => {
-  await openWithCamera(join(renderFilm('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
+test('the page says so if a film shows no tag', async () => {
+  await openBrowserWithCamera(join(renderFilm('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
   const page = await openRoom();
   await switchCameraOn(page, 'No tag of the sheet is seen');
 });
 
-test('without a camera, or if it is refused, the page offers an alternative', async () => {
-  await openWithCamera(null);
+test('if there is no camera, or the browser may not use it, the page offers to open a film', async () => {
+  await openBrowserWithCamera(null);
   const page = await openRoom();
   await page.getByRole('button', { name: 'Camera' }).click();
   await waitForMessage(page, 'said', /This machine has no camera|not allowed to use the camera/);
@@ -187,7 +188,7 @@ test('without a camera, or if it is refused, the page offers an alternative', as
 });
 
 test('Stop ends the protocol and stops the robot; leaving the room also does so, and switches the camera off', async () => {
-  await openWithCamera(join(walkFolder, 'film.y4m'));
+  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
   const page = await openRoom();
   await startDriving(page, ['walk', 'left'], 20);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
@@ -205,26 +206,30 @@ test('Stop ends the protocol and stops the robot; leaving the room also does so,
 });
 
 test('a board whose link is cut is no longer driven, the room reports it, and the recorded cycles are measured', async () => {
-  await openWithCamera(join(walkFolder, 'film.y4m'));
+  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
   const page = await openRoom({ acceptDownloads: true });
-  await page.evaluate(fakeSerial);
-  // Nobody begins to set up a robot by radio.
-  await page.evaluate(() => Object.assign(window, { flashed: 'paper', awake: true, profile: '00001101-0000-1000-8000-00805f9b34fb' }));
+  await page.evaluate(installFakeSerial);
+  // For a robot at a Bluetooth module the page does not open the dialog of the first connection.
+  await page.evaluate(() => Object.assign(window, {
+    flashedRobot: 'paper',
+    boardKeepsRunning: true,
+    bluetoothService: '00001101-0000-1000-8000-00805f9b34fb',
+  }));
   await page.locator('#connect').click();
   await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
-  // The film begins near the end of the sheet, from where the page would first drive the robot back.
+  // At the beginning of the film the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
   await waitForMessage(page, 'said', '1 of 2: walk');
   await page.waitForTimeout(6000);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
-  assertTrue(JSON.parse(await download(page, 'json')).gaits[0]);
-  assert.ok(!/left/.test(await page.evaluate(() => window.heard)), 'no further gait was sent');
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
+  assertNearTruth(JSON.parse(await download(page, 'json')).gaits[0]);
+  assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent');
+  assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'nor to the simulated board that follows');
 });
 
-test('the sheet is that of the command, for both paper sizes', async () => {
-  await openWithCamera(null);
+test('the printed sheet equals that of lizard measure sheet, for both paper sizes', async () => {
+  await openBrowserWithCamera(null);
   const page = await openRoom({ acceptDownloads: true });
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
     await page.locator('#measure-paper').selectOption(name);
@@ -235,8 +240,8 @@ test('the sheet is that of the command, for both paper sizes', async () => {
   }
 });
 
-test('a worker that cannot be loaded is reported, and loaded when it is asked for again', async () => {
-  await openWithCamera(null);
+test('a worker that cannot be loaded is reported, and the next press loads it', async () => {
+  await openBrowserWithCamera(null);
   const page = await openRoom({ acceptDownloads: true });
   const previousCount = complaints.length;
   await page.route(/assets\/worker-/, (route) => route.abort());
@@ -244,7 +249,7 @@ test('a worker that cannot be loaded is reported, and loaded when it is asked fo
   await waitForMessage(page, 'said', /^the worker could not be loaded/);
   await page.unroute(/assets\/worker-/);
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Print the sheet' }).click()]);
-  // The browser names the file that did not come, which is right.
+  // The browser also reports the file that was not loaded, as expected.
   for (const complaint of complaints.splice(previousCount)) assert.match(complaint, /Failed to load|worker/i);
 });
 

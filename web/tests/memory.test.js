@@ -1,17 +1,17 @@
-// A page that stays open for an evening: what was tried and drawn leaves nothing behind.
+// A page that stays open for hours: robots and gaits that were tried, and rooms that were visited, keep no memory.
 import assert from 'node:assert/strict';
 import { after, afterEach, test } from 'node:test';
 
-import { address, close, complaints, open, page as openPage, closePages } from './browser.js';
-import { file, memory, Robot } from './wasm.js';
+import { address, closeBrowser, complaints, openBrowser, openPage, closePages } from './browser.js';
+import { readPageFile, memory, Robot } from './wasm.js';
 
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-const toml = await file('robot.toml', 'utf8');
+const toml = await readPageFile('robot.toml', 'utf8');
 
-/** Measures the growth of the memory over a number of repetitions, bytes, after a warm-up. */
-function memoryGrowth(count, action) {
+/** Measures the growth of the memory by `count` repetitions of an action, bytes, after a warm-up. */
+function measureGrowth(count, action) {
   const robot = new Robot();
   robot.read(toml);
   const warmUpCount = count / 10;
@@ -24,26 +24,26 @@ function memoryGrowth(count, action) {
 test('ten thousand robots with different lengths use no more memory', async () => {
   // With `stand` alone, because other gaits would only take time.
   const standingToml = toml.slice(0, toml.indexOf('[gait.walk]'));
-  const growth = memoryGrowth(10_000, (_, n) => {
+  const growthBytes = measureGrowth(10_000, (_, n) => {
     const { text, refusal } = Robot.lengths(standingToml, [['links.l0', 20 + n / 5000]], false);
     assert.equal(refusal, null);
     assert.ok(text.includes('[gait.stand]') && text.includes('l0 = 2'));
   });
-  assert.equal(growth, 0);
+  assert.equal(growthBytes, 0);
 });
 
-test('refused gaits and those tried for an offer use no more memory', async () => {
+test('gaits that are refused, and those tried for an offer, use no more memory', async () => {
   let bars;
-  const growth = memoryGrowth(100, (robot, n) => {
+  const growthBytes = measureGrowth(100, (robot, n) => {
     bars ??= robot.bars(1);
     const { refused, instead } = robot.trial({ ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
     assert.equal(instead[0].what, 'amplitude');
   });
-  assert.equal(growth, 0);
+  assert.equal(growthBytes, 0);
 });
 
-test('an argument of another form is refused and changes nothing', () => {
+test('an argument of a wrong form is refused and changes nothing', () => {
   const robot = new Robot();
   assert.equal(robot.predict(1), null, 'without a robot there is no answer');
   const { floor } = robot.read(toml);
@@ -60,15 +60,15 @@ test('an argument of another form is refused and changes nothing', () => {
 });
 
 /**
- * Time in each room, in each of two rounds, s. In the first round the page fills what it keeps: the last pulses, the
- * log, the track.
+ * Time in each room, in each of two rounds; the environment variable STAY sets another. In the first round the page
+ * fills its buffers for the last pulses, the log and the track.
  */
 const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
-/** Memory that may come and go without a leak, bytes: a kilobyte leaked at each picture would be 3 MB in a round. */
-const ALLOWANCE = 2_000_000;
+/** Growth that is allowed without a leak: a kilobyte that leaks at each picture would be 3 MB in a round. */
+const ALLOWED_BYTES = 2_000_000;
 
-test('a robot that walks while somebody goes through the rooms twice takes no more memory the second time', async (t) => {
-  await open();
+test('while a robot walks, a second round through the rooms takes no more memory than the first', async (t) => {
+  await openBrowser();
   const page = await openPage({ reducedMotion: 'no-preference' });
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   const devTools = await page.context().newCDPSession(page);
@@ -91,7 +91,7 @@ test('a robot that walks while somebody goes through the rooms twice takes no mo
   for (const [n, { room, ...later }] of (await visitRooms()).entries()) {
     const { heap, nodes, listeners } = firstRound.at(-1);
     t.diagnostic(`${room}: ${firstRound[n].heap}, then ${later.heap} bytes; ${firstRound[n].nodes}, then ${later.nodes} nodes`);
-    assert.ok(later.heap < heap + ALLOWANCE, `${room}: ${heap}, then ${later.heap} bytes`);
+    assert.ok(later.heap < heap + ALLOWED_BYTES, `${room}: ${heap}, then ${later.heap} bytes`);
     assert.ok(later.nodes < nodes + 200, `${room}: ${nodes}, then ${later.nodes} nodes`);
     assert.ok(later.listeners < listeners + 20, `${room}: ${listeners}, then ${later.listeners} listeners`);
   }

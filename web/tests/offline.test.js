@@ -7,13 +7,13 @@ import { after, afterEach, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, PATIENCE, address, advance, openBlank, close, complaints, open, serve, closePages, until, within } from './browser.js';
+import { DIST, TIMEOUT_MS, address, advance, openBlank, closeBrowser, complaints, openBrowser, serve, closePages, waitUntil, withTimeout } from './browser.js';
 
 let folder;
 const servers = [];
 
 before(async () => {
-  await open();
+  await openBrowser();
   folder = await mkdtemp(join(tmpdir(), 'lizard-page-'));
 });
 afterEach(async () => {
@@ -24,35 +24,36 @@ afterEach(async () => {
   }
 });
 after(async () => {
-  await close();
+  await closeBrowser();
   if (folder) await rm(folder, { recursive: true });
 });
 
-/** Serves a copy of the page on a server of its own. */
+/** Starts a web server for a copy of the page. */
 async function serveCopy(name, requestedPaths = []) {
   const copyFolder = join(folder, name);
   await cp(DIST, copyFolder, { recursive: true });
   const server = await serve(copyFolder, requestedPaths);
   servers.push(server);
-  return { own: copyFolder, server, asked: requestedPaths };
+  return { copyFolder, server, requestedPaths };
 }
 
-const openWithWorkers = () => openBlank({ serviceWorkers: 'allow' });
+const openWithServiceWorkers = () => openBlank({ serviceWorkers: 'allow' });
 const waitUntilStarted = (page) => page.waitForFunction(() => window.lizard);
 
 /** Waits until the service worker has stored the page and answers its requests. */
 async function waitUntilStored(page) {
   await waitUntilStarted(page);
-  await until(page, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
+  await waitUntil(page, async () =>
+    (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
 }
 
-test('once opened, the page walks without a server, with any of its robots', async () => {
+test('once opened, the page works without a server, with any of its robots', async () => {
   const { server } = await serveCopy('offline');
-  const page = await openWithWorkers();
+  const page = await openWithServiceWorkers();
   await page.goto(address(server));
   await waitUntilStored(page);
   server.closeAllConnections();
-  await within('the server to close', new Promise((resolve) => server.close(resolve)));
+  await withTimeout('the server to close', new Promise((resolve) => server.close(resolve)));
   await page.reload();
   await waitUntilStarted(page);
   await page.locator('#robot').selectOption('large');
@@ -65,8 +66,8 @@ test('once opened, the page walks without a server, with any of its robots', asy
 });
 
 test('a newer page is offered, loaded as a whole on request, and replaces the older one', async () => {
-  const { own: copyFolder, server } = await serveCopy('newer');
-  const page = await openWithWorkers();
+  const { copyFolder, server } = await serveCopy('newer');
+  const page = await openWithServiceWorkers();
   await page.goto(address(server));
   await waitUntilStored(page);
   const readCacheNames = () => page.evaluate(() => window.caches.keys());
@@ -77,17 +78,17 @@ test('a newer page is offered, loaded as a whole on request, and replaces the ol
   writeServiceWorker(copyFolder);
   await page.reload();
   await waitUntilStarted(page);
-  assert.equal(await page.locator('h1').innerText(), 'lizard', 'nothing changes under a person');
+  assert.equal(await page.locator('h1').innerText(), 'lizard', 'nothing changes without the user');
   await page.getByRole('button', { name: 'Load it now' }).click();
   await page.locator('h1', { hasText: 'lizard, newer' }).waitFor();
   await waitUntilStarted(page);
-  await until(page, async (firstCache) => !(await window.caches.keys()).includes(firstCache), firstCache);
+  await waitUntil(page, async (firstCache) => !(await window.caches.keys()).includes(firstCache), firstCache);
   assert.equal((await readCacheNames()).length, 1);
 });
 
 test('a new page with a missing file is rejected, and the stored one stays in use', async () => {
-  const { own: copyFolder, server, asked: requestedPaths } = await serveCopy('torn');
-  const page = await openWithWorkers();
+  const { copyFolder, server, requestedPaths } = await serveCopy('incomplete');
+  const page = await openWithServiceWorkers();
   await page.goto(address(server));
   await waitUntilStored(page);
   const previousCaches = await page.evaluate(() => window.caches.keys());
@@ -99,12 +100,12 @@ test('a new page with a missing file is rejected, and the stored one stays in us
   requestedPaths.length = 0;
   await page.reload();
   await waitUntilStarted(page);
-  await until(page, async () => {
+  await waitUntil(page, async () => {
     const registration = await navigator.serviceWorker.ready;
     return !registration.installing && !registration.waiting;
   });
-  for (let ms = 0; ms < PATIENCE && !requestedPaths.includes('/index.html'); ms += 100) await new Promise((resolve) => setTimeout(resolve, 100));
-  assert.ok(requestedPaths.includes('/index.html'), 'it was asked for');
+  for (let ms = 0; ms < TIMEOUT_MS && !requestedPaths.includes('/index.html'); ms += 100) await new Promise((resolve) => setTimeout(resolve, 100));
+  assert.ok(requestedPaths.includes('/index.html'), 'the worker has requested the page');
   assert.equal(await page.locator('#fresh').isVisible(), false);
   assert.ok((await page.evaluate(() => window.caches.keys())).includes(previousCaches[0]));
   server.closeAllConnections();
@@ -112,7 +113,7 @@ test('a new page with a missing file is rejected, and the stored one stays in us
   await waitUntilStarted(page);
 });
 
-test('the first load is below 500 KB compressed, and nothing is asked of another origin', async () => {
+test('the first load is below 500 KB compressed, and nothing is requested from another origin', async () => {
   const requestedPaths = [];
   const { server } = await serveCopy('size', requestedPaths);
   const page = await openBlank();

@@ -1,32 +1,32 @@
-// The cost of a picture. Real time depends on the machine, so this measures the CPU time of the page's thread, while
-// the test's clock makes it draw sixty pictures a second.
+// The CPU time of a picture. Real time depends on the machine, so this measures the CPU time of the page's thread,
+// while the test's clock makes the page draw sixty pictures a second.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page as openPage, closePages, within } from './browser.js';
+import { closeBrowser, complaints, openBrowser, openPage, closePages, withTimeout } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 /** Time from one picture to the next, ms. */
 const PICTURE_MS = 1000 / 60;
 const PICTURE_COUNT = 60;
-/** Number of measurements, of which the least counts, since a busy machine can only add time. */
-const RUNS = 3;
+/** Number of measurements. The least one counts, because a busy machine can only add time. */
+const RUN_COUNT = 3;
 
-/** Measures the CPU time of the page's thread for a picture, ms, and the simulated ms that passed. */
+/** Measures the CPU time of the page's thread for a picture, and the simulated time that passed. */
 async function measureCost(page, readCpuMs) {
   const readSimulatedMs = () => page.evaluate(() => window.lizard.link.board.cycle / 16_000);
   let leastMs = Infinity;
   let passedMs = 0;
-  for (let n = 0; n < RUNS; n++) {
+  for (let n = 0; n < RUN_COUNT; n++) {
     const [startMs, startCpuMs] = [await readSimulatedMs(), await readCpuMs()];
     await page.clock.runFor(PICTURE_COUNT * PICTURE_MS);
     leastMs = Math.min(leastMs, ((await readCpuMs()) - startCpuMs) / PICTURE_COUNT);
     passedMs += (await readSimulatedMs()) - startMs;
   }
-  return { least: leastMs, passed: passedMs };
+  return { leastMs, passedMs };
 }
 
 async function openWalking() {
@@ -35,53 +35,53 @@ async function openWalking() {
   await page.clock.runFor(3000);
   await page.locator('#gaits button[data-command="walk"]').click();
   await page.clock.runFor(500);
-  const session = await within('the page to be measured', page.context().newCDPSession(page));
-  await within('the page to be measured', session.send('Performance.enable'));
+  const session = await withTimeout('the page to be measured', page.context().newCDPSession(page));
+  await withTimeout('the page to be measured', session.send('Performance.enable'));
   const readCpuMs = async () => {
-    const { metrics } = await within('the CPU time of the page', session.send('Performance.getMetrics'));
+    const { metrics } = await withTimeout('the CPU time of the page', session.send('Performance.getMetrics'));
     return 1000 * metrics.find(({ name }) => name === 'ThreadTime').value;
   };
-  return { opened: page, metrics: readCpuMs };
+  return { page, readCpuMs };
 }
 
 test('at sixty pictures a second the processor is idle most of the time', async (t) => {
-  const { opened: page, metrics: readCpuMs } = await openWalking();
+  const { page, readCpuMs } = await openWalking();
   const fullCost = await measureCost(page, readCpuMs);
   // The simulation keeps real time: no picture exceeded its budget.
-  const realMs = PICTURE_COUNT * PICTURE_MS * RUNS;
-  assert.ok(fullCost.passed > 0.9 * realMs, `${fullCost.passed} of ${realMs} ms simulated`);
+  const realMs = PICTURE_COUNT * PICTURE_MS * RUN_COUNT;
+  assert.ok(fullCost.passedMs > 0.9 * realMs, `${fullCost.passedMs} of ${realMs} ms simulated`);
   // Without canvases nothing is painted; on a laptop the graphics chip would do that.
   await page.addStyleTag({ content: 'canvas { display: none !important }' });
   const computeCost = await measureCost(page, readCpuMs);
-  t.diagnostic(`a picture: ${fullCost.least.toFixed(1)} ms of CPU, ${computeCost.least.toFixed(1)} ms without painting`);
-  assert.ok(fullCost.least < PICTURE_MS, `${fullCost.least} ms, painted by the processor`);
-  assert.ok(computeCost.least < PICTURE_MS / 3, `${computeCost.least} ms without painting`);
+  t.diagnostic(`a picture: ${fullCost.leastMs.toFixed(1)} ms of CPU, ${computeCost.leastMs.toFixed(1)} ms without painting`);
+  assert.ok(fullCost.leastMs < PICTURE_MS, `${fullCost.leastMs} ms, painted by the processor`);
+  assert.ok(computeCost.leastMs < PICTURE_MS / 3, `${computeCost.leastMs} ms without painting`);
 });
 
 test('moving the slider of the springs does not block drawing', async () => {
-  const { opened: page, metrics: readCpuMs } = await openWalking();
+  const { page, readCpuMs } = await openWalking();
   await page.addStyleTag({ content: 'canvas { display: none !important }' });
   await page.getByLabel('Driven by').selectOption('strut');
   await page.getByLabel('Pull in the strut').fill('0.5');
-  // Meanwhile another thread predicts ten gaits, which takes seconds.
-  const { least: leastMs } = await measureCost(page, readCpuMs);
+  // Another thread predicts ten gaits meanwhile, which takes seconds.
+  const { leastMs } = await measureCost(page, readCpuMs);
   assert.ok(leastMs < PICTURE_MS / 2, `${leastMs} ms without painting`);
 });
 
 test('the floor is painted while the robot moves, and not while it stands', async () => {
   const page = await openPage({}, () => {
-    window.painted = 0;
+    window.paintCount = 0;
     const { getContext } = HTMLCanvasElement.prototype;
     HTMLCanvasElement.prototype.getContext = function (...args) {
-      if (this.id === 'floor') window.painted += 1;
+      if (this.id === 'floor') window.paintCount += 1;
       return getContext.apply(this, args);
     };
   });
   /** Counts the paintings of a second. */
   const countPaintings = async () => {
-    const startCount = await page.evaluate(() => window.painted);
+    const startCount = await page.evaluate(() => window.paintCount);
     await page.clock.runFor(1000);
-    return (await page.evaluate(() => window.painted)) - startCount;
+    return (await page.evaluate(() => window.paintCount)) - startCount;
   };
   await page.clock.runFor(4000);
   assert.equal(await countPaintings(), 0, 'standing');

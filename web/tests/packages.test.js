@@ -8,20 +8,20 @@ import { test } from 'node:test';
 
 const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
 
-/** Runs scripts/packages.sh with an apt-get that fails with a message a number of times. */
-async function runUpdates(failures, message, waitSeconds) {
+/** Runs update_lists of scripts/packages.sh with an apt-get that fails `failureCount` times with a message. */
+async function updateLists(failureCount, message, waitSeconds) {
   const folder = await mkdtemp(join(tmpdir(), 'lizard-apt-'));
   try {
-    const apt = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${failures} ] || exit 0\necho '${message}'\nexit 100\n`;
+    const aptScript = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${failureCount} ] || exit 0\necho '${message}'\nexit 100\n`;
     await writeFile(join(folder, 'n'), '0\n');
-    await writeFile(join(folder, 'apt-get'), apt);
+    await writeFile(join(folder, 'apt-get'), aptScript);
     await chmod(join(folder, 'apt-get'), 0o755);
     const { status, stdout } = spawnSync('bash', ['-c', `set -euo pipefail; . ${SCRIPT}; as_root() { "$@"; }; update_lists`], {
       env: { ...process.env, PATH: `${folder}:${process.env.PATH}`, LOCK_WAIT: String(waitSeconds) },
       encoding: 'utf8',
       timeout: 60_000,
     });
-    return { status, stdout, tries: Number(await readFile(join(folder, 'n'), 'utf8')) };
+    return { status, stdout, tryCount: Number(await readFile(join(folder, 'n'), 'utf8')) };
   } finally {
     await rm(folder, { recursive: true });
   }
@@ -29,23 +29,23 @@ async function runUpdates(failures, message, waitSeconds) {
 
 const LOCK_MESSAGE = 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 4711 (apt-get)';
 
-test('a lock that is held is waited for', async () => {
-  const { status, stdout, tries } = await runUpdates(2, LOCK_MESSAGE, 60);
+test('the update waits while another program holds the lock', async () => {
+  const { status, stdout, tryCount } = await updateLists(2, LOCK_MESSAGE, 60);
   assert.equal(status, 0, stdout);
-  assert.equal(tries, 3);
+  assert.equal(tryCount, 3);
   assert.match(stdout, /^setup: another program installs packages; waiting for it, up to 60 s$/m);
 });
 
 test('waiting for a lock ends after the given time', async () => {
-  const { status, stdout, tries } = await runUpdates(1000, LOCK_MESSAGE, 3);
+  const { status, stdout, tryCount } = await updateLists(1000, LOCK_MESSAGE, 3);
   assert.notEqual(status, 0);
   assert.match(stdout, /held by process 4711/);
-  assert.ok(tries <= 4, `${tries}`);
+  assert.ok(tryCount <= 4, `${tryCount}`);
 });
 
-test('another problem is reported at once', async () => {
-  const { status, stdout, tries } = await runUpdates(1000, 'E: The repository has no Release file.', 60);
+test('any other problem is reported at once', async () => {
+  const { status, stdout, tryCount } = await updateLists(1000, 'E: The repository has no Release file.', 60);
   assert.notEqual(status, 0);
   assert.match(stdout, /no Release file/);
-  assert.equal(tries, 1);
+  assert.equal(tryCount, 1);
 });

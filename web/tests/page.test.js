@@ -1,15 +1,15 @@
-// The page in a real browser, used as a person would.
+// The page in a real browser, used as a user would use it.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, assertStops, close, closePages, complaints, open, openStanding, page as openPage, text, type, unfold } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import { advance, assertStops, closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text, sendLine, unfold } from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 import { hexOf, imageOf } from './image.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const gaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 
@@ -21,11 +21,13 @@ const displacementsOf = (page, name) =>
     return { predicted: robot.predict(index), measured: window.lizard.measured() };
   }, name);
 
-function assertNear(value, expected, share, quantity) {
-  assert.ok(Math.abs(value - expected) <= share * Math.abs(expected), `${quantity}: ${value}, predicted ${expected}`);
+/** Asserts that a value is near the expected one; `tolerance` is a share of the expected value. */
+function assertNear(value, expected, tolerance, quantity) {
+  assert.ok(Math.abs(value - expected) <= tolerance * Math.abs(expected), `${quantity}: ${value}, not ${expected}`);
 }
 
-async function assertWalks(page, name) {
+/** Starts a gait, lets it run for some cycles, and returns its predicted and its measured displacement in a cycle. */
+async function runGait(page, name) {
   await gaitButton(page, name).click();
   await advance(page, 5500);
   const { predicted, measured } = await displacementsOf(page, name);
@@ -33,7 +35,7 @@ async function assertWalks(page, name) {
   return { predicted, measured };
 }
 
-test('the banner of the image is seen', async () => {
+test('the log shows the banner of the image', async () => {
   const page = await openStanding();
   assert.match(await text(page, '#log'), /# lizard \d.* robot [a-z-]+ [0-9a-f]{8}, send help/);
   assert.match(await text(page, '#where'), /simulated UNO/);
@@ -41,9 +43,9 @@ test('the banner of the image is seen', async () => {
 
 test('walk moves the body as predicted', async () => {
   const page = await openStanding();
-  const { predicted, measured } = await assertWalks(page, 'walk');
+  const { predicted, measured } = await runGait(page, 'walk');
   assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
-  assert.ok(Math.abs(measured.turn) < 0.3, `it goes straight: ${measured.turn} deg`);
+  assert.ok(Math.abs(measured.turn) < 0.3, `it walks straight: ${measured.turn} deg`);
   await page.waitForFunction(() => / mm$/.test(document.querySelector('#cycle').textContent));
   assert.equal(await gaitButton(page, 'walk').getAttribute('aria-pressed'), 'true');
   await assertStops(page);
@@ -55,16 +57,16 @@ test('a gait started while a status is pending is not reverted', async () => {
     const { lizard } = window;
     const { listener } = lizard;
     const originalOnActivity = listener.onActivity.bind(listener);
-    window.done = [];
+    window.reportedGaits = [];
     listener.onActivity = (gait) => {
-      window.done.push(gait);
+      window.reportedGaits.push(gait);
       originalOnActivity(gait);
     };
     void lizard.status();
     void lizard.ask('walk');
   });
   await advance(page, 500);
-  assert.deepEqual(await page.evaluate(() => window.done), ['walk']);
+  assert.deepEqual(await page.evaluate(() => window.reportedGaits), ['walk']);
 });
 
 test('a pace set while a status is pending is not reverted', async () => {
@@ -73,9 +75,9 @@ test('a pace set while a status is pending is not reverted', async () => {
     const { lizard } = window;
     const { listener } = lizard;
     const originalSpeed = listener.speed.bind(listener);
-    window.paces = [];
+    window.reportedPaces = [];
     listener.speed = (percent) => {
-      window.paces.push(percent);
+      window.reportedPaces.push(percent);
       originalSpeed(percent);
     };
     // All lines arrive at once, as from a port that was busy.
@@ -91,24 +93,24 @@ test('a pace set while a status is pending is not reverted', async () => {
     link.onBytes = onBytes;
   });
   await advance(page, 100);
-  assert.deepEqual(await page.evaluate(() => window.paces), [100, 60]);
+  assert.deepEqual(await page.evaluate(() => window.reportedPaces), [100, 60]);
   assert.equal(await page.locator('#speed').inputValue(), '60');
 });
 
 test('left turns left', async () => {
   const page = await openStanding();
-  const { predicted, measured } = await assertWalks(page, 'left');
+  const { predicted, measured } = await runGait(page, 'left');
   assert.ok(predicted.turn > 10);
   assertNear(measured.turn, predicted.turn, 0.03, 'deg in a cycle');
 });
 
 test('a singular pose shows its refusal', async () => {
   const page = await openStanding();
-  const answer = await type(page, 'pose 75 105 318.59 221.41', 'err 4');
+  const answer = await sendLine(page, 'pose 75 105 318.59 221.41', 'err 4');
   assert.match(answer, /^err 4 type-2 margin of the head/);
 });
 
-test('changed lengths make other gaits', async () => {
+test('changed lengths change the gaits', async () => {
   const page = await openStanding();
   const previousPrediction = (await displacementsOf(page, 'walk')).predicted;
   const hash = await page.evaluate(() => window.lizard.description.hash);
@@ -119,21 +121,21 @@ test('changed lengths make other gaits', async () => {
   await crank.press('Enter');
   const waitForCrank = (value) => page.waitForFunction((value) => window.lizard.description.lengths.find(({ key }) => key === 'leg.crank').value === value, value);
   await waitForCrank(35);
-  assert.equal(await page.locator('input[name="leg.follower"]').inputValue(), '35', 'its twin follows');
+  assert.equal(await page.locator('input[name="leg.follower"]').inputValue(), '35', 'the paired length follows');
   await advance(page, 2500);
-  const { predicted, measured } = await assertWalks(page, 'walk');
+  const { predicted, measured } = await runGait(page, 'walk');
   assertNear(predicted.forward, (previousPrediction.forward * 35) / 45, 0.1, 'shorter steps');
   assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
 
-  const base = page.locator('input[name="links.l2"]');
-  await base.fill('15');
-  await base.press('Enter');
+  const coupler = page.locator('input[name="links.l2"]');
+  await coupler.fill('15');
+  await coupler.press('Enter');
   const refusal = page.locator('#lengths-refusal');
   await refusal.waitFor();
   assert.match(await refusal.innerText(), /^15 mm is too short: head coupler, (left|right) is 15 mm, which is short beside the rest of its loop/);
-  assert.equal(await base.getAttribute('aria-invalid'), 'true');
-  assert.equal(await base.inputValue(), '50', 'the box has what the file has');
-  assert.equal((await displacementsOf(page, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
+  assert.equal(await coupler.getAttribute('aria-invalid'), 'true');
+  assert.equal(await coupler.inputValue(), '50', 'the box shows the value of the file');
+  assert.equal((await displacementsOf(page, 'walk')).predicted.forward, predicted.forward, 'the previous robot stays');
 
   await page.locator('#lengths-reset').click();
   await waitForCrank(45);
@@ -155,7 +157,7 @@ test('every robot of robots/ can be chosen, and is in the image that runs', asyn
   }
 });
 
-/** Moves the trim of A1 by the keyboard, saves, and resets the board. */
+/** Sets the trim of A1 by the keyboard and saves it; asserts that the saved trim is kept over a reset. */
 async function calibrate(page, runFor) {
   await unfold(page, '#calibrate');
   await runFor(500);
@@ -173,23 +175,23 @@ async function calibrate(page, runFor) {
   await runFor(500);
   await page.locator('#cal-read').click();
   await runFor(500);
-  assert.equal(await trim.inputValue(), '0', 'factory takes it back');
+  assert.equal(await trim.inputValue(), '0', '"factory" restores the default');
   await page.locator('#cal-load').click();
   await runFor(500);
   await page.locator('#cal-read').click();
   await runFor(500);
-  assert.equal(await trim.inputValue(), '2', 'it is kept over a reset');
+  assert.equal(await trim.inputValue(), '2', 'the trim is kept over a reset');
 }
 
-test('a calibration is set, saved and kept', async () => {
+test('a calibration is set, saved and kept over a reset', async () => {
   const page = await openStanding();
   await calibrate(page, (ms) => advance(page, ms));
 });
 
 test('the boot action runs after a reset', async () => {
   const page = await openStanding();
-  await type(page, 'boot walk', 'ok boot walk');
-  await type(page, 'save', '> save');
+  await sendLine(page, 'boot walk', 'ok boot walk');
+  await sendLine(page, 'save', '> save');
   await advance(page, 2000);
   await page.locator('#reset').click();
   await advance(page, 7000);
@@ -197,19 +199,19 @@ test('the boot action runs after a reset', async () => {
   assert.ok((await displacementsOf(page, 'walk')).measured.forward > 20, 'the page knows that it walks');
 });
 
-test('a refused setting shows why and takes the slider back', async () => {
+test('a refused setting shows the reason, and its box shows the previous value', async () => {
   const page = await openStanding();
   await unfold(page, '#calibrate');
   await advance(page, 500);
-  const leastInput = page.locator('#calibration fieldset').first().getByLabel('from, deg');
-  await leastInput.fill('125');
-  await leastInput.press('Enter');
+  const fromInput = page.locator('#calibration fieldset').first().getByLabel('from, deg');
+  await fromInput.fill('125');
+  await fromInput.press('Enter');
   await advance(page, 1000);
   await page.locator('#cal-said', { hasText: /^err 3 A1 would not reach/ }).waitFor();
-  assert.equal(await leastInput.inputValue(), '48.59');
+  assert.equal(await fromInput.inputValue(), '48.59');
 });
 
-/** Chooses the image of another robot, and waits until it is written and has started. */
+/** Writes the image of another robot to the board; returns the banner with which the board starts. */
 async function writeImage(page, runFor, targetText = '') {
   await unfold(page, '#flash');
   const buffer = Buffer.from(hexOf(await imageOf('large')));
@@ -227,7 +229,7 @@ async function writeImage(page, runFor, targetText = '') {
   return banners.at(-1);
 }
 
-test('an image is flashed by the real boot loader', async () => {
+test('an image is written through the real boot loader', async () => {
   const page = await openStanding();
   const previousLog = await text(page, '#log');
   const banner = await writeImage(page, (ms) => advance(page, ms), ' to the simulated UNO');
@@ -244,14 +246,14 @@ test('an invalid HEX file is refused before anything is written', async () => {
   const input = page.getByLabel('HEX file');
   await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
   await page.locator('#flash-said', { hasText: "not written: line 1 is not Intel HEX: missing start code ':'" }).waitFor();
-  assert.equal((await type(page, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
+  assert.equal((await sendLine(page, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
 });
 
-test('a board by Web Serial is driven, mirrored, calibrated and flashed', async () => {
-  const page = await openPage({}, fakeSerial);
+test('a board by Web Serial is driven, mirrored, calibrated and written', async () => {
+  const page = await openPage({}, installFakeSerial);
   const runFor = (ms) => page.clock.runFor(ms);
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
+  await page.waitForFunction(() => window.attachedBoard);
   await runFor(4000);
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper/);
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
@@ -270,9 +272,9 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
 });
 
 test('unplugging the board is reported, and the simulation continues', async () => {
-  const page = await openPage({}, fakeSerial);
+  const page = await openPage({}, installFakeSerial);
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
+  await page.waitForFunction(() => window.attachedBoard);
   await page.clock.runFor(4000);
   await page.evaluate(() => window.unplug());
   await page.locator('#trouble', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
@@ -282,10 +284,10 @@ test('unplugging the board is reported, and the simulation continues', async () 
 
 test('a supply that sinks stops the robot, and its fault is shown', async () => {
   const page = await openStanding();
-  await assertWalks(page, 'walk');
+  await runGait(page, 'walk');
   await page.locator('#supply').fill('3.9');
   await advance(page, 2000);
-  // First, while its room is open, since a hidden panel shows no status; the console is in another room.
+  // The status comes first, while its room is open; the log is in another room.
   await page.locator('#health dd', { hasText: 'supply' }).waitFor();
   await page.locator('#log div', { hasText: '# supply: ' }).first().waitFor();
 });
@@ -294,7 +296,7 @@ test('pads that grip more in one direction change the prediction', async () => {
   const page = await openStanding();
   const previousForward = (await displacementsOf(page, 'back')).predicted.forward;
   await page.getByLabel('Friction back : ahead').fill('1.5');
-  const { predicted, measured } = await assertWalks(page, 'back');
+  const { predicted, measured } = await runGait(page, 'back');
   assert.notEqual(predicted.forward, previousForward);
   assert.ok(Math.abs(measured.forward - predicted.forward) < 1.5, `${measured.forward} ${predicted.forward}`);
 });
@@ -315,24 +317,24 @@ test('weak springs shorten the walk as the contact model predicts', async () => 
   await page.locator('#robot').selectOption('paper');
   await page.waitForFunction(() => window.lizard.file === 'paper');
   await advance(page, 2500);
-  const rigidMm = (await assertWalks(page, 'walk')).measured.forward;
+  const rigidMm = (await runGait(page, 'walk')).measured.forward;
   assert.equal(await page.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
   // The table of docs/twin.md: mm per cycle of the paper's robot, and the lag in deg.
   const twin = await readFile(new URL('../../docs/twin.md', import.meta.url), 'utf8');
   const rowOf = (name) => twin.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
-  const [pulls, walkedMm, lags] = ['pull in a slotted strut', '`walk`', 'lag in `walk`'].map(rowOf);
+  const [pulls, walkedMm, lagsDeg] = ['pull in a slotted strut', '`walk`', 'lag in `walk`'].map(rowOf);
   await page.getByLabel('Driven by').selectOption('strut');
   const slider = page.getByLabel('Pull in the strut');
   for (const pull of [0.5, 1]) {
-    const [expectedMm, expectedLag] = [walkedMm, lags].map((values) => values[pulls.indexOf(pull)]);
+    const [expectedMm, expectedLagDeg] = [walkedMm, lagsDeg].map((values) => values[pulls.indexOf(pull)]);
     await slider.fill(`${pull}`);
     await slider.dispatchEvent('change');
     await advance(page, 4000);
     const { predicted, measured } = await displacementsOf(page, 'walk');
-    assertNear(predicted.forward, expectedMm, 0.01, 'mm predicted, as the docs have it');
-    // The servos cut the corners of the waveforms, which matters over so short a distance.
+    assertNear(predicted.forward, expectedMm, 0.01, 'mm predicted, as in docs/twin.md');
+    // The servos cut the corners of the waveforms, which matters over a short distance.
     assertNear(measured.forward, predicted.forward, 0.04, 'mm ahead in a cycle');
-    assertNear(measured.lag, expectedLag, 0.15, 'deg of lag');
+    assertNear(measured.lag, expectedLagDeg, 0.15, 'deg of lag');
     assertNear(predicted.share, predicted.forward / rigidMm, 0.03, 'share of rigid legs');
     await page.locator('#share', { hasText: `${(100 * predicted.share).toFixed(0)} %` }).waitFor();
     await page.waitForFunction((lag) => document.querySelector('#lag').textContent === lag, `${measured.lag.toFixed(1)}°`);
@@ -340,23 +342,23 @@ test('weak springs shorten the walk as the contact model predicts', async () => 
     assert.ok(hasSprings, 'each leg shows its spring');
   }
   // The legs of a heavy robot lag more.
-  const lightRobot = (await displacementsOf(page, 'walk')).predicted;
+  const lightPrediction = (await displacementsOf(page, 'walk')).predicted;
   await setFromRight(page, 'Mass', 0);
-  const heavyRobot = (await displacementsOf(page, 'walk')).predicted;
-  assert.ok(heavyRobot.lag > 1.2 * lightRobot.lag, `${heavyRobot.lag} deg with 1 kg, ${lightRobot.lag} deg`);
+  const heavyPrediction = (await displacementsOf(page, 'walk')).predicted;
+  assert.ok(heavyPrediction.lag > 1.2 * lightPrediction.lag, `${heavyPrediction.lag} and ${lightPrediction.lag} deg`);
   await page.locator('#floor-reset').click();
   await advance(page, 2500);
-  const resetRobot = await displacementsOf(page, 'walk');
-  assertNear(resetRobot.predicted.forward, rigidMm, 0.03, 'rigid again');
-  assertNear(resetRobot.measured.forward, rigidMm, 0.03, 'rigid again');
-  assert.deepEqual([resetRobot.predicted.lag, resetRobot.measured.lag], [null, 0]);
+  const resetDisplacements = await displacementsOf(page, 'walk');
+  assertNear(resetDisplacements.predicted.forward, rigidMm, 0.03, 'rigid again');
+  assertNear(resetDisplacements.measured.forward, rigidMm, 0.03, 'rigid again');
+  assert.deepEqual([resetDisplacements.predicted.lag, resetDisplacements.measured.lag], [null, 0]);
 });
 
-test('a foot that is too long shortens the walk as the contact model predicts, and on soft feet not at all', async () => {
+test('a foot that is too long shortens the walk as the contact model predicts, but not on soft feet', async () => {
   const page = await openStanding();
   await page.locator('#servos').selectOption('ideal');
   await advance(page, 2500);
-  const levelMm = (await assertWalks(page, 'walk')).measured.forward;
+  const levelMm = (await runGait(page, 'walk')).measured.forward;
   const setSlider = async (label, value) => {
     const slider = page.getByLabel(label);
     await slider.fill(`${value}`);
@@ -380,7 +382,7 @@ test('a dead band costs its share of the stroke, as predicted', async () => {
   const walkedMm = [];
   for (const servos of ['ideal', 'own']) {
     await page.locator('#servos').selectOption(servos);
-    const { predicted, measured } = await assertWalks(page, 'walk');
+    const { predicted, measured } = await runGait(page, 'walk');
     assertNear(measured.forward, predicted.forward, 0.01, `mm ahead in a cycle, ${servos}`);
     walkedMm.push(measured.forward);
   }
@@ -389,10 +391,10 @@ test('a dead band costs its share of the stroke, as predicted', async () => {
 
 test('at half the pace the last cycle is as long as predicted', async () => {
   const page = await openStanding();
-  await type(page, 'speed 50', 'ok speed 50');
-  await type(page, 'walk', 'ok walk');
+  await sendLine(page, 'speed 50', 'ok speed 50');
+  await sendLine(page, 'walk', 'ok walk');
   await advance(page, 8000);
-  const readNumber = async (id) => Number.parseFloat(await page.locator(id).textContent());
+  const readNumber = async (selector) => Number.parseFloat(await page.locator(selector).textContent());
   await page.waitForFunction(() => ['#cycle', '#predicted'].every((id) => document.querySelector(id).textContent.endsWith('mm')));
   const [cycleMm, predictedMm] = [await readNumber('#cycle'), await readNumber('#predicted')];
   assert.ok(Math.abs(cycleMm / predictedMm - 1) < 0.05, `${cycleMm} mm, predicted ${predictedMm}`);

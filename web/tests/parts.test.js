@@ -1,5 +1,5 @@
-// The parts in the page are those of `lizard parts`: the same files, the same steps, at the robot's own pose. They are
-// not loaded before their panel is opened.
+// The parts in the page are those of `lizard parts`: the same files and the same steps of the guide. They are shown in
+// the robot's pose, and loaded only when their panel is opened.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -11,24 +11,24 @@ import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, openBlank, address, close, complaints, open, openStanding, closePages, type, unfold, within } from './browser.js';
+import { advance, openBlank, address, closeBrowser, complaints, openBrowser, openStanding, closePages, sendLine, unfold, withTimeout } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
-/** Limit of the page's first load, compressed, bytes. */
-const MAX_FIRST_LOAD = 500_000;
+/** Limit of the page's first load, compressed. */
+const MAX_FIRST_LOAD_BYTES = 500_000;
 
 let folder;
 
-before(open);
+before(openBrowser);
 before(async () => {
   folder = await mkdtemp(join(tmpdir(), 'parts-'));
-  const making = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
-  await within('lizard parts', making);
+  const partsMade = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
+  await withTimeout('lizard parts', partsMade);
 });
 afterEach(closePages);
 after(async () => {
   await rm(folder, { recursive: true, force: true });
-  await close();
+  await closeBrowser();
 });
 
 const messageOf = (page) => page.locator('#parts-said');
@@ -53,7 +53,7 @@ async function lookFromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
 }
 
-test('lengths that cannot be printed are reported at once, with the nearest that can, as by the program', async () => {
+test('an unprintable length is reported at once with the nearest printable one, as by lizard parts', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const length = page.locator('#lengths input[name="leg.crank"]');
@@ -65,8 +65,8 @@ test('lengths that cannot be printed are reported at once, with the nearest that
   await page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ }).waitFor();
   const useButton = page.locator('#fit-use');
   await useButton.waitFor();
-  const nearest = Number(/ ([\d.]+)$/.exec(await useButton.innerText())[1]);
-  assert.ok(nearest > 46 && nearest < 52, `${nearest} mm`);
+  const nearestMm = Number(/ ([\d.]+)$/.exec(await useButton.innerText())[1]);
+  assert.ok(nearestMm > 46 && nearestMm < 52, `${nearestMm} mm`);
 
   const triedFolder = await mkdtemp(join(tmpdir(), 'tried-'));
   after(() => rm(triedFolder, { recursive: true, force: true }));
@@ -78,33 +78,33 @@ test('lengths that cannot be printed are reported at once, with the nearest that
       return robot.constructor.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
-    const making = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(triedFolder, 'parts'), '--corner', '--robot', path]);
-    return within('lizard parts', making.then(() => 'made', ({ stderr }) => stderr));
+    const partsMade = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(triedFolder, 'parts'), '--corner', '--robot', path]);
+    return withTimeout('lizard parts', partsMade.then(() => 'made', ({ stderr }) => stderr));
   };
-  assert.equal(await makeParts(nearest), 'made');
-  assert.match(await makeParts(nearest + 0.5), /overlap|may come as near as/);
+  assert.equal(await makeParts(nearestMm), 'made');
+  assert.match(await makeParts(nearestMm + 0.5), /overlap|may come as near as/);
 
   await useButton.click();
   await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
-  assert.equal(await length.inputValue(), String(nearest));
+  assert.equal(await length.inputValue(), String(nearestMm));
   assert.equal(await useButton.isHidden(), true);
 
-  // The slider marks the longest that can be printed at the same value.
+  // The marks of the slider are at the shortest and the longest length that can be printed.
   const printedNote = page.locator('#length-printed', { hasText: /^Can be printed from [\d.]+ to [\d.]+ mm\.$/ });
   await printedNote.waitFor();
   const [, shortestMm, longestMm] = /from ([\d.]+) to ([\d.]+) mm/.exec(await printedNote.innerText());
-  assert.equal(Number(longestMm), nearest);
+  assert.equal(Number(longestMm), nearestMm);
   assert.equal(await makeParts(Number(shortestMm)), 'made');
-  const { ends, marks } = await page.locator('#length-slide').evaluate((slide) => {
+  const { endsMm, marks } = await page.locator('#length-slide').evaluate((slide) => {
     const { style } = document.querySelector('#length-marks');
-    return { ends: [Number(slide.min), Number(slide.max)], marks: ['--from', '--to'].map((name) => Number.parseFloat(style.getPropertyValue(name))) };
+    return { endsMm: [Number(slide.min), Number(slide.max)], marks: ['--from', '--to'].map((name) => Number.parseFloat(style.getPropertyValue(name))) };
   });
-  const lengthAt = (share) => ends[0] + ((ends[1] - ends[0]) * share) / 100;
-  assert.deepEqual(marks.map(lengthAt).map((mm) => Math.round(mm * 100) / 100), [Number(shortestMm), nearest]);
-  assert.ok(ends[0] <= Number(shortestMm) && ends[1] > nearest, `${ends} of what walks`);
+  const lengthAt = (share) => endsMm[0] + ((endsMm[1] - endsMm[0]) * share) / 100;
+  assert.deepEqual(marks.map(lengthAt).map((mm) => Math.round(mm * 100) / 100), [Number(shortestMm), nearestMm]);
+  assert.ok(endsMm[0] <= Number(shortestMm) && endsMm[1] > nearestMm, `the slider: ${endsMm} mm`);
 });
 
-test('while a length is dragged, the two parts that meet are red in 3D, with their millimetres', async () => {
+test('while a length is dragged, the two parts that meet are red in 3D, and their overlap is shown in mm', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   await page.locator('#solid').click();
@@ -112,7 +112,7 @@ test('while a length is dragged, the two parts that meet are red in 3D, with the
   const slider = page.locator('#length-slide');
   await slider.focus();
   await page.waitForFunction(() => Number(document.querySelector('#length-slide').max) > 52);
-  const countRed = async () => {
+  const countRedPixels = async () => {
     const picture = (await page.locator('#space').screenshot()).toString('base64');
     return page.evaluate(async (picture) => {
       const bytes = Uint8Array.from(atob(picture), (letter) => letter.charCodeAt(0));
@@ -120,33 +120,33 @@ test('while a length is dragged, the two parts that meet are red in 3D, with the
       const pen = new OffscreenCanvas(image.width, image.height).getContext('2d');
       pen.drawImage(image, 0, 0);
       const { data } = pen.getImageData(0, 0, image.width, image.height);
-      let red = 0;
+      let redCount = 0;
       for (let n = 0; n < data.length; n += 4) {
         const [r, g, b] = data.subarray(n, n + 3);
         // The orange of a leg has more green.
-        if (r > 90 && r > 3 * g && r > 3 * b) red += 1;
+        if (r > 90 && r > 3 * g && r > 3 * b) redCount += 1;
       }
-      return red;
+      return redCount;
     }, picture);
   };
-  const redAtRest = await countRed();
+  const restingRedCount = await countRedPixels();
   const previousToml = await page.evaluate(() => window.lizard.toml);
-  const drag = (mm) => slider.evaluate((slider, mm) => ((slider.value = String(mm)), slider.dispatchEvent(new Event('input'))), mm);
-  await drag(52);
+  const dragTo = (mm) => slider.evaluate((slider, mm) => ((slider.value = String(mm)), slider.dispatchEvent(new Event('input'))), mm);
+  await dragTo(52);
   const message = page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ });
   await message.waitFor();
-  const [, pair, mm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await message.innerText());
-  await page.locator('#parts-said', { hasText: `${pair}: ${mm} mm too much.` }).waitFor();
-  assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'it is not let go');
-  // The stop button is red, too. The picture follows within a moment.
+  const [, pair, overlapMm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await message.innerText());
+  await page.locator('#parts-said', { hasText: `${pair}: ${overlapMm} mm too much.` }).waitFor();
+  assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'the slider is not released yet');
+  // The stop button is red, too. The picture follows the slider after a moment.
   const waitForRed = async (isRed) => {
-    while ((await countRed()) > redAtRest + 50 !== isRed) await page.waitForTimeout(200);
+    while ((await countRedPixels()) > restingRedCount + 50 !== isRed) await page.waitForTimeout(200);
   };
-  await within('red parts', waitForRed(true));
+  await withTimeout('red parts', waitForRed(true));
   // At the old length the parts fit again.
-  await drag(45);
+  await dragTo(45);
   await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
-  await within('no red parts', waitForRed(false));
+  await withTimeout('no red parts', waitForRed(false));
 });
 
 test('the files that a changed length affects are listed, and can be downloaded alone', async () => {
@@ -163,7 +163,7 @@ test('the files that a changed length affects are listed, and can be downloaded 
   after(() => rm(changedFolder, { recursive: true, force: true }));
   const path = join(changedFolder, 'robot.toml');
   await writeFile(path, await page.evaluate(() => window.lizard.toml));
-  await within('lizard parts', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(changedFolder, 'parts'), '--robot', path]));
+  await withTimeout('lizard parts', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(changedFolder, 'parts'), '--robot', path]));
   const entries = await readdir(join(changedFolder, 'parts'), { recursive: true, withFileTypes: true });
   const paths = entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => join(parentPath, name).slice(join(changedFolder, 'parts').length + 1));
   const isSame = async (name) => {
@@ -178,17 +178,17 @@ test('the files that a changed length affects are listed, and can be downloaded 
   assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files are not those of robot\\.toml:`));
 });
 
-test('opening the page loads no parts, and less than half a megabyte', async () => {
+test('opening the page loads no parts, and less than 500 KB compressed', async () => {
   const page = await openBlank();
   const bodies = new Map();
   page.on('response', (response) => bodies.set(response.url().replace(address(), ''), response.body()));
   await page.goto(address());
   await page.waitForFunction(() => window.lizard);
   const names = [...bodies.keys()];
-  const sizes = await within('all bodies', Promise.all([...bodies.values()].map(async (body) => gzipSync(await body).length)));
-  const sum = sizes.reduce((a, b) => a + b, 0);
+  const sizes = await withTimeout('all bodies', Promise.all([...bodies.values()].map(async (body) => gzipSync(await body).length)));
+  const totalBytes = sizes.reduce((a, b) => a + b, 0);
   assert.ok(names.includes('files/lizard.wasm'), names.join(' '));
-  assert.ok(sum < MAX_FIRST_LOAD, `${sum} bytes`);
+  assert.ok(totalBytes < MAX_FIRST_LOAD_BYTES, `${totalBytes} bytes`);
   const earlyNames = names.filter((name) => /parts\.wasm|tune\.wasm|space|workshop|worker-.*parts/.test(name));
   assert.deepEqual(earlyNames, []);
   await unfold(page, '#parts');
@@ -200,22 +200,22 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   const page = await openStanding();
   await unfold(page, '#parts');
   const pendingDownload = page.waitForEvent('download');
-  // Every message is recorded when it appears; polling a busy browser would miss some.
+  // Every message is recorded when it appears, because polling a busy browser would miss some.
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');
-    window.said = [];
-    new MutationObserver(() => window.said.push(box.textContent)).observe(box, { childList: true });
-    // Reports of the progress have a port of their own, and on a busy machine they come later than the files.
+    window.shownMessages = [];
+    new MutationObserver(() => window.shownMessages.push(box.textContent)).observe(box, { childList: true });
+    // Reports of the progress have their own port. On a busy machine they may come after the files, as they do here.
     const { addEventListener } = MessagePort.prototype;
-    window.late = [];
+    window.delayedReports = [];
     MessagePort.prototype.addEventListener = function (type, listener) {
-      addEventListener.call(this, type, (event) => (box.textContent.startsWith('Making') ? window.late.push(() => listener(event)) : listener(event)));
+      addEventListener.call(this, type, (event) => (box.textContent.startsWith('Making') ? window.delayedReports.push(() => listener(event)) : listener(event)));
     };
   });
   await page.getByRole('button', { name: 'Download all files' }).click();
   const savedFile = await pendingDownload;
-  const progress = await page.evaluate(() => window.said);
-  assert.ok((await page.evaluate(() => window.late.map((report) => report()).length)) > 10);
+  const progress = await page.evaluate(() => window.shownMessages);
+  assert.ok((await page.evaluate(() => window.delayedReports.map((report) => report()).length)) > 10);
   assert.ok(progress.some((text) => /^Proving that no two parts meet: [0-9]+ of [0-9]+\.$/.test(text)), progress.join(' '));
   assert.equal(savedFile.suggestedFilename(), 'robot-parts.zip');
   const archive = unzipSync(await readFile(await savedFile.path()));
@@ -225,17 +225,17 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   for (const path of paths) assert.ok(Buffer.from(archive[path]).equals(await readFile(join(folder, path))), `${path} differs`);
   assert.ok(paths.length > 100, `${paths.length} files`);
   // The nearest two parts, as `lizard fit` prints them.
-  const { stdout } = await within('lizard fit', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['fit', '--robot', join(ROOT, 'robot.toml')]));
+  const { stdout } = await withTimeout('lizard fit', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['fit', '--robot', join(ROOT, 'robot.toml')]));
   const leastMm = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
   assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${leastMm} mm`));
 });
 
 test('making the files can be stopped, and then nothing is saved', async () => {
   const page = await openStanding();
-  let downloads = 0;
-  page.on('download', () => (downloads += 1));
+  let downloadCount = 0;
+  page.on('download', () => (downloadCount += 1));
   await unfold(page, '#parts');
-  // At once: in a slow browser the work might have ended before it is stopped.
+  // Stops from within the page, because in a slow browser the work might have ended before the test stops it.
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');
     const observer = new MutationObserver(() => {
@@ -248,7 +248,7 @@ test('making the files can be stopped, and then nothing is saved', async () => {
   await page.getByRole('button', { name: 'Download all files' }).click();
   await page.getByText('Stopped; nothing was saved.').waitFor();
   assert.equal(await page.locator('#parts-save').innerText(), 'Download all files');
-  assert.equal(downloads, 0);
+  assert.equal(downloadCount, 0);
 });
 
 test('a clicked part shows its name and its file', async () => {
@@ -257,13 +257,13 @@ test('a clicked part shows its name and its file', async () => {
   assert.match(await clickAt(page, 0.5, 0.5), /^board: board, bought; put on in step 3\.$/);
   assert.equal(await page.locator('#part option:checked').innerText(), 'board');
   assert.match(await clickAt(page, 0.02, 0.98), /^Click a part/);
-  // By keyboard: the list names all parts.
+  // The list, for the keyboard, has all parts.
   await page.locator('#part').selectOption({ label: 'link A1' });
   const [, file] = /stl\/(.*)\.stl/.exec(await messageOf(page).innerText());
   assert.ok((await readdir(join(folder, 'stl'))).includes(`${file}.stl`), file);
 });
 
-test('the guide is gone through step by step', async () => {
+test('the page leads through the guide step by step', async () => {
   const page = await openParts();
   const guide = await readFile(join(folder, 'guide/guide.md'), 'utf8');
   const titles = [...guide.matchAll(/^## ([0-9]+)\. (.*)$/gm)];
@@ -281,10 +281,10 @@ test('the guide is gone through step by step', async () => {
   assert.doesNotMatch(await clickAt(page, 0.5, 0.5), /^board:/);
 });
 
-test('the parts go where the robot goes', async () => {
+test('the parts move with the robot', async () => {
   const page = await openParts();
   await lookFromAbove(page);
-  // The centre of the pixels that show the head's plate: seen from above, ahead is to the left and up.
+  // Finds the centre of the pixels that show the head's plate. Seen from above, the robot's head is up and to the left.
   const findHead = () =>
     page.evaluate(() => {
       const space = document.querySelector('#space');
@@ -312,7 +312,7 @@ test('the parts go where the robot goes', async () => {
     }
   };
   const straightPlace = await waitForHead();
-  await type(page, 'pose 150.59 53.41 318.59 221.41', 'ok pose');
+  await sendLine(page, 'pose 150.59 53.41 318.59 221.41', 'ok pose');
   await advance(page, 1500);
   const bentPlace = await waitForHead(straightPlace);
   // Both cranks turn to the robot's left, which is down and to the left of the picture.
@@ -320,18 +320,18 @@ test('the parts go where the robot goes', async () => {
   assert.ok(sideways > 15, `${straightPlace} to ${bentPlace}`);
 });
 
-test('a robot that cannot be built says why', async () => {
+test('the page says why a robot cannot be built', async () => {
   const page = await openParts();
-  const lowHeight = '\n[parts]\nheight = 10.0\n';
-  assert.equal(await page.evaluate((lowHeight) => window.lizard.change(window.lizard.toml + lowHeight), lowHeight), null);
+  const lowPartsToml = '\n[parts]\nheight = 10.0\n';
+  assert.equal(await page.evaluate((lowPartsToml) => window.lizard.change(window.lizard.toml + lowPartsToml), lowPartsToml), null);
   await page.getByText('There are no parts of this robot: parts.height is 10 mm').waitFor();
 });
 
-test('3D pictures leave the processor time on a machine without a graphics chip', async (t) => {
+test('3D pictures take less than a core on a machine without a graphics chip', async (t) => {
   const page = await openParts();
-  const browser = await within('the processes', page.context().browser().newBrowserCDPSession());
+  const browserSession = await withTimeout('the processes', page.context().browser().newBrowserCDPSession());
   const readGpuSeconds = async () => {
-    const { processInfo } = await within('the processes', browser.send('SystemInfo.getProcessInfo'));
+    const { processInfo } = await withTimeout('the processes', browserSession.send('SystemInfo.getProcessInfo'));
     return processInfo.find(({ type }) => type === 'GPU').cpuTime;
   };
   const measureShare = async () => {
@@ -339,13 +339,13 @@ test('3D pictures leave the processor time on a machine without a graphics chip'
     await page.waitForTimeout(4000);
     return (1000 * ((await readGpuSeconds()) - startSeconds)) / (performance.now() - startMs);
   };
-  await type(page, 'walk', 'ok walk');
+  await sendLine(page, 'walk', 'ok walk');
   await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
   const shownShare = await measureShare();
   await page.locator('#parts').evaluate((panel) => (panel.open = false));
   const hiddenShare = await measureShare();
   t.diagnostic(`${(100 * (shownShare - hiddenShare)).toFixed(0)} % of a core`);
-  assert.ok(shownShare - hiddenShare < 0.8, `${shownShare} of a core with the robot in space, ${hiddenShare} without`);
+  assert.ok(shownShare - hiddenShare < 0.8, `${shownShare} of a core with the robot in 3D, ${hiddenShare} without`);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

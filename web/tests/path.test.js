@@ -1,53 +1,56 @@
-// A gesture is drawn: the point of head or tail follows the line, and a line out of reach is refused with a valid size.
+// A gesture is drawn: the point of the head or the tail follows the line, and a line out of reach is refused with a
+// valid size.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, overflow, openStanding, closePages, unfold } from './browser.js';
+import {
+  advance, closeBrowser, complaints, openBrowser, overflow, openStanding, closePages, unfold,
+} from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-const text = (page, id) => page.locator(`#path-${id}`).innerText();
-const waitForAnswer = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
+const panelText = (page, id) => page.locator(`#path-${id}`).innerText();
+const waitForValue = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
 
 async function openPanel(options) {
   const page = await openStanding(options);
   await unfold(page, '#path-editor');
-  await waitForAnswer(page, 'least');
+  await waitForValue(page, 'least');
   return page;
 }
 
-/** Returns the screen position of a point that is given in the head's own frame, mm. */
+/** Returns the screen position of a point in the head's own frame, mm. */
 const screenPoint = (page, [x, y]) =>
   page.evaluate(([x, y]) => {
     const point = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());
     return [point.x, point.y];
   }, [x, y]);
 
-/** Draws a closed line about the head's neutral point with the mouse. */
-async function draw(page, radius, corners = 40) {
+/** Draws a circle around the head's neutral point with the mouse. */
+async function draw(page, radiusMm, cornerCount = 40) {
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   const [x, y] = await page.evaluate(() => window.lizard.robot.reachArea(0).neutral);
-  for (let n = 0; n <= corners; n++) {
-    const angle = (2 * Math.PI * n) / corners;
-    await page.mouse.move(...(await screenPoint(page, [x + radius * Math.cos(angle), y + radius * Math.sin(angle)])));
+  for (let n = 0; n <= cornerCount; n++) {
+    const angle = (2 * Math.PI * n) / cornerCount;
+    const corner = [x + radiusMm * Math.cos(angle), y + radiusMm * Math.sin(angle)];
+    await page.mouse.move(...(await screenPoint(page, corner)));
     if (n === 0) await page.mouse.down();
   }
   await page.mouse.up();
-  return [x, y];
 }
 
 /** Returns the head's point relative to the middle of the chassis, mm, as the page draws it. */
-const headOf = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
+const headPointOf = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
 
 test('a drawn circle is the path of the head, and is written into robot.toml', async () => {
   const page = await openPanel();
   await draw(page, 6);
   await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
   assert.equal(await page.locator('#path-shape').inputValue(), 'own');
-  assert.match(await text(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
-  const neutral = await headOf(page);
+  assert.match(await panelText(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
+  const neutral = await headPointOf(page);
   await page.locator('#path-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.gesture.head]'));
   await advance(page, 3000);
@@ -56,7 +59,7 @@ test('a drawn circle is the path of the head, and is written into robot.toml', a
   const distances = [];
   for (let n = 0; n < 20; n++) {
     await advance(page, 200);
-    const point = await headOf(page);
+    const point = await headPointOf(page);
     distances.push(Math.hypot(point[0] - neutral[0], point[1] - neutral[1]));
   }
   // A servo's dead band is a fraction of a mm there.
@@ -68,11 +71,11 @@ test('a line that is too large is refused, and a button offers the largest valid
   await draw(page, 45);
   const button = page.locator('#path-instead button', { hasText: 'A size of' });
   await button.waitFor();
-  assert.notEqual(await text(page, 'refusal'), '');
+  assert.notEqual(await panelText(page, 'refusal'), '');
   for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#path-${id}`).isDisabled(), id);
   const size = Number(/A size of (\d+) %/.exec(await button.innerText())[1]);
   await button.click();
-  await waitForAnswer(page, 'least');
+  await waitForValue(page, 'least');
   await page.waitForFunction(() => document.querySelector('#path-no').hidden);
   assert.equal(Number(await page.locator('#path-size').inputValue()), size);
   await page.locator('#path-size').fill(String(size + 1));
@@ -81,25 +84,25 @@ test('a line that is too large is refused, and a button offers the largest valid
 
 test('a shape can be chosen by the keyboard, for the tail as well', async () => {
   const page = await openPanel();
-  const previousTable = await text(page, 'table');
+  const previousTable = await panelText(page, 'table');
   await page.locator('#path-end').selectOption('tail');
   await page.waitForFunction((previousTable) => document.querySelector('#path-table').textContent !== previousTable, previousTable);
-  assert.match(await text(page, 'table'), /\[gait\.gesture\.tail\]/);
+  assert.match(await panelText(page, 'table'), /\[gait\.gesture\.tail\]/);
   for (const shape of ['circle', 'side', 'nod', 'eight']) {
-    const table = await text(page, 'table');
+    const table = await panelText(page, 'table');
     await page.locator('#path-shape').selectOption(shape);
     await page.waitForFunction((table) => document.querySelector('#path-table').textContent !== table, table);
-    assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await text(page, 'refusal')}`);
+    assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await panelText(page, 'refusal')}`);
   }
 });
 
 test('a tap is refused, with a message that it is not a line', async () => {
   const page = await openPanel();
-  const previousTable = await text(page, 'table');
+  const previousTable = await panelText(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#path-plane').click();
-  assert.equal(await text(page, 'said'), 'A tap is not a line: hold and draw it.');
-  assert.equal(await text(page, 'table'), previousTable);
+  assert.equal(await panelText(page, 'said'), 'A tap is not a line: hold and draw it.');
+  assert.equal(await panelText(page, 'table'), previousTable);
 });
 
 test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {

@@ -7,12 +7,12 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { load } from '../../tools/judge/src/hex.js';
-import { PATIENCE, close, complaints, open, page as openPage, closePages } from './browser.js';
+import { loadHex } from '../../tools/judge/src/hex.js';
+import { TIMEOUT_MS, closeBrowser, complaints, openBrowser, openPage, closePages } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 const ROBOT_FILE = join(ROOT, 'robot.toml');
@@ -33,7 +33,7 @@ const END_MS = 16_011;
 /** Turn of a servo for one CPU cycle of pulse width, deg. */
 const CYCLE_DEG = 1 / 160;
 
-/** The servo angles of each frame that `lizard sim` reads from the pins. */
+/** Returns the servo angles of each frame, which `lizard sim` computes from the pulses at the pins. */
 function simulate(toml) {
   const folder = mkdtempSync(join(tmpdir(), 'lizard-'));
   try {
@@ -45,11 +45,11 @@ function simulate(toml) {
     const output = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', scriptPath, ...files], {
       cwd: ROOT,
       maxBuffer: 1 << 26,
-      timeout: PATIENCE,
+      timeout: TIMEOUT_MS,
     });
     return JSON.parse(output).frames.flatMap(({ angles }) => (angles ? [angles] : []));
   } catch (error) {
-    if (error.code === 'ETIMEDOUT') throw new Error(`waited ${PATIENCE / 1000} s for the end of lizard sim`);
+    if (error.code === 'ETIMEDOUT') throw new Error(`timeout after ${TIMEOUT_MS / 1000} s: the end of lizard sim`);
     throw error;
   } finally {
     rmSync(folder, { recursive: true, force: true });
@@ -59,7 +59,7 @@ function simulate(toml) {
 test('the image of robot.toml is what the compiler makes, to the byte', async () => {
   const page = await openPage();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
-  load(readFileSync(HEX, 'utf8'), flash);
+  loadHex(readFileSync(HEX, 'utf8'), flash);
   const image = await page.evaluate(() => Array.from(window.lizard.image));
   assert.ok(image.length > 0x6e00 + 1000, `${image.length} bytes`);
   assert.deepEqual(image, Array.from(flash.subarray(0, image.length)));
@@ -67,8 +67,8 @@ test('the image of robot.toml is what the compiler makes, to the byte', async ()
 });
 
 const TOML = readFileSync(ROBOT_FILE, 'utf8');
-/** A robot with a shorter walk and a gait of its own. */
-const OWN_TOML = `${TOML.replace('amplitude = 20.0', 'amplitude = 17.0')}
+/** A robot with a shorter walk and an additional gait. */
+const EDITED_TOML = `${TOML.replace('amplitude = 20.0', 'amplitude = 17.0')}
 [gait.limp]
 period = 1.4
 waveform = "wave"
@@ -77,8 +77,8 @@ amplitude = 12.0
 start = { LF = 0.0, RF = 0.5, RH = 0.2, LH = 0.7 }
 `;
 
-for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed into the page', OWN_TOML]]) test(`every width of ${robotName} is that of the simulated UNO`, async () => {
-  // With the page's timers at rest, only this test lets time pass.
+for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed into the page', EDITED_TOML]]) test(`every pulse width of ${robotName} equals that of the simulated UNO`, async () => {
+  // The page's clock is paused, so that only this test advances the simulation.
   const page = await openPage({}, () => {});
   if (toml !== TOML) assert.equal(await page.evaluate((toml) => window.lizard.change(toml), toml), null);
   const { frames, rises } = await page.evaluate(
@@ -88,7 +88,7 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
       const { pin } = lizard.description.servos[3];
       const frames = [];
       const rises = [];
-      // The page's own path, frame by frame.
+      // Records the frames that the page itself computes.
       lizard.robot.setServos('ideal');
       const originalPulses = lizard.robot.pulses.bind(lizard.robot);
       lizard.robot.pulses = (widths) => {
@@ -101,7 +101,7 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
         if (pulsePin === pin) rises.push(rise);
         originalOnPulse(pulsePin, rise, width);
       };
-      // The page may have run for some pictures.
+      // The page may have advanced the simulation before its clock was paused.
       let currentMs = board.cycle / 16_000;
       for (const [ms, line] of [...script, [end, '']]) {
         lizard.advance(ms - currentMs);

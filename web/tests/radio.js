@@ -1,45 +1,45 @@
-// A Bluetooth module in Chromium's own emulation, with a simulated UNO at its serial line. The emulation delivers what
-// the page writes. It has no notifications, so the robot's bytes reach the page as the event that a notification would
-// cause.
-import { devTools, openForbidden, page as openPage, within } from './browser.js';
+// A Bluetooth module in Chromium's own emulation, with a simulated UNO at its serial line. The emulation delivers the
+// bytes that the page writes. It has no notifications, so this file sends the robot's bytes to the page in the event
+// that a notification would cause.
+import { openDevTools, openForbidden, openPage, withTimeout } from './browser.js';
 
 const uuidOf = (shortId) => `0000${shortId}-0000-1000-8000-00805f9b34fb`;
-export const HM10 = { name: 'HMSoft', service: uuidOf('ffe0'), to: 'ffe1', characteristics: { [uuidOf('ffe1')]: ['notify', 'writeWithoutResponse'] } };
+export const HM10 = { name: 'HMSoft', service: uuidOf('ffe0'), characteristics: { [uuidOf('ffe1')]: ['notify', 'writeWithoutResponse'] } };
 export const NORDIC = {
   name: 'Bluefruit',
   service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',
   characteristics: { '6e400002-b5a3-f393-e0a9-e50e24dcca9e': ['write'], '6e400003-b5a3-f393-e0a9-e50e24dcca9e': ['notify'] },
 };
-const ADDRESS = '09:09:09:09:09:09';
-const CONFIGURATION = '00002902-0000-1000-8000-00805f9b34fb';
-/** The error of a missing module. */
-const MISSING_MODULE = 0x3e;
-/** Interval at which the radio is polled, ms of page time. */
+const MODULE_ADDRESS = '09:09:09:09:09:09';
+const CONFIGURATION_DESCRIPTOR = '00002902-0000-1000-8000-00805f9b34fb';
+/** Bluetooth error code of a module that is out of reach. */
+const OUT_OF_REACH = 0x3e;
+/** Interval at which written packets are awaited, ms of page time. */
 const STEP_MS = 20;
 
-/** Runs in the page before anything else. */
-function initScript() {
+/** Prepares the page; runs in it before any other script. */
+function prepareRadio() {
   const { prototype } = BluetoothRemoteGATTCharacteristic;
   const { startNotifications } = prototype;
   prototype.startNotifications = function () {
-    window.notifier = this;
+    window.notifyingCharacteristic = this;
     return startNotifications.call(this);
   };
-  window.written = 0;
+  window.writeCount = 0;
   for (const name of ['writeValueWithResponse', 'writeValueWithoutResponse']) {
     const write = prototype[name];
     prototype[name] = function (bytes) {
-      window.written += 1;
+      window.writeCount += 1;
       return write.call(this, bytes);
     };
   }
-  window.say = (bytes) => {
-    if (!window.inReach || !window.notifier) return;
+  window.sendToPage = (bytes) => {
+    if (!window.isInReach || !window.notifyingCharacteristic) return;
     const value = new DataView(Uint8Array.from(bytes).buffer);
-    Object.defineProperty(window.notifier, 'value', { value, configurable: true });
-    window.notifier.dispatchEvent(new Event('characteristicvaluechanged'));
+    Object.defineProperty(window.notifyingCharacteristic, 'value', { value, configurable: true });
+    window.notifyingCharacteristic.dispatchEvent(new Event('characteristicvaluechanged'));
   };
-  window.powerOn = () => {
+  window.powerOnBoard = () => {
     const { link, image } = window.lizard;
     const board = new link.board.constructor(image, null, null);
     // A new module, with its default name.
@@ -47,143 +47,143 @@ function initScript() {
     board.run(16_000 * 4000);
     const output = [];
     board.onByte = (byte) => output.push(byte);
-    window.moved = 0;
-    window.boardMs = () => board.cycle / 16_000;
+    window.lastMoveMs = 0;
+    window.readBoardMs = () => board.cycle / 16_000;
     const widths = {};
     const pins = window.lizard.description.servos.map(({ pin }) => pin);
     board.onPulse = (pin, rise, width) => {
       if (pins.includes(pin) && Math.abs(widths[pin] - width) > 16) {
-        window.moved = performance.now();
-        window.movedAt = window.boardMs();
+        window.lastMoveMs = performance.now();
+        window.lastMoveBoardMs = window.readBoardMs();
       }
       widths[pin] = width;
     };
-    window.heard = '';
-    board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
+    window.receivedText = '';
+    board.onReceived = (byte) => (window.receivedText += String.fromCharCode(byte));
     setInterval(() => {
       board.run(16_000 * 2);
-      while (output.length > 0) window.say(output.splice(0, 20));
+      while (output.length > 0) window.sendToPage(output.splice(0, 20));
     }, 2);
-    window.otherBoard = board;
+    window.attachedBoard = board;
   };
 }
 
 export class Radio {
-  /** Writes that the emulation has delivered, and their lengths. */
-  packets = [];
-  /** True while the module is in reach. */
+  /** Lengths of the packets that the emulation has delivered. */
+  packetLengths = [];
   isInReach = true;
 
-  constructor(opened, root, prompts, module) {
-    Object.assign(this, { opened, root, prompts, module });
+  constructor(page, browserSession, pageSession, module) {
+    Object.assign(this, { page, browserSession, pageSession, module });
   }
 
   /**
-   * Opens the page with such a module in reach; `adapter` is the state of the browser's radio, `allowed` its permission
-   * to use it.
+   * Opens the page with a module in reach. `adapter` is the state of the browser's radio; `isAllowed` is true if the
+   * page may use Bluetooth.
    */
-  static async near(module, { adapter = 'powered-on', robot = true, allowed = true } = {}) {
-    const page = allowed ? await openPage({}, initScript) : await openForbidden('bluetooth', initScript);
-    const root = await devTools();
-    await root.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
-    const radio = new Radio(page, root, await page.context().newCDPSession(page), module);
-    if (robot) await page.evaluate(() => window.powerOn());
+  static async open(module, { adapter = 'powered-on', hasRobot = true, isAllowed = true } = {}) {
+    const page = isAllowed ? await openPage({}, prepareRadio) : await openForbidden('bluetooth', prepareRadio);
+    const browserSession = await openDevTools();
+    await browserSession.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
+    const radio = new Radio(page, browserSession, await page.context().newCDPSession(page), module);
+    if (hasRobot) await page.evaluate(() => window.powerOnBoard());
     if (adapter !== 'powered-on') return radio;
     const { name, service } = module;
-    await root.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
-    // A failure after the page was closed does not matter; an earlier one shows as a test that times out.
-    root.on('BluetoothEmulation.gattOperationReceived', (event) => radio.gatt(event).catch(() => {}));
-    root.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.characteristic(event).catch(() => {}));
-    await radio.prompts.send('DeviceAccess.enable');
+    await browserSession.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: MODULE_ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
+    // An answer may fail after the page was closed. After an earlier failure the test times out.
+    browserSession.on('BluetoothEmulation.gattOperationReceived', (event) => radio.answerGatt(event).catch(() => {}));
+    browserSession.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.answerCharacteristic(event).catch(() => {}));
+    await radio.pageSession.send('DeviceAccess.enable');
     return radio;
   }
 
-  async gatt({ type }) {
-    if (type === 'discovery') await this.offer();
-    if (type === 'connection' && this.isInReach) await this.reached();
-    const code = this.isInReach ? 0 : MISSING_MODULE;
-    await this.root.send('BluetoothEmulation.simulateGATTOperationResponse', { address: ADDRESS, type, code }).catch(() => {});
+  async answerGatt({ type }) {
+    if (type === 'discovery') await this.addService();
+    if (type === 'connection' && this.isInReach) await this.connect();
+    const code = this.isInReach ? 0 : OUT_OF_REACH;
+    await this.browserSession.send('BluetoothEmulation.simulateGATTOperationResponse', { address: MODULE_ADDRESS, type, code }).catch(() => {});
   }
 
-  /** Sends the text that an HM-10 sends to the robot when its link changes, without a line end. */
-  async reached() {
-    await this.opened.evaluate(() => {
-      window.inReach = true;
-      window.otherBoard?.send([...'OK+CONN'].map((letter) => letter.charCodeAt(0)));
+  /** Connects the module, which then sends the robot a text without a line end, as an HM-10 does. */
+  async connect() {
+    await this.page.evaluate(() => {
+      window.isInReach = true;
+      window.attachedBoard?.send([...'OK+CONN'].map((letter) => letter.charCodeAt(0)));
     });
   }
 
-  async offer() {
-    const { serviceId } = await this.root.send('BluetoothEmulation.addService', { address: ADDRESS, serviceUuid: this.module.service });
+  async addService() {
+    const { serviceId } = await this.browserSession.send('BluetoothEmulation.addService', { address: MODULE_ADDRESS, serviceUuid: this.module.service });
     for (const [characteristicUuid, propertyNames] of Object.entries(this.module.characteristics)) {
       const properties = Object.fromEntries(propertyNames.map((name) => [name, true]));
-      const { characteristicId } = await this.root.send('BluetoothEmulation.addCharacteristic', { serviceId, characteristicUuid, properties });
-      if (properties.notify) await this.root.send('BluetoothEmulation.addDescriptor', { characteristicId, descriptorUuid: CONFIGURATION });
+      const { characteristicId } = await this.browserSession.send('BluetoothEmulation.addCharacteristic', { serviceId, characteristicUuid, properties });
+      if (properties.notify) await this.browserSession.send('BluetoothEmulation.addDescriptor', { characteristicId, descriptorUuid: CONFIGURATION_DESCRIPTOR });
     }
   }
 
-  async characteristic({ characteristicId, type, data, writeType }) {
+  async answerCharacteristic({ characteristicId, type, data, writeType }) {
     if (type === 'write') {
       const bytes = [...Buffer.from(data, 'base64')];
-      await this.opened.evaluate((bytes) => window.inReach && window.otherBoard?.send(bytes), bytes);
-      this.packets.push(bytes.length);
+      await this.page.evaluate((bytes) => window.isInReach && window.attachedBoard?.send(bytes), bytes);
+      this.packetLengths.push(bytes.length);
     }
     if (writeType === 'write-without-response') return;
-    await this.root.send('BluetoothEmulation.simulateCharacteristicOperationResponse', { characteristicId, type, code: 0 }).catch(() => {});
+    await this.browserSession.send('BluetoothEmulation.simulateCharacteristicOperationResponse', { characteristicId, type, code: 0 }).catch(() => {});
   }
 
-  /** Advances the page's clock; writes arrive within the step in which they were made. */
+  /** Advances the page's clock in steps; each step ends when the packets that the page wrote in it have arrived. */
   async run(ms) {
     for (let remainingMs = ms; remainingMs > 0; remainingMs -= STEP_MS) {
-      await this.opened.clock.runFor(STEP_MS);
+      await this.page.clock.runFor(STEP_MS);
       const waitForArrival = async () => {
-        while (this.isInReach && (await this.opened.evaluate(() => window.written)) > this.packets.length) await new Promise((resolve) => setTimeout(resolve, 5));
+        while (this.isInReach && (await this.page.evaluate(() => window.writeCount)) > this.packetLengths.length) await new Promise((resolve) => setTimeout(resolve, 5));
       };
-      await within('packets to arrive', waitForArrival());
+      await withTimeout('packets to arrive', waitForArrival());
     }
   }
 
-  async until(waitName, isSo) {
+  /** Advances the page's clock until `condition` returns true. */
+  async runUntil(waitName, condition) {
     let isWaiting = true;
     const advance = async () => {
-      while (isWaiting && !(await isSo())) await this.run(STEP_MS);
+      while (isWaiting && !(await condition())) await this.run(STEP_MS);
     };
-    await within(waitName, advance()).finally(() => (isWaiting = false));
+    await withTimeout(waitName, advance()).finally(() => (isWaiting = false));
   }
 
-  /** Presses the button and picks the module, or none. */
-  async pick(isPicked = true) {
-    const prompt = new Promise((resolve) => this.prompts.once('DeviceAccess.deviceRequestPrompted', resolve));
-    await this.opened.locator('#radio').click();
-    const { id, devices } = await within('the browser to ask', prompt);
-    if (isPicked) await this.prompts.send('DeviceAccess.selectPrompt', { id, deviceId: devices[0].id });
-    else await this.prompts.send('DeviceAccess.cancelPrompt', { id });
+  /** Presses the button, and picks the module or cancels. */
+  async pick(isModulePicked = true) {
+    const prompt = new Promise((resolve) => this.pageSession.once('DeviceAccess.deviceRequestPrompted', resolve));
+    await this.page.locator('#radio').click();
+    const { id, devices } = await withTimeout('the browser to ask', prompt);
+    if (isModulePicked) await this.pageSession.send('DeviceAccess.selectPrompt', { id, deviceId: devices[0].id });
+    else await this.pageSession.send('DeviceAccess.cancelPrompt', { id });
   }
 
-  /** Simulates a phone that sleeps: the page's timers stop, while the robot goes on. */
+  /** Simulates a phone that sleeps: the page's timers stop, but the robot runs on. */
   async sleep(ms) {
-    await this.opened.evaluate((ms) => {
-      for (let remainingMs = ms; remainingMs > 0; remainingMs -= 2) window.otherBoard.run(16_000 * 2);
+    await this.page.evaluate((ms) => {
+      for (let remainingMs = ms; remainingMs > 0; remainingMs -= 2) window.attachedBoard.run(16_000 * 2);
     }, ms);
   }
 
   /** Takes the module out of reach. */
-  async cut() {
+  async takeOutOfReach() {
     this.isInReach = false;
-    await this.opened.evaluate(() => {
-      window.inReach = false;
-      window.otherBoard.send([...'OK+LOST'].map((letter) => letter.charCodeAt(0)));
+    await this.page.evaluate(() => {
+      window.isInReach = false;
+      window.attachedBoard.send([...'OK+LOST'].map((letter) => letter.charCodeAt(0)));
     });
-    await this.root.send('BluetoothEmulation.simulateGATTDisconnection', { address: ADDRESS });
+    await this.browserSession.send('BluetoothEmulation.simulateGATTDisconnection', { address: MODULE_ADDRESS });
   }
 
-  async back() {
-    // Failed writes are not delivered.
-    await this.opened.evaluate((count) => (window.written = count), this.packets.length);
+  async bringBack() {
+    // Failed writes are never delivered.
+    await this.page.evaluate((count) => (window.writeCount = count), this.packetLengths.length);
     this.isInReach = true;
   }
 
-  async end() {
-    await this.root.send('BluetoothEmulation.disable');
+  async close() {
+    await this.browserSession.send('BluetoothEmulation.disable');
   }
 }

@@ -3,38 +3,39 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { DIST, address, advance, close, complaints, open, openStanding, closePages } from './browser.js';
+import { DIST, address, advance, closeBrowser, complaints, openBrowser, openStanding, closePages } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const PHONE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
-/** A thumb's reach from its corner, and the size of a target that it hits without looking, CSS pixels. */
-const REACH = 220;
-const TARGET_SIZE = 120;
+/** A thumb's reach from its corner of the screen, CSS pixels. */
+const REACH_PX = 220;
+/** Size of a target that a thumb hits without looking, CSS pixels. */
+const TARGET_PX = 120;
 
 async function openRemote() {
   const page = await openStanding(PHONE);
   await page.evaluate(() => {
-    window.locks = 0;
-    window.buzzes = 0;
-    const request = async () => ((window.locks += 1), { release: async () => (window.locks -= 1) });
+    window.wakeLockCount = 0;
+    window.vibrationCount = 0;
+    const request = async () => ((window.wakeLockCount += 1), { release: async () => (window.wakeLockCount -= 1) });
     Object.defineProperty(navigator, 'wakeLock', { value: { request } });
-    navigator.vibrate = () => (window.buzzes += 1);
+    navigator.vibrate = () => (window.vibrationCount += 1);
   });
   await page.getByRole('button', { name: 'Remote' }).click();
-  await page.waitForFunction(() => window.locks === 1);
+  await page.waitForFunction(() => window.wakeLockCount === 1);
   return page;
 }
 
-test('a phone can install the page, with its icon and without a network', async () => {
+test('a phone can install the page, with its icons, for use without a network', async () => {
   const manifest = JSON.parse(await readFile(`${DIST}manifest.webmanifest`, 'utf8'));
   const worker = await readFile(`${DIST}service-worker.js`, 'utf8');
   for (const { src, type } of manifest.icons) {
     const bytes = await readFile(`${DIST}${src}`);
     assert.equal(type, bytes[0] === 0x89 ? 'image/png' : 'image/svg+xml');
-    assert.ok(worker.includes(`"${src}"`), `${src} is kept`);
+    assert.ok(worker.includes(`"${src}"`), `${src} is stored`);
   }
   const page = await openStanding(PHONE);
   const devTools = await page.context().newCDPSession(page);
@@ -49,9 +50,9 @@ test('stick and stop are under the thumbs, and the robot fills the screen', asyn
   const page = await openRemote();
   const { width, height } = PHONE.viewport;
   const [stick, stop, floor] = await Promise.all(['#stick', 'button.stop', 'section.floor'].map((name) => page.locator(name).boundingBox()));
-  for (const box of [stick, stop]) assert.ok(Math.min(box.width, box.height) >= TARGET_SIZE, JSON.stringify(box));
-  assert.ok(stick.x + stick.width <= REACH && height - stick.y <= REACH, JSON.stringify(stick));
-  assert.ok(width - stop.x <= REACH && height - stop.y <= REACH, JSON.stringify(stop));
+  for (const box of [stick, stop]) assert.ok(Math.min(box.width, box.height) >= TARGET_PX, JSON.stringify(box));
+  assert.ok(stick.x + stick.width <= REACH_PX && height - stick.y <= REACH_PX, JSON.stringify(stick));
+  assert.ok(width - stop.x <= REACH_PX && height - stop.y <= REACH_PX, JSON.stringify(stop));
   assert.deepEqual([floor.x, floor.y], [0, 0]);
   assert.ok(floor.width >= width && floor.height >= height);
   for (const hiddenSelector of ['header', '.console', '#gaits', '#reset']) assert.equal(await page.locator(hiddenSelector).first().isVisible(), false, hiddenSelector);
@@ -69,16 +70,16 @@ test('the remote drives and stops, and keeps the screen on while it is open', as
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   await page.mouse.up();
   await page.getByRole('button', { name: 'Remote' }).click();
-  await page.waitForFunction(() => window.locks === 0);
+  await page.waitForFunction(() => window.wakeLockCount === 0);
   assert.ok(await page.locator('header').isVisible());
 });
 
-test('a robot that stops by itself buzzes', async () => {
+test('the phone vibrates when the robot stops by itself', async () => {
   const page = await openRemote();
   await page.evaluate(() => window.lizard.ask('walk'));
   await page.evaluate(() => window.lizard.setSupply(3));
   await advance(page, 2000);
-  assert.ok((await page.evaluate(() => window.buzzes)) > 0);
+  assert.ok((await page.evaluate(() => window.vibrationCount)) > 0);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

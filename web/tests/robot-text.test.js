@@ -8,50 +8,50 @@ import { after, afterEach, before, test } from 'node:test';
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
 
-import { address, close, complaints, open, page as openPage, openStanding, closePages, unfold, until } from './browser.js';
+import { address, closeBrowser, complaints, openBrowser, openPage, openStanding, closePages, unfold, waitUntil } from './browser.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 let folder;
 
-before(open);
+before(openBrowser);
 before(async () => (folder = await mkdtemp(join(tmpdir(), 'robot-'))));
 afterEach(closePages);
 after(async () => {
   await rm(folder, { recursive: true, force: true });
-  await close();
+  await closeBrowser();
 });
 
-const boxOf = (page) => page.locator('#robot-text');
+const textBoxOf = (page) => page.locator('#robot-text');
 const tomlOf = (page) => page.evaluate(() => window.lizard.toml);
 const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
 
-async function openText(options) {
+async function openTextEditor(options) {
   const page = await openStanding(options);
   await unfold(page, '#robot-editor');
   return page;
 }
 
 test('a text with a mistake is refused with its line, and the previous robot stays', async () => {
-  const page = await openText();
+  const page = await openTextEditor();
   const firstToml = await tomlOf(page);
-  assert.equal(await boxOf(page).inputValue(), firstToml);
+  assert.equal(await textBoxOf(page).inputValue(), firstToml);
   const wrongToml = firstToml.replace('l1 = 30.0', 'l1 = "long"');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('l1 = ')) + 1;
-  await boxOf(page).fill(wrongToml);
+  await textBoxOf(page).fill(wrongToml);
   await page.locator('#robot-take').click();
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   assert.match(await page.locator('#robot-refusal').innerText(), new RegExp(`^robot\\.toml:${line}: links\\.l1`));
-  const readSelection = () => boxOf(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
+  const readSelection = () => textBoxOf(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
   assert.match(await readSelection(), /^l1 = "long"/);
   assert.equal(await tomlOf(page), firstToml);
-  assert.equal(await boxOf(page).inputValue(), wrongToml, 'nothing that was typed is lost');
+  assert.equal(await textBoxOf(page).inputValue(), wrongToml, 'nothing that was typed is lost');
 });
 
 test('a refused gait is explained by its effect on the robot, then by its place', async () => {
-  const page = await openText();
+  const page = await openTextEditor();
   const wrongToml = (await tomlOf(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
-  await boxOf(page).fill(wrongToml);
+  await textBoxOf(page).fill(wrongToml);
   await page.locator('#robot-take').click();
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   const refusalText = await page.locator('#robot-refusal').innerText();
@@ -60,13 +60,13 @@ test('a refused gait is explained by its effect on the robot, then by its place'
 });
 
 test('a valid text becomes the robot, and is undone and redone step by step', async () => {
-  const page = await openText();
+  const page = await openTextEditor();
   const firstToml = await tomlOf(page);
   const secondToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
   const thirdToml = secondToml.replace('period = 1.25', 'period = 1.5');
   for (const text of [secondToml, thirdToml]) {
-    await boxOf(page).fill(text);
-    await boxOf(page).press('Control+Enter');
+    await textBoxOf(page).fill(text);
+    await textBoxOf(page).press('Control+Enter');
     await waitForRobot(page, text);
   }
   assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
@@ -85,8 +85,8 @@ test('a valid text becomes the robot, and is undone and redone step by step', as
   await page.locator('#robot-undo').click();
   await waitForRobot(page, secondToml);
   assert.ok(await redo.isEnabled());
-  await boxOf(page).fill(firstToml);
-  await boxOf(page).press('Control+Enter');
+  await textBoxOf(page).fill(firstToml);
+  await textBoxOf(page).press('Control+Enter');
   await waitForRobot(page, firstToml);
   assert.ok(await redo.isDisabled());
   await page.locator('#robot-undo').click();
@@ -94,11 +94,11 @@ test('a valid text becomes the robot, and is undone and redone step by step', as
 });
 
 test('a file is opened, or dropped anywhere on the page', async () => {
-  const page = await openText();
-  const large = await readFile(LARGE, 'utf8');
+  const page = await openTextEditor();
+  const largeToml = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
-  await waitForRobot(page, large);
-  const droppedToml = large.replace(/^/, '# dropped\n');
+  await waitForRobot(page, largeToml);
+  const droppedToml = largeToml.replace(/^/, '# dropped\n');
   await page.evaluate((text) => {
     const transfer = new DataTransfer();
     transfer.items.add(new File([text], 'robot.toml'));
@@ -112,14 +112,14 @@ test('a file is opened, or dropped anywhere on the page', async () => {
   assert.equal(await tomlOf(page), droppedToml);
 });
 
-/** Waits until the page has the robot of a text; a link may have dropped its comments. */
-async function waitForText(page, expected) {
-  await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(expected).name);
-  assert.deepEqual(parse(await tomlOf(page)), parse(expected));
+/** Waits until the page has the robot of a text; the comments may differ, because a link has none. */
+async function waitForSameRobot(page, expectedToml) {
+  await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(expectedToml).name);
+  assert.deepEqual(parse(await tomlOf(page)), parse(expectedToml));
 }
 
 /** Reads the shown QR code as a camera would, and returns its text. */
-async function scanCode(page) {
+async function scanQrCode(page) {
   const { data, side } = await page.locator('#robot-drawn svg').evaluate(async (svg) => {
     const side = 3 * svg.viewBox.baseVal.width;
     const copy = svg.cloneNode(true);
@@ -127,71 +127,71 @@ async function scanCode(page) {
     const picture = new Image();
     picture.src = `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(copy))}`;
     await picture.decode();
-    const canvas = new OffscreenCanvas(side, side).getContext('2d');
-    canvas.fillStyle = 'white';
-    canvas.fillRect(0, 0, side, side);
-    canvas.drawImage(picture, 0, 0);
-    return { data: Array.from(canvas.getImageData(0, 0, side, side).data), side };
+    const pen = new OffscreenCanvas(side, side).getContext('2d');
+    pen.fillStyle = 'white';
+    pen.fillRect(0, 0, side, side);
+    pen.drawImage(picture, 0, 0);
+    return { data: Array.from(pen.getImageData(0, 0, side, side).data), side };
   });
   return jsQR.default(Uint8ClampedArray.from(data), side, side)?.data;
 }
 
-test('a link is a robot, also over a reload, and a phone reads it from the screen', async () => {
-  const page = await openText();
+test('a link holds the robot, also over a reload, and a phone reads it from a QR code', async () => {
+  const page = await openTextEditor();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
-  const large = await readFile(LARGE, 'utf8');
+  const largeToml = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
-  await waitForRobot(page, large);
+  await waitForRobot(page, largeToml);
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is copied').waitFor();
   const link = await page.evaluate(() => navigator.clipboard.readText());
   assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 1900, `${link.length} letters`);
   const otherPage = await openPage();
-  assert.notEqual(await tomlOf(otherPage), large);
+  assert.notEqual(await tomlOf(otherPage), largeToml);
   await otherPage.goto(link);
-  await waitForText(otherPage, large);
+  await waitForSameRobot(otherPage, largeToml);
   await otherPage.reload();
-  await waitForText(otherPage, large);
-  // Half of a link is refused with a message.
+  await waitForSameRobot(otherPage, largeToml);
+  // An incomplete link is refused with a message.
   await otherPage.goto(link.slice(0, -200));
   await otherPage.getByText('The robot in the address is incomplete').waitFor();
 
-  const codeButton = page.getByRole('button', { name: 'QR code' });
-  await codeButton.click();
+  const qrButton = page.getByRole('button', { name: 'QR code' });
+  await qrButton.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
-  assert.equal(await scanCode(page), link);
+  assert.equal(await scanQrCode(page), link);
   await page.getByText('a phone reaches the page only where a web server serves it').waitFor();
-  await codeButton.click();
+  await qrButton.click();
   assert.equal(await page.locator('#robot-drawn svg').count(), 0);
   // Another robot removes the code.
-  await codeButton.click();
+  await qrButton.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
-  await boxOf(page).fill(large.replace('name = "large"', 'name = "other"'));
+  await textBoxOf(page).fill(largeToml.replace('name = "large"', 'name = "other"'));
   await page.locator('#robot-take').click();
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
 });
 
-test('a link keeps each # outside of comments', async () => {
-  const page = await openText();
+test('a link drops comments, and keeps everything else', async () => {
+  const page = await openTextEditor();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
-  const text = `# one\n${(await tomlOf(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
-  await boxOf(page).fill(text);
+  const toml = `# one\n${(await tomlOf(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
+  await textBoxOf(page).fill(toml);
   await page.locator('#robot-take').click();
-  await waitForRobot(page, text);
+  await waitForRobot(page, toml);
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is copied').waitFor();
   const otherPage = await openPage();
   await otherPage.goto(await page.evaluate(() => navigator.clipboard.readText()));
-  await waitForText(otherPage, text);
+  await waitForSameRobot(otherPage, toml);
   assert.doesNotMatch(await tomlOf(otherPage), /one|three/);
 });
 
 test('after every change the address is that of the shown robot', async () => {
-  const page = await openText();
+  const page = await openTextEditor();
   const firstToml = await tomlOf(page);
-  assert.equal(page.url(), `${address()}#room=build`, 'the robot of the page itself needs none');
+  assert.equal(page.url(), `${address()}#room=build`, 'the page\'s own robot is not in the address');
   const changedToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
-  await boxOf(page).fill(changedToml);
+  await textBoxOf(page).fill(changedToml);
   await page.locator('#robot-take').click();
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   // A new browser gets the robot from the address alone.
@@ -214,18 +214,22 @@ test('after every change the address is that of the shown robot', async () => {
 });
 
 test('a hostile file runs no script', async () => {
-  const page = await openText();
-  const hostile = `${await tomlOf(page)}\n[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n`;
-  await boxOf(page).fill(hostile);
+  const page = await openTextEditor();
+  const dialogs = [];
+  page.on('dialog', (dialog) => dialog.dismiss().then(() => dialogs.push(dialog.message())));
+  const hostileGait = '[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n';
+  const hostileToml = `${await tomlOf(page)}\n${hostileGait}`;
+  await textBoxOf(page).fill(hostileToml);
   await page.locator('#robot-take').click();
-  await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostile);
+  await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostileToml);
   assert.equal(await page.locator('img').count(), 0);
+  assert.deepEqual(dialogs, []);
 });
 
 test('opening a link or another robot puts the user\'s own robot aside, and a button restores it', async () => {
-  const page = await openText();
+  const page = await openTextEditor();
   const ownToml = (await tomlOf(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
-  await boxOf(page).fill(ownToml);
+  await textBoxOf(page).fill(ownToml);
   await page.locator('#robot-take').click();
   await waitForRobot(page, ownToml);
   const backButton = page.locator('#trouble').getByRole('button', { name: 'Back to my own robot' });
@@ -248,11 +252,11 @@ test('opening a link or another robot puts the user\'s own robot aside, and a bu
   await page.waitForFunction(() => window.lizard.file === 'large');
   await backButton.click();
   await waitForRobot(page, ownToml);
-  assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'none is left');
+  assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'no stored robot is left');
 });
 
 test('the user\'s own robots are listed by their names, and each is restored unchanged', async () => {
-  const page = await openText();
+  const page = await openTextEditor();
   const firstToml = await tomlOf(page);
   const tomlNamed = (name) => firstToml.replace('name = "paper"', `name = "${name}"`);
   const list = page.locator('#robot');
@@ -262,21 +266,21 @@ test('the user\'s own robots are listed by their names, and each is restored unc
     await page.waitForFunction(() => window.lizard.file === 'large');
     await list.selectOption('robot');
     await page.waitForFunction(() => window.lizard.file === 'robot');
-    await boxOf(page).fill(tomlNamed(name));
+    await textBoxOf(page).fill(tomlNamed(name));
     await page.locator('#robot-take').click();
     await waitForRobot(page, tomlNamed(name));
   }
   assert.deepEqual(await readNames(), ['anna']);
   await list.selectOption({ label: 'anna' });
   await waitForRobot(page, tomlNamed('anna'));
-  // The address is updated a little later, and takes priority over the stored robot.
-  await until(page, async (expectedText) => {
+  // The address takes priority over the stored robot, so the test waits until the address is updated.
+  await waitUntil(page, async (expectedText) => {
     const encoded = new URLSearchParams(location.hash.slice(1)).get('robot') ?? '';
     const bytes = Uint8Array.from(atob(encoded.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
     const text = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
     return (await text.catch(() => '')) === expectedText;
   }, tomlNamed('anna'));
-  assert.deepEqual(await readNames(), ['bert'], 'what was shown is put aside');
+  assert.deepEqual(await readNames(), ['bert'], 'the previous robot is put aside');
   await page.reload();
   await waitForRobot(page, tomlNamed('anna'));
   assert.deepEqual(await readNames(), ['bert']);

@@ -1,14 +1,13 @@
-// The rooms beside the stage: each has an address, fits its screen, keeps `stop` in reach, and draws only while it is
-// open.
+// The rooms of the page: each has an address, fits its screen, keeps Stop in reach, and draws only while it is open.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, close, complaints, open, page as openPage, overflow, openStanding, closePages, unfold } from './browser.js';
+import { address, closeBrowser, complaints, openBrowser, openPage, overflow, openStanding, closePages, unfold } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'measure', 'learn'];
@@ -23,16 +22,16 @@ const SIZES = [
 ];
 const THEMES = ['light', 'dark'];
 /** A thumb's reach from the corner of a phone, CSS pixels. */
-const REACH = 120;
+const REACH_PX = 120;
 
 const linkTo = (page, room) => page.locator(`nav a[href="#room=${room}"]`);
 const waitForRoom = (page, room) => page.waitForFunction((room) => [...document.querySelectorAll('.room:not([hidden])')].map(({ id }) => id).join() === `room-${room}`, room);
 const boxOf = (page, selector) => page.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 
-// Colours move nothing, so that each size has one of the two.
+// Colours do not change the layout, so each size is tested with one of the two themes.
 for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n % 2] }))) {
   const { width, height } = options.viewport;
-  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and stop, and axe-core finds nothing`, async () => {
+  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and axe-core finds nothing`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
     await page.addScriptTag({ path: AXE });
     for (const room of ROOMS) {
@@ -44,8 +43,8 @@ for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n %
       const bottom = options.hasTouch ? navigation.top : height;
       assert.ok(mainElement.top >= 0 && mainElement.bottom <= bottom + 1, `${room}: ${MAIN_ELEMENTS[room]} ends at ${mainElement.bottom} of ${bottom}`);
       assert.ok(stop.right <= width && stop.bottom <= height && Math.min(stop.width, stop.height) >= 44, room);
-      if (options.hasTouch) assert.ok(width - stop.left <= REACH && height - stop.top <= REACH, JSON.stringify(stop));
-      // Nothing covers it, wherever the page is scrolled to.
+      if (options.hasTouch) assert.ok(Math.max(width - stop.left, height - stop.top) <= REACH_PX, JSON.stringify(stop));
+      // Nothing covers Stop at the bottom of the page either.
       await page.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
       assert.equal(await page.evaluate(([x, y]) => document.elementFromPoint(x, y).className, [stop.left + stop.width / 2, stop.top + stop.height / 2]), 'stop', room);
       const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
@@ -112,7 +111,7 @@ test('a closed room draws nothing, even if its panels are unfolded', async () =>
   const page = await openStanding();
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(page, panel);
   await page.locator('#solid').click();
-  // The parts may come late, and fill their lists then.
+  // The parts fill their lists when they are loaded.
   await page.waitForFunction(() => document.querySelector('#part').length > 10);
   await linkTo(page, 'board').click();
   await waitForRoom(page, 'board');
@@ -121,11 +120,11 @@ test('a closed room draws nothing, even if its panels are unfolded', async () =>
   const drawnNames = await page.evaluate(async () => {
     const drawnNames = [];
     const closedRooms = [...document.querySelectorAll('.room[hidden]')];
-    const watcher = new MutationObserver((changes) => {
+    const observer = new MutationObserver((changes) => {
       // The log keeps the robot's lines.
       for (const { target } of changes) if (!target.closest?.('#log') && !target.parentElement?.closest('#log')) drawnNames.push(target.id || target.nodeName);
     });
-    for (const room of closedRooms) watcher.observe(room, { subtree: true, childList: true, attributes: true, characterData: true });
+    for (const room of closedRooms) observer.observe(room, { subtree: true, childList: true, attributes: true, characterData: true });
     const { getContext } = HTMLCanvasElement.prototype;
     HTMLCanvasElement.prototype.getContext = function (...args) {
       if (this.closest('.room')) drawnNames.push(this.id);
@@ -137,7 +136,7 @@ test('a closed room draws nothing, even if its panels are unfolded', async () =>
   assert.deepEqual(drawnNames, []);
 });
 
-test('3D and the drawing from above are one press apart, and three.js is loaded for 3D alone', async () => {
+test('one press changes between 3D and the drawing from above, and three.js is loaded only for 3D', async () => {
   const loadedPaths = [];
   const page = await openStanding();
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));

@@ -2,12 +2,14 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { openWithBoard, until } from './board.js';
-import { address, advance, close, closePages, complaints, open, openStanding, text, unfold } from './browser.js';
+import { openWithBoard, runUntil } from './board.js';
+import {
+  address, advance, closeBrowser, closePages, complaints, openBrowser, openStanding, text, unfold,
+} from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
@@ -28,7 +30,7 @@ const waitForSteps = (page, expected) =>
 /** Reads the steps in the text of the robot. */
 const readSteps = (page) => page.evaluate(() => window.lizard.robot.constructor.routines(window.lizard.toml).at(-1)?.steps);
 const waitForPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
-const trackOf = (page) => page.locator('#routine-path .track').getAttribute('d');
+const trackPathOf = (page) => page.locator('#routine-path .track').getAttribute('d');
 
 /** Puts a routine into the page's robot, at the end of its text. */
 async function putRoutine(page, steps, name = 'patrol') {
@@ -49,7 +51,7 @@ async function openRoutine(routine = PATROL, options = {}) {
 }
 
 /** Runs the simulation for some seconds of its own time. */
-async function drive(page, seconds) {
+async function runSeconds(page, seconds) {
   const readClock = () => page.evaluate(() => window.lizard.clock);
   const endSeconds = (await readClock()) + seconds;
   for (let n = 0; (await readClock()) < endSeconds - 0.01; n++) {
@@ -69,18 +71,18 @@ test('a drive is recorded by the robot\'s motions, and its replay goes where pre
   const startPlace = await readPlace();
   await page.keyboard.down('ArrowUp');
   await page.waitForFunction(() => window.lizard.gait === 'walk');
-  await drive(page, 3.6);
+  await runSeconds(page, 3.6);
   await page.keyboard.up('ArrowUp');
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   // The body's displacement shows how many cycles have passed.
   const cycles = ((await readPlace()).y - startPlace.y) / 33.2;
-  await drive(page, 2);
+  await runSeconds(page, 2);
   await page.keyboard.down('ArrowLeft');
   await page.waitForFunction(() => window.lizard.gait === 'left');
-  await drive(page, 2.6);
+  await runSeconds(page, 2.6);
   await page.keyboard.up('ArrowLeft');
   await page.waitForFunction(() => window.lizard.gait === 'stop');
-  await drive(page, 1);
+  await runSeconds(page, 1);
   await press(page, 'Stop recording');
   const message = await text(page, '#routine-said');
   const [, walkCycles, pauseSeconds, turnCycles] = (/^Recorded: walk (\d+), stand ([\d.]+) s, left (\d+)$/.exec(message) ?? assert.fail(message)).map(Number);
@@ -115,7 +117,7 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
   // A line with three cycles ends by itself; a refused line starts no gait.
   for (const [line, seconds] of [['walk 3', 5], ['rest', 2], ['walk', 1], ['stand', 1.5], ['look', 0.8], ['center', 1]]) {
     await page.evaluate((line) => void window.lizard.ask(line), line);
-    await drive(page, seconds);
+    await runSeconds(page, seconds);
   }
   await press(page, 'Stop recording');
   const message = await text(page, '#routine-said');
@@ -125,7 +127,7 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
   await press(page, 'Drop it');
   assert.equal(await page.locator('#routine-recorded').isVisible(), false);
   await press(page, 'Record a drive');
-  await drive(page, 1);
+  await runSeconds(page, 1);
   await press(page, 'Stop recording');
   await page.getByText('Nothing is recorded: the robot has not walked.').waitFor();
 });
@@ -135,11 +137,11 @@ test('the recorded number of cycles is that of the walk, at whatever phase of th
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
     await page.evaluate(() => void window.lizard.ask('stand'));
-    await drive(page, 0.5 + 0.1 * tenth);
+    await runSeconds(page, 0.5 + 0.1 * tenth);
     await page.evaluate(() => void window.lizard.ask('walk 2'));
     await advance(page, 60);
     await page.evaluate(() => void window.lizard.status());
-    await drive(page, 3);
+    await runSeconds(page, 3);
     await press(page, 'Stop recording');
     assert.match(await text(page, '#routine-said'), /^Recorded: walk 2$/, `after ${tenth} tenths`);
     await press(page, 'Drop it');
@@ -150,17 +152,17 @@ test('a drive of a board is recorded by its own phase, even if its link was cut'
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
-  const waitForGait = (name) => until(page, `it does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
+  const waitForGait = (name) => runUntil(page, `the robot does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
   await gaitButton(page, 'walk').click();
   await waitForGait('walk');
-  // A walk begins with a quarter of a second to its first pose, so less than four cycles have passed.
+  // A walk begins with 0.25 s to its first pose, so less than four cycles have passed.
   await page.clock.runFor(4100);
   await gaitButton(page, 'back').click();
   await waitForGait('back');
   await page.clock.runFor(2600);
   // The link is lost: the robot stops by itself after 0.9 s.
   await page.evaluate(() => {
-    const board = window.otherBoard;
+    const board = window.attachedBoard;
     const { send, onByte } = board;
     board.send = board.onByte = () => {};
     setTimeout(() => Object.assign(board, { send, onByte }), 8000);
@@ -175,8 +177,8 @@ test('a drive of a board is recorded by its own phase, even if its link was cut'
 test('steps are changed, moved, copied and deleted by keys alone, and each is undone', async () => {
   const page = await openRoutine();
   const history = [PATROL];
-  const assertSteps = async (act, expected) => {
-    await act();
+  const assertSteps = async (edit, expected) => {
+    await edit();
     await waitForSteps(page, expected);
     await page.waitForFunction((expected) => window.lizard.toml.includes(`steps = ${expected}`), `["${expected.join('", "')}"]`);
     history.push(expected);
@@ -206,7 +208,7 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
   assert.deepEqual(await readSteps(page), PATROL);
 });
 
-test('the list follows the text, and the text the list, with all its other lines', async () => {
+test('the list follows the text, and the text follows the list and keeps its other lines', async () => {
   const page = await openRoutine();
   await unfold(page, '#robot-editor');
   const editedToml = `${await tomlOf(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
@@ -223,10 +225,10 @@ test('the list follows the text, and the text the list, with all its other lines
   assert.deepEqual(await page.locator('#gaits button').allInnerTexts().then((names) => names.slice(-2).map((name) => name.trim())), ['patrol', 'about']);
 });
 
-test('while a step is dragged its path is drawn, and the text changes when it is let go', async () => {
+test('while a step is dragged the new path is drawn, and the text changes when the step is released', async () => {
   const page = await openRoutine(['walk 3', 'left 6', 'walk 1']);
   await waitForPrediction(page);
-  const [previousToml, firstTrack] = [await tomlOf(page), await trackOf(page)];
+  const [previousToml, firstTrack] = [await tomlOf(page), await trackPathOf(page)];
   const gripOf = (number) => page.locator('#routine-steps .grip').nth(number - 1);
   const middleOf = async (number) => {
     await gripOf(number).scrollIntoViewIfNeeded();
@@ -237,12 +239,12 @@ test('while a step is dragged its path is drawn, and the text changes when it is
   await page.mouse.down();
   await page.mouse.move(...(await middleOf(3)), { steps: 5 });
   await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
-  assert.deepEqual(await stepsOf(page), ['left 6', 'walk 1', 'walk 3'], 'as if it were let go');
+  assert.deepEqual(await stepsOf(page), ['left 6', 'walk 1', 'walk 3'], 'the order after a release');
   assert.equal(await tomlOf(page), previousToml);
   await page.mouse.move(...(await middleOf(1)), { steps: 5 });
   await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') === firstTrack, firstTrack);
   await page.mouse.up();
-  assert.equal(await tomlOf(page), previousToml, 'it is where it was');
+  assert.equal(await tomlOf(page), previousToml, 'the step is where it was');
   await page.mouse.move(...(await middleOf(1)));
   await page.mouse.down();
   await page.mouse.move(...(await middleOf(2)), { steps: 5 });
@@ -276,8 +278,8 @@ test('a mistake is shown at its block with its line and its step, and the previo
   assert.deepEqual(await page.locator('#routine-steps input[aria-invalid="true"]').evaluateAll((inputs) => inputs.map(({ value }) => value)), ['wolk 4']);
   assert.equal(await tomlOf(page), previousToml);
   assert.ok((await page.locator('#routine-start').isDisabled()) && (await page.locator('#routine-write').isDisabled()));
-  assert.equal(await page.locator('#robot-editor').getAttribute('open'), null, 'nobody is led away');
-  // Unknown text moves with its block, letter by letter.
+  assert.equal(await page.locator('#robot-editor').getAttribute('open'), null, 'the text editor stays closed');
+  // An invalid step moves unchanged.
   await press(page, 'Move down step 2');
   await page.locator('#routine-steps li', { has: stepInput(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
   await waitForSteps(page, ['stand 1 s', 'left 3', 'wolk 4', 'look 1']);
@@ -297,9 +299,9 @@ test('an invalid or existing name is refused, and the recorded steps stay', asyn
   const page = await openRoutine();
   await press(page, 'Record a drive');
   await page.evaluate(() => void window.lizard.ask('walk 2'));
-  await drive(page, 3);
+  await runSeconds(page, 3);
   await press(page, 'Stop recording');
-  assert.equal(await page.locator('#routine-name').inputValue(), 'patrol-2', 'the first one is taken');
+  assert.equal(await page.locator('#routine-name').inputValue(), 'patrol-2', 'the name patrol is in use');
   for (const [name, refusal] of [
     ['walk', 'routine.walk has the name of a gait; give it another one'],
     ['stop', 'routine.stop is not a routine name: "stop" is a command of the console'],
@@ -329,77 +331,80 @@ test('a routine is written to a board, started by its name, and reports its end'
   await waitForSteps(page, ['walk 2', 'rest 2 s', 'left 1']);
   // Until it is written, the board has the robot without it.
   await press(page, 'Start it');
-  await until(page, 'it is refused', async () => (await text(page, '#drive-said')) === 'patrol: unknown command, send help for the list');
+  await runUntil(page, 'the command is refused', async () => (await text(page, '#drive-said')) === 'patrol: unknown command, send help for the list');
   await press(page, 'Write it to the board');
-  await until(page, 'it is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#routine-said')));
+  await runUntil(page, 'the robot is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#routine-said')));
   await page.clock.runFor(6000);
-  await page.evaluate(() => (window.heard = ''));
+  await page.evaluate(() => (window.receivedText = ''));
   await gaitButton(page, 'patrol').click();
   const readGait = () => page.evaluate(() => window.lizard.gait);
-  await until(page, 'it patrols', async () => (await readGait()) === 'patrol', 20);
+  await runUntil(page, 'the robot patrols', async () => (await readGait()) === 'patrol', 20);
   // While the robot rests, the routine is still under way, and the page keeps sending lines.
   await page.clock.runFor(3500);
   assert.equal(await readGait(), 'patrol');
-  assert.ok(!(await page.evaluate(() => window.heard)).includes('deadman 0'));
-  await until(page, 'it is done', async () => (await page.locator('#log div', { hasText: /^# done$/ }).count()) === 1, 20);
+  assert.ok(!(await page.evaluate(() => window.receivedText)).includes('deadman 0'));
+  await runUntil(page, 'the routine is done', async () => (await page.locator('#log div', { hasText: /^# done$/ }).count()) === 1, 20);
   await page.clock.runFor(600);
   assert.equal(await readGait(), 'stop');
-  assert.match(await page.evaluate(() => window.heard), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
+  assert.match(await page.evaluate(() => window.receivedText), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
 });
 
 test('a resting routine is stopped when the page is hidden', async () => {
   const page = await openWithBoard('robot', 8000);
   await putRoutine(page, ['walk 1', 'rest 9 s', 'walk 99']);
   await page.locator('#flash-robot').evaluate((button) => button.click());
-  await until(page, 'it is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
+  await runUntil(page, 'the robot is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
   await page.clock.runFor(6000);
   await gaitButton(page, 'patrol').click();
-  await until(page, 'it patrols', async () => (await page.evaluate(() => window.lizard.gait)) === 'patrol', 20);
+  await runUntil(page, 'the robot patrols', async () =>
+    (await page.evaluate(() => window.lizard.gait)) === 'patrol', 20);
   await page.clock.runFor(3500);
   await page.evaluate(() => {
-    window.heard = '';
+    window.receivedText = '';
     Object.defineProperty(document, 'hidden', { value: true });
     document.dispatchEvent(new Event('visibilitychange'));
   });
   await page.clock.runFor(500);
-  assert.match(await page.evaluate(() => window.heard), /^stop\n/);
+  assert.match(await page.evaluate(() => window.receivedText), /^stop\n/);
 });
 
-test('a board that is unplugged while a routine is written says so, and gets it when it is back', async () => {
+test('unplugging a board while a routine is written is reported, and the board gets the routine later', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await putRoutine(page, ['walk 1']);
   await waitForSteps(page, ['walk 1']);
   await press(page, 'Write it to the board');
-  await until(page, 'it is being written', async () => (await text(page, '#routine-said')).startsWith('writing'), 20);
+  await runUntil(page, 'the robot is being written', async () =>
+    (await text(page, '#routine-said')).startsWith('writing'), 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
-  await until(page, 'it says so', async () => /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/.test(await text(page, '#routine-said')));
+  await runUntil(page, 'the page reports it', async () => /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/.test(await text(page, '#routine-said')));
   assert.deepEqual(await readSteps(page), ['walk 1'], 'the routine is still in the page');
-  await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
-  await page.evaluate(() => (window.same = true));
+  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
+  await page.evaluate(() => (window.isSameBoard = true));
   await page.locator('#connect').click();
-  await until(page, 'it greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
+  await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await press(page, 'Write it to the board');
-  await until(page, 'it is written', async () => /^written and verified/.test(await text(page, '#routine-said')));
+  await runUntil(page, 'the robot is written', async () =>
+    /^written and verified/.test(await text(page, '#routine-said')));
 });
 
 test('with a firmware for another robot format the page says what to write', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => {
     const { start } = window.lizard.description;
-    window.otherBoard.flash[start + 4] ^= 1;
-    window.otherBoard.reset('external');
+    window.attachedBoard.flash[start + 4] ^= 1;
+    window.attachedBoard.reset('external');
   });
-  await until(page, 'it greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
+  await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await page.locator('#log div', { hasText: '# fault: the robot in the flash is for another version, write it again' }).waitFor();
 });
 
-test('two pages in one browser keep a routine each', async () => {
+test('two pages in one browser each keep their own routine', async () => {
   const firstPage = await openRoutine();
   const [secondPage] = await Promise.all([firstPage.waitForEvent('popup'), firstPage.evaluate((address) => void window.open(address), address())]);
   await secondPage.waitForFunction(() => window.lizard);
-  // It begins with the copy that the first page has stored; later changes are its own.
+  // The second page begins with the robot that the first page has stored, and then has its own changes.
   assert.deepEqual(await readSteps(secondPage), PATROL);
   const ownRoutines = [[firstPage, ['right 2']], [secondPage, ['left 2']]];
   for (const [page, expected] of ownRoutines) {

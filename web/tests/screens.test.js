@@ -1,13 +1,13 @@
-// The page on a phone, with a mouse, in the user's colours, and in browsers that cannot run it.
+// The page on a phone, with a mouse, in forced colours, and in browsers that cannot run it.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, openBlank, close, complaints, open, page as openPage, overflow, openStanding, closePages, unfold, within } from './browser.js';
+import { address, advance, openBlank, closeBrowser, complaints, openBrowser, openPage, overflow, openStanding, closePages, unfold, withTimeout } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
@@ -22,22 +22,22 @@ async function isOnScreen(page, selector) {
   return top >= 0 && left >= 0 && bottom <= height && right <= width;
 }
 
-/** Moves a finger from the middle of an element, some pixels right and down. */
-async function swipe(page, selector, right, down) {
+/** Moves a finger from the middle of an element, some pixels to the right and down. */
+async function swipe(page, selector, rightPx, downPx) {
   const { left, top, width, height } = await boxOf(page, selector);
-  const session = await within('the touch screen', page.context().newCDPSession(page));
-  const send = (type, touchPoints) => within('a finger', session.send('Input.dispatchTouchEvent', { type, touchPoints }));
-  const touchesAt = (share) => [{ x: left + width / 2 + share * right, y: top + height / 2 + share * down }];
-  await send('touchStart', touchesAt(0));
-  for (let step = 1; step <= 20; step++) await send('touchMove', touchesAt(step / 20));
-  await send('touchEnd', []);
+  const session = await withTimeout('the touch screen', page.context().newCDPSession(page));
+  const sendTouch = (type, touchPoints) => withTimeout('a finger', session.send('Input.dispatchTouchEvent', { type, touchPoints }));
+  const touchesAt = (share) => [{ x: left + width / 2 + share * rightPx, y: top + height / 2 + share * downPx }];
+  await sendTouch('touchStart', touchesAt(0));
+  for (let step = 1; step <= 20; step++) await sendTouch('touchMove', touchesAt(step / 20));
+  await sendTouch('touchEnd', []);
 }
 
 for (const [name, options] of [
   ['upright', PORTRAIT],
   ['on its side', LANDSCAPE],
 ]) {
-  test(`stop is on the screen of a phone ${name}, wherever it is scrolled to`, async () => {
+  test(`Stop is on the screen of a phone ${name}, wherever the page is scrolled to`, async () => {
     const page = await openStanding(options);
     for (const panel of ['#world', '#power', '#keep']) await unfold(page, panel);
     await page.evaluate(() => scrollTo(0, 0));
@@ -49,7 +49,7 @@ for (const [name, options] of [
     await advance(page, 500);
     await page.locator('.stop').tap();
     await advance(page, 300);
-    assert.equal(await page.evaluate(() => window.lizard.gait), 'stop', 'nothing lies over it');
+    assert.equal(await page.evaluate(() => window.lizard.gait), 'stop', 'nothing covers Stop');
   });
 
   test(`a phone ${name} shows the robot and its buttons on one screen`, async () => {
@@ -68,7 +68,7 @@ test('a finger that moves up over the floor scrolls the page', async () => {
   await page.goto(`${address()}#room=gaits`);
   const follow = page.getByRole('button', { name: 'Follow' });
   await swipe(page, '#floor', 120, 0);
-  assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'a finger aside drags the floor');
+  assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'a sideways swipe drags the floor');
   assert.equal(await page.evaluate(() => scrollY), 0);
   await follow.click();
   // Last, because the page keeps scrolling for a while.
@@ -94,7 +94,7 @@ test('the wheel scrolls the page, and zooms with Ctrl as long as the robot stays
   await page.locator('#floor').dispatchEvent('wheel', { deltaY: 5000, ctrlKey: true, offsetX: 200, offsetY: 200 });
   await page.waitForFunction((firstZoom) => Number(document.querySelector('#floor').dataset.zoom) < firstZoom, firstZoom);
   assert.ok(250 * (await zoomOf(page)) > 60, 'pixels for a robot of 250 mm');
-  // Back, wherever the view was.
+  // The button resets the view, wherever it was.
   const follow = page.getByRole('button', { name: 'Follow' });
   await page.locator('#floor').press('ArrowLeft');
   assert.equal(await follow.getAttribute('aria-pressed'), 'false');
@@ -141,11 +141,11 @@ test('on a touch screen no keys are mentioned, and the list of robots shows whol
     const page = await openStanding({ viewport, hasTouch: true, isMobile: true });
     for (const room of ['drive', 'build', 'board']) {
       await page.goto(`${address()}#room=${room}`);
-      const keys = await page.evaluate(() => [...document.querySelectorAll('button kbd')].filter((key) => key.checkVisibility()).map(({ textContent }) => textContent));
-      assert.deepEqual(keys, [], room);
+      const shownKeys = await page.evaluate(() => [...document.querySelectorAll('button kbd')].filter((key) => key.checkVisibility()).map(({ textContent }) => textContent));
+      assert.deepEqual(shownKeys, [], room);
     }
     assert.equal((await page.locator('.stop').innerText()).trim(), 'Stop');
-    const spareWidth = await page.locator('#robot').evaluate((list) => {
+    const sparePixels = await page.locator('#robot').evaluate((list) => {
       const pen = document.createElement('canvas').getContext('2d');
       pen.font = getComputedStyle(list).font;
       const textWidth = Math.max(...['robot', 'large', 'paper'].map((name) => pen.measureText(name).width));
@@ -153,7 +153,7 @@ test('on a touch screen no keys are mentioned, and the list of robots shows whol
       // An arrow is as wide as a letter is high.
       return list.clientWidth - Number.parseFloat(paddingLeft) - Number.parseFloat(paddingRight) - 18 - textWidth;
     });
-    assert.ok(spareWidth >= 0, `${spareWidth} pixels of ${viewport.width}`);
+    assert.ok(sparePixels >= 0, `${sparePixels} pixels of ${viewport.width}`);
   }
 });
 
@@ -180,18 +180,18 @@ test('long names of gaits fit on their buttons', async () => {
       buttons.map((button) => ({
         name: button.dataset.command,
         height: button.offsetHeight,
-        outside: button.scrollWidth - button.clientWidth,
+        excessPixels: button.scrollWidth - button.clientWidth,
       })),
     );
     assert.ok(buttons.some(({ name }) => name.length > 40));
-    for (const { name, height, outside } of buttons) {
+    for (const { name, height, excessPixels } of buttons) {
       assert.ok(height <= 90, `${name}: ${height} pixels high`);
-      assert.ok(outside <= 0, `${name}: ${outside} pixels too wide`);
+      assert.ok(excessPixels <= 0, `${name}: ${excessPixels} pixels too wide`);
     }
   }
 });
 
-test('robots that are for the tests are listed last, under a heading', async () => {
+test('robots for tests are listed last, under a heading', async () => {
   const page = await openPage();
   const [plainNames, testNames] = await page.evaluate(() =>
     ['#robot > option', '#robot > optgroup[label="for tests"] > option'].map((selector) =>
@@ -202,7 +202,7 @@ test('robots that are for the tests are listed last, under a heading', async () 
   assert.deepEqual(testNames, ['own-gaits', 'unequal']);
 });
 
-test('a word that the core spells differently is reported as unknown', async () => {
+test('a word of the page that the core does not know is reported', async () => {
   const page = await openBlank();
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
   assert.ok(wasm.includes('factory'));
@@ -227,11 +227,11 @@ test('a script that is not the page\'s own does not run', async () => {
   const blockedMessage = page.waitForEvent('console', (message) => /Content Security Policy/.test(message.text()));
   await page.evaluate(() => {
     const script = document.createElement('script');
-    script.textContent = 'window.strange = true';
+    script.textContent = 'window.foreignScriptRan = true';
     document.body.append(script);
   });
   await blockedMessage;
-  assert.equal(await page.evaluate(() => window.strange), undefined);
+  assert.equal(await page.evaluate(() => window.foreignScriptRan), undefined);
   complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/Content Security Policy/.test(complaint)));
 });
 

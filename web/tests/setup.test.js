@@ -1,5 +1,5 @@
-// The first connection, from a new board to a robot that walks and whose calibration is saved, with every interruption
-// in between.
+// The first connection, from a new board to a robot that walks and has a saved calibration, with interruptions at every
+// step.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
@@ -8,13 +8,13 @@ import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { openWithBoard, until } from './board.js';
-import { advance, close, closePages, complaints, open, openStanding, overflow, page as openPage, PATIENCE, text, unfold } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import { openWithBoard, runUntil } from './board.js';
+import { advance, closeBrowser, closePages, complaints, openBrowser, openStanding, overflow, openPage, TIMEOUT_MS, text, unfold } from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 /** Arduino pins of A1 to A4, as robot.toml has them. */
 const PINS = [9, 10, 11, 3];
@@ -27,10 +27,10 @@ const goToStep = async (page, name) => {
   await dialogOf(page).scrollIntoViewIfNeeded();
   await dialogOf(page).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
 };
-const pulsesOf = (page) => page.evaluate((pins) => pins.map((pin) => window.pulses[pin]), PINS);
+const pulseWidthsOf = (page) => page.evaluate((pins) => pins.map((pin) => window.pulseWidthsUs[pin]), PINS);
 
 /** Advances the clock until the dialog shows this message. */
-const waitForMessage = (page, pattern) => until(page, `${pattern} is said`, async () => pattern.test(await text(page, '#setup-said')));
+const waitForMessage = (page, pattern) => runUntil(page, `${pattern} is shown`, async () => pattern.test(await text(page, '#setup-said')));
 
 /** Presses a button and waits for a message. */
 async function pressAndWait(page, name, pattern) {
@@ -47,7 +47,7 @@ async function readCalibration(page) {
   const previousCount = await page.locator('#log div', { hasText: /^ok cal$/ }).count();
   await page.getByLabel('A line for the robot').fill('cal');
   await page.getByRole('button', { name: 'Send' }).click();
-  await until(page, 'cal is answered', async () => (await page.locator('#log div', { hasText: /^ok cal$/ }).count()) > previousCount);
+  await runUntil(page, 'cal is answered', async () => (await page.locator('#log div', { hasText: /^ok cal$/ }).count()) > previousCount);
   return (await page.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
@@ -56,29 +56,29 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await dialogOf(page).getByText('2 of 9: Write the firmware').waitFor();
   await dialogOf(page).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
   await pressAndWait(page, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
-  await until(page, 'it greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
+  await runUntil(page, 'the board greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
   await press(page, 'Go on');
 
-  // Before the servos get power there are no pulses.
+  // The servos get power now, so there must be no pulses.
   await pressAndWait(page, 'Let the servos rest', /^No pulses now/);
   await page.clock.runFor(200);
-  await page.evaluate(() => (window.pulses = {}));
+  await page.evaluate(() => (window.pulseWidthsUs = {}));
   await page.clock.runFor(500);
-  assert.deepEqual(await pulsesOf(page), [undefined, undefined, undefined, undefined]);
+  assert.deepEqual(await pulseWidthsOf(page), [undefined, undefined, undefined, undefined]);
 
-  // Horns: by its pin, every servo stands in its middle.
+  // Horns: the pulse at each pin is that of the servo's middle.
   await pressAndWait(page, 'Turn all servos to their middle', /1500 µs/);
-  assertNear(await pulsesOf(page), [1500, 1500, 1500, 1500], 0.5, 'us of the middle');
+  assertNear(await pulseWidthsOf(page), [1500, 1500, 1500, 1500], 0.5, 'pulse width of the middle, us');
 
   // Signs: A2 is mounted upside down, so the user answers no.
   await goToStep(page, 'Signs');
-  for (const [servo, isWrong] of [[1, false], [2, true], [3, false], [4, false]]) {
+  for (const [servo, isReversed] of [[1, false], [2, true], [3, false], [4, false]]) {
     await pressAndWait(page, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
-    assertNear(await pulsesOf(page), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'one servo alone');
-    if (isWrong) {
+    assertNear(await pulseWidthsOf(page), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'one servo alone');
+    if (isReversed) {
       await pressAndWait(page, 'No, the other way', new RegExp(`^The sign of A${servo} is "-" now`));
       await pressAndWait(page, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
-      assertNear(await pulsesOf(page), [1500, 1400, 1500, 1500], 0.6, 'the other way');
+      assertNear(await pulseWidthsOf(page), [1500, 1400, 1500, 1500], 0.6, 'the other direction');
     }
     await press(page, 'Yes');
   }
@@ -91,23 +91,23 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
 
   await goToStep(page, 'Scale');
   await pressAndWait(page, 'Turn A1', /^A1 was told to turn 30°/);
-  assertNear(await pulsesOf(page), [1200, 1500, 1496, 1500], 0.6, 'thirty degrees of one servo, the way that is safe');
+  assertNear(await pulseWidthsOf(page), [1200, 1500, 1496, 1500], 0.6, 'thirty degrees in the safe direction');
   await dialogOf(page).getByLabel('It turned by, degrees').fill('27.75');
   await dialogOf(page).getByLabel('It turned by, degrees').press('Enter');
   // 10 us per degree, times 30, divided by 27.75.
   await waitForMessage(page, /^The scale of A1 is 10\.81 µs per degree/);
-  // Another scale leaves the horn where it is: the trim has other degrees then.
+  // A new scale does not move the horn, so the trim in degrees changes.
   await press(page, 'A3 back right');
   await pressAndWait(page, 'Turn A3', /^A3 was told to turn 30°/);
   await dialogOf(page).getByLabel('It turned by, degrees').fill('27.75');
   await dialogOf(page).getByLabel('It turned by, degrees').press('Enter');
   await waitForMessage(page, /^The scale of A3 is 10\.81 µs per degree/);
-  await until(page, 'it stands', async () => (await text(page, '#doing')) === 'stand');
+  await runUntil(page, 'the robot stands', async () => (await text(page, '#doing')) === 'stand');
   await page.clock.runFor(500);
-  assertNear(await pulsesOf(page), [1500, 1500, 1496, 1500], 0.6, 'neutral is where it was');
+  assertNear(await pulseWidthsOf(page), [1500, 1500, 1496, 1500], 0.6, 'the neutral pose is unchanged');
 
   await goToStep(page, 'Limits');
-  await until(page, 'it stands', async () => (await text(page, '#doing')) === 'stand');
+  await runUntil(page, 'the robot stands', async () => (await text(page, '#doing')) === 'stand');
   await press(page, 'A4 back left');
   await pressAndWait(page, '↻ 5°', /^A4 points to 216\.41°/);
   await press(page, 'A4 back left');
@@ -117,11 +117,11 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
 
   await goToStep(page, 'First walk');
   assert.equal(await dialogOf(page).getByText('Not proven yet').count(), 0);
-  await until(page, 'it stands', async () => (await text(page, '#doing')) === 'stand');
+  await runUntil(page, 'the robot stands', async () => (await text(page, '#doing')) === 'stand');
   await pressAndWait(page, 'Let it walk', /^The robot does "walk"/);
   const startY = await page.evaluate(() => window.lizard.last.place.y);
   await page.clock.runFor(3000);
-  assert.ok((await page.evaluate(() => window.lizard.last.place.y)) - startY > 10, 'it walks');
+  assert.ok((await page.evaluate(() => window.lizard.last.place.y)) - startY > 10, 'the robot walks');
   await pressAndWait(page, 'Let it stand', /^The robot stands/);
 
   await dialogOf(page).getByRole('button', { name: 'Save it before', exact: true }).waitFor();
@@ -132,8 +132,8 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await press(page, 'Save as a file');
   const file = await (await pendingDownload).path();
 
-  // The restarted board has the calibration, and so has the file, as the host's program reads it.
-  await page.evaluate(() => window.otherBoard.reset('external'));
+  // The restarted board has the calibration, and the host's program accepts the saved file.
+  await page.evaluate(() => window.attachedBoard.reset('external'));
   await page.clock.runFor(5000);
   assert.deepEqual(await readCalibration(page), [
     '# A1 trim 0.00 limit 48.59 228.59 dir + scale 10.81',
@@ -147,7 +147,7 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
     await writeFile(calibrationFile, await readFile(file));
     const root = new URL('../..', import.meta.url).pathname;
     const robotArgs = ['--sim', '--robot', 'robot.toml'];
-    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['calibrate', 'restore', calibrationFile, ...robotArgs], { cwd: root, timeout: PATIENCE });
+    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['calibrate', 'restore', calibrationFile, ...robotArgs], { cwd: root, timeout: TIMEOUT_MS });
     assert.match(stdout, /has accepted and saved the calibration of .*/);
   } finally {
     await rm(folder, { recursive: true });
@@ -158,15 +158,15 @@ test('a board with another robot is recognized, and gets only the page\'s robot 
   const page = await openWithBoard('large', 5000);
   await dialogOf(page).getByText('has this firmware and another robot, large ').waitFor();
   await pressAndWait(page, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
-  await until(page, 'it greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
+  await runUntil(page, 'the board greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
 });
 
 test('a board that does not answer is reported, and no step is a dead end', async () => {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate(() => (window.flashed = null));
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate(() => (window.flashedRobot = null));
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
-  await page.evaluate(() => (window.otherBoard.send = () => {}));
+  await page.waitForFunction(() => window.attachedBoard);
+  await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.clock.runFor(10000);
   await dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').waitFor();
   await pressAndWait(page, 'Write firmware and robot', /^not written: no boot loader answers/);
@@ -174,53 +174,54 @@ test('a board that does not answer is reported, and no step is a dead end', asyn
   await dialogOf(page).getByText('No robot with this firmware answers').waitFor();
   await press(page, 'To the board');
   await press(page, 'Disconnect');
-  await until(page, 'the simulation is back', async () => /simulated UNO/.test(await text(page, '#where')));
+  await runUntil(page, 'the simulation is back', async () => /simulated UNO/.test(await text(page, '#where')));
 });
 
 test('a board that sends meaningless bytes is not taken for a robot', async () => {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate(() => (window.garbage = true));
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate(() => (window.boardSendsGarbage = true));
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
-  await until(page, 'it is asked about', async () => dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').isVisible());
+  await page.waitForFunction(() => window.attachedBoard);
+  await runUntil(page, 'the page asks about the board', async () => dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: /);
   const lengths = await page.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
   assert.ok(Math.max(0, ...lengths) < 1000, 'a line that never ends is cut');
 });
 
 test('unplugging the board is reported at any step, and the dialog continues where it was', async () => {
-  const page = await openPage({}, fakeSerial);
+  const page = await openPage({}, installFakeSerial);
   const names = await page.locator('#setup-steps button').allTextContents();
   assert.equal(names.length, 9);
   for (const name of names) {
-    await page.evaluate(() => (window.otherBoard = undefined));
+    await page.evaluate(() => (window.attachedBoard = undefined));
     await page.locator('#connect').click();
-    await page.waitForFunction(() => window.otherBoard);
+    await page.waitForFunction(() => window.attachedBoard);
     await page.clock.runFor(4500);
     await goToStep(page, name);
     await page.clock.runFor(400);
-    // While an action is under way, if the step has one.
+    // The cable is pulled during the step's action, if it has one.
     const mainButtons = dialogOf(page).locator('#setup-what button.main');
     const mainButton = (await mainButtons.count()) > 0 && !['Board', 'Firmware'].includes(name) ? mainButtons.first() : null;
     if (mainButton) await mainButton.click();
     await page.clock.runFor(60);
     await page.evaluate(() => window.unplug());
-    await until(page, `${name} says it`, async () => /is not connected any more/.test(await text(page, '#setup-said')));
+    await runUntil(page, `the step ${name} reports it`, async () =>
+      /is not connected any more/.test(await text(page, '#setup-said')));
     assert.match(await text(page, '#setup-step'), new RegExp(`^${names.indexOf(name) + 1} of 9`), 'the step is kept');
-    assert.equal(await dialogOf(page).getAttribute('aria-busy'), 'false', 'nothing waits for ever');
+    assert.equal(await dialogOf(page).getAttribute('aria-busy'), 'false', 'no action waits for ever');
   }
 });
 
-test('a board that is unplugged while it is written says so, and can be written when it is back', async () => {
+test('a board that is unplugged while it is written is reported, and can be written when it is back', async () => {
   const page = await openWithBoard(null, 8000);
   await press(page, 'Write firmware and robot');
   await page.clock.runFor(1500);
   await page.evaluate(() => window.unplug());
-  await until(page, 'it is said', async () => /is not connected any more|not written/.test(await text(page, '#setup-said')));
-  await page.evaluate(() => (window.otherBoard = undefined));
-  await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
+  await runUntil(page, 'the loss of the board is shown', async () => /is not connected any more|not written/.test(await text(page, '#setup-said')));
+  await page.evaluate(() => (window.attachedBoard = undefined));
+  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
+  await page.waitForFunction(() => window.attachedBoard);
   await page.clock.runFor(8000);
   await pressAndWait(page, 'Write firmware and robot', /^written and verified/);
 });
@@ -242,10 +243,10 @@ test('an action that began on a board does not continue in the simulation when t
 
 test('the robot does not walk while it is being assembled', async () => {
   const page = await openWithBoard('robot', 8000);
-  await until(page, 'the ways are known', async () => (await text(page, '#gaits button[data-command="walk"] small')) !== '');
+  await runUntil(page, 'the gaits are predicted', async () => (await text(page, '#gaits button[data-command="walk"] small')) !== '');
   await goToStep(page, 'Trims');
   await page.clock.runFor(500);
-  const heardLength = (await page.evaluate(() => window.heard)).length;
+  const previousLength = (await page.evaluate(() => window.receivedText)).length;
   await page.locator('#log').focus();
   await page.evaluate(() => {
     document.activeElement.blur();
@@ -254,14 +255,14 @@ test('the robot does not walk while it is being assembled', async () => {
   await page.keyboard.down('w');
   await page.clock.runFor(500);
   await page.keyboard.up('w');
-  assert.ok(!(await page.evaluate(() => window.heard)).slice(heardLength).includes('walk'));
+  assert.ok(!(await page.evaluate(() => window.receivedText)).slice(previousLength).includes('walk'));
   await page.evaluate(() => delete navigator.getGamepads);
   await press(page, 'Leave');
-  await until(page, 'it is left', async () => !(await dialogOf(page).isVisible()));
+  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
   await page.locator('#gaits button[data-command="walk"]').click();
-  await until(page, 'it walks', async () => (await page.evaluate(() => window.lizard.gait)) === 'walk');
+  await runUntil(page, 'the robot walks', async () => (await page.evaluate(() => window.lizard.gait)) === 'walk');
   await page.locator('#setup-open').click();
-  await until(page, 'it is stopped', async () => (await page.evaluate(() => window.lizard.gait)) !== 'walk');
+  await runUntil(page, 'the robot is stopped', async () => (await page.evaluate(() => window.lizard.gait)) !== 'walk');
 });
 
 test('a restart of the board is reported, with the loss of unsaved settings', async () => {
@@ -270,7 +271,7 @@ test('a restart of the board is reported, with the loss of unsaved settings', as
   await goToStep(page, 'Trims');
   await page.clock.runFor(500);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
-  await page.evaluate(() => window.otherBoard.reset('external'));
+  await page.evaluate(() => window.attachedBoard.reset('external'));
   await waitForMessage(page, /^The board has restarted\. What was not saved is lost\.$/);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
 });
@@ -283,17 +284,17 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
   assert.notDeepEqual(await readCalibration(page), previousCalibration);
   await press(page, 'Leave');
-  await until(page, 'it is left', async () => !(await dialogOf(page).isVisible()));
+  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
   await page.getByText('the robot has the calibration that it had before').waitFor();
   assert.deepEqual(await readCalibration(page), previousCalibration);
   await page.locator('#setup-open').click();
   await dialogOf(page).getByText('5 of 9: Straighten the cranks').waitFor();
-  // Proven signs stay proven unless they are reset.
+  // A sign that is proven stays proven when the dialog opens again.
   await goToStep(page, 'Signs');
   await pressAndWait(page, 'Turn A1', /^A1 was told to turn 10°/);
   await press(page, 'Yes');
   await press(page, 'Leave');
-  await until(page, 'it is left', async () => !(await dialogOf(page).isVisible()));
+  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
   await page.locator('#setup-open').click();
   await goToStep(page, 'First walk');
   await dialogOf(page).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
@@ -302,31 +303,31 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
 test('leaving takes back a setting whose answer was lost, and saving stores what the step shows', async () => {
   const page = await openWithBoard('robot', 4500);
   const previousCalibration = await readCalibration(page);
-  const loseAnswer = async () => {
+  const setTrimWithoutAnswer = async () => {
     await goToStep(page, 'Trims');
     await page.clock.runFor(1500);
     await page.evaluate(() => {
-      window.answer = window.otherBoard.onByte;
-      window.otherBoard.onByte = () => {};
+      window.originalOnByte = window.attachedBoard.onByte;
+      window.attachedBoard.onByte = () => {};
     });
     await pressAndWait(page, '↺ 0.5°', /^The robot has not answered "trim 1 0\.50"\.$/);
-    await page.evaluate(() => (window.otherBoard.onByte = window.answer));
+    await page.evaluate(() => (window.attachedBoard.onByte = window.originalOnByte));
   };
-  await loseAnswer();
-  assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /, 'the robot has taken it');
+  await setTrimWithoutAnswer();
+  assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /, 'the robot has the new trim');
   await press(page, 'Leave');
-  await until(page, 'it is left', async () => !(await dialogOf(page).isVisible()));
+  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
   assert.deepEqual(await readCalibration(page), previousCalibration);
 
   await page.locator('#setup-open').click();
-  await loseAnswer();
+  await setTrimWithoutAnswer();
   await goToStep(page, 'Keep');
   await pressAndWait(page, 'Save in the board', /^Saved: the board begins with it/);
   await dialogOf(page).getByRole('row', { name: /^A1, front left \+ 0\.50°/ }).waitFor();
   assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /);
 });
 
-test('a refusal by the robot is shown in its words, and changes nothing', async () => {
+test('a refusal by the robot is shown in its own words, and changes nothing', async () => {
   const page = await openWithBoard('robot', 4500);
   const previousCalibration = await readCalibration(page);
   await goToStep(page, 'Limits');
@@ -347,25 +348,25 @@ test('a saved calibration file is sent to the robot, and an invalid one is refus
   const page = await openWithBoard('robot', 4500);
   await goToStep(page, 'Keep');
   await page.clock.runFor(1500);
-  const choose = (name, body) =>
+  const openFile = (name, body) =>
     dialogOf(page).getByLabel('Open a saved file').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
-  await choose('mine.toml', SAVED_CALIBRATION);
+  await openFile('mine.toml', SAVED_CALIBRATION);
   await waitForMessage(page, /^The robot has the calibration of mine\.toml\. It is not saved yet\.$/);
   assert.match((await readCalibration(page))[2], /^# A3 trim 3\.25 /);
   const previousCalibration = await readCalibration(page);
   const wrongFiles = [
-    ['<img src=x onerror="window.strange=1">.toml', 'hello', /^<img .*>\.toml:1: `hello` lacks the = /],
+    ['<img src=x onerror="window.foreignScriptRan=1">.toml', 'hello', /^<img .*>\.toml:1: `hello` lacks the = /],
     ['a.toml', 'format = "lizard calibration 2"', /^a\.toml:1: format must be "lizard calibration 1"/],
     ['b.toml', SAVED_CALIBRATION.replace('2.25', '400'), /^b\.toml:\d+: servo\.A2\.trim is 400; it must be within -360 to 360 deg/],
     ['c.toml', SAVED_CALIBRATION.replace('"stand"', '"stand\\nsave"'), /^c\.toml:\d+: boot is not the name of a gait$/],
     ['d.toml', SAVED_CALIBRATION.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
   ];
   for (const [name, body, message] of wrongFiles) {
-    await choose(name, body);
+    await openFile(name, body);
     await waitForMessage(page, message);
     assert.deepEqual(await readCalibration(page), previousCalibration, `${name} changes nothing`);
   }
-  assert.equal(await page.evaluate(() => window.strange), undefined);
+  assert.equal(await page.evaluate(() => window.foreignScriptRan), undefined);
 });
 
 test('without a board every step can be tried, by the keyboard alone', async () => {
@@ -373,7 +374,7 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   await page.locator('#setup-open').focus();
   await page.keyboard.press('Enter');
   assert.equal(await page.evaluate(() => document.activeElement.id), 'setup-step');
-  /** Goes to a control by the Tab key, past all other controls if needed. */
+  /** Presses Tab until a control has the focus. */
   const tabTo = async (name) => {
     for (let n = 0; n < 40; n++) {
       if ((await page.evaluate(() => document.activeElement.textContent)) === name) return;
@@ -388,11 +389,11 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   }
   await tabTo('Turn all servos to their middle');
   await page.keyboard.press('Enter');
-  // Keys must not drive while the user's fingers may be in the robot.
+  // Keys must not drive the robot while the user's fingers may be in it.
   await page.keyboard.down('ArrowUp');
   for (let n = 0; n < 40 && (await text(page, '#setup-said')) === ''; n++) await advance(page, 250);
   assert.match(await text(page, '#setup-said'), /^Every servo holds its middle now/);
-  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'it stays where it was');
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'the focus stays');
   await advance(page, 500);
   await page.keyboard.up('ArrowUp');
   await unfold(page, '#pulses');
@@ -418,9 +419,9 @@ for (const [name, options] of [
       // The row of steps scrolls, so that the current step's name is visible.
       const currentStep = await page.locator('#setup-steps [aria-current]').evaluate((button) => {
         const { left, right } = button.getBoundingClientRect();
-        return { isSeen: left >= 0 && right <= innerWidth, isWhole: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };
+        return { isVisible: left >= 0 && right <= innerWidth, isWhole: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };
       });
-      assert.ok(currentStep.isSeen && currentStep.isWhole && currentStep.size >= 12, JSON.stringify(currentStep));
+      assert.ok(currentStep.isVisible && currentStep.isWhole && currentStep.size >= 12, JSON.stringify(currentStep));
     }
   });
 }

@@ -3,11 +3,13 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, overflow, openStanding, closePages, unfold } from './browser.js';
+import {
+  advance, closeBrowser, complaints, openBrowser, overflow, openStanding, closePages, unfold,
+} from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 async function openSketch(options) {
   const page = await openStanding(options);
@@ -20,19 +22,19 @@ async function openSketch(options) {
 const lengthOf = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((entry) => entry.key === key).value, key);
 const jointOf = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
-/** Grabs a joint and moves it, mm to the right and ahead, in ten steps, without releasing it. */
-async function drag(page, name, [right, ahead]) {
-  // Both places in one call, because the page redraws its joints with each answer, and a replaced joint has no place.
+/** Grabs a joint and moves it to the right and ahead in ten steps, without releasing it. */
+async function drag(page, name, [rightMm, aheadMm]) {
+  // Both positions come from one call, because the page replaces its joints with each answer.
   const [from, to] = await page.evaluate(
-    ({ name, right, ahead }) => {
+    ({ name, rightMm, aheadMm }) => {
       const mark = document.querySelector(`#sketch circle[data-joint="${name}"]`);
       const [x, y] = ['cx', 'cy'].map((axis) => Number(mark.getAttribute(axis)));
-      return [new DOMPoint(x, y), new DOMPoint(x + right, y - ahead)].map((point) => {
+      return [new DOMPoint(x, y), new DOMPoint(x + rightMm, y - aheadMm)].map((point) => {
         const position = point.matrixTransform(mark.getScreenCTM());
         return [position.x, position.y];
       });
     },
-    { name, right, ahead },
+    { name, rightMm, aheadMm },
   );
   await page.mouse.move(...from);
   await page.mouse.down();
@@ -52,7 +54,7 @@ test('the point of the head is dragged, and both couplers follow', async () => {
   const expectedMm = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
   await drag(page, 'point of the head', [0, -4]);
   await waitForMessage(page, new RegExp(`^l2 = l3 = ${expectedMm} mm\\.$`));
-  assert.equal(await lengthOf(page, 'links.l2'), 50, 'not before it is let go');
+  assert.equal(await lengthOf(page, 'links.l2'), 50, 'not before the release');
   await page.mouse.up();
   await page.waitForFunction((expectedMm) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === expectedMm, expectedMm);
   assert.equal(await lengthOf(page, 'links.l3'), expectedMm);

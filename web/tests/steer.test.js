@@ -2,19 +2,19 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page as openPage, closePages } from './browser.js';
+import { advance, closeBrowser, complaints, openBrowser, openPage, closePages } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 /** Opens the page and waits until all gaits are predicted. */
-async function openReady(options = {}) {
+async function openPredicted(options = {}) {
   const page = await openPage(options);
   await page.waitForFunction(() => {
-    const notes = [...document.querySelectorAll('#gaits button[data-command]')];
+    const buttons = [...document.querySelectorAll('#gaits button[data-command]')];
     const stillGaits = ['stand', 'look'];
-    return notes.length > 5 && notes.every((button) => stillGaits.includes(button.dataset.command) || button.querySelector('small').textContent);
+    return buttons.length > 5 && buttons.every((button) => stillGaits.includes(button.dataset.command) || button.querySelector('small').textContent);
   });
   return page;
 }
@@ -22,7 +22,7 @@ async function openReady(options = {}) {
 const waitForGait = (page, gait) => page.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
 
 test('arrow keys make the robot walk, bend and turn while they are held, and stop it when released', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   const { keyboard } = page;
   await keyboard.down('ArrowUp');
   await waitForGait(page, 'walk');
@@ -39,7 +39,7 @@ test('arrow keys make the robot walk, bend and turn while they are held, and sto
 });
 
 test('letter keys drive as arrows do, except in a text field', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   await page.keyboard.down('d');
   await waitForGait(page, 'right');
   await page.keyboard.up('d');
@@ -53,7 +53,7 @@ test('letter keys drive as arrows do, except in a text field', async () => {
 });
 
 test('the stick on the screen walks where it is held', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   const stick = page.locator('#stick');
   await stick.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await stick.boundingBox();
@@ -68,39 +68,39 @@ test('the stick on the screen walks where it is held', async () => {
   await waitForGait(page, 'stop');
 });
 
-test('a half deflected stick drives at half the pace, and releasing it restores the pace', async () => {
-  const page = await openReady();
+test('a stick that is deflected by half drives at half the pace, and its release restores the pace', async () => {
+  const page = await openPredicted();
   await page.evaluate(() => {
-    window.pad = { axes: [0, 0], buttons: [{ pressed: false }] };
-    navigator.getGamepads = () => [window.pad];
+    window.gamepad = { axes: [0, 0], buttons: [{ pressed: false }] };
+    navigator.getGamepads = () => [window.gamepad];
     return window.lizard.ask('speed 80').then(() => null);
   });
   const waitForPace = async (percent) => page.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
-  const pushStick = (ahead, pressed = false) => page.evaluate(([ahead, pressed]) => (window.pad = { axes: [0, -ahead], buttons: [{ pressed }] }), [ahead, pressed]);
+  const deflectStick = (ahead, pressed = false) => page.evaluate(([ahead, pressed]) => (window.gamepad = { axes: [0, -ahead], buttons: [{ pressed }] }), [ahead, pressed]);
   await waitForPace(80);
-  await pushStick(0.5);
+  await deflectStick(0.5);
   await waitForGait(page, 'walk');
   await waitForPace(40);
-  // A thumb that trembles at the boundary must not change the pace with each picture.
-  await pushStick(0.7);
+  // A trembling thumb must not change the pace with each picture.
+  await deflectStick(0.7);
   await advance(page, 500);
   await waitForPace(40);
-  await pushStick(1);
+  await deflectStick(1);
   await waitForPace(80);
-  await pushStick(0.5);
+  await deflectStick(0.5);
   await waitForPace(40);
-  await pushStick(0);
+  await deflectStick(0);
   await waitForGait(page, 'stop');
   await waitForPace(80);
-  await pushStick(0.5);
+  await deflectStick(0.5);
   await waitForPace(40);
-  await pushStick(0.5, true);
+  await deflectStick(0.5, true);
   await waitForGait(page, 'stop');
   await waitForPace(80);
 });
 
-test('a page that is left does not walk on', async () => {
-  const page = await openReady();
+test('the robot stops when the window loses the focus', async () => {
+  const page = await openPredicted();
   await page.keyboard.down('w');
   await waitForGait(page, 'walk');
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
@@ -108,44 +108,44 @@ test('a page that is left does not walk on', async () => {
 });
 
 test('a gamepad drives', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   await page.evaluate(() => {
-    window.pad = { axes: [0, -1], buttons: [] };
-    navigator.getGamepads = () => [null, window.pad];
+    window.gamepad = { axes: [0, -1], buttons: [] };
+    navigator.getGamepads = () => [null, window.gamepad];
   });
   await waitForGait(page, 'walk');
   await page.evaluate(() => {
-    window.pad = { axes: [-0.8, -0.8], buttons: [] };
+    window.gamepad = { axes: [-0.8, -0.8], buttons: [] };
   });
   await waitForGait(page, 'arc left');
   await page.evaluate(() => {
-    window.pad = { axes: [0.1, 0], buttons: [] };
+    window.gamepad = { axes: [0.1, 0], buttons: [] };
   });
   await waitForGait(page, 'stop');
 });
 
-test('a button of a gamepad stops the robot, once, and it goes on only when the stick was let go', async () => {
-  const page = await openReady();
+test('a button of a gamepad stops the robot once, and the stick drives again only after it was released', async () => {
+  const page = await openPredicted();
   await page.evaluate(() => {
-    window.sent = [];
+    window.sentLines = [];
     const { ask } = window.lizard;
-    window.lizard.ask = (line, ...args) => (window.sent.push(line), ask.call(window.lizard, line, ...args));
-    window.pad = { axes: [0, -1], buttons: [{ pressed: false }] };
-    navigator.getGamepads = () => [null, window.pad];
+    window.lizard.ask = (line, ...args) => (window.sentLines.push(line), ask.call(window.lizard, line, ...args));
+    window.gamepad = { axes: [0, -1], buttons: [{ pressed: false }] };
+    navigator.getGamepads = () => [null, window.gamepad];
   });
   await waitForGait(page, 'walk');
-  await page.evaluate(() => (window.pad.buttons = [{ pressed: true }]));
+  await page.evaluate(() => (window.gamepad.buttons = [{ pressed: true }]));
   await waitForGait(page, 'stop');
   await page.waitForTimeout(500);
-  assert.deepEqual((await page.evaluate(() => window.sent)).filter((line) => line !== 'status'), ['walk', 'stop']);
-  await page.evaluate(() => (window.pad = { axes: [0, 0], buttons: [] }));
+  assert.deepEqual((await page.evaluate(() => window.sentLines)).filter((line) => line !== 'status'), ['walk', 'stop']);
+  await page.evaluate(() => (window.gamepad = { axes: [0, 0], buttons: [] }));
   await page.waitForTimeout(200);
-  await page.evaluate(() => (window.pad = { axes: [0, -1], buttons: [] }));
+  await page.evaluate(() => (window.gamepad = { axes: [0, -1], buttons: [] }));
   await waitForGait(page, 'walk');
 });
 
 test('a button of a gamepad stops a gait that the page began', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   await page.locator('#gaits button[data-command="walk"]').click();
   await waitForGait(page, 'walk');
   await page.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, 0], buttons: [{ pressed: true }] }]));
@@ -153,7 +153,7 @@ test('a button of a gamepad stops a gait that the page began', async () => {
 });
 
 test('a second gamepad and the direction pad drive, too', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   await page.evaluate(() => {
     const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
     navigator.getGamepads = () => [{ axes: [0, 0], buttons: [] }, { axes: [0, 0], buttons }];
@@ -161,8 +161,8 @@ test('a second gamepad and the direction pad drive, too', async () => {
   await waitForGait(page, 'walk');
 });
 
-test('a gamepad that is held while another window gets the focus does not keep the robot walking', async () => {
-  const page = await openReady();
+test('a held gamepad does not keep the robot walking when another window gets the focus', async () => {
+  const page = await openPredicted();
   await page.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, -1], buttons: [] }]));
   await waitForGait(page, 'walk');
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
@@ -175,19 +175,19 @@ test('the page opens with the robot walking slowly, unless reduced motion is pre
   const movingPage = await openPage({ reducedMotion: 'no-preference' });
   await waitForGait(movingPage, 'walk');
   await movingPage.waitForFunction(() => document.querySelector('#speed').value === '50');
-  const stillPage = await openReady();
+  const stillPage = await openPredicted();
   await waitForGait(stillPage, 'stand');
-  // The robot that walks has begun within this time.
+  // On a page with motion the robot has begun to walk within this time.
   await advance(stillPage, 6000);
   assert.equal(await stillPage.locator('#doing').textContent(), 'stand');
 });
 
-test('it also opens with walk if walk and trot are predicted before the robot\'s banner', async () => {
+test('the robot also walks at first if walk and trot are predicted before the robot\'s banner', async () => {
   const page = await openPage({ reducedMotion: 'no-preference' }, () => {
-    // As for a user's own robot, whose predictions do not come with the page.
+    // The predictions do not come with the page, as for a user's own robot.
     const { fetch } = window;
     window.fetch = (address, ...args) => (String(address).includes('predictions') ? Promise.reject(new TypeError('none')) : fetch(address, ...args));
-    // The other predictions never come.
+    // Only the first three gaits are predicted.
     window.Worker = class extends Worker {
       addEventListener(type, listener) {
         super.addEventListener(type, (event) => (event.data.gait ?? 0) <= 2 && listener(event));
@@ -202,11 +202,11 @@ test('it also opens with walk if walk and trot are predicted before the robot\'s
 });
 
 test('a robot with other gaits is driven by its own gaits', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   await page.locator('#robot').selectOption('own-gaits');
   await page.waitForFunction(() => {
-    const notes = [...document.querySelectorAll('#gaits button[data-command]')];
-    return notes.length > 12 && notes.filter((button) => button.querySelector('small').textContent.includes('mm')).length > 5;
+    const buttons = [...document.querySelectorAll('#gaits button[data-command]')];
+    return buttons.length > 12 && buttons.filter((button) => button.querySelector('small').textContent.includes('mm')).length > 5;
   });
   await page.keyboard.down('ArrowUp');
   await page.waitForFunction(() => !['stand', 'stop', '–'].includes(document.querySelector('#doing').textContent));
@@ -215,7 +215,7 @@ test('a robot with other gaits is driven by its own gaits', async () => {
 });
 
 test('after a click on the pace, on the list of robots or on the floor the arrows still drive; after Tab they do not', async () => {
-  const page = await openReady();
+  const page = await openPredicted();
   const pace = page.locator('#speed');
   for (const selector of ['#speed', '#floor', '#robot']) {
     await page.locator(selector).click();

@@ -2,12 +2,12 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, close, closePages, complaints, open, openBlank, openForbidden, openStanding, page as openPage, text, type, unfold } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import { address, advance, closeBrowser, closePages, complaints, openBrowser, openBlank, openForbidden, openStanding, openPage, text, sendLine, unfold } from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const troubleOf = (page) => page.locator('#trouble');
 
@@ -17,22 +17,22 @@ test('the message about an unreadable robot file stays while the previous robot 
   await page.locator('#robot').selectOption('large');
   const message = troubleOf(page).getByText('files/large.toml is not there (404)');
   await message.waitFor();
-  assert.equal(await page.locator('#robot').inputValue(), 'robot', 'the choice is the robot that is there');
-  await type(page, 'walk', 'ok walk');
+  assert.equal(await page.locator('#robot').inputValue(), 'robot', 'the list shows the robot in use');
+  await sendLine(page, 'walk', 'ok walk');
   await advance(page, 5000);
   await unfold(page, '#power');
   await page.locator('#health dd', { hasText: 'power' }).waitFor();
-  assert.ok(await message.isVisible(), 'good answers and the poll of the status do not take it away');
+  assert.ok(await message.isVisible(), 'answers of the robot do not remove the message');
   assert.equal(await page.evaluate(() => window.lizard.file), 'robot');
   await page.unroute('**/files/large.toml');
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
-  assert.equal(await troubleOf(page).isVisible(), false, 'a robot that can be read ends it');
-  // The browser itself reports what the test removed.
+  assert.equal(await troubleOf(page).isVisible(), false, 'a readable robot file removes the message');
+  // The browser also reports the missing file, as expected.
   complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/404/.test(complaint)));
 });
 
-test('a page whose first robot cannot be read says so, and takes another one', async () => {
+test('a page whose first robot cannot be read says so, and accepts another robot', async () => {
   const page = await openBlank();
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());
@@ -46,9 +46,9 @@ test('a page whose first robot cannot be read says so, and takes another one', a
 });
 
 test('the message about a busy port stays until the user dismisses it', async () => {
-  const page = await openPage({}, fakeSerial);
+  const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
-    window.openPort = () => {
+    window.onPortOpen = () => {
       throw new DOMException('Failed to open serial port.', 'NetworkError');
     };
   });
@@ -64,15 +64,15 @@ test('the message about a busy port stays until the user dismisses it', async ()
 });
 
 test('picking no port reports no problem', async () => {
-  const page = await openPage({}, fakeSerial);
+  const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
-    window.pick = () => {
-      window.picked = true;
+    window.onPortPick = () => {
+      window.isPickCancelled = true;
       throw new DOMException('No port selected by the user.', 'NotFoundError');
     };
   });
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.picked);
+  await page.waitForFunction(() => window.isPickCancelled);
   await page.clock.runFor(500);
   assert.equal(await troubleOf(page).isVisible(), false);
   assert.match(await text(page, '#where'), /simulated UNO/);
@@ -91,7 +91,7 @@ test('without Web Serial the page says so before anything is pressed', async () 
   await page.getByText('This browser cannot reach a board on USB').waitFor();
 });
 
-test('a refused button says why beside the buttons, on a phone too', async () => {
+test('a refusal is shown beside the buttons, also on a phone', async () => {
   const page = await openStanding({ viewport: { width: 390, height: 844 }, hasTouch: true });
   await page.locator('[data-command="rest"]').click();
   await advance(page, 300);
@@ -100,7 +100,7 @@ test('a refused button says why beside the buttons, on a phone too', async () =>
   const message = page.locator('#drive-said');
   await message.getByText('walk: servos are resting, send stand first').waitFor();
   const { y, height } = await message.boundingBox();
-  assert.ok(y >= 0 && y + height <= 844, `it is on the screen: ${y} to ${y + height}`);
+  assert.ok(y >= 0 && y + height <= 844, `the message is on the screen: ${y} to ${y + height}`);
   await page.locator('#gaits button[data-command="stand"]').click();
   await advance(page, 300);
   await message.waitFor({ state: 'hidden' });

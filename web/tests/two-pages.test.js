@@ -1,81 +1,83 @@
-// Two pages at one robot: one by the board's cable, the other by a module at the same serial line.
+// Two pages connected to one robot: one by the board's cable, the other by a Bluetooth module at the same serial line.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { close, closePages, complaints, open, page as openPage, text, within } from './browser.js';
+import { closeBrowser, closePages, complaints, openBrowser, openPage, text, withTimeout } from './browser.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
 const activityOf = (page) => text(page, '#doing');
 const startWalk = (page) => page.locator('#gaits button[data-command="walk"]').click();
 
-/** A port whose bytes a test carries; runs in the page before anything else. */
-function farSerial() {
-  window.toBoard = [];
+/** Replaces Web Serial with a port whose bytes the test transfers; runs in the page before any other script. */
+function installRelayedSerial() {
+  window.bytesToBoard = [];
   let output;
   const port = {
     async open() {
       port.readable = new ReadableStream({ start: (controller) => (output = controller) });
-      port.writable = new WritableStream({ write: (bytes) => void window.toBoard.push(...bytes) });
+      port.writable = new WritableStream({ write: (bytes) => void window.bytesToBoard.push(...bytes) });
     },
     getInfo: () => ({ bluetoothServiceClassId: '00001101-0000-1000-8000-00805f9b34fb' }),
     async setSignals() {},
     async close() {},
   };
-  window.hear = (bytes) => output?.enqueue(Uint8Array.from(bytes));
+  window.receiveBytes = (bytes) => output?.enqueue(Uint8Array.from(bytes));
   Object.defineProperty(navigator, 'serial', { value: { requestPort: async () => port } });
 }
 
-/** Opens both pages; returns them, and a function that advances both clocks until a condition holds. */
+/** Opens both pages; returns them, and a function that advances both clocks until a condition is true. */
 async function openTwoPages() {
-  const first = await openWithBoard('robot', 8000);
-  await first.evaluate(() => {
-    const { otherBoard } = window;
-    const { onByte } = otherBoard;
-    window.spoken = [];
-    otherBoard.onByte = (byte) => {
-      window.spoken.push(byte);
+  const cablePage = await openWithBoard('robot', 8000);
+  await cablePage.evaluate(() => {
+    const { attachedBoard } = window;
+    const { onByte } = attachedBoard;
+    window.bytesFromBoard = [];
+    attachedBoard.onByte = (byte) => {
+      window.bytesFromBoard.push(byte);
       onByte(byte);
     };
   });
-  const second = await openPage({}, farSerial);
+  const radioPage = await openPage({}, installRelayedSerial);
   const step = async () => {
-    await first.clock.runFor(20);
-    const spoken = await first.evaluate(() => window.spoken.splice(0));
-    await second.evaluate((bytes) => window.hear(bytes), spoken);
-    await second.clock.runFor(20);
-    const bytes = await second.evaluate(() => window.toBoard.splice(0));
-    await first.evaluate((bytes) => bytes.length > 0 && window.otherBoard.send(bytes), bytes);
+    await cablePage.clock.runFor(20);
+    const bytesFromBoard = await cablePage.evaluate(() => window.bytesFromBoard.splice(0));
+    await radioPage.evaluate((bytes) => window.receiveBytes(bytes), bytesFromBoard);
+    await radioPage.clock.runFor(20);
+    const bytesToBoard = await radioPage.evaluate(() => window.bytesToBoard.splice(0));
+    await cablePage.evaluate((bytes) => bytes.length > 0 && window.attachedBoard.send(bytes), bytesToBoard);
   };
-  const until = async (waitName, isSo) => {
+  const runUntil = async (waitName, condition) => {
     let isWaiting = true;
     const advance = async () => {
-      while (isWaiting && !(await isSo())) await step();
+      while (isWaiting && !(await condition())) await step();
     };
-    await within(waitName, advance()).finally(() => (isWaiting = false));
+    await withTimeout(waitName, advance()).finally(() => (isWaiting = false));
   };
-  await second.locator('#connect').click();
-  await until('the second page finds the robot', async () => (await text(second, '#where')).includes('on Bluetooth'));
-  return { first, second, until };
+  await radioPage.locator('#connect').click();
+  await runUntil('the second page finds the robot', async () =>
+    (await text(radioPage, '#where')).includes('on Bluetooth'));
+  return { cablePage, radioPage, runUntil };
 }
 
 test('each of two pages shows the robot\'s activity, and stops a gait that the other has started', async () => {
-  const { first, second, until } = await openTwoPages();
+  const { cablePage, radioPage, runUntil } = await openTwoPages();
   for (const [driver, watcher] of [
-    [first, second],
-    [second, first],
+    [cablePage, radioPage],
+    [radioPage, cablePage],
   ]) {
     await startWalk(driver);
-    for (const page of [driver, watcher]) await until('it is seen to walk', async () => (await activityOf(page)) === 'walk');
+    for (const page of [driver, watcher]) await runUntil('both pages show the walk', async () => (await activityOf(page)) === 'walk');
     await watcher.keyboard.press('Escape');
-    for (const page of [driver, watcher]) await until('it is seen to stop', async () => (await activityOf(page)) === 'stop');
+    for (const page of [driver, watcher]) await runUntil('both pages show the stop', async () => (await activityOf(page)) === 'stop');
   }
-  const isSettled = async () => /deadman 0\n[^]*deadman 0\n[^]*$/.test(await first.evaluate(() => window.heard));
-  await until('each driver has given the deadman back', isSettled);
-  for (const page of [first, second]) assert.equal(await page.locator('#alarm').isVisible(), false);
+  const readReceivedText = () => cablePage.evaluate(() => window.receivedText);
+  const isRestored = async () => /deadman 0\n[^]*deadman 0\n[^]*$/.test(await readReceivedText());
+  await runUntil('both pages have restored the deadman', isRestored);
+  for (const page of [cablePage, radioPage]) assert.equal(await page.locator('#alarm').isVisible(), false);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -4,8 +4,8 @@ import { readFile } from 'node:fs/promises';
 import { initSync, Robot } from '../generated/lizard.js';
 import { DIST } from './browser.js';
 
-/** Reads a file beside the page, as bytes, or as text in an encoding. */
-export const file = (name, encoding) => readFile(new URL(`files/${name}`, `file://${DIST}`), encoding);
+/** Reads a file of the page, as bytes, or as text in an encoding. */
+export const readPageFile = (name, encoding) => readFile(new URL(`files/${name}`, `file://${DIST}`), encoding);
 
-export const { memory } = initSync({ module: await file('lizard.wasm') });
+export const { memory } = initSync({ module: await readPageFile('lizard.wasm') });
 export { Robot };

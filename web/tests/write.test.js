@@ -1,47 +1,48 @@
-// Writing only the robot's section, behind the firmware that is already on the board.
+// The robot's section alone is written, behind the firmware that is already on the board.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { openWithBoard, until } from './board.js';
-import { close, closePages, complaints, open, openStanding, page as openPage, text, unfold } from './browser.js';
-import { fakeSerial } from './fake-serial.js';
+import { openWithBoard, runUntil } from './board.js';
+import { closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text, unfold } from './browser.js';
+import { installFakeSerial } from './fake-serial.js';
 import { imageOf } from './image.js';
 
-before(open);
+before(openBrowser);
 afterEach(closePages);
-after(close);
+after(closeBrowser);
 
-const START = 0x6e00;
-const readFlash = async (page, from, to) => Buffer.from(await page.evaluate(([from, to]) => Array.from(window.otherBoard.flash.subarray(from, to)), [from, to]));
-const sectionOf = async (name) => Buffer.from((await imageOf(name)).subarray(START));
-/** Waits until this message is shown below a panel's buttons. */
-const waitForMessage = (page, pattern, selector = '#flash-said') => until(page, `${pattern} is said`, async () => pattern.test(await text(page, selector)));
+/** Address of the robot's section in the flash. */
+const SECTION_START = 0x6e00;
+const readFlash = async (page, from, to) => Buffer.from(await page.evaluate(([from, to]) => Array.from(window.attachedBoard.flash.subarray(from, to)), [from, to]));
+const sectionOf = async (name) => Buffer.from((await imageOf(name)).subarray(SECTION_START));
+/** Waits until a message is shown below a panel's buttons. */
+const waitForMessage = (page, pattern, selector = '#flash-said') => runUntil(page, `${pattern} is shown`, async () => pattern.test(await text(page, selector)));
 const writeRobotAlone = (page) => page.locator('#flash-robot').click();
 
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
-const pulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulses));
+const pulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
 
-async function openPanel(page) {
+async function unfoldFlashPanel(page) {
   await unfold(page, '#flash');
   return page;
 }
 
 test('a robot is written in a second or two, and firmware and saved settings stay unchanged', async () => {
-  const page = await openPanel(await openWithBoard('large', 8000));
+  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   await page.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
   await page.clock.runFor(1500);
-  const codeBytes = await readFlash(page, 0, START);
-  const savedEeprom = await page.evaluate(() => Array.from(window.otherBoard.eeprom));
-  assert.ok(savedEeprom.some((byte) => byte !== 0xff), 'something is saved');
+  const codeBytes = await readFlash(page, 0, SECTION_START);
+  const savedEeprom = await page.evaluate(() => Array.from(window.attachedBoard.eeprom));
+  assert.ok(savedEeprom.some((byte) => byte !== 0xff), 'settings are saved');
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   const seconds = Number(/in ([\d.]+) s/.exec(await text(page, '#flash-said'))[1]);
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
-  await until(page, 'it greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
+  await runUntil(page, 'the board greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
   const expected = await sectionOf('robot');
-  assert.deepEqual(await readFlash(page, START, START + expected.length), expected);
-  assert.deepEqual(await readFlash(page, 0, START), codeBytes);
-  assert.deepEqual(await page.evaluate(() => Array.from(window.otherBoard.eeprom)), savedEeprom);
+  assert.deepEqual(await readFlash(page, SECTION_START, SECTION_START + expected.length), expected);
+  assert.deepEqual(await readFlash(page, 0, SECTION_START), codeBytes);
+  assert.deepEqual(await page.evaluate(() => Array.from(window.attachedBoard.eeprom)), savedEeprom);
 });
 
 test('an edited gait is written to a board, and the board walks it', async () => {
@@ -54,12 +55,12 @@ test('an edited gait is written to a board, and the board walks it', async () =>
   await waitForMessage(page, /^written and verified in [\d.]+ s\. The board has restarted; stride is a button of Drive\.$/, '#gait-said');
   await page.clock.runFor(3000);
   assert.equal(await text(page, '#doing'), 'stand', 'a board does not walk by itself');
-  await page.evaluate(() => (window.pulses = {}));
+  await page.evaluate(() => (window.pulseWidthsUs = {}));
   await page.locator('#gaits button[data-command="stride"]').click();
   const readY = () => page.evaluate(() => window.lizard.last.place.y);
   const startY = await readY();
-  await until(page, 'the robot of the page has gone 5 mm', async () => (await readY()) - startY > 5);
-  assert.ok(await page.evaluate(() => window.heard.includes('stride\n')));
+  await runUntil(page, 'the robot of the page has walked 5 mm', async () => (await readY()) - startY > 5);
+  assert.ok(await page.evaluate(() => window.receivedText.includes('stride\n')));
 });
 
 test('one button writes an edited text to the board', async () => {
@@ -69,7 +70,7 @@ test('one button writes an edited text to the board', async () => {
   await page.locator('#robot-text').fill(toml);
   await page.locator('#robot-write').click();
   await waitForMessage(page, /^written and verified in [\d.]+ s$/, '#robot-said');
-  await until(page, 'it greets', async () => /^on a board on USB, robot mine [0-9a-f]{8}$/.test(await text(page, '#where')));
+  await runUntil(page, 'the board greets', async () => /^on a board on USB, robot mine [0-9a-f]{8}$/.test(await text(page, '#where')));
 });
 
 test('without a board the buttons say what is missing', async () => {
@@ -79,58 +80,60 @@ test('without a board the buttons say what is missing', async () => {
   await page.locator('#robot-said', { hasText: 'No board is connected: Connect a board…' }).waitFor();
 });
 
-test('behind a firmware that reads another format no robot is written, and the firmware goes on', async () => {
-  const page = await openPanel(await openWithBoard('large', 8000));
-  // The format in the mark after the 26 interrupt vectors.
-  await page.evaluate(() => (window.otherBoard.flash[26 * 4 + 4] ^= 0x40));
+test('no robot is written behind a firmware that reads another format, and the firmware runs on', async () => {
+  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
+  // Changes the format in the mark after the 26 interrupt vectors.
+  await page.evaluate(() => (window.attachedBoard.flash[26 * 4 + 4] ^= 0x40));
   const previousFlash = await readFlash(page, 0, 0x7e00);
   await writeRobotAlone(page);
   await waitForMessage(page, /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, whose robots are of format \d+; this robot is of format \d+: write the firmware, too\. Nothing was written$/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash);
-  await until(page, 'it goes on', async () => /^on a board on USB with another robot/.test(await text(page, '#where')));
+  await runUntil(page, 'the firmware runs on', async () =>
+    /^on a board on USB with another robot/.test(await text(page, '#where')));
 });
 
-test('to a board that has not restarted the robot alone is written', async () => {
-  const page = await openPage({}, fakeSerial);
+test('the robot alone is written to a board that has not restarted', async () => {
+  const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
-    window.awake = true;
-    window.flashed = 'large';
+    window.boardKeepsRunning = true;
+    window.flashedRobot = 'large';
   });
   await page.locator('#connect').click();
-  await page.waitForFunction(() => window.otherBoard);
+  await page.waitForFunction(() => window.attachedBoard);
   await page.clock.runFor(5000);
   assert.match(await text(page, '#where'), /that has not restarted/);
-  await page.evaluate(() => (window.awake = false));
-  await openPanel(page);
+  await page.evaluate(() => (window.boardKeepsRunning = false));
+  await unfoldFlashPanel(page);
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   const expected = await sectionOf('robot');
-  assert.deepEqual(await readFlash(page, START, START + expected.length), expected);
+  assert.deepEqual(await readFlash(page, SECTION_START, SECTION_START + expected.length), expected);
 });
 
 test('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', async () => {
-  const page = await openPanel(await openWithBoard('large', 8000));
+  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   await writeRobotAlone(page);
-  // Some of its twenty pages, which take 17 ms each.
-  await until(page, 'it is written', async () => (await text(page, '#flash-said')).startsWith('writing'), 20);
+  // Enough for some of the section's twenty flash pages, which take 17 ms each.
+  await runUntil(page, 'the board is being written', async () =>
+    (await text(page, '#flash-said')).startsWith('writing'), 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/);
-  await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
-  await page.evaluate(() => (window.same = true));
+  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
+  await page.evaluate(() => (window.isSameBoard = true));
   await page.locator('#connect').click();
-  await until(page, 'it greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
+  await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await page.clock.runFor(5000);
   assert.deepEqual(await pulsedPins(page), []);
   await page.locator('#log div', { hasText: '# fault: no robot in the flash, write one' }).first().waitFor();
   await page.locator('#setup').getByText('has this firmware and no robot, so it moves nothing.').waitFor();
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  await until(page, 'it stands', async () => (await pulsedPins(page)).length === 4);
+  await runUntil(page, 'the robot stands', async () => (await pulsedPins(page)).length === 4);
 });
 
-test('a board that is written right after its banner is asked nothing', async () => {
-  const page = await openPanel(await openWithBoard('robot', 2000));
+test('a write that begins right after the banner is not disturbed', async () => {
+  const page = await unfoldFlashPanel(await openWithBoard('robot', 2000));
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper /);
   await page.locator('#flash-write').click();
   await page.clock.runFor(4000);
@@ -139,76 +142,77 @@ test('a board that is written right after its banner is asked nothing', async ()
 });
 
 test('a board unplugged while the firmware is written does nothing, and can be written again', async () => {
-  const page = await openPanel(await openWithBoard('large', 8000));
-  assert.equal((await pulsedPins(page)).length, 4, 'it stands');
+  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
+  assert.equal((await pulsedPins(page)).length, 4, 'the robot stands');
   await page.locator('#flash-write').click();
-  await until(page, 'it is written', async () => (await text(page, '#flash-said')).startsWith('writing'), 20);
+  await runUntil(page, 'the board is being written', async () =>
+    (await text(page, '#flash-said')).startsWith('writing'), 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, /^not written: .*\. The board has half a program now, and does nothing\. Its boot loader is still there: write it again$/);
-  // Its own behaviour, without the page.
+  // The board runs alone, without the page.
   const pulses = await page.evaluate(() => {
-    window.otherBoard.reset('external');
-    window.pulses = {};
-    window.otherBoard.run(16_000 * 5000);
-    return window.pulses;
+    window.attachedBoard.reset('external');
+    window.pulseWidthsUs = {};
+    window.attachedBoard.run(16_000 * 5000);
+    return window.pulseWidthsUs;
   });
   // The boot loader itself blinks its LED.
   assert.deepEqual(Object.keys(pulses).filter((pin) => pin !== '13'), []);
   assert.deepEqual(await readFlash(page, 0, 4), Buffer.from([0xff, 0xcf, 0xff, 0xff]));
-  await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
-  await page.evaluate(() => (window.same = true));
+  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
+  await page.evaluate(() => (window.isSameBoard = true));
   await page.locator('#connect').click();
-  await until(page, 'it is named', async () => /without this firmware$/.test(await text(page, '#where')));
+  await runUntil(page, 'the board is identified', async () =>
+    /without this firmware$/.test(await text(page, '#where')));
   await page.locator('#flash-write').click();
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   const expected = Buffer.from(await imageOf('robot'));
   assert.deepEqual(await readFlash(page, 0, expected.length), expected);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
-
-test('a board without this firmware is refused a robot alone, and what it has is named', async () => {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate(() => (window.flashed = null));
+test('a robot alone is not written to a board without this firmware, and the message says why', async () => {
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate(() => (window.flashedRobot = null));
   await page.locator('#connect').click();
-  await until(page, 'it is named', async () => /without this firmware$/.test(await text(page, '#where')));
-  await openPanel(page);
+  await runUntil(page, 'the board is identified', async () =>
+    /without this firmware$/.test(await text(page, '#where')));
+  await unfoldFlashPanel(page);
   await writeRobotAlone(page);
   await waitForMessage(page, /^not written: the board has no program, and a robot alone moves nothing: write the firmware, too\. Nothing was written$/);
 });
 
 test('an older Nano, whose boot loader has another baud rate, is found, written and started', async () => {
-  const page = await openPage({}, fakeSerial);
-  await page.evaluate(() => Object.assign(window, { flashed: null, loaderBaud: 57_600, vendor: 0x1a86 }));
+  const page = await openPage({}, installFakeSerial);
+  await page.evaluate(() => Object.assign(window, { flashedRobot: null, loaderBaud: 57_600, usbVendor: 0x1a86 }));
   await page.locator('#connect').click();
-  await until(page, 'it is named', async () => (await text(page, '#trouble')).startsWith('The board is an Arduino Nano, an ATmega328P by its boot loader'));
-  await openPanel(page);
+  await runUntil(page, 'the board is identified', async () => (await text(page, '#trouble')).startsWith('The board is an Arduino Nano, an ATmega328P by its boot loader'));
+  await unfoldFlashPanel(page);
   await page.locator('#flash-write').click();
   await waitForMessage(page, /^no answer; the board is called again/);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   const expected = Buffer.from(await imageOf('robot'));
   assert.deepEqual(await readFlash(page, 0, expected.length), expected);
-  await until(page, 'it greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
+  await runUntil(page, 'the board greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
 });
 
-test('an older Nano that is unplugged while its baud rate is set is gone, and the simulation goes on', async () => {
-  const page = await openPage({}, fakeSerial);
+test('an older Nano that is unplugged while its baud rate is set is reported, and the simulation goes on', async () => {
+  const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
-    let openings = 0;
-    const openPort = () => {
-      if (openings++ > 0) throw new Error('The device has been lost.');
+    let openCount = 0;
+    const onPortOpen = () => {
+      if (openCount++ > 0) throw new Error('The device has been lost.');
     };
-    Object.assign(window, { flashed: null, loaderBaud: 57_600, openPort });
+    Object.assign(window, { flashedRobot: null, loaderBaud: 57_600, onPortOpen });
   });
   await page.locator('#connect').click();
-  await until(page, 'it is gone', async () => (await text(page, '#trouble')).startsWith('The board is gone: The device has been lost. The simulation goes on.'));
-  await until(page, 'a board may be connected', () => page.locator('#connect').isEnabled());
+  await runUntil(page, 'the loss of the board is shown', async () => (await text(page, '#trouble')).startsWith('The board is gone: The device has been lost. The simulation goes on.'));
+  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
   assert.match(await text(page, '#where'), /simulated UNO/);
 });
 
-test('pages that the board has already are not written', async () => {
-  const page = await openPanel(await openWithBoard('robot', 8000));
+test('flash pages that already have the right bytes are not written', async () => {
+  const page = await unfoldFlashPanel(await openWithBoard('robot', 8000));
   const measureWrite = async () => {
     await page.locator('#flash-write').click();
     await waitForMessage(page, /^reading/);
@@ -217,16 +221,16 @@ test('pages that the board has already are not written', async () => {
     return Number(/in ([\d.]+) s/.exec(await text(page, '#flash-said'))[1]);
   };
   const unchangedSeconds = await measureWrite();
-  await page.evaluate(() => window.otherBoard.flash.fill(0x12, 0, 0x7e00));
+  await page.evaluate(() => window.attachedBoard.flash.fill(0x12, 0, 0x7e00));
   const fullSeconds = await measureWrite();
   assert.ok(unchangedSeconds < 6 && fullSeconds > unchangedSeconds + 5, `${unchangedSeconds} s and ${fullSeconds} s`);
 });
 
 test('an image that would overwrite a Nano\'s boot loader is written only after the user confirms a UNO', async () => {
   const page = await openWithBoard('robot', 8000);
-  await page.evaluate(() => (window.vendor = 0x1a86));
+  await page.evaluate(() => (window.usbVendor = 0x1a86));
   await page.locator('#robot').selectOption('own-gaits');
-  await openPanel(page);
+  await unfoldFlashPanel(page);
   const previousFlash = await readFlash(page, 0, 0x7e00);
   const dialogMessages = [];
   let reply = 'dismiss';
@@ -242,7 +246,7 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   const expected = await sectionOf('own-gaits');
-  assert.deepEqual(await readFlash(page, START, START + expected.length), expected);
+  assert.deepEqual(await readFlash(page, SECTION_START, SECTION_START + expected.length), expected);
   assert.equal(dialogMessages.length, 2);
   // The section of a small robot ends below the Nano's boot loader, so no dialog opens.
   await page.locator('#robot').selectOption('robot');
@@ -251,3 +255,5 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   assert.equal(dialogMessages.length, 2);
 });
+
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -11,10 +11,10 @@ pub struct Reply {
     pub answer: String,
 }
 
-/// A connection to a robot's console. Times are those of the robot: a simulated one may run slower or faster than this
+/// A connection to a robot's console. All times are the robot's: a simulated robot may run slower or faster than this
 /// machine.
 pub trait Console {
-    /// The reason for a missing reply.
+    /// The error if no reply comes.
     type Error;
 
     /// Sends a line and waits for the reply.
@@ -23,11 +23,11 @@ pub trait Console {
     /// Fails if the robot does not answer, or the connection is gone.
     fn ask(&mut self, line: &str) -> impl Future<Output = Result<Reply, Self::Error>>;
 
-    /// Waits.
+    /// Waits for a duration of the robot's time.
     ///
     /// # Errors
     /// Fails if the connection is gone.
-    fn pause(&mut self, time: Duration) -> impl Future<Output = Result<(), Self::Error>>;
+    fn pause(&mut self, duration: Duration) -> impl Future<Output = Result<(), Self::Error>>;
 }
 
 impl<C: Console> Console for &mut C {
@@ -37,8 +37,8 @@ impl<C: Console> Console for &mut C {
         C::ask(self, line).await
     }
 
-    async fn pause(&mut self, time: Duration) -> Result<(), Self::Error> {
-        C::pause(self, time).await
+    async fn pause(&mut self, duration: Duration) -> Result<(), Self::Error> {
+        C::pause(self, duration).await
     }
 }
 
@@ -63,13 +63,13 @@ pub enum BadReply {
     },
 }
 
-/// The reason why a line had no effect.
+/// The error of a line that was not answered with `ok`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConsoleError<E> {
     /// The reply is not `ok`.
     #[error(transparent)]
     Reply(#[from] BadReply),
-    /// There is no reply.
+    /// No reply came: the connection's error.
     #[error("{0}")]
     Link(E),
 }
@@ -84,8 +84,8 @@ impl<E> ConsoleError<E> {
 /// Sends a line that must be accepted.
 ///
 /// # Errors
-/// Fails if the robot refuses the line, or does not answer as this firmware does.
-pub async fn command<C: Console>(
+/// Fails if the robot refuses the line, or if its answer has an unknown format.
+pub async fn send_command<C: Console>(
     console: &mut C,
     line: &str,
 ) -> Result<Reply, ConsoleError<C::Error>> {

@@ -1,34 +1,36 @@
-//! Reading of a robot's settings, and replacing them as a whole.
+//! Reads a robot's settings, and replaces them as a whole.
 
 use lizard_robot::{Calibration, Transfer};
 
-use crate::console::{BadReply, Console, ConsoleError, command};
+use crate::console::{BadReply, Console, ConsoleError, send_command};
 
 /// Reads a robot's settings.
 ///
 /// # Errors
-/// Fails if there is no answer, or one that is not understood.
-pub async fn read<C: Console>(console: &mut C) -> Result<Calibration, ConsoleError<C::Error>> {
-    let reply = command(console, "cal").await?;
+/// Fails if there is no answer, or if its format is unknown.
+pub async fn read_settings<C: Console>(
+    console: &mut C,
+) -> Result<Calibration, ConsoleError<C::Error>> {
+    let reply = send_command(console, "cal").await?;
     Calibration::from_cal_answer(&reply.notes).ok_or_else(|| {
         let (line, answer) = ("cal".to_owned(), reply.notes.join(" / "));
         BadReply::Unclear { line, answer }.into()
     })
 }
 
-/// Sends settings, unsaved, in the order of a [`Transfer`].
+/// Sends settings in the order of a [`Transfer`], without saving them.
 ///
 /// # Errors
-/// Fails if the connection breaks, or if lines are still refused in the last round: returns the first refusal of
-/// that round. The robot then has a part of the settings.
-pub async fn send<C: Console>(
+/// Fails if the connection breaks, or with the first refusal of the last round if lines are refused in that round. The
+/// robot then has only a part of the settings.
+pub async fn send_settings<C: Console>(
     console: &mut C,
     calibration: &Calibration,
 ) -> Result<(), ConsoleError<C::Error>> {
     let mut transfer = Transfer::new(calibration);
     let mut refusal = None;
     while let Some(line) = transfer.next_line() {
-        match command(console, &line).await {
+        match send_command(console, &line).await {
             Ok(_) => {}
             Err(error) if error.is_refusal() => {
                 if transfer.record_refusal() {
@@ -38,11 +40,11 @@ pub async fn send<C: Console>(
             Err(error) => return Err(error),
         }
     }
-    let remaining = refusal.filter(|_| !transfer.is_done());
-    remaining.map_or(Ok(()), Err)
+    let last_refusal = refusal.filter(|_| !transfer.is_done());
+    last_refusal.map_or(Ok(()), Err)
 }
 
-/// The reason why a robot did not accept settings.
+/// The error of a robot that did not accept settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SendError<E> {
     /// The robot refused a value.
@@ -56,29 +58,32 @@ pub enum SendError<E> {
     Differs,
 }
 
-/// Replaces a robot's settings `before` by others, unsaved, and reads them back; if that fails, sends the old ones.
+/// Sends settings without saving them, and reads them back. If the robot refuses them or reports other ones, sends its
+/// old settings again.
 ///
 /// # Errors
 /// Fails if the robot refuses settings or reports other ones, or if the connection breaks.
-pub async fn replace<C: Console>(
+pub async fn replace_settings<C: Console>(
     console: &mut C,
-    before: &Calibration,
+    old: &Calibration,
     calibration: &Calibration,
 ) -> Result<(), SendError<C::Error>> {
-    let error = match exchange(console, calibration).await {
+    let error = match send_and_compare(console, calibration).await {
         Ok(true) => return Ok(()),
         Ok(false) => SendError::Differs,
         Err(error) => SendError::Refused(error),
     };
-    send(console, before).await.map_err(SendError::Mixed)?;
+    send_settings(console, old)
+        .await
+        .map_err(SendError::Mixed)?;
     Err(error)
 }
 
 /// Sends settings and reads them back; returns true if they are the same.
-async fn exchange<C: Console>(
+async fn send_and_compare<C: Console>(
     console: &mut C,
     calibration: &Calibration,
 ) -> Result<bool, ConsoleError<C::Error>> {
-    send(console, calibration).await?;
-    Ok(read(console).await?.is_equivalent_to(calibration))
+    send_settings(console, calibration).await?;
+    Ok(read_settings(console).await?.is_equivalent_to(calibration))
 }

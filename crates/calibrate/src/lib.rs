@@ -1,15 +1,16 @@
-//! The calibration of a robot over its console: what each step asks of the robot, and in which order.
+//! The calibration of a robot over its console: the lines that each step sends, and their order.
 //!
-//! A servo turns either way for a longer pulse, by more or less than its data sheet says, and its horn sits on the tooth
-//! that was nearest. So a person looks at the robot while one servo alone turns, and tells what is seen; [`Guide`] has
-//! the movements and the settings that follow from the answers. Nothing is stored before [`Guide::save`], and
-//! [`Guide::restore`] returns to what was stored.
+//! A longer pulse turns a servo in one direction or the other, by more or less than its data sheet says, and a horn
+//! fits only at the teeth of its spline. So a person watches the robot while a single servo turns, and enters the
+//! observation. [`Guide`] makes the movements, and computes the settings from the answers. Nothing is saved before
+//! [`Guide::save`], and [`Guide::restore`] returns to the saved settings.
 //!
-//! The crate knows no port, no screen and no clock: a [`Console`] is a connection of this machine or of a browser. Its
-//! functions are `async`, since a browser cannot wait; where a console blocks, any executor will do.
+//! The crate has no serial port, screen or clock: a [`Console`] is a connection of this machine or of a browser. Its
+//! functions are `async`, since a browser cannot block; for a console that blocks, any executor will do.
 //!
 //! # When not to use it
-//! To send one setting: a line of the console does that. To decide what a servo needs: that is what a person sees.
+//! To send one setting, use a line of the console. The crate cannot see the robot: a person must tell it what a servo
+//! does.
 #![deny(unsafe_code)]
 #![warn(clippy::missing_errors_doc)]
 
@@ -18,6 +19,6 @@ mod exchange;
 mod guide;
 mod still;
 
-pub use console::{BadReply, Console, ConsoleError, Reply, command};
-pub use exchange::{SendError, read, replace, send};
-pub use guide::{Guide, SCALE_TURNS, SIGN_TURNS};
+pub use console::{BadReply, Console, ConsoleError, Reply, send_command};
+pub use exchange::{SendError, read_settings, replace_settings, send_settings};
+pub use guide::{Guide, SCALE_TURNS_DEG, SIGN_TURNS_DEG};

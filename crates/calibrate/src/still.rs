@@ -1,44 +1,47 @@
-//! The end of a motion, as `status` shows it.
+//! The end of a motion, found by repeated `status` commands.
 
 use std::time::Duration;
 
 use lizard_robot::{STILL_FRAMES, Status};
 
-use crate::console::{BadReply, Console, ConsoleError, command};
+use crate::console::{BadReply, Console, ConsoleError, send_command};
 
 /// Interval between two `status` commands.
-const INTERVAL: Duration = Duration::from_millis(50);
-/// The longest wait is five seconds, and the time of the answers.
-const MAX_ANSWERS: u32 = 100;
+const STATUS_INTERVAL: Duration = Duration::from_millis(50);
+/// Largest number of `status` commands: a wait ends after five seconds and the time of the answers.
+const MAX_STATUS_COUNT: u32 = 100;
 
-/// Waits until the robot stands still, but not for ever, and returns its pose, degrees.
+/// Waits until the robot stands still or the wait is too long, and returns its pose, degrees.
 ///
 /// # Errors
 /// Fails if the robot does not answer, or has no pose.
 pub(crate) async fn wait_until_still<C: Console>(
     console: &mut C,
 ) -> Result<[f64; 4], ConsoleError<C::Error>> {
-    // The first frame of the pose that is shown now.
-    let mut since: Option<(u64, [f64; 4])> = None;
-    for _ in 1..MAX_ANSWERS {
+    // The last pose that was reported, and the first frame that had it.
+    let mut still_since: Option<(u64, [f64; 4])> = None;
+    for _ in 1..MAX_STATUS_COUNT {
         let (frames, pose) = ask_pose(console).await?;
-        match since {
-            // After a restart, frames are counted from the beginning.
-            Some((first, before)) if before == pose && frames >= first => {
-                if frames - first >= STILL_FRAMES {
+        match still_since {
+            // After a restart, the count of frames begins at 0 again.
+            Some((first_frame, first_pose)) if first_pose == pose && frames >= first_frame => {
+                if frames - first_frame >= STILL_FRAMES {
                     return Ok(pose);
                 }
             }
-            _ => since = Some((frames, pose)),
+            _ => still_since = Some((frames, pose)),
         }
-        console.pause(INTERVAL).await.map_err(ConsoleError::Link)?;
+        console
+            .pause(STATUS_INTERVAL)
+            .await
+            .map_err(ConsoleError::Link)?;
     }
     Ok(ask_pose(console).await?.1)
 }
 
-/// The frames since power-on, and the pose.
+/// Returns the frames since power-on, and the pose.
 async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
-    let reply = command(console, "status").await?;
+    let reply = send_command(console, "status").await?;
     let status = Status::parse(&reply.answer);
     let state = status.and_then(|status| Some((status.frames, status.pose?)));
     state.ok_or_else(|| {
@@ -54,10 +57,10 @@ mod tests {
     use super::*;
     use crate::console::Reply;
 
-    /// A robot whose `status` shows these frames and these angles of A1, and then the last ones for ever.
-    struct Script(Vec<(u64, f64)>);
+    /// A robot whose `status` answers have these frames and angles of A1; the last answer is repeated.
+    struct ScriptedStatus(Vec<(u64, f64)>);
 
-    impl Console for Script {
+    impl Console for ScriptedStatus {
         type Error = Infallible;
 
         async fn ask(&mut self, _: &str) -> Result<Reply, Infallible> {
@@ -76,8 +79,8 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_stands_once_its_pose_has_not_changed_for_a_while_also_after_a_restart() {
-        for (script, expected) in [
+    fn a_robot_stands_still_once_its_pose_has_not_changed_for_a_while_also_after_a_restart() {
+        for (states, expected) in [
             (vec![(100, 1.0), (112, 1.0), (200, 2.0)], 1.0),
             (
                 vec![(100, 1.0), (111, 1.0), (114, 2.0), (127, 2.0), (300, 3.0)],
@@ -94,10 +97,10 @@ mod tests {
                 ],
                 2.0,
             ),
-            // It never stands still long enough: no more frames are shown.
+            // The count of frames stops, so the robot never stands still long enough.
             (vec![(100, 1.0), (105, 1.0)], 1.0),
         ] {
-            let pose = pollster::block_on(wait_until_still(&mut Script(script)));
+            let pose = pollster::block_on(wait_until_still(&mut ScriptedStatus(states)));
             assert_eq!(pose.map(|[a1, ..]| a1), Ok(expected));
         }
     }

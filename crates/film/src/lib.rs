@@ -22,6 +22,8 @@ mod camera;
 mod clock;
 mod cycle_path;
 mod cycles;
+#[cfg(feature = "decode")]
+mod decode;
 mod edges;
 mod figure;
 mod film;
@@ -56,7 +58,7 @@ pub use mean::Mean;
 pub use measured_gait::MeasuredGait;
 pub use measured_servo::{DeadBand, Jig, MeasuredServo};
 pub use path::PathPoint;
-pub use picture::{Picture, Pixel, luminance};
+pub use picture::{Picture, Pixel};
 pub use servo_trouble::ServoTrouble;
 pub use slide::{Slide, SlideTrouble};
 pub use tags::{Tag, read_tags};

@@ -77,7 +77,7 @@ impl Picture {
 }
 
 /// The grey of a colour, by BT.601.
-pub fn luminance(red: u8, green: u8, blue: u8) -> u8 {
+pub(crate) fn luminance(red: u8, green: u8, blue: u8) -> u8 {
     let sum = 299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue);
     (sum / 1000) as u8
 }

@@ -27,7 +27,11 @@ pub struct Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.scenario)?;
-        for BrokenRule { rule, seen } in &self.broken {
+        for BrokenRule {
+            rule,
+            observation: seen,
+        } in &self.broken
+        {
             writeln!(f, "  does not hold: {}\n    {seen}", rule.sentence())?;
         }
         Ok(())

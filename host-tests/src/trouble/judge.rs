@@ -34,24 +34,24 @@ fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
     let servos = robot.servos().each_ref();
     Limits {
         // Allows a cycle of rounding at the start and at the end of a pulse, and half an angle step.
-        leap: servos.map(|servo| {
+        max_leap_cycles: servos.map(|servo| {
             cycles_of_us(max_speed / 50.0 * servo.us_per_degree.abs().max(wide_scale)) + 4
         }),
-        widths: servos.map(|servo| {
+        width_ranges: servos.map(|servo| {
             (
                 cycles_of_us(servo.min_us) - 1,
                 cycles_of_us(servo.max_us) + 1,
             )
         }),
-        levels: robot.supplies().board.map(|volts| (1_000.0 * volts) as u32),
-        frame_left: 25 * lizard_rules::MS,
-        report_time: 300 * lizard_rules::MS,
-        queued: 150 * lizard_rules::MS,
+        levels_mv: robot.supplies().board.map(|volts| (1_000.0 * volts) as u32),
+        max_frame_remainder: 25 * lizard_rules::MS,
+        max_report_time: 300 * lizard_rules::MS,
+        max_queue_time: 150 * lizard_rules::MS,
         // A patrol rests for a second, or longer on a low supply.
-        longest_rest: 125_000 * lizard_rules::MS / i64::from(robot.supplies().slow_pace),
-        boots_to_rest: mentions("boot rest"),
+        max_routine_rest: 125_000 * lizard_rules::MS / i64::from(robot.supplies().slow_pace),
+        may_boot_to_rest: mentions("boot rest"),
         brown_outs_clear_ram: true,
-        is_narrowed: mentions("say limit ") && mentions("say factory"),
+        is_saved_travel_narrower: mentions("say limit ") && mentions("say factory"),
         ..Limits::default()
     }
 }
@@ -63,19 +63,19 @@ pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<
     let mut all_broken: Vec<BrokenRule> = Vec::new();
     for (time, event) in events(record) {
         observer.observe(time, event);
-        for mut broken in observer.take_broken() {
-            broken.seen += &format!(", at {:.3} ms", time as f64 / MS as f64);
+        for mut broken in observer.take_broken_rules() {
+            broken.observation += &format!(", at {:.3} ms", time as f64 / MS as f64);
             all_broken.push(broken);
         }
     }
     let checks: [(Rule, Result<(), String>); 7] = [
-        (Rule::Lives, check_alive(record)),
-        (Rule::Stands, check_stand(record)),
-        (Rule::Refused, check_refusals(record)),
-        (Rule::Led, check_led(record)),
-        (Rule::OnTime, check_pulse_times(record)),
-        (Rule::Sent, check_orders_were_sent(record)),
-        (Rule::Stopped, check_stop_is_answered(record)),
+        (Rule::KeepsRunning, check_alive(record)),
+        (Rule::StandWorks, check_stand(record)),
+        (Rule::RefusalChangesNothing, check_refusals(record)),
+        (Rule::LedShowsFault, check_led(record)),
+        (Rule::PulsePeriod, check_pulse_times(record)),
+        (Rule::OnlySentLines, check_orders_were_sent(record)),
+        (Rule::StopRepeated, check_stop_is_answered(record)),
     ];
     for (rule, result) in checks {
         all_broken.extend(result.err().map(|seen| BrokenRule::new(rule, seen)));
@@ -101,22 +101,22 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     let mut events: Vec<(Time, Event<'_>)> = Vec::new();
     let mut add = |cycle: u64, event| events.push((time_of(cycle), event));
     for (cycle, mv) in &record.supply {
-        add(*cycle, Event::Supply(*mv as u32));
+        add(*cycle, Event::SupplyMv(*mv as u32));
     }
     for cut in &record.cuts {
-        add(*cut, Event::Cut);
+        add(*cut, Event::ProgramCut);
     }
     for stall in &record.stalls {
-        add(stall.start, Event::Stalled(time_of(stall.end)));
+        add(stall.start, Event::MainStalled(time_of(stall.end)));
     }
     for hold in &record.holds {
-        add(hold.start, Event::HeldUp(time_of(hold.end)));
+        add(hold.start, Event::InterruptsBlocked(time_of(hold.end)));
     }
     for start in &record.starts {
-        add(start.cycle, Event::Start(cause_of(start.cause)));
+        add(start.cycle, Event::ProgramStart(cause_of(start.cause)));
     }
     for cycle in &record.bytes {
-        add(*cycle, Event::Byte);
+        add(*cycle, Event::ByteReceived);
     }
     for received in record
         .received
@@ -124,20 +124,26 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         .filter(|received| !received.text.is_empty())
     {
         let is_command = received.is_command;
-        add(received.cycle, Event::Line { is_command });
+        add(received.cycle, Event::LineReceived { is_command });
         let is_saved = received.text == "save" && record.is_saved(received.cycle);
         if is_saved || received.text == "save" || received.effect == Effect::Calibrates {
-            add(received.cycle, Event::Calibrated { is_saved });
+            add(received.cycle, Event::CalibrationChanged { is_saved });
         }
     }
     for (received, done) in record.orders() {
         let effect = received.effect;
-        add(received.cycle, Event::Order { effect, done });
+        add(
+            received.cycle,
+            Event::Order {
+                effect,
+                is_accepted: done,
+            },
+        );
     }
     for line in &record.lines {
         let length_cycles = BYTE_CYCLES * line.text.len() as u64;
         let start = time_of(line.cycle.saturating_sub(length_cycles));
-        add(line.cycle, Event::Printed(start, &line.text));
+        add(line.cycle, Event::LinePrinted(start, &line.text));
     }
     for exchange in &record.exchanges {
         let (asked, line) = (time_of(exchange.asked), exchange.line.as_str());
@@ -148,8 +154,8 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
                 Event::Answer {
                     line,
                     effect,
-                    asked,
-                    text,
+                    asked_at: asked,
+                    answer: text,
                 },
             ),
             None => (asked + time_of(400 * MS), Event::Unanswered(asked, line)),
@@ -159,12 +165,12 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         events.push((time_of(*cycle), Event::Pulse(*pulse)));
     }
     for write in &record.written {
-        events.push((time_of(write.cycle), Event::Written));
+        events.push((time_of(write.cycle), Event::ByteWritten));
     }
     // The time limits of some rules end at a time at which nothing else is observed.
     let pass_cycles = (0..record.end).step_by(100 * MS as usize);
-    events.extend(pass_cycles.map(|cycle| (time_of(cycle), Event::Pass)));
-    events.push((time_of(record.end), Event::Pass));
+    events.extend(pass_cycles.map(|cycle| (time_of(cycle), Event::TimePasses)));
+    events.push((time_of(record.end), Event::TimePasses));
     events.sort_by_key(|(time, _)| *time);
     events
 }
@@ -366,7 +372,7 @@ fn check_led(record: &Record) -> Result<(), String> {
         .collect();
     let shown_code_of = |exchange: &'_ Exchange| {
         let cycle = exchange.answer.as_ref()?.cycle;
-        Some((cycle, led::code(exchange.status("fault")?)))
+        Some((cycle, led::fault_code(exchange.status("fault")?)))
     };
     // An order waits while older answers are printed, so the change is at the time of its own answer.
     let reports_change = |text: &str| {

@@ -137,7 +137,7 @@ impl Record {
                     servo,
                     width: pulse.width as u32,
                     is_cut: self.cuts.iter().any(is_cut_at),
-                    is_held_up: self.holds.iter().any(is_held_by),
+                    is_end_late: self.holds.iter().any(is_held_by),
                 };
                 self.pulses.push((start, pulse));
             }

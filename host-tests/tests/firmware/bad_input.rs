@@ -1,5 +1,5 @@
-//! Robustness test of the running image: random bytes, and lines that are nearly valid, as fast as the serial line
-//! carries them, for 15 seconds each (`LIZARD_FUZZ` times as long if that is set).
+//! Robustness tests of the running image: floods of random bytes and of nearly valid lines, at the full rate of the
+//! serial line, for 15 seconds each. The variable `LIZARD_FUZZ`, if set, multiplies this time.
 
 use fastrand::Rng;
 use lizard_core::memory::copies::{self, SavedState};
@@ -66,10 +66,10 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     let firmware = robot().firmware();
     let contents = bench.uno.eeprom();
     let mut settings = Settings::of(firmware);
-    let outcome = copies::load(firmware, &Eeprom::with_bytes(contents), &mut settings);
+    let saved_state = copies::load(firmware, &Eeprom::with_bytes(contents), &mut settings);
     assert!(
-        matches!(outcome, SavedState::Latest | SavedState::Blank),
-        "{outcome:?}"
+        matches!(saved_state, SavedState::Latest | SavedState::Blank),
+        "{saved_state:?}"
     );
     // The bytes beyond the saved data stay blank.
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));
@@ -78,7 +78,7 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     let intervals = operations
         .windows(2)
         .map(|pair| pair[1].cycle - pair[0].cycle);
-    assert!(intervals.min().is_none_or(|distance| distance > 3 * 16_000));
+    assert!(intervals.min().is_none_or(|interval| interval > 3 * 16_000));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Tests of autobaud: the firmware finds the baud rate of whoever sends to it.
+//! Tests of autobaud: the firmware finds the baud rate of its sender.
 
 use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
@@ -7,10 +7,9 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity};
 use crate::pulses::servo_edges;
 use crate::{Status, boot_and_command, boot_standing, first_moving_gait, run_in_both_simulations};
 
-/// The rates, baud, each with the number of `status` lines that are sent from a cold start until one is
-/// answered. One line is lost at each rate that the robot tries before this one, and one more of which the robot
-/// hears only a part.
-const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
+/// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is
+/// lost at each rate that the robot tries first, and one more line is lost because only a part of it is received.
+const BAUD_RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
 /// Sends `status` until the robot answers, and returns the number of lines sent.
 pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
@@ -28,7 +27,7 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
     panic!("no answer at any rate");
 }
 
-/// Returns a robot that has found this rate.
+/// Returns a board whose robot has found this baud rate.
 fn boot_at(baud: f64) -> FirmwareBench {
     let mut bench = boot_standing(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
@@ -39,15 +38,15 @@ fn boot_at(baud: f64) -> FirmwareBench {
 
 #[test]
 fn a_robot_answers_at_each_baud_rate_after_a_few_lines_and_then_at_once() {
-    // Only in the simulation by the data sheet: stock simavr delivers every byte, whatever its rate.
-    for (baud, expected_count) in RATES {
+    // Stock simavr delivers every byte, whatever its rate, so only the corrected simulation can test this.
+    for (baud, expected_line_count) in BAUD_RATES {
         // Slow and fast senders.
         for factor in [0.985, 1.0, 1.02] {
             let mut bench = boot_standing(Fidelity::DataSheet);
             bench.uno.set_baud(baud * factor);
             assert_eq!(
                 ask_until_answered(&mut bench),
-                expected_count,
+                expected_line_count,
                 "{baud} baud"
             );
             assert_eq!(ask_until_answered(&mut bench), 1);
@@ -83,8 +82,8 @@ fn a_command_at_another_rate_is_reported_as_garbled_and_not_obeyed() {
 
 #[test]
 fn a_robot_that_has_found_one_rate_finds_any_other() {
-    for (first_baud, _) in RATES {
-        for (second_baud, _) in RATES {
+    for (first_baud, _) in BAUD_RATES {
+        for (second_baud, _) in BAUD_RATES {
             let mut bench = boot_at(first_baud);
             bench.uno.set_baud(second_baud);
             ask_until_answered(&mut bench);
@@ -94,12 +93,12 @@ fn a_robot_that_has_found_one_rate_finds_any_other() {
 
 #[test]
 fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
-    for (baud, _) in RATES {
+    for (baud, _) in BAUD_RATES {
         let mut bench = boot_at(baud);
-        let resets = bench.uno.watchdog_resets();
+        let resets_before = bench.uno.watchdog_resets();
         bench.uno.stall_main(1_000 * CYCLES_PER_MS);
         let was_reset = bench.uno.run_until(400 * CYCLES_PER_MS, 1_000, |uno| {
-            uno.watchdog_resets() > resets
+            uno.watchdog_resets() > resets_before
         });
         assert!(was_reset, "no reset");
         bench.uno.stall_main(0);
@@ -113,13 +112,21 @@ fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
         bench.uno.reset();
         bench.uno.set_baud(115_200.0);
         bench.run_ms(1_000);
-        assert_eq!(ask_until_answered(&mut bench), 1, "{baud} baud, then USB");
+        assert_eq!(
+            ask_until_answered(&mut bench),
+            1,
+            "{baud} baud, then a reset"
+        );
         bench.uno.set_baud(baud);
         ask_until_answered(&mut bench);
         bench.uno.power_cycle();
         bench.uno.set_baud(115_200.0);
         bench.run_ms(1_000);
-        assert_eq!(ask_until_answered(&mut bench), 1, "{baud} baud, then power");
+        assert_eq!(
+            ask_until_answered(&mut bench),
+            1,
+            "{baud} baud, then power-on"
+        );
     }
 }
 
@@ -127,13 +134,13 @@ fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
 fn no_pulse_moves_by_a_cycle_while_the_baud_rate_is_sought() {
     run_in_both_simulations(|fidelity| {
         let gait = first_moving_gait();
-        let [undisturbed_edges, sought_edges] = [false, true].map(|is_sought| {
+        let [undisturbed_edges, disturbed_edges] = [false, true].map(|is_disturbed| {
             let mut bench = boot_and_command(&gait, fidelity);
             bench.uno.take_edges();
             let mut rng = Rng::with_seed(3);
             let mut used_rates = std::collections::BTreeSet::new();
             for _ in 0..120 {
-                if is_sought {
+                if is_disturbed {
                     // The chip never uses 4800 baud, so it cannot read the bytes as commands.
                     bench.uno.set_baud(4_800.0);
                     let line: Vec<u8> = (0..rng.usize(1..30)).map(|_| rng.u8(..)).collect();
@@ -142,11 +149,11 @@ fn no_pulse_moves_by_a_cycle_while_the_baud_rate_is_sought() {
                 bench.run_ms(97);
                 used_rates.insert(bench.uno.chip_baud() as u64);
             }
-            assert_eq!(used_rates.len(), if is_sought { 4 } else { 1 });
+            assert_eq!(used_rates.len(), if is_disturbed { 4 } else { 1 });
             servo_edges(&bench)
         });
         assert!(undisturbed_edges.len() > 4_000);
-        assert!(undisturbed_edges == sought_edges, "an edge has moved");
+        assert!(undisturbed_edges == disturbed_edges, "an edge has moved");
     });
 }
 

@@ -3,21 +3,21 @@
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c, bench_of};
 use simulated_uno::{Fidelity, Uno};
 
-/// Program with slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400 and
-/// 1600 us wide, and one microsecond wider in each frame. `r` stops the pulses; `?` prints an answer with information
-/// before it.
+/// Program that times slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400
+/// and 1600 us wide in the first frame, and grow by one microsecond per frame. The byte `r` stops the pulses, and `?`
+/// prints two lines of information and an answer.
 const SERVO_PROGRAM: &str = r##"
     #include <avr/io.h>
     static void write(const char *text) {
         while (*text) { while (!(UCSR0A & 0x20)) {} UDR0 = *text++; }
     }
     static void wait_until(unsigned ticks) { while (TCNT1 < ticks) {} }
-    static volatile unsigned char rests;
-    static void look(void) {
+    static volatile unsigned char is_resting;
+    static void answer_byte(void) {
         if (!(UCSR0A & 0x80)) return;
         unsigned char byte = UDR0;
-        if (byte == '?') write("# about\r\n# me\r\nok asked\r\n");
-        if (byte == 'r') { rests = 1; write("ok resting\r\n"); }
+        if (byte == '?') write("# one\r\n# two\r\nok asked\r\n");
+        if (byte == 'r') { is_resting = 1; write("ok resting\r\n"); }
     }
     int main(void) {
         UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
@@ -28,14 +28,14 @@ const SERVO_PROGRAM: &str = r##"
             for (unsigned char slot = 0; slot < 5; slot++) {
                 while (!(TIFR1 & 2)) {}
                 TIFR1 = 2;
-                if (!rests) {
+                if (!is_resting) {
                     if (slot < 3) PORTB = 2 << slot;
                     if (slot == 3) PORTD = 8;
                 }
                 wait_until(2000 + 400 * slot + 2 * frame);
                 PORTB = 0;
                 PORTD = 0;
-                look();
+                answer_byte();
             }
         }
     }"##;
@@ -54,7 +54,7 @@ fn the_answer_to_a_line_is_distinguished_from_the_information_before_it() {
     let (notes, answer) = bench.ask("?");
     assert_eq!(
         (notes, answer.as_str()),
-        (vec!["# about".into(), "# me".into()], "ok asked")
+        (vec!["# one".into(), "# two".into()], "ok asked")
     );
     assert_eq!(bench.say("r"), "ok resting");
     assert_eq!(bench.lines().len(), 5);

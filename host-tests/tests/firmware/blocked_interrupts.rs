@@ -33,11 +33,11 @@ fn run_blocked_frames(
     edges: DelayedEdges,
     intervals: &[BlockedInterval],
 ) -> Vec<(Frame, [u64; 4])> {
-    let start = run.next_frame();
-    let commands = run.expected_widths(start, intervals.len() as u64);
-    for (n, (interval, command)) in intervals.iter().zip(commands).enumerate() {
-        for (servo, width) in command.into_iter().enumerate() {
-            let rise = start + n as u64 * FRAME_CYCLES + servo as u64 * SLOT_CYCLES;
+    let start = run.run_to_next_frame();
+    let expected_widths = run.expected_widths(start, intervals.len() as u64);
+    for (frame_index, (interval, expected)) in intervals.iter().zip(expected_widths).enumerate() {
+        for (servo, width) in expected.into_iter().enumerate() {
+            let rise = start + frame_index as u64 * FRAME_CYCLES + servo as u64 * SLOT_CYCLES;
             let edge_cycles = [
                 (DelayedEdges::Rising, rise),
                 (DelayedEdges::Falling, rise + width),
@@ -56,7 +56,7 @@ fn run_blocked_frames(
 
 /// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. For each length, their starts are a
 /// few cycles apart: the first interval begins at the edge, the last one ends before it.
-fn intervals_above_allowed_length() -> Vec<BlockedInterval> {
+fn too_long_intervals() -> Vec<BlockedInterval> {
     [200, 230, 300, 500, 900]
         .into_iter()
         .flat_map(|length| {
@@ -80,15 +80,16 @@ fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
                 length,
             })
             .collect();
-        for (n, (frame, expected)) in run_blocked_frames(&mut run, DelayedEdges::Both, &intervals)
-            .iter()
-            .enumerate()
+        for (frame_index, (frame, expected)) in
+            run_blocked_frames(&mut run, DelayedEdges::Both, &intervals)
+                .iter()
+                .enumerate()
         {
             assert_eq!(
                 frame.all_widths(),
                 Some(*expected),
                 "{:?}: {frame:?}",
-                intervals[n]
+                intervals[frame_index]
             );
         }
         assert_eq!(run.late_edge_count(), 0);
@@ -101,18 +102,19 @@ fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
-        let intervals = intervals_above_allowed_length();
+        let intervals = too_long_intervals();
         let mut dropped_count = 0;
-        for (n, (frame, expected)) in run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals)
-            .iter()
-            .enumerate()
+        for (frame_index, (frame, expected)) in
+            run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals)
+                .iter()
+                .enumerate()
         {
             for (sent_width, expected) in frame.widths.into_iter().zip(expected) {
                 dropped_count += u64::from(sent_width.is_none());
                 assert!(
                     sent_width.is_none_or(|sent_width| sent_width == *expected),
                     "{:?}: {frame:?}",
-                    intervals[n]
+                    intervals[frame_index]
                 );
             }
         }
@@ -129,9 +131,9 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
 fn a_late_falling_edge_is_made_at_once_and_counted() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
-        let intervals = intervals_above_allowed_length();
+        let intervals = too_long_intervals();
         let mut late_count = 0;
-        for (n, (frame, expected)) in
+        for (frame_index, (frame, expected)) in
             run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals)
                 .iter()
                 .enumerate()
@@ -139,17 +141,17 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
             let BlockedInterval {
                 cycles_before_edge,
                 length,
-            } = intervals[n];
+            } = intervals[frame_index];
             for (sent_width, expected) in frame.widths().into_iter().zip(expected) {
                 late_count += u64::from(sent_width != *expected);
-                // After the blocked interval, the handler's prologue still takes its time.
+                // After the blocked interval, the handler's prologue takes up to 90 cycles.
                 let max_width = (expected + length + 90)
                     .saturating_sub(cycles_before_edge)
                     .max(*expected);
                 assert!(
                     (*expected..=max_width).contains(&sent_width),
                     "{:?}: {frame:?}",
-                    intervals[n]
+                    intervals[frame_index]
                 );
             }
         }
@@ -163,31 +165,33 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
 }
 
 #[test]
-fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
+fn interrupts_blocked_for_most_of_a_slot_drop_its_pulse_and_no_other() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
-            let start = run.next_frame();
-            let late_before = run.late_edge_count();
+            let start = run.run_to_next_frame();
+            let late_count_before = run.late_edge_count();
             run.run_to(start + servo * SLOT_CYCLES - 600);
             run.bench.uno.block_interrupts(length);
             run.run_to(start + 3 * FRAME_CYCLES - SLOT_CYCLES / 2);
-            for (n, (frame, commanded)) in run.frames_since(start).into_iter().enumerate() {
+            for (frame_index, (frame, commanded)) in run.frames_since(start).into_iter().enumerate()
+            {
                 let mut expected = commanded.map(Some);
-                if n == 0 {
+                if frame_index == 0 {
                     expected[servo as usize] = None;
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each pulse starts exactly on the grid of slots.
-                let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT_CYCLES);
-                let is_on_grid =
-                    |(actual, due): (Option<u64>, u64)| actual.is_none_or(|actual| actual == due);
+                let slot_starts = [0, 1, 2, 3].map(|slot| frame.start + slot * SLOT_CYCLES);
+                let is_on_grid = |(actual, scheduled): (Option<u64>, u64)| {
+                    actual.is_none_or(|actual| actual == scheduled)
+                };
                 assert!(
-                    frame.starts.into_iter().zip(starts).all(is_on_grid),
+                    frame.starts.into_iter().zip(slot_starts).all(is_on_grid),
                     "{frame:?}"
                 );
             }
-            assert_eq!(run.late_edge_count(), late_before + 1);
+            assert_eq!(run.late_edge_count(), late_count_before + 1);
         }
     });
 }
@@ -214,19 +218,19 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                     .last()
                     .expect("the pulse has risen")
                     .cycle;
-                let late_before = run.late_edge_count();
+                let late_count_before = run.late_edge_count();
                 let end_cycle = rise_cycle + SLOT_CYCLES - 220 + excess_cycles;
                 let length = end_cycle - run.bench.uno.cycle();
                 run.bench.uno.block_interrupts(length);
                 run.bench.run_ms(40);
                 let message = format!("A{} and {excess_cycles}", servo + 1);
-                assert_eq!(run.late_edge_count(), late_before + 1, "{message}");
+                assert_eq!(run.late_edge_count(), late_count_before + 1, "{message}");
                 let widths: Vec<u64> = run
                     .bench
                     .uno
                     .pulses(servo_pin)
                     .iter()
-                    .map(|p| p.width)
+                    .map(|pulse| pulse.width)
                     .collect();
                 assert!(
                     (SLOT_CYCLES - 300..SLOT_CYCLES + excess_cycles + 100).contains(&widths[0]),
@@ -251,7 +255,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
 }
 
 #[test]
-fn milliseconds_without_interrupts_shorten_no_pulse_and_never_raise_two_pins() {
+fn milliseconds_without_interrupts_shorten_no_pulse_and_never_raise_two_pins_at_once() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         let mut rng = Rng::with_seed(5);

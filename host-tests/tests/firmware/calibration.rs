@@ -2,21 +2,21 @@
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::robot;
-use simulated_uno::{Fidelity, PowerCut, State};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, PowerCut, State};
 
 use crate::measurements::{
-    CYCLES_PER_MS, assert_no_leap, assert_no_leap_at, measure_widths, power_cycle,
-    read_calibration, recorded_pulses, run_for_pulses, slew_limit,
+    assert_no_leap, assert_no_leap_at, measure_widths, power_cycle, read_calibration,
+    recorded_pulses, run_for_pulses, slew_limit,
 };
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
     Status, boot_standing, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
 };
 
-/// Returns A1's pulse width at a sweep (deg) with a trim (deg) and a gain (us per degree), cycles.
-fn calibrated_width(trim: f64, gain: f64, sweep: f64) -> u64 {
+/// Returns A1's pulse width for a trim, a gain (us per degree) and a sweep from neutral, cycles.
+fn calibrated_width(trim_deg: f64, gain: f64, sweep_deg: f64) -> u64 {
     let servo = &robot().servos()[0];
-    ((servo.neutral_us + gain * (trim + sweep)) * 16.0).round() as u64
+    ((servo.neutral_us + gain * (trim_deg + sweep_deg)) * 16.0).round() as u64
 }
 
 /// Returns A1's gain, us per degree.
@@ -24,7 +24,7 @@ fn gain() -> f64 {
     robot().servos()[0].us_per_degree
 }
 
-/// Asserts that a pulse width is the expected one within the rounding of angles, cycles.
+/// Asserts that a pulse width (cycles) is the expected one, within the rounding of angles.
 fn assert_near(width: u64, expected: u64, message: &str) {
     // An angle is stored in steps of 0.0055 deg and sent with two decimals.
     assert!(
@@ -51,7 +51,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         assert!(
             pulses[0]
                 .windows(2)
-                .any(|p| p[0].width.abs_diff(p[1].width) + 6 > slew_limit(0))
+                .any(|pair| pair[0].width.abs_diff(pair[1].width) + 6 > slew_limit(0))
                 || trim < 10,
             "no change reaches the slew limit"
         );
@@ -103,7 +103,7 @@ fn a_new_scale_or_direction_shows_in_the_pulses_within_half_a_second() {
         assert_near(
             measure_widths(&mut bench)[0],
             expected_width,
-            "the other way",
+            "in the other direction",
         );
     });
 }
@@ -148,9 +148,9 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
             assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
         }
         assert_eq!(read_calibration(&mut bench), calibration);
-        let notes = bench.lines();
+        let lines = bench.lines();
         assert!(
-            !notes[notes.len() - 12..]
+            !lines[lines.len() - 12..]
                 .iter()
                 .any(|line| line.text.contains("calibration:")),
             "a note about the calibration although the memory is valid"
@@ -193,8 +193,8 @@ fn load_factory_and_power_on_discard_unsaved_settings() {
 fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
-        for n in 1..=6 {
-            run.bench.say(&format!("deadman {}", 50_000 + 257 * n));
+        for round in 1..=6 {
+            run.bench.say(&format!("deadman {}", 50_000 + 257 * round));
             run.bench.send("save");
             for _ in 0..40 {
                 run.bench.uno.send(b" ");
@@ -234,7 +234,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
         run.bench.say("deadman 54321");
-        let start = run.next_frame();
+        let start = run.run_to_next_frame();
         let operations_before = run.bench.uno.eeprom_operations().len();
         run.bench.send("save");
         // The serial line stays busy, since the main loop reads no byte until it has saved.
@@ -290,7 +290,7 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
 }
 
 /// Moves the robot to a pose near the neutral one and returns its pulse widths.
-fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
+fn move_to_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
     bench.say(&pose_command([6.0, -6.0, 6.0, -6.0]));
     bench.run_ms(1000);
     let widths = measure_widths(bench);
@@ -302,7 +302,7 @@ fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
 fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
-        let rest_widths = order_nearby_pose(&mut bench);
+        let rest_widths = move_to_nearby_pose(&mut bench);
         assert_eq!(bench.say("rest"), "ok rest");
         bench.run_ms(400);
         power_cycle(&mut bench);
@@ -311,9 +311,9 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
         for servo in 0..4 {
             assert_eq!(pulses[servo][0].width, rest_widths[servo]);
             if servo > 0 {
-                let distance = pulses[servo][0].start - pulses[servo - 1][0].start;
+                let interval = pulses[servo][0].start - pulses[servo - 1][0].start;
                 assert_eq!(
-                    distance,
+                    interval,
                     5 * FRAME_CYCLES + SLOT_CYCLES,
                     "a tenth of a second"
                 );
@@ -337,19 +337,19 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
 fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let blank_eeprom = bench.uno.eeprom();
-    let rest_widths = order_nearby_pose(&mut bench);
+    let rest_widths = move_to_nearby_pose(&mut bench);
     let operations_before = bench.uno.eeprom_operations().len();
     bench.say("rest");
     bench.run_ms(400);
     let operation_count = bench.uno.eeprom_operations().len() - operations_before;
     assert!(operation_count > 10, "{operation_count}");
-    let mut pose_counts = [0, 0];
+    let mut neutral_and_rest_counts = [0, 0];
     for operation in 0..operation_count as u64 {
         for (stuck_bits, is_in_write) in [(0, true), (0x5a, true), (0x33, false)] {
             bench.uno.set_eeprom(&blank_eeprom);
             power_cycle(&mut bench);
             bench.run_ms(500);
-            order_nearby_pose(&mut bench);
+            move_to_nearby_pose(&mut bench);
             let cut = if is_in_write {
                 PowerCut::InWrite(operation)
             } else {
@@ -366,11 +366,11 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
                 first_widths == rest_widths || first_widths == neutral_widths(),
                 "byte {operation}, {stuck_bits:02x}: {first_widths:?}"
             );
-            pose_counts[usize::from(first_widths == rest_widths)] += 1;
+            neutral_and_rest_counts[usize::from(first_widths == rest_widths)] += 1;
         }
     }
     assert!(
-        pose_counts[0] > pose_counts[1] && pose_counts[1] > 0,
-        "{pose_counts:?}"
+        neutral_and_rest_counts[0] > neutral_and_rest_counts[1] && neutral_and_rest_counts[1] > 0,
+        "{neutral_and_rest_counts:?}"
     );
 }

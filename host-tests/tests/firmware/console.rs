@@ -188,7 +188,7 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
     let refused_lines: Vec<(&str, u8)> = refused_lines.into_iter().chain(poses).collect();
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
-        let mut quiet_bench = boot_and_command(&first_moving_gait(), fidelity);
+        let mut reference_bench = boot_and_command(&first_moving_gait(), fidelity);
         for &(line, code) in &refused_lines {
             let answer = bench.say(line);
             let expected = format!("err {code} ");
@@ -198,16 +198,17 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
             );
         }
         // Both boards must have walked for the same time before they are compared.
-        for board in [&mut bench, &mut quiet_bench] {
+        for board in [&mut bench, &mut reference_bench] {
             let remaining_cycles = 4 * FREQUENCY - board.uno.cycle();
             board.uno.run_cycles(remaining_cycles);
         }
         assert_eq!(
             bench.run_for_frames(2 * FRAMES_PER_SECOND),
-            quiet_bench.run_for_frames(2 * FRAMES_PER_SECOND)
+            reference_bench.run_for_frames(2 * FRAMES_PER_SECOND)
         );
-        let (bench_status, quiet_status) = (Status::of(&mut bench), Status::of(&mut quiet_bench));
-        assert_eq!(bench_status.0, quiet_status.0);
+        let (bench_status, reference_status) =
+            (Status::of(&mut bench), Status::of(&mut reference_bench));
+        assert_eq!(bench_status.0, reference_status.0);
     });
 }
 
@@ -297,17 +298,17 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
     let mut previous_sample: Option<(u64, Status)> = None;
     for _ in 0..20 {
         bench.run_for_frames(0); // up to the start of the next frame
-        let sample = (bench.uno.cycle(), Status::of(&mut bench));
-        if let Some((cycle, status_before)) = previous_sample {
-            let frames = (sample.0 - cycle) as f64 * 50.0 / FREQUENCY as f64;
-            let counted_frames = sample.1.number("frames") - status_before.number("frames");
+        let (cycle, status) = (bench.uno.cycle(), Status::of(&mut bench));
+        if let Some((previous_cycle, previous_status)) = previous_sample {
+            let frames = (cycle - previous_cycle) as f64 * 50.0 / FREQUENCY as f64;
+            let counted_frames = status.number("frames") - previous_status.number("frames");
             assert_eq!(counted_frames, frames.round());
-            let phase_change = sample.1.number("phase") - status_before.number("phase");
-            let expected = frames.round() / 50.0 / gait.period();
+            let phase_change = status.number("phase") - previous_status.number("phase");
+            let gait_cycles = frames.round() / 50.0 / gait.period();
             let expected = if gait.is_reversed() {
-                -expected
+                -gait_cycles
             } else {
-                expected
+                gait_cycles
             };
             let error = (phase_change - expected).rem_euclid(1.0);
             // A phase is printed to a thousandth.
@@ -316,7 +317,7 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
                 "{phase_change} in {frames} frames"
             );
         }
-        previous_sample = Some(sample);
+        previous_sample = Some((cycle, status));
         bench.run_ms(470);
     }
 }
@@ -339,8 +340,8 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
         assert!((10..=11).contains(&lines.len()), "{lines:?}");
         let mut previous_frame = None;
         for line in &lines {
-            let rest = line.strip_prefix("# t=").expect("the line is a report");
-            let (frame_number, pose) = rest.split_once(" pose=").expect("a report has a pose");
+            let report = line.strip_prefix("# t=").expect("the line is a report");
+            let (frame_number, pose) = report.split_once(" pose=").expect("a report has a pose");
             let frame_number: u64 = frame_number.parse().expect("the frame is a number");
             assert!(
                 previous_frame.is_none_or(|previous| frame_number == previous + 7),
@@ -372,15 +373,15 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
         let frame_count = (gait.period() * FRAMES_PER_SECOND as f64).ceil() as u64;
         let max_step_deg = robot().speed_limits().gait_slew / FRAMES_PER_SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
-        for (percent, factor) in [(100, 1), (50, 2), (10, 10)] {
+        for (percent, slowdown) in [(100, 1), (50, 2), (10, 10)] {
             let line = format!("speed {percent}");
             assert_eq!(bench.say(&line), format!("ok {line}"));
             bench.run_ms(500);
-            let cycle_frames = factor * frame_count;
+            let cycle_frames = slowdown * frame_count;
             let sent_widths = widths(&bench.run_for_frames(2 * cycle_frames));
             let (first_cycle, second_cycle) = sent_widths.split_at(cycle_frames as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
-                // Allows half a percent of a gait cycle, and one frame, since a gait cycle need not be a whole number
+                // Allows half a percent of a gait cycle, and one frame, since a gait cycle may not be a whole number
                 // of frames.
                 let frame_step = 16.0 * servo.us_per_degree.abs() * max_step_deg;
                 let max_error = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame_step
@@ -401,7 +402,7 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
             );
         }
         let frame_step = 16.0 * robot().servos()[0].us_per_degree.abs() * max_step_deg;
-        let is_alike = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame_step;
-        assert!(spans.iter().all(is_alike), "{spans:?}");
+        let is_equal_span = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame_step;
+        assert!(spans.iter().all(is_equal_span), "{spans:?}");
     });
 }

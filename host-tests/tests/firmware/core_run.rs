@@ -57,14 +57,14 @@ fn random_line(rng: &mut Rng) -> String {
 /// millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous one.
 fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) -> u32 {
     let mut sent_count = 0;
-    let mut writing_cycles = 0;
+    let mut eeprom_cycles = 0;
     // A frame's tick comes one slot before A1's pulse.
     let tick_cycle = first_rise - FRAME_CYCLES / 5;
     while bench.uno.cycle() < end_cycle() - FREQUENCY {
         let line = random_line(rng);
         let sending_cycles = (line.len() as u64 + 1) * CYCLES_PER_BYTE;
         let wait_cycles = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
-        let earliest_cycle = bench.uno.cycle() + writing_cycles + wait_cycles + sending_cycles;
+        let earliest_cycle = bench.uno.cycle() + eeprom_cycles + wait_cycles + sending_cycles;
         let frame = (earliest_cycle - tick_cycle).div_ceil(FRAME_CYCLES);
         let cycles_in_frame = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
         bench
@@ -73,7 +73,7 @@ fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) 
         bench.say(&line);
         sent_count += 1;
         // The main loop reads no input while it stores or erases the pose of a rest.
-        writing_cycles = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
+        eeprom_cycles = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
     sent_count
@@ -138,11 +138,11 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
         // The answers also agree, except for the fault counters, which are 0 on the host. Reports are not compared,
         // since the frame in which one is printed also depends on the free space in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
-        let comparable_of = |line: &'_ str| comparable_line(line, fidelity);
-        let expected = commands.text.lines().filter(is_answer).map(comparable_of);
+        let to_comparable = |line: &'_ str| comparable_line(line, fidelity);
+        let expected = commands.text.lines().filter(is_answer).map(to_comparable);
         let expected: Vec<String> = expected.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
-        let answers: Vec<String> = lines.filter(is_answer).map(comparable_of).collect();
+        let answers: Vec<String> = lines.filter(is_answer).map(to_comparable).collect();
         // The UNO runs beyond the last complete frame, and may have answered once more.
         let extra_count = answers.len().saturating_sub(expected.len());
         assert!(extra_count <= 1, "{extra_count} answers more than expected");

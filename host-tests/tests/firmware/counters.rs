@@ -1,4 +1,4 @@
-//! Tests of the fault counters: each fault is provoked, and its counter is read while it changes.
+//! Tests of the fault counters: each test provokes faults and reads their counter, even while it changes.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use simulated_uno::Fidelity;
@@ -9,18 +9,21 @@ use crate::{Status, boot_standing, run_in_both_simulations};
 #[test]
 fn each_overrun_of_the_receiver_is_counted() {
     let mut bench = boot_standing(Fidelity::DataSheet);
-    let mut overruns = 0;
-    for n in 1..=5 {
+    let mut overruns_before = 0;
+    for overrun_count in 1..=5 {
         // Two bytes wait in the buffer, a third is in the shift register, and more arrive.
         bench.uno.send(&[b' '; 12]);
         bench.uno.run_cycles(2_000);
         bench.uno.block_interrupts(8_000);
         bench.run_ms(20);
-        assert!(bench.uno.overruns() > overruns);
-        overruns = bench.uno.overruns();
+        assert!(bench.uno.overruns() > overruns_before);
+        overruns_before = bench.uno.overruns();
         bench.uno.send(b"\n");
         bench.run_ms(20);
-        assert_eq!(Status::of(&mut bench).number("rx_lost"), f64::from(n));
+        assert_eq!(
+            Status::of(&mut bench).number("rx_lost"),
+            f64::from(overrun_count)
+        );
     }
 }
 
@@ -28,13 +31,13 @@ fn each_overrun_of_the_receiver_is_counted() {
 fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
-        let late_address = run.address("pulses::LATE_EDGES");
+        let late_address = run.variable_address("pulses::LATE_EDGES");
         // From here on, the robot has stopped because of a late pulse, and the count of frames has four digits, so
         // all answers have the same length.
         run.bench.uno.poke(late_address, 255);
         run.bench.run_ms(20_000);
-        let start = run.next_frame();
-        let mut seen_counts = [0, 0];
+        let start = run.run_to_next_frame();
+        let (mut old_value_count, mut new_value_count) = (0, 0);
         // The main loop reads the count about `read_lead` cycles before it writes the last part of the answer, which
         // is `answer_delay` cycles after the line arrives. Interrupts for ticks and edges lengthen `answer_delay` by
         // an amount that depends on when in the frame they come. So `answer_delay` is measured repeatedly, with the
@@ -57,23 +60,23 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             answer_delay = new_delay;
             assert!(attempt < 40, "the answer delay does not settle");
         }
-        // Stalls main at different times around its read of the count, and delays A2's rising edge during the
-        // stall.
-        for n in 0..500 {
+        // Stalls the main loop at different times around its read of the count, and delays A2's rising edge during
+        // the stall.
+        for round in 0..500 {
             // Sending the answer takes most of a frame, and a note may come before it.
-            let rise = rise_of_attempt(attempt + n + 2);
+            let rise = rise_of_attempt(attempt + round + 2);
             run.run_to(rise - read_lead - answer_delay - 15_000);
             run.bench.uno.poke(late_address, 255);
             run.bench.uno.poke(late_address + 1, 0);
             let lines_before = run.bench.lines().len();
             send_status_at(&mut run, rise - read_lead - answer_delay);
-            run.run_to(rise - read_lead - 500 + 2 * n);
-            let now = run.bench.uno.cycle();
-            run.bench.uno.stall_main(rise + 1_000 - now);
+            run.run_to(rise - read_lead - 500 + 2 * round);
+            let current_cycle = run.bench.uno.cycle();
+            run.bench.uno.stall_main(rise + 1_000 - current_cycle);
             run.run_to(rise - 600);
             run.bench.uno.block_interrupts(700);
             run.run_to(rise + 550_000);
-            assert_eq!(run.word("pulses::LATE_EDGES"), 256);
+            assert_eq!(run.read_word("pulses::LATE_EDGES"), 256);
             let lines = &run.bench.lines()[lines_before..];
             let answer = lines.iter().find(|line| line.is_answer());
             let answer = answer.expect("the robot answers").text.clone();
@@ -81,43 +84,43 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
                 .split(' ')
                 .find_map(|pair| pair.strip_prefix("late="));
             match count {
-                Some("255") => seen_counts[0] += 1,
-                Some("256") => seen_counts[1] += 1,
-                count => panic!("{count:?} in round {n} of the sweep: {answer}"),
+                Some("255") => old_value_count += 1,
+                Some("256") => new_value_count += 1,
+                count => panic!("{count:?} in round {round} of the sweep: {answer}"),
             }
         }
         assert!(
-            seen_counts[0] > 20 && seen_counts[1] > 20,
-            "{seen_counts:?}: the sweep does not cover both sides of the read"
+            old_value_count > 20 && new_value_count > 20,
+            "{old_value_count} old, {new_value_count} new: the sweep does not cover both sides of the read"
         );
     });
 }
 
-/// Sends `status` so that the line's last byte arrives at cycle `arrival`.
-fn send_status_at(run: &mut ReferenceRun, arrival: u64) {
-    run.run_to(arrival - 12_000);
+/// Sends `status` so that the line's last byte arrives at `arrival_cycle`.
+fn send_status_at(run: &mut ReferenceRun, arrival_cycle: u64) {
+    run.run_to(arrival_cycle - 12_000);
     run.bench.uno.send(b"status");
     // The receiver has a complete byte 9.5 bits after its start.
-    run.run_to(arrival - 1_320);
+    run.run_to(arrival_cycle - 1_320);
     run.bench.uno.send(b"\n");
 }
 
-/// Returns the cycles from the last byte of `status`, which arrives at cycle `arrival`, to the last part of its
+/// Returns the cycles from the last byte of `status`, which arrives at `arrival_cycle`, to the last part of its
 /// answer, which contains the counts.
-fn measure_answer_delay(run: &mut ReferenceRun, arrival: u64) -> u64 {
-    send_status_at(run, arrival);
+fn measure_answer_delay(run: &mut ReferenceRun, arrival_cycle: u64) -> u64 {
+    send_status_at(run, arrival_cycle);
     let part_calls = run.bench.time_calls("print::print_answer", 30);
     assert_eq!(part_calls.len(), 3, "{part_calls:?}");
-    part_calls[2].enter_cycle - arrival
+    part_calls[2].enter_cycle - arrival_cycle
 }
 
 #[test]
 fn a_counter_at_its_maximum_stays_there() {
     let mut run = ReferenceRun::start_standing(Fidelity::DataSheet);
-    let late_address = run.address("pulses::LATE_EDGES");
+    let late_address = run.variable_address("pulses::LATE_EDGES");
     run.bench.uno.poke(late_address, 0xff);
     run.bench.uno.poke(late_address + 1, 0xff);
-    let rise = run.next_frame();
+    let rise = run.run_to_next_frame();
     run.run_to(rise - 600);
     run.bench.uno.block_interrupts(700);
     run.bench.run_ms(20);

@@ -112,7 +112,7 @@ fn missing_sections() -> Vec<DamagedSection> {
 
 /// Returns sections with one flipped bit each: one for each field of the header, and one for each of forty parts of the
 /// rest of the section.
-fn flipped_bits() -> Vec<DamagedSection> {
+fn sections_with_flipped_bit() -> Vec<DamagedSection> {
     let rng = &mut rng(161);
     let header_bytes = size_of::<Header>();
     let rest_bytes = robot().section().len() - header_bytes;
@@ -202,7 +202,7 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
     assert!(lines[0].starts_with(&banner), "{lines:?}");
     assert_eq!(lines[1..], [damaged.expected_note]);
-    // Only questions are answered, everything else is refused.
+    // The firmware answers only questions, and refuses all other commands.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let other_words = Word::ALL.iter().filter(|word| !questions.contains(word));
     let examples = other_words.map(|word| word.example().to_owned());
@@ -254,7 +254,7 @@ fn without_a_complete_robot_there_is_no_pulse_and_the_console_says_why() {
 
 #[test]
 fn with_a_flipped_bit_in_any_part_of_the_robot_there_is_no_pulse() {
-    for_each_in_parallel(&flipped_bits(), assert_finds_no_robot);
+    for_each_in_parallel(&sections_with_flipped_bit(), assert_finds_no_robot);
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
     for_each_in_parallel(&invalid_sections(), assert_finds_no_robot);
 }
 
-/// At the start, only the check of the section takes longer than for a robot compiled into the firmware.
+/// The check of the section is the only part of the start that a robot compiled into the firmware would not need.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
     for_each_in_parallel(

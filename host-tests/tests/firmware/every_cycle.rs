@@ -6,7 +6,7 @@ use simulated_uno::Fidelity;
 use crate::reference_run::ReferenceRun;
 use crate::run_in_both_simulations;
 
-/// Returns the number of bytes to send and the interval between two bytes in cycles, long enough for main to fall
+/// Returns the number of bytes to send, and the cycles between two bytes, enough for the main loop to fall
 /// asleep. With the data sheet's corrections, the bytes cover every cycle of a frame, since the interval and the
 /// frame have no common factor. In stock simavr, they cover every fifth cycle, since the common factor is five.
 const fn byte_count_and_interval(fidelity: Fidelity) -> (u64, u64) {
@@ -18,17 +18,17 @@ const fn byte_count_and_interval(fidelity: Fidelity) -> (u64, u64) {
 
 #[test]
 fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
-    // The line is not a command, so the robot also sends answers. Each takes a third of the time of a line, and main
-    // reads no byte until the answer is nearly sent.
+    // The line is not a command, so the robot also sends answers. An answer takes a third of the time of a line, and
+    // the main loop reads no byte until most of the answer has been sent.
     let line = format!("{}\n", "z".repeat(59));
     run_in_both_simulations(|fidelity| {
         let (byte_count, interval) = byte_count_and_interval(fidelity);
         let mut run = ReferenceRun::start_walking(fidelity);
         let line_count_before = run.bench.lines().len();
-        let start = run.next_frame();
-        let begin_cycle = run.bench.uno.cycle();
+        let start = run.run_to_next_frame();
+        let first_byte_cycle = run.bench.uno.cycle();
         for n in 0..byte_count {
-            run.run_to(begin_cycle + n * interval);
+            run.run_to(first_byte_cycle + n * interval);
             let byte = line.as_bytes()[n as usize % line.len()];
             run.bench.uno.send(&[byte]);
         }
@@ -38,7 +38,10 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
         for (frame, expected) in frames {
             assert_eq!(frame.all_widths(), Some(expected), "{frame:?}");
         }
-        assert_eq!((run.late_edge_count(), run.word("serial::LOST")), (0, 0));
+        assert_eq!(
+            (run.late_edge_count(), run.read_word("serial::LOST")),
+            (0, 0)
+        );
         let answers = (run.bench.lines().len() - line_count_before) as u64;
         assert_eq!(answers, byte_count / line.len() as u64);
     });

@@ -77,11 +77,12 @@ fn deadman_is_off_unless_set_and_does_not_affect_a_standing_robot() {
 #[test]
 fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
     let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
-    let rise = run.next_frame();
+    let rise = run.run_to_next_frame();
     run.run_to(rise - 600);
     run.bench.uno.block_interrupts(700);
     run.run_to(rise + 2 * FRAME_CYCLES);
     let pulses = recorded_pulses(&run.bench);
+    assert!(pulses[0].iter().any(|pulse| pulse.start < rise));
     assert!(
         pulses[0]
             .iter()
@@ -98,7 +99,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
 fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
     for byte in 0..4 {
         let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
-        let guard_address = run.address("lizard_stack_guard") + byte;
+        let guard_address = run.variable_address("lizard_stack_guard") + byte;
         let byte_before = run.bench.uno.peek(guard_address);
         run.bench.uno.poke(guard_address, byte_before ^ 0x10);
         run.bench.run_ms(100);

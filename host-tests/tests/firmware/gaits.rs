@@ -12,18 +12,21 @@ use crate::{FRAMES_PER_SECOND, boot_standing, for_each_in_parallel};
 /// Largest deviation of the gait tables from floating point that the project promises, deg.
 const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 
-/// Returns the largest error from rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the
-/// neutral width.
-fn max_rounding_error() -> f64 {
+/// Returns the largest angle error by the rounding to cycles of 62.5 ns: half a cycle each for the width and for
+/// the neutral width.
+fn max_rounding_error_deg() -> f64 {
     let gains = robot().servos().map(|servo| servo.us_per_degree.abs());
     1.0 / 16.0 / gains.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Number of frames in which a gait accelerates at its start, and the share of full pace that each of them adds.
-const ACCELERATION: (usize, f64) = (7, 147.0 / 1024.0);
+/// Number of frames in which a gait accelerates at its start.
+const ACCELERATION_FRAMES: usize = 7;
 
-/// Orders a gait one second after power-on and returns the servo angles of each frame from then on, deg.
-fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
+/// The share of the full pace that a gait gains in each frame of its acceleration.
+const PACE_STEP: f64 = 147.0 / 1024.0;
+
+/// Starts a gait one second after power-on and returns the servo angles of each frame from then on, deg.
+fn record_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = boot_standing(fidelity);
     let line = gait.name().replace('-', " ");
     assert_eq!(bench.say(&line), format!("ok {line}"));
@@ -40,22 +43,22 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
 }
 
 /// Returns the phase of a gait this many frames after its start.
-fn phase_after(gait: &CheckedGait, frames: usize) -> f64 {
-    let pace = |frame: usize| (frame as f64 * ACCELERATION.1).min(1.0);
-    let frames_at_full_pace: f64 = (1..=frames).map(pace).sum();
+fn phase_after(gait: &CheckedGait, frame_count: usize) -> f64 {
+    let pace = |frame: usize| (frame as f64 * PACE_STEP).min(1.0);
+    let frames_at_full_pace: f64 = (1..=frame_count).map(pace).sum();
     gait.phase_at(frames_at_full_pace / FRAMES_PER_SECOND as f64)
 }
 
 /// Returns the angles of a gait frame by frame from its start, in floating point, deg.
-fn expected_angles(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
-    (0..frames)
+fn expected_angles(gait: &CheckedGait, frame_count: usize) -> Vec<[f64; 4]> {
+    (0..frame_count)
         .map(|n| gait.angles(phase_after(gait, n)))
         .collect()
 }
 
 /// Returns the largest deviation of any servo angle from the gait if the gait starts at frame `start`, deg.
-fn max_deviation(float_angles: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
-    let pairs = frames[start..]
+fn max_deviation(float_angles: &[[f64; 4]], sent_angles: &[[f64; 4]], start: usize) -> f64 {
+    let pairs = sent_angles[start..]
         .iter()
         .flatten()
         .zip(float_angles.iter().flatten());
@@ -66,12 +69,20 @@ fn max_deviation(float_angles: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -
 
 /// Returns the frame at which the gait starts: the frame with the smallest deviation, since the start is the only
 /// unknown of the comparison.
-fn find_gait_start(gait: &CheckedGait, float_angles: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
+fn find_gait_start(
+    gait: &CheckedGait,
+    float_angles: &[[f64; 4]],
+    sent_angles: &[[f64; 4]],
+) -> usize {
     let by_deviation = |a: &usize, b: &usize| {
-        max_deviation(float_angles, frames, *a).total_cmp(&max_deviation(float_angles, frames, *b))
+        max_deviation(float_angles, sent_angles, *a).total_cmp(&max_deviation(
+            float_angles,
+            sent_angles,
+            *b,
+        ))
     };
-    // The move to the first pose precedes the start, and a whole cycle must follow it.
-    let end = frames.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
+    // The start comes after the move to the first pose, and at least a whole cycle before the end.
+    let end = sent_angles.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
     let start = (0..end).min_by(by_deviation);
     start.expect("a second has frames")
 }
@@ -80,29 +91,28 @@ fn find_gait_start(gait: &CheckedGait, float_angles: &[[f64; 4]], frames: &[[f64
 fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            let frames = decode_angles(gait, *fidelity);
-            let float_angles = expected_angles(gait, frames.len());
-            let start = find_gait_start(gait, &float_angles, &frames);
-            let error = max_deviation(&float_angles, &frames, start);
+            let sent_angles = record_angles(gait, *fidelity);
+            let float_angles = expected_angles(gait, sent_angles.len());
+            let start = find_gait_start(gait, &float_angles, &sent_angles);
+            let error = max_deviation(&float_angles, &sent_angles, start);
             println!(
                 "{:<10} {} frames, max {error:.4} deg",
                 gait.name(),
-                frames.len() - start
+                sent_angles.len() - start
             );
             assert!(
-                error <= MAX_TABLE_ERROR_DEG + max_rounding_error(),
+                error <= MAX_TABLE_ERROR_DEG + max_rounding_error_deg(),
                 "{}: {error} deg",
                 gait.name()
             );
-            // One frame earlier or later would exceed the bound, so the comparison can tell frames
-            // apart.
+            // One frame earlier or later would exceed the bound, so the comparison can tell frames apart.
             if gait.has_movement() {
                 assert!(error > 0.0, "{}: tables are rounded", gait.name());
                 // The first frame has no previous one.
                 let neighbours = [Some(start + 1), start.checked_sub(1)];
                 for neighbour in neighbours.into_iter().flatten() {
                     assert!(
-                        max_deviation(&float_angles, &frames, neighbour) > error,
+                        max_deviation(&float_angles, &sent_angles, neighbour) > error,
                         "{}",
                         gait.name()
                     );
@@ -124,20 +134,21 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
             return;
         };
         compared_count.fetch_add(usize::from(gait.has_movement()), Ordering::Relaxed);
-        let frames = decode_angles(gait, Fidelity::DataSheet);
-        let float_angles = expected_angles(gait, frames.len());
-        let start = find_gait_start(gait, &float_angles, &frames);
-        // Whole cycles, from the first frame at full pace that begins a cycle: two if one cycle is not a whole
+        let sent_angles = record_angles(gait, Fidelity::DataSheet);
+        let float_angles = expected_angles(gait, sent_angles.len());
+        let start = find_gait_start(gait, &float_angles, &sent_angles);
+        // Whole gait cycles, from the first frame at full pace that begins a cycle: two if one cycle is not a whole
         // number of frames.
-        let cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
+        let gait_cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
             1
         } else {
             2
         };
         // If two cycles are not a whole number of frames either, the missing part of a frame is negligible.
-        let frame_count = (f64::from(cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
+        let frame_count =
+            (f64::from(gait_cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
         let phase_step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
-        let first_frame = (start + ACCELERATION.0..frames.len())
+        let first_frame = (start + ACCELERATION_FRAMES..sent_angles.len())
             .find(|frame| {
                 let phase = phase_after(gait, frame - start);
                 if gait.is_reversed() {
@@ -147,25 +158,28 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
                 }
             })
             .expect("a cycle begins");
-        let movement = robot().predict_travel(
-            frames[first_frame..=first_frame + frame_count]
+        let travel = robot().predict_travel(
+            sent_angles[first_frame..=first_frame + frame_count]
                 .iter()
                 .copied(),
         );
         let (measured_forward, measured_turn) = (
-            movement.forward / f64::from(cycles),
-            movement.turn / f64::from(cycles),
+            travel.forward / f64::from(gait_cycles),
+            travel.turn / f64::from(gait_cycles),
         );
         println!("{name:<10} {measured_forward:7.2} mm {measured_turn:7.2} deg");
-        // A tenth of a degree may decide which feet hold.
+        // An error of a tenth of a degree may decide which feet hold.
         let scale = robot().lizard().links.l10 / 135.0;
         let max_error = (0.3 * scale).max(forward.abs() * 0.02);
         assert!(
             (measured_forward - forward).abs() <= max_error,
-            "{name}: {movement:?}"
+            "{name}: {travel:?}"
         );
-        assert!((measured_turn - turn).abs() <= 0.2, "{name}: {movement:?}");
+        assert!((measured_turn - turn).abs() <= 0.2, "{name}: {travel:?}");
     });
     let compared_count = compared_count.into_inner();
-    assert!(compared_count > 0, "every gait that moves depends on a tie");
+    assert!(
+        compared_count > 0,
+        "for every gait that moves, the prediction depends on a tie"
+    );
 }

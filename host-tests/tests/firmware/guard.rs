@@ -61,17 +61,17 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
 }
 
 /// Returns a random pose within this many degrees of neutral, rounded to the two decimals that the console takes.
-fn random_near_pose(rng: &mut Rng, max_deg: f64) -> [f64; 4] {
+fn random_pose_within(rng: &mut Rng, max_deg: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + max_deg * (2.0 * rng.f64() - 1.0);
         (angle.rem_euclid(360.0) * 100.0).round() / 100.0
     })
 }
 
-/// Returns a random safe pose far from neutral. The path to it may be unsafe.
-fn random_far_pose(rng: &mut Rng) -> [f64; 4] {
+/// Returns a random safe pose within 80 degrees of neutral. The path to this pose may be unsafe.
+fn random_safe_pose(rng: &mut Rng) -> [f64; 4] {
     loop {
-        let angles = random_near_pose(rng, 80.0);
+        let angles = random_pose_within(rng, 80.0);
         if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
             return angles;
         }
@@ -91,7 +91,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
         let mut bench = boot_standing(Fidelity::DataSheet);
         let (mut accepted_count, mut refused_counts) = (0, [0; 2]);
         for _ in 0..400 {
-            let angles = random_near_pose(&mut rng, max_deg);
+            let angles = random_pose_within(&mut rng, max_deg);
             let answer = bench.say(&pose_line(angles));
             if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
@@ -183,16 +183,16 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
         ("5 right slider", solution.right.s, stroke_tolerance),
     ];
     let condition = conditions.iter().find(|(known, ..)| *known == name);
-    condition.map(|(_, value, max)| (*value, *max))
+    condition.map(|(_, value, tolerance)| (*value, *tolerance))
 }
 
 #[test]
 fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = Rng::with_seed(3);
-    let (mut named_count, mut unknown_count) = (0, 0);
+    let (mut printed_count, mut unknown_count) = (0, 0);
     for _ in 0..400 {
-        let angles = random_near_pose(&mut rng, 70.0);
+        let angles = random_pose_within(&mut rng, 70.0);
         let answer = bench.say(&pose_line(angles));
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
@@ -235,7 +235,7 @@ fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
                     error <= max_error,
                     "{angles:?}: {answer}, not {float_value}"
                 );
-                named_count += 1;
+                printed_count += 1;
             }
             None => {
                 assert!(name.starts_with("4 type-2"), "{answer}");
@@ -247,8 +247,8 @@ fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
             }
         }
     }
-    println!("{named_count} values printed, {unknown_count} unknown");
-    assert!(named_count > 20, "{named_count}");
+    println!("{printed_count} values printed, {unknown_count} unknown");
+    assert!(printed_count > 20, "{printed_count}");
 }
 
 #[test]
@@ -271,7 +271,7 @@ fn no_frame_breaks_a_limit_under_random_commands() {
             let line = if rng.u64(..3) == 0 {
                 rng.choice(&lines).expect("every robot has a gait").clone()
             } else {
-                pose_line(random_far_pose(&mut rng))
+                pose_line(random_safe_pose(&mut rng))
             };
             assert!(bench.say(&line).starts_with("ok "), "{line}");
             frames.extend(bench.run_for_frames(rng.u64(..2 * FRAMES_PER_SECOND)));
@@ -282,7 +282,7 @@ fn no_frame_breaks_a_limit_under_random_commands() {
             let angles = frame.angles.expect("each servo has a pulse");
             assert!(is_safe(angles, &lax_limits), "{frame:?}");
         }
-        // No servo moves farther in a frame than the slew limits allow.
+        // In one frame, no servo moves by more than the slew limits allow.
         let speed_limits = robot().speed_limits();
         let max_step_deg = speed_limits.gait_slew.max(speed_limits.slew) / 50.0;
         for (pair, frame_pair) in sent_frames.windows(2).zip(frames.windows(2)) {
@@ -305,9 +305,9 @@ fn no_frame_breaks_a_limit_under_random_commands() {
     });
 }
 
-/// Returns two safe poses, each with a safe path from and to neutral, where the straight path between them is
-/// unsafe for longer than a frame. `None` if none are found.
-fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
+/// Returns two safe poses, each with a safe path from and to neutral. The straight path between the two is unsafe
+/// for longer than a frame. `None` if no such poses are found.
+fn poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
     let mut rng = Rng::with_seed(4);
     let firmware = robot().firmware();
     let steps_of = |angles: [f64; 4]| -> [f64; 4] {
@@ -329,7 +329,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
     let neutral = robot().servos().map(|servo| servo.neutral);
     let mut kept_poses: Vec<[f64; 4]> = Vec::new();
     for _ in 0..2000 {
-        let pose = random_far_pose(&mut rng);
+        let pose = random_safe_pose(&mut rng);
         if unsafe_count_between(neutral, pose) == 0 && unsafe_count_between(pose, neutral) == 0 {
             let partner = kept_poses
                 .iter()
@@ -352,7 +352,7 @@ fn assert_every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
     let mut bench = boot_standing(Fidelity::DataSheet);
     for _ in 0..20 {
-        let pose = random_far_pose(&mut rng);
+        let pose = random_safe_pose(&mut rng);
         assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
         bench.run_ms(5000);
         let status = Status::of(&mut bench);
@@ -368,7 +368,7 @@ fn assert_every_safe_pose_is_reached() {
 
 #[test]
 fn the_robot_stops_on_an_unsafe_path_before_it_breaks_a_limit() {
-    let Some([from, to]) = poses_with_unsafe_path_between() else {
+    let Some([from, to]) = poses_with_unsafe_path() else {
         assert_every_safe_pose_is_reached();
         return;
     };

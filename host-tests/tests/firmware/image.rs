@@ -13,7 +13,7 @@ fn image() -> Image {
 }
 
 /// Returns the paths of the functions whose path contains one of these parts.
-fn functions_with(parts: &[&str]) -> Vec<String> {
+fn function_paths_with(parts: &[&str]) -> Vec<String> {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
@@ -31,7 +31,7 @@ fn functions_with(parts: &[&str]) -> Vec<String> {
 
 #[test]
 fn the_image_contains_no_panic_code() {
-    let functions = functions_with(&[
+    let functions = function_paths_with(&[
         "panic",
         "rust_begin_unwind",
         "unwrap_failed",
@@ -43,7 +43,7 @@ fn the_image_contains_no_panic_code() {
 
 #[test]
 fn the_image_does_not_contain_core_fmt() {
-    let functions = functions_with(&["core::fmt", "Formatter", "Display", "Debug"]);
+    let functions = function_paths_with(&["core::fmt", "Formatter", "Display", "Debug"]);
     assert!(functions.is_empty(), "{functions:?}");
 }
 
@@ -55,9 +55,9 @@ fn the_image_contains_no_floating_point_routines() {
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let is_float = |name: &str| {
         let bare_name = name.trim_start_matches('_');
-        let is_helper = name.starts_with("__");
+        let is_runtime_routine = name.starts_with("__");
         let suffixes = ["sf2", "sf3", "df2", "df3", "sf", "df"];
-        is_helper
+        is_runtime_routine
             && (suffixes.iter().any(|suffix| bare_name.ends_with(suffix))
                 || bare_name.starts_with("fp_")
                 || bare_name.starts_with("float")
@@ -99,7 +99,7 @@ fn tables_and_messages_stay_in_flash() {
             assert!(!ram_contains(&bytes), "wave {n} is in RAM");
         }
     }
-    // None of these has been printed yet.
+    // The robot has printed none of these messages yet.
     for message in [
         "unknown command",
         "must be",
@@ -145,8 +145,8 @@ fn an_image_that_does_not_fit_is_refused_with_the_excess_and_the_largest_functio
         .symbol("__code_end")
         .expect("the ELF has the symbol")
         .address;
-    // The script takes the bounds of the robot's section from two symbols, so moving a symbol makes the code or
-    // the robot too large.
+    // The script takes the bounds of the robot's section from two symbols. A moved symbol makes the code or the robot
+    // too large.
     let check_with_symbol = |symbol: &str, address: u64| {
         let status = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))
@@ -180,10 +180,10 @@ fn an_image_that_does_not_fit_is_refused_with_the_excess_and_the_largest_functio
         sizes.is_sorted_by(|larger, smaller| larger.is_some() && larger >= smaller),
         "{message}"
     );
-    let names_frame_function = lines[1..3]
+    let has_frame_function = lines[1..3]
         .iter()
         .any(|line| line.ends_with("::controller::compute_frame"));
-    assert!(names_frame_function, "{message}");
+    assert!(has_frame_function, "{message}");
     let start = image
         .symbol("__robot_start")
         .expect("the ELF has the symbol")

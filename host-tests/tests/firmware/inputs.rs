@@ -16,29 +16,29 @@ use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 const BUTTON: Pin = Pin::a(1);
 const NOSE: Pin = Pin::a(2);
 
-/// The time after which a closed contact is certain to count as closed, ms.
+/// The time for which a contact must be closed to be certain to count, ms.
 const DEBOUNCE_MS: u64 = 60;
 
 /// The largest allowed mean duration of a frame's computation, cycles.
 const MAX_MEAN_FRAME_CYCLES: u64 = 5_000;
 
 /// Returns the paper's robot with the patrol of docs/gaits.md.
-fn robot() -> &'static Robot {
+fn patrol_robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| patrol_robot_with_pins("A1", "A2"));
     &ROBOT
 }
 
 /// Returns the paper's robot with the patrol of docs/gaits.md, its button and obstacle switch at these pins.
-fn patrol_robot_with_pins(button: &str, nose: &str) -> Robot {
+fn patrol_robot_with_pins(button_pin: &str, nose_pin: &str) -> Robot {
     let read_file = |file: &str| fs::read_to_string(root().join(file)).expect(file);
-    let docs = read_file("docs/gaits.md");
-    let blocks = docs
+    let page_text = read_file("docs/gaits.md");
+    let blocks = page_text
         .split("```toml\n")
         .filter_map(|block| block.split("```").next());
     let mut patrols = blocks.filter(|block| block.contains("[input.button]"));
     let patrol = patrols.next().expect("docs/gaits.md has a patrol");
-    let patrol = patrol.replace("\"A1\"", &format!("\"{button}\""));
-    let patrol = patrol.replace("\"A2\"", &format!("\"{nose}\""));
+    let patrol = patrol.replace("\"A1\"", &format!("\"{button_pin}\""));
+    let patrol = patrol.replace("\"A2\"", &format!("\"{nose_pin}\""));
     let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
     Robot::parse(&text).expect("the patrol suits the robot")
 }
@@ -55,16 +55,16 @@ fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// Returns a robot whose patrol waits for the button.
+/// Starts the patrol and returns a bench whose robot waits for the button.
 fn start_waiting_patrol(fidelity: Fidelity) -> FirmwareBench {
-    let mut bench = boot_with_inputs(robot(), fidelity);
+    let mut bench = boot_with_inputs(patrol_robot(), fidelity);
     assert_eq!(bench.say("patrol"), "ok patrol");
     bench.run_ms(500);
     assert_eq!(read_notes(&mut bench, 0), ["# waiting for button"]);
     bench
 }
 
-/// Returns a robot whose patrol walks until its obstacle switch closes.
+/// Starts the patrol, presses the button, and returns a bench whose robot walks until its obstacle switch closes.
 fn start_walking_patrol(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = start_waiting_patrol(fidelity);
     press(&mut bench, BUTTON, 200);
@@ -79,7 +79,7 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, false);
 }
 
-/// Returns the notes from line `first_line` on, the lines that begin with `#`, without those printed at the start.
+/// Returns the notes (lines that begin with `#`) from line `first_line` on, without those of the start.
 fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
     let lines = bench.lines()[first_line..]
         .iter()
@@ -93,12 +93,12 @@ fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
 
 /// Computes the travel for these pulses by the contact model.
 fn travel_of(frames: &[Frame]) -> Travel {
-    let servos = robot().servos();
+    let servos = patrol_robot().servos();
     let angles_of = |frame: &Frame| {
         let widths = frame.widths();
         std::array::from_fn(|i| servos[i].neutral + servos[i].sweep(widths[i] as f64 / 16.0))
     };
-    robot().predict_travel(frames.iter().map(angles_of))
+    patrol_robot().predict_travel(frames.iter().map(angles_of))
 }
 
 /// True if the servos stand still for a second.
@@ -110,7 +110,7 @@ fn is_still(bench: &mut FirmwareBench) -> bool {
 #[test]
 fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_with_inputs(robot(), fidelity);
+        let mut bench = boot_with_inputs(patrol_robot(), fidelity);
         bench.say("boot patrol");
         bench.send("save");
         bench.run_ms(500);
@@ -145,7 +145,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
                 "the robot has not turned: {turn_travel:?}"
             );
             assert!(read_notes(&mut bench, line_count).is_empty());
-            // No second press is needed: the patrol waits only for the wall.
+            // The patrol needs no second press: it waits only for the obstacle switch.
             bench.run_ms(2_500);
             let notes = read_notes(&mut bench, line_count);
             assert_eq!(notes, ["# waiting for nose"]);
@@ -163,7 +163,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
 #[test]
 fn a_stuck_button_or_too_short_a_press_starts_nothing() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_with_inputs(robot(), fidelity);
+        let mut bench = boot_with_inputs(patrol_robot(), fidelity);
         bench.uno.set_contact(BUTTON, true);
         bench.say("patrol");
         bench.run_ms(5_000);
@@ -212,9 +212,9 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
                 let servo_pulses = run_for_pulses(&mut bench, 1_000);
                 bench.uno.set_contact(pin, false);
                 for (pulses, width_before) in servo_pulses.iter().zip(widths_before) {
-                    let is_still = pulses.iter().all(|pulse| pulse.width == width_before);
+                    let is_steady = pulses.iter().all(|pulse| pulse.width == width_before);
                     assert!(
-                        is_still && pulses.is_empty() == (width_before == 0),
+                        is_steady && pulses.is_empty() == (width_before == 0),
                         "{name}"
                     );
                 }

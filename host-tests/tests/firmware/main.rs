@@ -49,12 +49,11 @@ mod supply;
 mod ten_minutes;
 mod watchdog;
 
-/// Frames in a second.
 const FRAMES_PER_SECOND: u64 = 50;
 
-/// Removes from a line the values that the core on the host cannot know. A status is written in three
-/// parts, each in the frame in which the serial buffer has space for it, so the values of a moving robot
-/// depend on timing. Stock simavr measures against a reference of 1.1 V, whatever the robot's reference is.
+/// Removes from a line the values that the core on the host cannot know. The firmware writes a status in three
+/// parts, each in the frame in which the serial buffer has room for it, so the values of a moving robot depend on
+/// timing. Stock simavr measures voltages against a reference of 1.1 V, even if the robot's reference differs.
 fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     let mut unknown_keys = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
@@ -104,8 +103,8 @@ fn boot_standing(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait: without
-/// it, most of these tests would see a robot that only stands.
+/// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait:
+/// without one, most of these tests would run on a robot that only stands.
 fn first_moving_gait() -> String {
     let moving_gaits = tour::moving_gaits(robot());
     let first_gait = moving_gaits
@@ -120,11 +119,16 @@ fn gait_commands() -> Vec<String> {
     names.map(|name| name.replace('-', " ")).collect()
 }
 
-/// Returns the command for a pose with these angles from neutral, deg.
-fn pose_command(sweeps: [f64; 4]) -> String {
+/// Returns the command for the pose at these angles from neutral.
+fn pose_command(sweeps_deg: [f64; 4]) -> String {
     let servos = robot().servos();
     let angles: Vec<String> = (0..4)
-        .map(|i| format!("{:.2}", (servos[i].neutral + sweeps[i]).rem_euclid(360.0)))
+        .map(|i| {
+            format!(
+                "{:.2}",
+                (servos[i].neutral + sweeps_deg[i]).rem_euclid(360.0)
+            )
+        })
         .collect();
     format!("pose {}", angles.join(" "))
 }
@@ -136,10 +140,10 @@ fn neutral_widths() -> [u64; 4] {
         .map(|servo| (servo.neutral_us * 16.0).round() as u64)
 }
 
-/// Ends a flood of serial input and waits until the robot has answered the lines that it still holds.
+/// Ends a flood of serial input and waits until the robot has answered the lines that are in its buffer.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
-    // Up to 32 lines `?` may be waiting, and each answer is a kilobyte.
+    // The buffer may hold 32 lines `?`, and each answer has a kilobyte.
     bench.run_ms(5000);
     bench.uno.send(b"\n");
     bench.run_ms(200);

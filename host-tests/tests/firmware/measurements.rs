@@ -1,15 +1,11 @@
 //! Measurements at the servo pins, at the LED and on the console that several tests share.
 
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::{Pin, Pulse};
+use simulated_uno::{CYCLES_PER_MS, Pin, Pulse};
 
 use crate::robot;
 
-/// Pin of the LED.
 const LED: Pin = Pin::d(13);
-
-/// Cycles in a millisecond.
-pub const CYCLES_PER_MS: u64 = simulated_uno::CYCLES_PER_MS;
 
 /// Runs for `ms` milliseconds and returns the pulses of A1 to A4 in that time.
 pub fn run_for_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
@@ -18,7 +14,7 @@ pub fn run_for_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     recorded_pulses(bench)
 }
 
-/// Returns the pulses of A1 to A4 in the recorded edges, which begin where the edges were last taken.
+/// Returns the pulses of A1 to A4 in the edges recorded since the last `take_edges`.
 pub fn recorded_pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
     bench.pins().map(|pin| bench.uno.pulses(pin))
 }
@@ -47,7 +43,7 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
     );
 }
 
-/// Returns the lines of the settings that `cal` prints.
+/// Returns the lines in which `cal` prints the settings.
 pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
     let (lines, answer) = bench.ask("cal");
     assert_eq!(answer, "ok cal");
@@ -82,6 +78,7 @@ pub fn assert_no_leap_in_gait(pulses: &[Vec<Pulse>; 4]) {
             servo.us_per_degree,
             speed_limits.slew.max(speed_limits.gait_slew),
         );
+        assert!(pulses.len() > 1, "{pulses:?}");
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
             assert!(leap <= max_leap, "{leap} cycles of {max_leap}: {pair:?}");
@@ -99,6 +96,7 @@ pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
 /// the slew limit allows.
 pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     for (servo, (pulses, gain)) in pulses.iter().zip(gains).enumerate() {
+        assert!(pulses.len() > 1, "A{}: {pulses:?}", servo + 1);
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
             assert!(
@@ -117,19 +115,19 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     let edges = bench.uno.edges();
     let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED).collect();
     // A flash is 160 ms of light and 160 ms of dark; a pause is one second longer.
-    let mut patterns = Vec::new();
-    let mut count = None;
+    let mut flash_counts = Vec::new();
+    let mut current_count = None;
     for pair in edges.windows(2) {
         let ms = (pair[1].cycle - pair[0].cycle) / CYCLES_PER_MS;
         match (pair[0].is_rising, ms) {
-            (true, 150..=170) => count = count.map(|n| n + 1),
+            (true, 150..=170) => current_count = current_count.map(|n| n + 1),
             (false, 150..=170) => {}
             (false, 1100..=1140) => {
-                patterns.extend(count);
-                count = Some(0);
+                flash_counts.extend(current_count);
+                current_count = Some(0);
             }
-            state => panic!("the LED: {state:?}"),
+            unexpected => panic!("the LED: {unexpected:?}"),
         }
     }
-    patterns
+    flash_counts
 }

@@ -7,21 +7,21 @@ use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{Status, neutral_widths, run_in_both_simulations};
 
 /// Pulse widths that fit into a slot, cycles.
-const SLOT_WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
+const ALLOWED_WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 #[test]
 fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         // `FRAMES` holds two sets of four widths, two bytes each. A3's width is the third of each set.
-        let frames_address = run.address("pulses::FRAMES");
+        let frames_address = run.variable_address("pulses::FRAMES");
         let a3_width_addresses = [frames_address + 4, frames_address + 12];
         let widths = [
             1, 219, 220, 221, 999, 1_000, 1_001, 30_000, 62_999, 63_000, 63_001, 63_780, 63_781,
             63_999, 64_000, 65_315, 65_535,
         ];
         for width in widths {
-            let start = run.next_frame();
+            let start = run.run_to_next_frame();
             // At this time, the frame's widths have been handed over and A3's slot is not yet planned.
             run.run_to(start + 2_000);
             for (address, index) in a3_width_addresses
@@ -39,7 +39,7 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
             }
             run.run_to(start + FRAME_CYCLES - SLOT_CYCLES / 2);
             let (frame, expected_widths) = run.frames_since(start)[0];
-            let expected = SLOT_WIDTHS.contains(&width).then_some(u64::from(width));
+            let expected = ALLOWED_WIDTHS.contains(&width).then_some(u64::from(width));
             assert_eq!(frame.widths[2], expected, "{width}");
             for servo in [0, 1, 3] {
                 assert_eq!(frame.widths[servo], Some(expected_widths[servo]), "{width}");
@@ -53,28 +53,30 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
 #[test]
 fn once_pulses_are_disallowed_the_current_one_ends_no_other_begins_and_the_ticks_go_on() {
     run_in_both_simulations(|fidelity| {
-        // The moments lie in every part of a frame: before, in and after each pulse.
-        for n in 0..40 {
+        // Disallows pulses at 40 moments of a frame: before, in and after each pulse.
+        for moment in 0..40 {
             let mut run = ReferenceRun::start_standing(fidelity);
-            let start = run.next_frame();
-            run.run_to(start + n * FRAME_CYCLES / 40 + 777);
+            let start = run.run_to_next_frame();
+            run.run_to(start + moment * FRAME_CYCLES / 40 + 777);
             let clear_cycle = run.bench.uno.cycle();
-            let allowed_address = run.address("pulses::ALLOWED_PINS");
+            let allowed_address = run.variable_address("pulses::ALLOWED_PINS");
             run.bench.uno.poke(allowed_address, 0);
             let frames_before = Status::of(&mut run.bench).number("frames");
             run.bench.run_ms(1000);
             for edge in crate::pulses::servo_edges(&run.bench) {
-                // One cycle of tolerance, for a store that is already executing.
+                // One cycle of tolerance, for a store instruction that is already executing.
                 assert!(
                     !edge.is_rising || edge.cycle <= clear_cycle + 1,
-                    "{n}: {edge:?}"
+                    "{moment}: {edge:?}"
                 );
             }
             for (pin, neutral) in run.bench.pins().into_iter().zip(neutral_widths()) {
-                for pulse in run.bench.uno.pulses(pin) {
-                    assert_eq!(pulse.width, neutral, "{n}: {pin}");
+                let pulses = run.bench.uno.pulses(pin);
+                assert!(!pulses.is_empty(), "{moment}: {pin}");
+                for pulse in pulses {
+                    assert_eq!(pulse.width, neutral, "{moment}: {pin}");
                 }
-                assert!(!run.bench.uno.is_high(pin), "{n}: {pin}");
+                assert!(!run.bench.uno.is_high(pin), "{moment}: {pin}");
             }
             let ticks = Status::of(&mut run.bench).number("frames") - frames_before;
             assert!((50.0..=52.0).contains(&ticks), "{ticks} ticks in a second");

@@ -35,10 +35,10 @@ fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, message: &str) {
     bench.uno.flood(flood.as_bytes());
     let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
     let frames_before = ((sent_frames[0].start - first_rise) / FRAME_CYCLES) as usize;
-    let received = &bench.uno.received_by_uno()[..received_count];
+    let received_bytes = &bench.uno.received_by_uno()[..received_count];
     let commands = core_run::play(
         *robot.firmware(),
-        received,
+        received_bytes,
         first_rise,
         frames_before + sent_frames.len(),
     );

@@ -13,13 +13,13 @@ use crate::measurements::{power_cycle, read_calibration};
 /// Loads the settings of an EEPROM as the core does.
 fn load_settings(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot().firmware());
-    let outcome = copies::load(
+    let saved_state = copies::load(
         robot().firmware(),
         &Eeprom::with_bytes(*contents),
         &mut settings,
     );
     settings.set_save_number(0);
-    (settings, outcome)
+    (settings, saved_state)
 }
 
 /// A board whose settings were saved twice and then changed without saving.
@@ -87,14 +87,14 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
             ] {
                 let mut contents = contents;
                 contents[usize::from(operation.address)] = torn_byte;
-                let (settings, outcome) = load_settings(&contents);
+                let (settings, saved_state) = load_settings(&contents);
                 let is_new = settings == new;
                 assert!(
                     is_new || settings == old,
-                    "{operation:?} torn to {torn_byte:02x}: {outcome:?}"
+                    "{operation:?} torn to {torn_byte:02x}: {saved_state:?}"
                 );
                 outcome_counts[usize::from(is_new)] += 1;
-                // One cut in 97 is also loaded by the running image.
+                // The running image also loads one torn EEPROM in 97.
                 torn_count += 1;
                 if torn_count % 97 == 0 {
                     let calibration = board.power_on_with(&contents);
@@ -113,10 +113,10 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
 fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_settings() {
     let mut board = UnsavedBoard::new();
     let contents_before = board.saved_eeprom;
-    let count = board.save().len() as u64;
+    let operation_count = board.save().len() as u64;
     let contents_after = board.bench.uno.eeprom();
     let mut outcome_counts = [0, 0];
-    for operation in 0..count {
+    for operation in 0..operation_count {
         for (cut, stuck_bits) in [
             (PowerCut::InErase(operation), 0x00),
             (PowerCut::InErase(operation), 0x5a),
@@ -134,7 +134,10 @@ fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_setti
             assert_eq!(*board.bench.uno.state(), simulated_uno::State::Off);
             power_cycle(&mut board.bench);
             let calibration = read_calibration(&mut board.bench);
-            let index = board.calibrations.iter().position(|c| *c == calibration);
+            let index = board
+                .calibrations
+                .iter()
+                .position(|known| *known == calibration);
             outcome_counts
                 [index.unwrap_or_else(|| panic!("{cut:?} {stuck_bits:02x}: {calibration:?}"))] += 1;
         }
@@ -154,18 +157,19 @@ fn after_any_bit_flip_the_latest_or_the_previous_settings_are_loaded() {
     let mut board = UnsavedBoard::new();
     board.save();
     let contents = board.bench.uno.eeprom();
-    let [latest, older] = [contents, board.saved_eeprom].map(|contents| load_settings(&contents).0);
+    let [latest, previous] =
+        [contents, board.saved_eeprom].map(|contents| load_settings(&contents).0);
     let mut defaults = Settings::of(robot().firmware());
     defaults.set_save_number(0);
     let mut outcome_counts = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
         let mut flipped_contents = contents;
         flipped_contents[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = load_settings(&flipped_contents);
-        let index = [&latest, &older, &defaults]
+        let (settings, saved_state) = load_settings(&flipped_contents);
+        let index = [&latest, &previous, &defaults]
             .iter()
             .position(|known| **known == settings);
-        let index = index.unwrap_or_else(|| panic!("bit {bit}: {outcome:?} {settings:?}"));
+        let index = index.unwrap_or_else(|| panic!("bit {bit}: {saved_state:?} {settings:?}"));
         outcome_counts[index] += 1;
         if bit % 64 == 11 {
             let calibration = board.power_on_with(&flipped_contents);

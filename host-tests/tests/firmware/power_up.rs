@@ -7,7 +7,7 @@ use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
 use crate::pulses::servo_edges;
 use crate::run_in_both_simulations;
 
-/// Registers, by data address: data sheet, 30.
+/// Data addresses of registers, data sheet 30.
 const TCCR1A: u16 = 0x80;
 const TCCR1B: u16 = 0x81;
 const TCNT1: u16 = 0x84;
@@ -15,8 +15,8 @@ const OCR1A: u16 = 0x88;
 const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// Starts the board with these register values, orders the robot to stand, and returns the servos' edges
-/// of the first second.
+/// Starts the board with these register values, sends `stand`, and returns the servos' edges of the first
+/// second.
 fn record_edges_after(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in register_values {
@@ -37,7 +37,7 @@ fn a_timer_that_was_left_running_changes_no_edge() {
             let running_edges = record_edges_after(&[(TCCR1B, clock)], fidelity);
             assert_eq!(running_edges, cold_edges, "TCCR1B = {clock}");
         }
-        // 8-bit fast PWM, in which the timer takes over a new OCR1A only at the end of its cycle.
+        // 8-bit fast PWM, in which the timer uses a new value of OCR1A only after the end of its cycle.
         let pwm_edges = record_edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
         assert_eq!(pwm_edges, cold_edges);
     });
@@ -45,8 +45,8 @@ fn a_timer_that_was_left_running_changes_no_edge() {
 
 #[test]
 fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
-    // The simulation restarts the count at every change of the mode, but the chip goes on
-    // counting. So the test reads the registers.
+    // The simulated timer restarts at every change of its mode, but the chip's timer continues to
+    // count. So the test reads the registers.
     run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
@@ -59,7 +59,7 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
         assert_eq!(
             bench.uno.peek(TCCR1B) & 7,
             0,
-            "it counts while it is set up"
+            "the timer counts while it is set up"
         );
         assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
         assert_eq!(word_at(&bench.uno, TCNT1), 0);

@@ -69,11 +69,11 @@ fn every_width_is_the_one_that_the_core_computes() {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that
-            // main may read it before or after the tick, a new bench sends it a millisecond later.
-            let boot_and_order = |ms| {
+            // the main loop may read it before or after the tick, a new bench sends it a millisecond later.
+            let boot_and_command_after = |delay_ms| {
                 let mut bench = boot_standing(*fidelity);
                 let first_rise = first_pulse_cycle(&bench);
-                bench.run_ms(ms);
+                bench.run_ms(delay_ms);
                 bench.say(&gait.name().replace('-', " "));
                 (bench, first_rise)
             };
@@ -83,7 +83,7 @@ fn every_width_is_the_one_that_the_core_computes() {
                     .is_none()
             };
             let (mut bench, first_rise) = (200..220)
-                .map(boot_and_order)
+                .map(boot_and_command_after)
                 .find(is_away_from_ticks)
                 .expect("some delay keeps the line away from the ticks");
             let frames = bench.run_for_frames(6 * FRAMES_PER_SECOND);

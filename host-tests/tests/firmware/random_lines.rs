@@ -5,7 +5,7 @@ use fastrand::Rng;
 use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
-/// Returns a random number with at most two decimals, from `min` to `max` or a fifth of the range beyond.
+/// Returns a random number with at most two decimals, in the range from `min` to `max` extended by a fifth at each end.
 fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
     let margin = (max - min) * 0.2;
     let number = min - margin + rng.f64() * (max - min + 2.0 * margin);

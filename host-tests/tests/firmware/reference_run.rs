@@ -1,4 +1,4 @@
-//! A robot in a gait, and the pulse widths that it should send, for tests that sweep an event over every cycle.
+//! A robot that walks or stands, and the pulse widths that it should send, for tests that disturb it at every cycle.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -10,7 +10,7 @@ use crate::{boot_standing, first_moving_gait};
 /// Cycles from one servo's pulse to the next one's.
 pub const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 
-/// A robot that walks its first gait or stands, and the bytes and the first pulse from which its widths follow.
+/// A robot that walks its first gait or stands. Its widths follow from the received bytes and the first pulse.
 pub struct ReferenceRun {
     pub bench: FirmwareBench,
     fidelity: Fidelity,
@@ -44,8 +44,8 @@ impl ReferenceRun {
     }
 
     /// Runs to just before the next frame's first pulse and returns the cycle of that pulse.
-    /// Discards the edges so far.
-    pub fn next_frame(&mut self) -> u64 {
+    /// Discards the edges recorded so far.
+    pub fn run_to_next_frame(&mut self) -> u64 {
         self.bench.run_for_frames(0);
         let cycles_since_pulse = self.bench.uno.cycle() - self.first_pulse_cycle;
         self.first_pulse_cycle + cycles_since_pulse.div_ceil(FRAME_CYCLES) * FRAME_CYCLES
@@ -81,25 +81,24 @@ impl ReferenceRun {
         self.fidelity == Fidelity::DataSheet
     }
 
-    /// Runs to a cycle.
     pub fn run_to(&mut self, cycle: u64) {
         self.bench.uno.run_until_cycle(cycle);
     }
 
     /// Returns the address of one of the firmware's variables, such as `pulses::LATE_EDGES`.
-    pub fn address(&self, variable: &str) -> u16 {
+    pub fn variable_address(&self, variable: &str) -> u16 {
         let address = self.bench.uno.image().variable(variable);
         address.unwrap_or_else(|| panic!("the firmware has no variable {variable}"))
     }
 
     /// Returns the value of one of the firmware's 16-bit variables.
-    pub fn word(&self, variable: &str) -> u16 {
-        let address = self.address(variable);
+    pub fn read_word(&self, variable: &str) -> u16 {
+        let address = self.variable_address(variable);
         u16::from_le_bytes([0, 1].map(|n| self.bench.uno.peek(address + n)))
     }
 
     /// Returns the number of edges that the firmware has counted as late.
     pub fn late_edge_count(&self) -> u64 {
-        self.word("pulses::LATE_EDGES").into()
+        self.read_word("pulses::LATE_EDGES").into()
     }
 }

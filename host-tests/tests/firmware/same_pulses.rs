@@ -1,9 +1,9 @@
 //! Test that the pulses of every robot in robots/ are the recorded ones, cycle for cycle.
 //!
-//! The record of a robot is a digest of every edge of its servos' pins in ten simulated minutes of
-//! random commands, and the number of edges. A pulse that is one cycle longer or later, or on another
-//! pin, changes the digest. So does an intended change of a robot's values or of the effect of a
-//! command: then replace the records with those that the failed test prints.
+//! The record of a robot is the number of edges of its servos' pins in ten simulated minutes of random
+//! commands, and a digest of these edges. A pulse that is one cycle longer or later, or on another pin,
+//! changes the digest. An intended change of a robot's values or of the effect of a command also changes
+//! it. In that case, replace the records with those that the failed test prints.
 
 use lizard_host::firmware::with_robot;
 use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
@@ -19,7 +19,7 @@ struct Random(u64);
 
 impl Random {
     /// Returns a random number below `end`.
-    fn random_below(&mut self, end: u64) -> u64 {
+    fn next_below(&mut self, end: u64) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
@@ -27,8 +27,8 @@ impl Random {
     }
 
     /// Returns a random number from `min` to `max` hundredths, written with two decimals as the console takes it.
-    fn random_decimal(&mut self, min: i64, max: i64) -> String {
-        let value = min + self.random_below((max - min) as u64 + 1) as i64;
+    fn next_decimal(&mut self, min: i64, max: i64) -> String {
+        let value = min + self.next_below((max - min) as u64 + 1) as i64;
         let sign = if value < 0 { "-" } else { "" };
         let magnitude = value.unsigned_abs();
         format!("{sign}{}.{:02}", magnitude / 100, magnitude % 100)
@@ -37,21 +37,20 @@ impl Random {
 
 /// Returns a random command, a gait in almost half of the cases.
 fn random_command(random: &mut Random, robot: &Robot) -> String {
-    let servo = 1 + random.random_below(4);
+    let servo = 1 + random.next_below(4);
     let neutral_of = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
-    // `reach` is in hundredths of a degree.
-    let pose_near = |random: &mut Random, reach: i64| {
+    let pose_near = |random: &mut Random, max_hundredths: i64| {
         let random_angle = |index: usize| {
             let angle = neutral_of(index);
-            random.random_decimal(angle - reach, angle + reach)
+            random.next_decimal(angle - max_hundredths, angle + max_hundredths)
         };
         let angles: Vec<String> = (0..4).map(random_angle).collect();
         format!("pose {}", angles.join(" "))
     };
-    match random.random_below(32) {
+    match random.next_below(32) {
         0..14 => {
             let gaits = robot.gaits();
-            let gait = &gaits[random.random_below(gaits.len() as u64) as usize];
+            let gait = &gaits[random.next_below(gaits.len() as u64) as usize];
             gait.name().replace('-', " ")
         }
         14..17 => pose_near(random, 2_000),
@@ -60,32 +59,32 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
         19 => "rest".into(),
         20 | 21 => "stand".into(),
         22 => "center".into(),
-        23 | 24 => format!("speed {}", 10 + random.random_below(91)),
-        25 => format!("trim {servo} {}", random.random_decimal(-2_000, 2_000)),
+        23 | 24 => format!("speed {}", 10 + random.next_below(91)),
+        25 => format!("trim {servo} {}", random.next_decimal(-2_000, 2_000)),
         26 => {
             let neutral = neutral_of(servo as usize - 1);
-            let min = random.random_decimal(neutral - 9_000, neutral - 1_000);
-            let max = random.random_decimal(neutral + 1_000, neutral + 9_000);
+            let min = random.next_decimal(neutral - 9_000, neutral - 1_000);
+            let max = random.next_decimal(neutral + 1_000, neutral + 9_000);
             format!("limit {servo} {min} {max}")
         }
-        27 => format!("scale {servo} {}", random.random_decimal(500, 2_000)),
-        28 => ["save", "load", "factory"][random.random_below(3) as usize].into(),
-        29 => format!("deadman {}", 200 * random.random_below(10)),
+        27 => format!("scale {servo} {}", random.next_decimal(500, 2_000)),
+        28 => ["save", "load", "factory"][random.next_below(3) as usize].into(),
+        29 => format!("deadman {}", 200 * random.next_below(10)),
         30 => "status".into(),
         _ => "help".into(),
     }
 }
 
-/// True if the robot fits beside the firmware. Without the project's own linker step, the code is larger, and some
-/// robots do not fit.
+/// True if the robot fits into the flash beside the firmware. Without the project's own linker step, the code is
+/// larger, and some robots do not fit.
 fn fits_beside_firmware(name: &str) -> bool {
-    let is_plain = option_env!("LIZARD_PLAIN_LINK") == Some("1");
+    let is_plain_link = option_env!("LIZARD_PLAIN_LINK") == Some("1");
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
-    !(is_plain && robot.is_err_and(|error| error.to_string().contains("bytes")))
+    !(is_plain_link && robot.is_err_and(|error| error.to_string().contains("bytes")))
 }
 
 /// Runs a robot for ten minutes and returns the digest of all servo edges and their number.
-fn digest_of(name: &str) -> (u64, u64) {
+fn run_and_digest(name: &str) -> (u64, u64) {
     let frames = 600 * FRAMES_PER_SECOND;
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     let robot = robot.unwrap_or_else(|error| panic!("{error}"));
@@ -100,11 +99,11 @@ fn digest_of(name: &str) -> (u64, u64) {
         uno.run_until(500 * CYCLES_PER_MS, 1_000, has_risen),
         "no pulse"
     );
-    let is_first = |edge: &&Edge| edge.is_rising && edge.pin == pins[0];
+    let is_a1_rise = |edge: &&Edge| edge.is_rising && edge.pin == pins[0];
     let first_rise = uno
         .edges()
         .iter()
-        .find(is_first)
+        .find(is_a1_rise)
         .expect("A1 has risen")
         .cycle;
     println!(
@@ -121,12 +120,12 @@ fn digest_of(name: &str) -> (u64, u64) {
         let start = first_rise + frame * FRAME_CYCLES;
         if frame == next_frame {
             // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next
-            // line, so the robot obeys it in a certain frame.
-            uno.run_until_cycle(start + random.random_below(8) * CYCLES_PER_MS);
+            // line, so it is certain in which frame the robot obeys.
+            uno.run_until_cycle(start + random.next_below(8) * CYCLES_PER_MS);
             uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
             command_count += 1;
-            next_frame += 16 + random.random_below(48);
+            next_frame += 16 + random.next_below(48);
         }
         uno.run_until_cycle(start + FRAME_CYCLES - FRAME_CYCLES / 10);
         assert_eq!(*uno.state(), State::Alive);
@@ -171,8 +170,8 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         ("paper", (0x3a1b_1df5_bc67_f514, 184_384)),
         ("unequal", (0xef9f_3060_6801_8a27, 164_444)),
     ];
-    let name_of_file = |path: std::io::Result<std::fs::DirEntry>| {
-        let path = path.expect("the folder is readable").path();
+    let name_of_file = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.expect("the folder is readable").path();
         let name = path.file_stem().expect("a file has a name");
         name.to_string_lossy().into_owned()
     };
@@ -188,7 +187,7 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         if !fits_beside_firmware(name) {
             return;
         }
-        let (digest, edge_count) = digest_of(name);
+        let (digest, edge_count) = run_and_digest(name);
         assert_eq!(
             (digest, edge_count),
             *expected,

@@ -76,13 +76,13 @@ fn a_long_answer_takes_less_than_2000_cycles_a_byte() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         say_expecting_ok(&mut bench, "stand");
-        let byte_count = bench.bytes().len();
+        let bytes_before = bench.bytes().len();
         say_expecting_ok(&mut bench, "help");
-        let bytes = &bench.bytes()[byte_count..];
-        let duration = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
+        let bytes = &bench.bytes()[bytes_before..];
+        let duration_cycles = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
         // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line,
         // add to that.
-        let cycles_per_byte = duration / bytes.len() as u64;
+        let cycles_per_byte = duration_cycles / bytes.len() as u64;
         assert!(
             bytes.len() > 200 && cycles_per_byte < 2_000,
             "{cycles_per_byte} cycles a byte"
@@ -112,7 +112,7 @@ fn bytes_lost_in_a_flood_are_counted() {
             (2.0 * answer_count..4.0 * answer_count).contains(&read_count),
             "{read_count} for {answer_count} answers"
         );
-        // After a flood, none of its bytes remain in the buffer.
+        // After a flood, the buffer contains none of its bytes.
         say_expecting_ok(&mut bench, &first_moving_gait());
         assert_eq!(Status::of(&mut bench).number("rx_lost"), lost_count);
     });
@@ -120,8 +120,8 @@ fn bytes_lost_in_a_flood_are_counted() {
 
 #[test]
 fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
-    // While the answer to `help` is being sent, main reads nothing: 64 bytes fit into the
-    // buffer and the rest is lost.
+    // While the answer to `help` is being sent, the main loop reads nothing: 64 bytes fit into
+    // the buffer and the rest is lost.
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         bench.uno.send(b"help\n");
@@ -141,37 +141,37 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
     let byte_cycles = 1_400;
     let mut bench = boot_standing(Fidelity::DataSheet);
     let (mut lost_before, mut overrun_count) = (0.0, 0);
-    for n in 0..40u64 {
+    for round in 0..40u64 {
         let overruns_before = bench.uno.overruns();
         bench.uno.send(b"watch ");
         bench.run_ms(2);
         bench.uno.send(b"01234");
-        bench.uno.run_cycles(byte_cycles / 2 + n * 37);
+        bench.uno.run_cycles(byte_cycles / 2 + round * 37);
         bench.uno.block_interrupts(5 * byte_cycles);
         bench.run_ms(3);
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);
-        // Whether the first byte is still received depends on where main disables interrupts.
+        // The first byte may still be received: this depends on where the main loop disables interrupts.
         let was_lost = bench.uno.overruns() > overruns_before;
-        assert_eq!(digits.len() < 5, was_lost, "{n}: {answer}");
+        assert_eq!(digits.len() < 5, was_lost, "{round}: {answer}");
         overrun_count += usize::from(was_lost);
         let mut sent_digits = b"01234".iter();
         let is_in_order = digits
             .bytes()
             .all(|digit| sent_digits.any(|sent_digit| *sent_digit == digit));
-        assert!(is_in_order, "{n}: {answer}");
+        assert!(is_in_order, "{round}: {answer}");
         let lost_count = Status::of(&mut bench).number("rx_lost");
         assert_eq!(
             lost_count > lost_before,
             was_lost,
-            "{n}: {lost_count} bytes counted as lost"
+            "{round}: {lost_count} bytes counted as lost"
         );
         lost_before = lost_count;
         bench.say("watch 0");
     }
     assert!(
         overrun_count > 30,
-        "only {overrun_count} of 40 times something was lost"
+        "only {overrun_count} of 40 bursts lost a byte"
     );
 }
 

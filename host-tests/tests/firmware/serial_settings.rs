@@ -36,15 +36,15 @@ fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
     let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
     bench.say("help");
     let cycles: Vec<u64> = bench.bytes().iter().map(|byte| byte.cycle).collect();
-    let distances: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    assert_eq!(distances.iter().min(), Some(&1360));
-    let back_to_back_count = distances
+    let intervals: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert_eq!(intervals.iter().min(), Some(&1360));
+    let back_to_back_count = intervals
         .iter()
-        .filter(|distance| **distance == 1360)
+        .filter(|interval| **interval == 1360)
         .count();
     assert!(
-        back_to_back_count > distances.len() * 9 / 10,
-        "of {}",
-        distances.len()
+        back_to_back_count > intervals.len() * 9 / 10,
+        "{back_to_back_count} of {}",
+        intervals.len()
     );
 }

@@ -1,29 +1,28 @@
-//! Tests that stop main at every instruction that shares data with an interrupt: at the hand-over of a
-//! frame, at the LED, in an answer, and before it sleeps.
+//! Tests that stop the main loop at every instruction that shares data with an interrupt: at the hand-over of a
+//! frame, at the LED, in an answer, and before the loop sleeps.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
-use simulated_uno::Fidelity;
+use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
-use crate::measurements::{CYCLES_PER_MS, assert_no_leap_in_gait, recorded_pulses};
+use crate::measurements::{assert_no_leap_in_gait, recorded_pulses};
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
     Status, boot_and_command, boot_standing, for_each_in_parallel, gait_commands,
     run_in_both_simulations,
 };
 
-/// Upper bound of the cycles that main takes, after it has computed a frame, to hand
-/// the frame over and to set the LED. A sweep takes three frames for each of these
-/// cycles, an odd multiple of the 32 frames between two changes of the LED, so a
-/// second sweep finds the LED lit where it was dark in the first.
+/// Upper bound of the cycles that the main loop takes, after it has computed a frame, to hand the frame over and to
+/// set the LED. A sweep takes three frames for each of these cycles. This is an odd multiple of the 32 frames between
+/// two changes of the LED, so the LED is lit in a second sweep where it was dark in the first.
 const MAX_HAND_OVER_CYCLES: u64 = 608;
 
-/// Runs until `Control::compute_frame` returns to main with the next frame.
+/// Runs until `Control::compute_frame` returns to the main loop with the next frame.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
     let frame_function = bench.uno.image().function("Control::compute_frame");
-    let entry = frame_function.expect("the ELF has the function").address as u32;
+    let entry_address = frame_function.expect("the ELF has the function").address as u32;
     let uno = &mut bench.uno;
-    assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == entry));
+    assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == entry_address));
     let byte_at = |address| u16::from(uno.peek(address));
     let stack_pointer = byte_at(0x5d) | byte_at(0x5e) << 8;
     let return_address =
@@ -33,40 +32,45 @@ fn run_to_hand_over(bench: &mut FirmwareBench) {
 
 #[test]
 fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() {
-    // Main stops until A1's pulse has begun. Meanwhile the timer interrupt takes over the
-    // next frame, and the pin of A1, which may share its port with the LED, rises. This is
-    // done in every third frame, because a frame that comes too late is played at the next
-    // tick and thus affects two frames.
+    // The main loop stops until A1's pulse has begun. Meanwhile the timer interrupt takes over the next frame, and the
+    // pin of A1, which may share its port with the LED, rises. The test stops the main loop only in every third frame,
+    // because a frame that comes too late is played at the next tick, so it affects two frames.
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
-        let start = run.next_frame();
-        let count = 2 * 3 * MAX_HAND_OVER_CYCLES;
-        for n in (1..count).step_by(3) {
-            let frame_start = start + n * FRAME_CYCLES;
+        let start = run.run_to_next_frame();
+        let frame_count = 2 * 3 * MAX_HAND_OVER_CYCLES;
+        for frame_index in (1..frame_count).step_by(3) {
+            let frame_start = start + frame_index * FRAME_CYCLES;
             run.run_to(frame_start - SLOT_CYCLES - 400);
             run_to_hand_over(&mut run.bench);
-            run.bench.uno.run_cycles(n / 3 % MAX_HAND_OVER_CYCLES);
+            run.bench
+                .uno
+                .run_cycles(frame_index / 3 % MAX_HAND_OVER_CYCLES);
             let stall_cycles = frame_start + 2_000 - run.bench.uno.cycle();
             run.bench.uno.stall_main(stall_cycles);
             run.run_to(frame_start + 2_000);
         }
-        run.run_to(start + count * FRAME_CYCLES - SLOT_CYCLES / 2);
+        run.run_to(start + frame_count * FRAME_CYCLES - SLOT_CYCLES / 2);
         let frames = run.frames_since(start);
-        assert_eq!(frames.len() as u64, count);
-        // No frame is left out: each repeats the previous one, or is the next one computed.
+        assert_eq!(frames.len() as u64, frame_count);
+        // No frame is skipped: each sent frame repeats the previous one, or is the next computed one.
         let commanded: Vec<_> = frames
             .iter()
             .map(|(_, commanded)| Some(*commanded))
             .collect();
         let mut next_index = 0;
-        for (n, (sent, _)) in frames.iter().enumerate() {
+        for (frame_index, (sent, _)) in frames.iter().enumerate() {
             let is_next = sent.all_widths() == commanded[next_index];
             let is_old = next_index > 0 && sent.all_widths() == commanded[next_index - 1];
-            assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
+            assert!(
+                is_next || is_old,
+                "stopped after {} cycles: {sent:?}",
+                frame_index / 3
+            );
             next_index += usize::from(is_next);
         }
-        // Some frames are repeated, but not all: at the end of the sweep, main has handed
-        // the frame over before it stops.
+        // Some frames are repeated, but not all: at the end of the sweep, the main loop has handed the frame over
+        // before it stops.
         let repeated_count = frames.len() - next_index;
         assert!(
             (40..frames.len() / 3 - 40).contains(&repeated_count),
@@ -79,25 +83,31 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
 #[test]
 fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
     let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
-    for n in 0..160 {
-        let frame_start = run.next_frame();
+    for delay_cycles in 0..160 {
+        let frame_start = run.run_to_next_frame();
         run.run_to(frame_start - SLOT_CYCLES - 400);
         run.bench.uno.stall_main(SLOT_CYCLES + 2_400);
         run.run_to(frame_start + 3_000);
         run.bench.uno.send(b"rest\n");
         run.run_to(frame_start + FRAME_CYCLES - SLOT_CYCLES - 400);
         run_to_hand_over(&mut run.bench);
-        run.bench.uno.run_cycles(n);
+        run.bench.uno.run_cycles(delay_cycles);
         let stall_cycles = frame_start + FRAME_CYCLES + 2_000 - run.bench.uno.cycle();
         run.bench.uno.stall_main(stall_cycles);
         run.run_to(frame_start + 4 * FRAME_CYCLES - SLOT_CYCLES / 2);
         let edges = run.bench.uno.edges();
         let sent_frames = group_frames(&edges, servo_pins(robot()), frame_start, 4);
         for frame in &sent_frames {
-            let pulses = frame.widths.iter().flatten().count();
-            assert!(pulses % 4 == 0, "{n} cycles in: {frame:?}");
+            let pulse_count = frame.widths.iter().flatten().count();
+            assert!(
+                pulse_count % 4 == 0,
+                "stopped after {delay_cycles} cycles: {frame:?}"
+            );
         }
-        assert_eq!(sent_frames[2].widths, [None; 4], "{n} cycles in");
+        assert_eq!(
+            sent_frames[2].widths, [None; 4],
+            "stopped after {delay_cycles} cycles"
+        );
         run.bench.say("stand");
         run.bench.run_ms(700);
     }
@@ -111,16 +121,16 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
         let mut bench = boot_standing(fidelity);
         // From here on, the robot prints nothing but answers.
         assert_eq!(bench.say("stop"), "ok stop");
-        for cycles in 0..4_500 {
+        for delay_cycles in 0..4_500 {
             bench.send("stop");
             bench.uno.run_cycles(6_700);
             assert!(bench.uno.run_until(1_000, 1, |uno| uno.bytes_unsent() == 0));
-            bench.uno.run_cycles(cycles);
+            bench.uno.run_cycles(delay_cycles);
             bench.uno.stall_main(STOP_CYCLES);
             assert_eq!(
                 bench.next_line(20).as_deref(),
                 Some("ok stop"),
-                "{cycles} cycles in"
+                "stopped after {delay_cycles} cycles"
             );
         }
         assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
@@ -131,32 +141,32 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
 fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
-        let start = run.next_frame();
-        // Main wakes for each pulse's rise, finds nothing and falls asleep again.
-        for n in 0..700 {
-            let rise = start + n / 4 * FRAME_CYCLES + n % 4 * SLOT_CYCLES;
+        let start = run.run_to_next_frame();
+        // The main loop wakes for each pulse's rise, finds nothing and falls asleep again.
+        for byte_index in 0..700 {
+            let rise = start + byte_index / 4 * FRAME_CYCLES + byte_index % 4 * SLOT_CYCLES;
             run.run_to(rise - 20_000);
             run.bench.uno.send(b"stop");
             let bytes_before = run.bench.bytes().len();
             // The receiver delivers a byte 9.5 bit times after its start.
-            let arrival_cycle = rise - 200 + n;
+            let arrival_cycle = rise - 200 + byte_index;
             run.run_to(arrival_cycle - 1_320);
             run.bench.uno.send(b"\n");
             run.run_to(arrival_cycle + 20_000);
             let answer_delay = run.bench.bytes()[bytes_before].cycle - arrival_cycle;
             assert!(
                 answer_delay < 12_000,
-                "answered {answer_delay} cycles after {n}"
+                "byte {byte_index}: answered after {answer_delay} cycles"
             );
         }
     });
 }
 
 #[test]
-fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
+fn ticks_that_main_misses_are_skipped_and_make_no_servo_leap() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
-        run.next_frame();
+        run.run_to_next_frame();
         let frames_before = Status::of(&mut run.bench).number("frames");
         let start_cycle = run.bench.uno.cycle();
         run.bench.uno.take_edges();
@@ -181,7 +191,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
 #[test]
 fn old_widths_repeat_while_main_stands_still() {
     let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
-    let start = run.next_frame();
+    let start = run.run_to_next_frame();
     run.bench.uno.stall_main(5 * FRAME_CYCLES);
     run.run_to(start + 4 * FRAME_CYCLES + FRAME_CYCLES / 2);
     let frames = run.frames_since(start);
@@ -196,32 +206,35 @@ fn old_widths_repeat_while_main_stands_still() {
 
 #[test]
 fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
-    // Stalls in ms, by the watchdog's two stages less the frame in which it was fed last: shorter stalls than
-    // the first cause no reset, stalls from the second on always do.
-    const HARMLESS_MS: u64 = 105;
-    const SURELY_RESET_MS: u64 = 250;
+    // The watchdog has two stages of 125 ms each, and is fed at most one frame before a stall. Stalls shorter than the
+    // first limit never cause a reset, and stalls as long as the second limit always do.
+    const POSSIBLE_RESET_MS: u64 = 105;
+    const CERTAIN_RESET_MS: u64 = 250;
     for_each_in_parallel(&gait_commands(), |gait| {
         let mut bench = boot_and_command(gait, Fidelity::DataSheet);
         // Short stalls are tried at more moments, because only short stalls end near the
         // next tick.
         let lengths_ms = (0..6).flat_map(|_| 1..=25).chain(1..=300);
-        for (n, length_ms) in lengths_ms.enumerate() {
+        for (stall_index, length_ms) in lengths_ms.enumerate() {
             // Spreads the stalls evenly over the frame, since 7 919 is a prime.
             bench
                 .uno
-                .run_cycles(FRAME_CYCLES + n as u64 * 7_919 % FRAME_CYCLES);
+                .run_cycles(FRAME_CYCLES + stall_index as u64 * 7_919 % FRAME_CYCLES);
             let resets_before = bench.uno.watchdog_resets();
             bench.uno.stall_main(length_ms * CYCLES_PER_MS);
             // Once the watchdog's first stage has ended the pulses, the reset is certain.
-            let wait_ms = if length_ms < HARMLESS_MS {
+            let wait_ms = if length_ms < POSSIBLE_RESET_MS {
                 length_ms
             } else {
                 350
             };
             bench.uno.run_ms(wait_ms + 60);
             let was_reset = bench.uno.watchdog_resets() > resets_before;
-            assert!(length_ms < SURELY_RESET_MS || was_reset, "{length_ms} ms");
-            assert!(length_ms >= HARMLESS_MS || !was_reset, "{length_ms} ms");
+            assert!(length_ms < CERTAIN_RESET_MS || was_reset, "{length_ms} ms");
+            assert!(
+                length_ms >= POSSIBLE_RESET_MS || !was_reset,
+                "{length_ms} ms"
+            );
             println!("{gait}, stalled for {length_ms} ms");
             assert_no_leap_in_gait(&recorded_pulses(&bench));
             if was_reset {

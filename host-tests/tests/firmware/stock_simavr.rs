@@ -22,18 +22,21 @@ fn first_gait() -> String {
 
 /// Writes an EEPROM whose saved settings start the gait at power-on, as a HEX file.
 fn write_eeprom(folder: &Path) {
-    let mut running = RunningRobot::power_on(*robot().firmware());
-    running.run_frames(50);
+    let mut running_robot = RunningRobot::power_on(*robot().firmware());
+    running_robot.run_frames(50);
     let boot_line = format!("boot {}", first_gait());
-    assert_eq!(running.send_line(&boot_line), format!("ok {boot_line}"));
-    running.board.send(b"save\r");
-    running.run_frames(200);
-    let output_text = running.read_lines().join("\n");
+    assert_eq!(
+        running_robot.send_line(&boot_line),
+        format!("ok {boot_line}")
+    );
+    running_robot.board.send(b"save\r");
+    running_robot.run_frames(200);
+    let output_text = running_robot.read_lines().join("\n");
     assert!(
         output_text.is_empty() || output_text.contains("ok save"),
         "{output_text}"
     );
-    let bytes = *running.board.memory.bytes();
+    let bytes = *running_robot.board.memory.bytes();
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
     fs::write(folder.join("eeprom.bin"), bytes).expect("the folder is writable");
     objcopy(
@@ -87,7 +90,7 @@ fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> b
     read_output()
 }
 
-/// Returns the tags of simavr's `avr_mcu_section.h` for a trace file and for each pin to be traced.
+/// Returns tags, in the format of simavr's `avr_mcu_section.h`, that name a trace file and each pin to be traced.
 fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
     let mut name_tag = vec![12, 64];
     name_tag.extend(b"pins.vcd");
@@ -109,24 +112,24 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
 
 /// Returns the widths of each servo's pulses, us, from a trace file with steps of 10 ns.
 fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
-    let (mut names, mut rises, mut now_us) = (HashMap::new(), HashMap::new(), 0.0);
+    let (mut names, mut rises_us, mut now_us) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
     for line in vcd.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
-        if let ["$var", _, _, sign, name, ..] = words[..] {
-            names.insert(sign.to_owned(), name.to_owned());
+        if let ["$var", _, _, code, name, ..] = words[..] {
+            names.insert(code.to_owned(), name.to_owned());
         } else if let Some(time) = line.strip_prefix('#') {
             now_us = time.trim().parse::<f64>().expect("a time is a number") / 100.0;
-        } else if let Some(sign) = line.strip_prefix('1') {
-            rises.insert(sign.trim().to_owned(), now_us);
-        } else if let Some(sign) = line.strip_prefix('0')
-            && let Some(rise) = rises.remove(sign.trim())
+        } else if let Some(code) = line.strip_prefix('1') {
+            rises_us.insert(code.trim().to_owned(), now_us);
+        } else if let Some(code) = line.strip_prefix('0')
+            && let Some(rise_us) = rises_us.remove(code.trim())
         {
             let name = names
-                .get(sign.trim())
+                .get(code.trim())
                 .expect("the signal has a name")
                 .clone();
-            widths.entry(name).or_default().push(now_us - rise);
+            widths.entry(name).or_default().push(now_us - rise_us);
         }
     }
     widths
@@ -177,7 +180,7 @@ fn the_elf_file_walks_in_debians_simavr() {
             "eeprom.hex",
         ],
         folder,
-        // Some 20 bytes for each edge, for the three seconds before the gait and for two cycles of it.
+        // About 20 bytes for each edge, for the three seconds before the gait and for two of its cycles.
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
     );
     assert!(
@@ -208,9 +211,9 @@ fn the_elf_file_walks_in_debians_simavr() {
         );
         let limits = [calibration.travel_min, calibration.travel_max]
             .map(|limit| f64::from(calibration.clamped_width(limit)) / f64::from(CYCLES_PER_US));
-        let (low, high) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
+        let (low_us, high_us) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
         assert!(
-            low - 0.1 <= min_width && max_width <= high + 0.1,
+            low_us - 0.1 <= min_width && max_width <= high_us + 0.1,
             "A{}: {min_width} to {max_width} us",
             servo + 1
         );

@@ -1,6 +1,6 @@
-//! Tests of `stop`, `rest` and waking, ordered at any moment and checked to the frame.
+//! Tests of `stop`, `rest` and waking: the lines are sent at any moment, and the pulses checked frame by frame.
 
-use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames as frames_of, servo_pins};
+use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Fidelity};
@@ -10,8 +10,8 @@ use crate::{
     neutral_widths, pose_command, run_in_both_simulations, widths,
 };
 
-/// Cycles between the interruptions of a gait. Not a multiple of a frame, so that many phases of
-/// gait and frame are covered.
+/// Cycles between the interruptions of a gait. Not a multiple of a frame, so that the interruptions cover many
+/// phases of gait and frame.
 const INTERRUPTION_INTERVAL_CYCLES: u64 = 1_237_331;
 
 /// Runs `gait` for a second and `extra_cycles` more, sends a line, and returns the bench
@@ -60,12 +60,12 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         .into_iter()
         .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * INTERRUPTION_INTERVAL_CYCLES)))
         .collect();
-    for_each_in_parallel(&cases, |&(fidelity, cycle)| {
+    for_each_in_parallel(&cases, |&(fidelity, extra_cycles)| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
-        bench.uno.run_cycles(cycle);
+        bench.uno.run_cycles(extra_cycles);
         let first_frame = bench.run_for_frames(1)[0];
         // The recorded edges still contain this frame; later edges are appended.
-        bench.uno.run_cycles(cycle % FRAME_CYCLES);
+        bench.uno.run_cycles(extra_cycles % FRAME_CYCLES);
         bench.send("rest");
         bench.run_ms(100);
         let edges = bench.uno.edges();
@@ -83,7 +83,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
                 let Servo { min_us, max_us, .. } = robot().servos()[servo];
                 assert!(
                     min_us - 1.0 <= us && us <= max_us + 1.0,
-                    "{us} us at {cycle}"
+                    "{us} us at {extra_cycles}"
                 );
                 last_fall = last_fall.max(pulse.start + pulse.width);
             }
@@ -129,7 +129,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let pins = servo_pins(robot());
         let first_rise = bench.uno.pulses(pins[0])[0].start;
         assert!(first_rise < 300 * CYCLES_PER_MS);
-        let frames = frames_of(&bench.uno.edges(), pins, first_rise, 40);
+        let frames = group_frames(&bench.uno.edges(), pins, first_rise, 40);
         assert_eq!(wake_frames_of(&frames), [0, 5, 10, 15]);
 
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
@@ -155,10 +155,10 @@ fn sweeps_up_to(max_sweep_deg: f64) -> [f64; 4] {
     [-1.0, 0.25, 0.8, -0.6].map(|share| max_sweep_deg * share)
 }
 
-/// Returns the pulse width of a servo at this many degrees from neutral, cycles.
-fn width_at(servo: usize, sweep: f64) -> u64 {
+/// Returns the pulse width of a servo at a sweep from neutral, cycles.
+fn width_at(servo: usize, sweep_deg: f64) -> u64 {
     let servo = robot().servos()[servo];
-    (servo.pulse(servo.neutral + sweep) * 16.0).round() as u64
+    (servo.pulse(servo.neutral + sweep_deg) * 16.0).round() as u64
 }
 
 #[test]
@@ -166,8 +166,8 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         // The pose is as far from neutral as the robot allows.
-        let (size, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
-            .map(|size| (size, bench.say(&pose_command(sweeps_up_to(size)))))
+        let (size_deg, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
+            .map(|size_deg| (size_deg, bench.say(&pose_command(sweeps_up_to(size_deg)))))
             .into_iter()
             .find(|(_, answer)| answer.starts_with("ok pose"))
             .expect("a pose next to neutral is safe");
@@ -175,11 +175,11 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
         bench.run_ms(3000);
         assert!(
             bench
-                .say(&pose_command(sweeps_up_to(size)))
+                .say(&pose_command(sweeps_up_to(size_deg)))
                 .starts_with("ok pose")
         );
         let sent_widths = widths(&bench.run_for_frames(150));
-        let goal_widths: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps_up_to(size)[i]));
+        let goal_widths: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps_up_to(size_deg)[i]));
         let end_widths = sent_widths[149];
         for (end, goal) in end_widths.into_iter().zip(goal_widths) {
             // Rounding to hundredths of a degree and rounding to steps of 1/65536 turn cost a cycle or two each.
@@ -192,8 +192,8 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
         let whole_sweep = sweep_of(end_widths);
         for widths in &sent_widths {
             let covered_sweep = sweep_of(*widths);
-            for (covered_here, whole_here) in covered_sweep.into_iter().zip(whole_sweep) {
-                let error = covered_here - covered_sweep[0] / whole_sweep[0] * whole_here;
+            for (covered, whole) in covered_sweep.into_iter().zip(whole_sweep) {
+                let error = covered - covered_sweep[0] / whole_sweep[0] * whole;
                 assert!(error.abs() <= 8.0, "{widths:?}");
             }
         }

@@ -13,8 +13,8 @@ const MAX_BOARD_ERROR_V: f64 = 0.04;
 /// The first pin that can measure a rail, by its Arduino number.
 const FIRST_ANALOG_PIN: u8 = 14;
 
-/// Returns the reaction and the voltage, V, in each note about the supply since line `first_line`.
-fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)> {
+/// Returns the reaction and the voltage, V, of each note about the supply from line `first_line` on.
+fn read_supply_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)> {
     let lines = &bench.lines()[first_line..];
     let notes = lines
         .iter()
@@ -59,11 +59,11 @@ fn assert_reacts_at(
         let volts = f64::from(hundredths) / 100.0;
         set_volts(bench, volts);
         bench.run_ms(160);
-        while true_volts.len() < read_notes(bench, line_count).len() {
+        while true_volts.len() < read_supply_notes(bench, line_count).len() {
             true_volts.push(volts);
         }
     }
-    let printed_notes = read_notes(bench, line_count);
+    let printed_notes = read_supply_notes(bench, line_count);
     let reactions: Vec<&str> = printed_notes
         .iter()
         .map(|(reaction, _)| reaction.as_str())
@@ -166,7 +166,7 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(1_150);
         if good_volts.is_none()
-            && read_notes(&mut bench, line_count)
+            && read_supply_notes(&mut bench, line_count)
                 .iter()
                 .any(|(reaction, _)| reaction == "good")
         {
@@ -197,14 +197,14 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
 fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let line_count = bench.lines().len();
-    // A starting servo pulls the supply down for some milliseconds.
+    // A servo that starts to move lowers the supply for some milliseconds.
     for n in 0..200u64 {
         bench.uno.set_supply_mv(3_300.0);
         bench.uno.run_cycles(15 * 16_000 + n * 997);
         bench.uno.set_supply_mv(5_000.0);
         bench.run_ms(100);
     }
-    assert!(read_notes(&mut bench, line_count).is_empty());
+    assert!(read_supply_notes(&mut bench, line_count).is_empty());
     // The supply alternates around the threshold for half a minute.
     let slow_mv = robot().supplies().board[0] * 1000.0;
     for n in 0..100 {
@@ -213,7 +213,7 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
             .set_supply_mv(slow_mv + if n % 2 == 0 { -40.0 } else { 90.0 });
         bench.run_ms(300);
     }
-    let printed_notes = read_notes(&mut bench, line_count);
+    let printed_notes = read_supply_notes(&mut bench, line_count);
     assert_eq!(printed_notes.len(), 1, "{printed_notes:?}");
 }
 
@@ -240,7 +240,7 @@ fn assert_no_rail() {
         let answer = bench.say("status");
         assert!(!answer.contains("rail="), "{answer}");
         assert!(answer.contains(" fault=none "), "{answer}");
-        assert!(read_notes(&mut bench, 0).is_empty());
+        assert!(read_supply_notes(&mut bench, 0).is_empty());
     }
     let gait = first_moving_gait().replace(' ', "-");
     assert_eq!(Status::of(&mut bench).text("gait"), gait);

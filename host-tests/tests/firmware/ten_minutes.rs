@@ -1,4 +1,4 @@
-//! Test that the core computes the same widths and answers for the same commands on the AVR and on the host.
+//! Test that the core computes the same widths and lines on the AVR and on the host, for a script of ten minutes.
 
 use crate::comparable_line;
 use lizard_host::sim::core_run;
@@ -9,7 +9,7 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
 
-/// Returns a script of ten minutes with every kind of line, accepted or refused, one every `interval_ms`.
+/// Returns a script of ten minutes with every kind of line, accepted or refused, one line every `interval_ms`.
 fn script_of_all_lines(interval_ms: u64) -> Script {
     let gaits = robot()
         .gaits()
@@ -72,10 +72,10 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         let mut script = script_of_all_lines(interval_ms);
         let (mut recording, mut lines) = record_script(&script, fidelity);
         let first_rise = recording.frames.first_start;
-        let undecided: Vec<usize> =
+        let undecided_lines: Vec<usize> =
             core_run::undecided_lines(&recording.received_by_uno, first_rise).collect();
-        if !undecided.is_empty() {
-            for &line in &undecided {
+        if !undecided_lines.is_empty() {
+            for &line in &undecided_lines {
                 script.steps[line].ms += 1;
             }
             (recording, lines) = record_script(&script, fidelity);
@@ -102,12 +102,11 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         let host_lines: Vec<&str> = host_lines.collect();
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
-        // Stock simavr measures against a reference voltage of its own, whatever robot.toml says.
-        let comparable_of = |line: &str| comparable_line(line, fidelity);
+        let to_comparable = |line: &str| comparable_line(line, fidelity);
         for (n, (host_line, avr_line)) in host_lines.iter().zip(&lines).enumerate() {
             assert_eq!(
-                comparable_of(host_line),
-                comparable_of(avr_line),
+                to_comparable(host_line),
+                to_comparable(avr_line),
                 "{fidelity:?}, line {n}"
             );
         }

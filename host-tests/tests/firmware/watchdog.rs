@@ -2,11 +2,10 @@
 //! reported correctly.
 
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::{Fidelity, ResetCause};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, ResetCause};
 
 use crate::measurements::{
-    CYCLES_PER_MS, count_flashes, measure_widths, power_cycle, recorded_pulses, run_for_pulses,
-    slew_limit,
+    count_flashes, measure_widths, power_cycle, recorded_pulses, run_for_pulses, slew_limit,
 };
 use crate::{
     Status, boot_and_command, boot_standing, first_moving_gait, neutral_widths, pose_command,
@@ -20,7 +19,7 @@ const TIMSK1: u16 = 0x6f;
 /// frame in which the watchdog was fed last.
 const MAX_TIMEOUT_MS: u64 = 250 + 20;
 
-/// Returns a bench whose robot holds a pose other than the neutral one, and the pulse widths of that pose.
+/// Moves the robot to a pose other than the neutral one, and returns its bench and the pulse widths of that pose.
 fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     let mut bench = boot_standing(Fidelity::DataSheet);
     bench.say(&pose_command([5.0, -4.0, 3.0, -2.0]));
@@ -30,14 +29,15 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     (bench, widths)
 }
 
-/// Runs until the watchdog resets the chip, ends the stall of main, and returns the cycles that passed.
+/// Runs until the watchdog resets the chip, ends the stall of the main loop, and returns the cycles that passed.
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
-    let (start, resets) = (bench.uno.cycle(), bench.uno.watchdog_resets());
-    let limit = MAX_TIMEOUT_MS * CYCLES_PER_MS;
+    let (start, resets_before) = (bench.uno.cycle(), bench.uno.watchdog_resets());
+    let limit_cycles = MAX_TIMEOUT_MS * CYCLES_PER_MS;
     assert!(
         bench
             .uno
-            .run_until(limit, 1_000, |uno| uno.watchdog_resets() > resets),
+            .run_until(limit_cycles, 1_000, |uno| uno.watchdog_resets()
+                > resets_before),
         "no reset"
     );
     // The restarted program must not be stalled.
@@ -49,7 +49,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
     for round in 0..40u64 {
-        // In each round, main stops at another time in the frame.
+        // In each round, the main loop stops at a different time in the frame.
         bench.uno.run_cycles(round * 7_919);
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
@@ -71,7 +71,7 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
                 .max();
             assert!(
                 gap.is_some_and(|gap| gap < 200 * CYCLES_PER_MS),
-                "limp for {gap:?} cycles"
+                "no pulse for {gap:?} cycles"
             );
         }
         let status = Status::of(&mut bench);
@@ -190,8 +190,8 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.set_supply_mv(2_400.0);
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
-        // The boot loader clears the chip's record of the cause, and the RAM has kept its
-        // contents, so the firmware takes the dip for an external reset.
+        // The boot loader clears the chip's record of the cause, and the RAM has kept its contents, so the
+        // firmware cannot distinguish the dip from an external reset.
         let dip_cause = if has_boot_loader {
             "external"
         } else {
@@ -202,7 +202,12 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         assert_reported(&mut bench, "external", 4.0);
         power_cycle(&mut bench);
         assert_reported(&mut bench, "power", 0.0);
-        let causes: Vec<ResetCause> = bench.uno.reset_events().iter().map(|r| r.cause).collect();
+        let causes: Vec<ResetCause> = bench
+            .uno
+            .reset_events()
+            .iter()
+            .map(|event| event.cause)
+            .collect();
         assert_eq!(
             causes,
             [
@@ -218,7 +223,7 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
 }
 
 #[test]
-fn resets_are_counted_up_to_255_and_no_farther() {
+fn resets_are_counted_up_to_255_and_no_further() {
     let mut bench = boot_fresh_board(true);
     for reset in 1..=260u32 {
         bench.uno.reset();
@@ -258,10 +263,10 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
     let (mut bench, widths) = hold_pose();
     // The stalls range from shorter than the watchdog's first stage of 125 ms to longer than both stages.
     for ms in (90..300).step_by(10) {
-        let resets = bench.uno.watchdog_resets();
+        let resets_before = bench.uno.watchdog_resets();
         bench.uno.stall_main(ms * CYCLES_PER_MS);
         bench.uno.run_ms(ms + 150);
-        let was_reset = bench.uno.watchdog_resets() > resets;
+        let was_reset = bench.uno.watchdog_resets() > resets_before;
         let servo_pulses = run_for_pulses(&mut bench, 200);
         for (servo, pulses) in servo_pulses.iter().enumerate() {
             let is_steady =
@@ -289,10 +294,10 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
                 let erased = bench.uno.eeprom().map(|_| 0xff);
                 bench.uno.set_eeprom(&erased);
             }
-            let resets = bench.uno.watchdog_resets();
+            let resets_before = bench.uno.watchdog_resets();
             bench.uno.stall_main(ms * CYCLES_PER_MS);
             bench.uno.run_ms(ms + 150);
-            assert!(bench.uno.watchdog_resets() > resets);
+            assert!(bench.uno.watchdog_resets() > resets_before);
             let pulses = run_for_pulses(&mut bench, 6000);
             assert!(pulses.iter().all(Vec::is_empty), "{ms} ms: {pulses:?}");
             let status = Status::of(&mut bench);
@@ -329,8 +334,5 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
     let pulses = run_for_pulses(&mut bench, 5_000);
-    assert!(
-        pulses.iter().all(Vec::is_empty),
-        "a byte has called boot off"
-    );
+    assert!(pulses.iter().all(Vec::is_empty), "a byte cancels `boot`");
 }

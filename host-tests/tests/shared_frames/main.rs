@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use lizard_host_tests::avr_gcc::{assemble, link, object_of_c};
+use lizard_host_tests::avr_gcc::{assemble, compile_to_object, link};
 use lizard_host_tests::root;
 use lizard_linker::frame::FIRST_REGISTERS;
 use lizard_linker::{ROUTINES, shrink};
@@ -102,7 +102,7 @@ fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
 
 #[test]
 fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
-    let object = object_of_c(PROGRAM).expect("it compiles");
+    let object = compile_to_object(PROGRAM).expect("it compiles");
     let (shrunk, savings) = shrink(&object)
         .expect("it is an object")
         .expect("of an AVR");
@@ -147,7 +147,7 @@ int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
 
 #[test]
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
-    let object = object_of_c(STACK_ARGUMENT).expect("it compiles");
+    let object = compile_to_object(STACK_ARGUMENT).expect("it compiles");
     let shrunk = shrink(&object).expect("it is an object");
     let image = link(ROUTINES, &shrunk.expect("of an AVR").0).expect("it links");
     let [done_address, result_address] = ["done", "result"].map(|name| address(&image, name));

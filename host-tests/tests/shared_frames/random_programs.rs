@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_host_tests::avr_gcc::{link, object_of_c};
+use lizard_host_tests::avr_gcc::{compile_to_object, link};
 use lizard_host_tests::scaled;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
@@ -163,7 +163,7 @@ fn run_for_results(image: &Image) -> Vec<[u8; 4]> {
 /// the linker has rewritten any function. `None` if avr-gcc fails because it runs out of registers or a branch
 /// is too far.
 fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
-    let object = object_of_c(&random_program(&mut Rng::with_seed(seed))).ok()?;
+    let object = compile_to_object(&random_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;
     let (object, savings) = shrink(&object)
         .expect("it is an object")

@@ -120,7 +120,7 @@ impl Drop for Shell {
     fn drop(&mut self) {
         if !self.has_ended() {
             self.signal(Signal::KILL);
-            let _ = LIMIT.end_of(self.child.get_mut().expect("nobody panics with it"));
+            let _ = LIMIT.wait_for_exit(self.child.get_mut().expect("nobody panics with it"));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Generator of the JavaScript and the types for a WebAssembly module of the page: `bindgen MODULE FOLDER NAME`.
 //!
-//! The command wasm-bindgen does this too, but must have the same version as the crate in the module. Here one lock
+//! The command wasm-bindgen does the same, but must have the same version as the crate in the module. Here one lock
 //! file sets both versions.
 
 use std::env::args;
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut bindgen = Bindgen::new();
     bindgen.input_path(module).out_name(name).web(true)?;
-    // The page loads the module itself, and passes it to each worker.
+    // The page loads the module itself and passes it to each worker, so the JavaScript needs no path.
     bindgen.typescript(true).omit_default_module_path(true);
     bindgen
         .remove_name_section(true)

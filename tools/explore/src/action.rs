@@ -6,44 +6,45 @@ use lizard_core::console::word::Word;
 use lizard_core::memory::restart::Cause;
 use lizard_core::numbers::rate::BaudRate;
 
-use crate::small::{BUTTON, NOSE};
+use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 
 /// An event that the search applies to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// A line is sent and executed; its output and its writes to the memory are still pending.
-    Say(&'static str),
-    /// A line arrives in which noise has changed a byte.
-    Noise,
+    /// A line is sent, and main executes it. Its output and its writes to the EEPROM are still pending.
+    Line(&'static str),
+    /// A line arrives in which noise has changed one byte.
+    GarbledLine,
     /// Lines are sent at this rate from now on.
-    SendAt(BaudRate),
-    /// Main performs its most urgent task.
-    Step,
-    /// Frames pass.
+    SenderRate(BaudRate),
+    /// Main performs one step: its most urgent task.
+    MainStep,
+    /// This many frames pass.
     Frames(u8),
     /// Main does nothing for this many milliseconds.
     Stall(u16),
     /// The supply falls or rises to this many millivolts.
-    Supply(u16),
-    /// If true, the supply is weak from now on: when three servos have woken, they pull it down to
-    /// 2.4 V. If false, the supply is strong again.
-    Weak(bool),
-    /// A pulse's edge comes late.
-    Late,
-    /// The stack grows into the data.
-    Stack,
+    SupplyMv(u16),
+    /// If true, the supply is weak from now on: three awake servos cause a brown-out. If false, the supply is strong
+    /// again.
+    WeakSupply(bool),
+    /// A frame passes in which an edge of a pulse comes late.
+    LateEdge,
+    /// A frame passes in which the stack grows into the data.
+    StackOverflow,
     /// The processor is reset.
     Reset(Cause),
-    /// Power is lost and comes back. The byte that was being written then has this value; `None` if no byte is
-    /// torn.
-    LosePower(Option<u8>),
-    /// If true, the contact at this pin closes; if false, it opens.
+    /// Power is lost and comes back. If the EEPROM was writing a byte, that byte then has this value; `None` if no
+    /// byte is torn.
+    PowerLoss(Option<u8>),
+    /// The contact at this pin closes (true) or opens (false).
     Contact(u8, bool),
-    /// If true, nobody reads the robot's output from now on; if false, somebody reads it again.
-    StopReading(bool),
+    /// If true, no host reads the robot's output from now on; if false, a host reads the output again.
+    HeldOutput(bool),
 }
 
-/// Lines that are tried. Each command word that begins none of these lines is tried with its example.
+/// The lines that the search sends. For each command word that begins none of these lines, it also sends the word's
+/// example.
 const LINES: [&str; 30] = [
     "stand",
     "walk",
@@ -78,35 +79,35 @@ const LINES: [&str; 30] = [
 ];
 
 impl Action {
-    /// Returns every action, even if the current state does not permit it.
+    /// Returns all actions, including those that are not possible in every state.
     pub fn all() -> Vec<Self> {
         let mut actions = vec![
             Self::Frames(1),
             Self::Frames(5),
             Self::Frames(25),
             Self::Frames(160),
-            Self::Step,
-            Self::Noise,
+            Self::MainStep,
+            Self::GarbledLine,
         ];
-        let is_tried = |word: &&Word| {
+        let begins_a_line = |word: &&Word| {
             let mut first_words = LINES.iter().filter_map(|line| line.split(' ').next());
             first_words.any(|first_word| first_word == word.text())
         };
-        let other_words = Word::ALL.iter().filter(|word| !is_tried(word));
-        actions.extend(LINES.map(Self::Say));
-        actions.extend(BaudRate::ALL.map(Self::SendAt));
-        actions.extend(other_words.map(|word| Self::Say(word.example())));
-        // The last hand-over of a frame was 16 ms ago. In these times main misses no hand-over, one, three or
-        // five; or the watchdog ends the pulses; or the watchdog resets the chip.
+        let other_words = Word::ALL.iter().filter(|word| !begins_a_line(word));
+        actions.extend(LINES.map(Self::Line));
+        actions.extend(BaudRate::ALL.map(Self::SenderRate));
+        actions.extend(other_words.map(|word| Self::Line(word.example())));
+        // The board took over the last frame 16 ms ago. During these stalls main misses zero, one, three or five
+        // frames; or the watchdog ends the pulses; or the watchdog resets the processor.
         actions.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
-        actions.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
-        actions.extend([Self::Weak(true), Self::Weak(false)]);
-        actions.extend([Self::Late, Self::Stack]);
+        actions.extend([5_000, 4_100, 3_900, 3_500].map(Self::SupplyMv));
+        actions.extend([Self::WeakSupply(true), Self::WeakSupply(false)]);
+        actions.extend([Self::LateEdge, Self::StackOverflow]);
         actions.extend([Cause::External, Cause::BrownOut].map(Self::Reset));
-        actions.extend([None, Some(0x00), Some(0x5a), Some(0xff)].map(Self::LosePower));
-        actions.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, true)));
-        actions.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, false)));
-        actions.extend([Self::StopReading(true), Self::StopReading(false)]);
+        actions.extend([None, Some(0x00), Some(0x5a), Some(0xff)].map(Self::PowerLoss));
+        actions.extend([BUTTON_PIN, NOSE_PIN].map(|pin| Self::Contact(pin, true)));
+        actions.extend([BUTTON_PIN, NOSE_PIN].map(|pin| Self::Contact(pin, false)));
+        actions.extend([Self::HeldOutput(true), Self::HeldOutput(false)]);
         actions
     }
 }
@@ -114,33 +115,33 @@ impl Action {
 impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Say(line) => write!(f, "say `{line}`"),
-            Self::Step => f.write_str("one step of main"),
-            Self::SendAt(rate) => write!(f, "lines come at {} baud from now on", rate.baud()),
-            Self::Noise => f.write_str("noise within `walk`"),
+            Self::Line(line) => write!(f, "say `{line}`"),
+            Self::MainStep => f.write_str("one step of main"),
+            Self::SenderRate(rate) => write!(f, "lines come at {} baud from now on", rate.baud()),
+            Self::GarbledLine => f.write_str("noise within `walk`"),
             Self::Frames(1) => f.write_str("a frame"),
             Self::Frames(count) => write!(f, "{count} frames"),
             Self::Stall(ms) => write!(f, "main does nothing for {ms} ms"),
-            Self::Supply(mv) => write!(f, "the supply is at {mv} mV"),
-            Self::Weak(true) => f.write_str("the supply becomes too weak for three servos"),
-            Self::Weak(false) => f.write_str("the supply bears four servos again"),
-            Self::Late => f.write_str("a frame in which an edge comes late"),
-            Self::Stack => f.write_str("a frame in which the stack reaches the data"),
+            Self::SupplyMv(mv) => write!(f, "the supply is at {mv} mV"),
+            Self::WeakSupply(true) => f.write_str("the supply becomes too weak for three servos"),
+            Self::WeakSupply(false) => f.write_str("the supply bears four servos again"),
+            Self::LateEdge => f.write_str("a frame in which an edge comes late"),
+            Self::StackOverflow => f.write_str("a frame in which the stack reaches the data"),
             Self::Reset(cause) => write!(f, "reset: {cause:?}"),
-            Self::LosePower(None) => f.write_str("power is lost and comes back"),
-            Self::LosePower(Some(byte)) => {
+            Self::PowerLoss(None) => f.write_str("power is lost and comes back"),
+            Self::PowerLoss(Some(byte)) => {
                 write!(f, "power is lost in a write, the byte is {byte:#04x}")
             }
             Self::Contact(pin, is_closed) => {
-                let contact = if *pin == BUTTON { "button" } else { "nose" };
+                let contact = if *pin == BUTTON_PIN { "button" } else { "nose" };
                 write!(
                     f,
                     "the {contact} {}",
                     if *is_closed { "closes" } else { "opens" }
                 )
             }
-            Self::StopReading(true) => f.write_str("nobody listens any more"),
-            Self::StopReading(false) => f.write_str("somebody listens again"),
+            Self::HeldOutput(true) => f.write_str("nobody listens any more"),
+            Self::HeldOutput(false) => f.write_str("somebody listens again"),
         }
     }
 }

@@ -1,18 +1,17 @@
-//! Fingerprints that decide which states are equal: two states are equal if the core's own `Debug` output
-//! is the same for both, except for counters that have no effect.
+//! Fingerprints of states: two states count as equal if their fingerprints are equal.
 //!
-//! The core derives `Debug` for everything it holds, so a new field is included
-//! automatically, and the core needs no code for this. A field that cannot matter is left
-//! out. A field that is only compared with a few values, such as a countdown, is rounded
-//! as `RULES` says. Of several states that rounding makes equal, the search explores only
-//! the first that it reaches.
+//! A fingerprint is a hash of the core's own `Debug` output. The core derives `Debug` for all its structs, so
+//! every new field is included automatically, and the core needs no code for the search. `RULES` lists the exceptions:
+//! a field without effect, such as some counters, is left out, and a field that the core compares with only a few
+//! values, such as a countdown, is rounded. If rounding makes several states equal, the search explores only the
+//! first of them.
 
 use std::fmt::{self, Write};
 
 /// A function that rounds a number.
 type Rounding = fn(u64) -> u64;
 
-/// The treatment of a field.
+/// The treatment of a field: left out, or rounded.
 #[derive(Clone, Copy)]
 enum Treatment {
     Skip,
@@ -21,17 +20,17 @@ enum Treatment {
 
 use Treatment::{Coarse, Skip};
 
-/// The name of a struct, the name of a field in it, and the treatment of that field.
-type Field = (&'static str, &'static str, Treatment);
+/// A rule for a field: the struct's name, the field's name, and the field's treatment.
+type FieldRule = (&'static str, &'static str, Treatment);
 
 /// The fields that are left out or rounded in a state's fingerprint.
-const RULES: &[Field] = &[
+const RULES: &[FieldRule] = &[
     ("Main", "last_tick", Skip),
-    // The previous line has no effect, since the next byte begins a new line.
+    // The next byte begins a new line, so the previous line has no effect.
     ("Console", "line", Skip),
-    // No action ends within a line, so no line waits for its rest.
+    // No action ends in the middle of a line, so the time since the last byte has no effect.
     ("Console", "silence_ms", Skip),
-    // A line at another rate has enough wrong bytes to change the rate, however many came before.
+    // A single line at another rate has enough wrong bytes to change the rate.
     ("RateFinder", "wrong_byte_count", Skip),
     (
         "Motion",
@@ -41,7 +40,7 @@ const RULES: &[Field] = &[
     ("Motion", "calibration", Skip),
     ("CycleCount", "phase_covered", Coarse(|phase| phase >> 14)),
     ("CycleCount", "last_phase", Skip),
-    ("Routine", "frames_left", Coarse(coarse_countdown)),
+    ("Routine", "frames_left", Coarse(countdown_class)),
     ("Stance", "sent_pulses", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
     (
@@ -52,15 +51,15 @@ const RULES: &[Field] = &[
     ("Led", "frames", Skip),
     ("Safety", "is_lit", Skip),
     ("Safety", "handled_late_edges", Skip),
-    // The observer counts the silence, too, where it matters.
+    // The observer measures the time without a line, too, while `deadman` is set.
     ("Safety", "silence_ms", Skip),
-    ("Safety", "boot_timer", Coarse(coarse_countdown)),
+    ("Safety", "boot_timer", Coarse(countdown_class)),
     ("Supply", "reading", Skip),
-    ("Supply", "frames_at_other_level", Coarse(coarse_countdown)),
+    ("Supply", "frames_at_other_level", Coarse(countdown_class)),
     ("Cycling", "gait", Skip),
     ("Cycling", "phase", Coarse(|phase| phase >> 22)),
-    ("Cycling", "pace", Coarse(coarse_pace)),
-    ("Moving", "pace", Coarse(coarse_pace)),
+    ("Cycling", "pace", Coarse(pace_class)),
+    ("Moving", "pace", Coarse(pace_class)),
     ("PointToPointMove", "from", Coarse(|sweep| sweep >> 11)),
     ("PointToPointMove", "share_per_frame", Skip),
     (
@@ -72,8 +71,8 @@ const RULES: &[Field] = &[
     ("Control", "reset_count", Coarse(|count| count.min(1))),
 ];
 
-/// The fields that a refused command may change: they record that a line has arrived.
-const LINE_ARRIVAL_FIELDS: &[Field] = &[
+/// The fields that record the arrival of a line. A refused command may change only these fields.
+const LINE_ARRIVAL_FIELDS: &[FieldRule] = &[
     ("Main", "last_tick", Skip),
     ("Console", "line", Skip),
     ("Console", "silence_ms", Skip),
@@ -83,13 +82,13 @@ const LINE_ARRIVAL_FIELDS: &[Field] = &[
     ("Console", "has_printed_banner", Skip),
     ("Safety", "silence_ms", Skip),
     ("Safety", "boot_timer", Skip),
-    // A command shows that a program opened the port, which resets the board.
+    // A command shows that the last reset came from a program that opened the port.
     ("Control", "has_heard_command", Skip),
-    // From then on, the motion that `boot` began counts as ordered.
+    // After a command, the motion that `boot` began counts as ordered.
     ("Control", "is_unattended", Skip),
 ];
 
-fn coarse_countdown(frames: u64) -> u64 {
+fn countdown_class(frames: u64) -> u64 {
     match frames {
         0 | 1 => frames,
         2..=5 => 2,
@@ -99,35 +98,35 @@ fn coarse_countdown(frames: u64) -> u64 {
     }
 }
 
-fn coarse_pace(pace: u64) -> u64 {
+fn pace_class(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
-/// Returns a fingerprint that rounds fields or leaves them out as `RULES` says.
+/// Returns the fingerprint of a value; fields are rounded or left out as `RULES` says.
 pub fn coarse_fingerprint(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, RULES)
 }
 
-/// Returns the exact fingerprint of every field except those that record that a line has arrived.
+/// Returns the fingerprint of a value without rounding; only the fields that record a line's arrival are left out.
 pub fn fingerprint_without_line_arrival(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, LINE_ARRIVAL_FIELDS)
 }
 
-fn fingerprint(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
-    let mut reader = Reader {
+fn fingerprint(value: &impl fmt::Debug, rules: &'static [FieldRule]) -> u64 {
+    let mut reader = DebugReader {
         rules,
         fingerprint: Fingerprint::default(),
-        within: Vec::new(),
-        last: 0,
+        enclosing_hashes: Vec::new(),
+        last_piece_hash: 0,
         is_field_name_next: false,
-        number: None,
-        skipped: None,
+        rounding: None,
+        skipped_depth: None,
     };
     write!(reader, "{value:?}").expect("Debug does not fail");
     reader.fingerprint.0
 }
 
-/// A hash of numbers.
+/// A hash of a sequence of numbers.
 #[derive(Clone, Copy)]
 pub struct Fingerprint(pub u64);
 
@@ -145,22 +144,22 @@ impl Fingerprint {
     }
 }
 
-/// A reader of the output of `Debug`, which writes a name, a brace, a field's name, a colon and
-/// a value, each as a separate piece.
-struct Reader {
-    rules: &'static [Field],
+/// A reader of `Debug` output, which arrives in separate pieces: a struct's name, a brace, a field's name, a colon, a
+/// value.
+struct DebugReader {
+    rules: &'static [FieldRule],
     fingerprint: Fingerprint,
-    /// The values around the next piece, outermost first: the hash of a struct's name, or 0 for a tuple or
-    /// a list.
-    within: Vec<u64>,
+    /// The values that enclose the next piece, outermost first: the hash of a struct's name, or 0 for a tuple or a
+    /// list.
+    enclosing_hashes: Vec<u64>,
     /// The hash of the previous piece.
-    last: u64,
+    last_piece_hash: u64,
     /// True if the next piece is a field's name.
     is_field_name_next: bool,
-    /// The rounding of numbers in the current field, and the depth of that field.
-    number: Option<(Rounding, usize)>,
+    /// The rounding of numbers in the current field, and the field's depth.
+    rounding: Option<(Rounding, usize)>,
     /// The depth of the field that is being left out.
-    skipped: Option<usize>,
+    skipped_depth: Option<usize>,
 }
 
 /// Returns the hash of a short text.
@@ -175,64 +174,72 @@ const fn hash(text: &str) -> u64 {
     hash
 }
 
-impl Write for Reader {
+impl Write for DebugReader {
     fn write_str(&mut self, piece: &str) -> fmt::Result {
         match piece {
             " { " => {
-                self.within.push(self.last);
+                self.enclosing_hashes.push(self.last_piece_hash);
                 self.is_field_name_next = true;
             }
-            "(" | "[" => self.within.push(0),
+            "(" | "[" => self.enclosing_hashes.push(0),
             " }" | ")" | "]" => {
                 self.end_field();
-                self.within.pop();
+                self.enclosing_hashes.pop();
             }
             ", " => {
                 self.end_field();
-                self.is_field_name_next = self.within.last().is_some_and(|name| *name != 0);
+                self.is_field_name_next = self
+                    .enclosing_hashes
+                    .last()
+                    .is_some_and(|struct_hash| *struct_hash != 0);
             }
             ": " => {}
             _ if self.is_field_name_next => {
                 self.is_field_name_next = false;
-                if self.skipped.is_none() {
+                if self.skipped_depth.is_none() {
                     self.begin_field(piece);
                 }
             }
-            _ if self.skipped.is_none() => self.add_value(piece),
+            _ if self.skipped_depth.is_none() => self.add_value(piece),
             _ => {}
         }
-        if self.skipped.is_none() {
-            self.last = hash(piece);
+        if self.skipped_depth.is_none() {
+            self.last_piece_hash = hash(piece);
         }
         Ok(())
     }
 }
 
-impl Reader {
-    /// Ends the treatment of the field at the current depth.
+impl DebugReader {
+    /// Ends the rounding or skipping of the field at the current depth.
     fn end_field(&mut self) {
-        let depth = self.within.len();
-        self.skipped = self.skipped.filter(|skipped| *skipped != depth);
-        self.number = self.number.filter(|(_, field_depth)| *field_depth != depth);
+        let depth = self.enclosing_hashes.len();
+        self.skipped_depth = self
+            .skipped_depth
+            .filter(|skipped_depth| *skipped_depth != depth);
+        self.rounding = self
+            .rounding
+            .filter(|(_, field_depth)| *field_depth != depth);
     }
 
     fn begin_field(&mut self, field: &str) {
-        let name = hash(field);
-        self.fingerprint.add(name);
-        let struct_hash = *self.within.last().unwrap_or(&0);
+        self.fingerprint.add(hash(field));
+        let struct_hash = *self.enclosing_hashes.last().unwrap_or(&0);
         let rule = self
             .rules
             .iter()
             .find(|(owner, field_name, _)| *field_name == field && hash(owner) == struct_hash);
         match rule {
-            Some((_, _, Skip)) => self.skipped = Some(self.within.len()),
-            Some((_, _, Coarse(round))) => self.number = Some((*round, self.within.len())),
+            Some((_, _, Skip)) => self.skipped_depth = Some(self.enclosing_hashes.len()),
+            Some((_, _, Coarse(round))) => {
+                self.rounding = Some((*round, self.enclosing_hashes.len()))
+            }
             None => {}
         }
     }
 
     fn add_value(&mut self, piece: &str) {
-        match (piece.parse::<u64>(), self.number) {
+        match (piece.parse::<u64>(), self.rounding) {
             (Ok(number), Some((round, _))) => self.fingerprint.add(round(number)),
             (Ok(number), None) => self.fingerprint.add(number),
             (Err(_), _) => self.fingerprint.add(hash(piece)),
@@ -243,7 +250,7 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::small::small_robot;
+    use crate::small_robot::small_robot;
     use crate::{Action, initial_states};
 
     #[derive(Clone, Copy, Debug)]
@@ -314,16 +321,41 @@ mod tests {
         let robot = small_robot();
         let mut text = String::new();
         for initial_state in initial_states::all(robot) {
-            for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {
+            for action in [
+                Action::Line("walk"),
+                Action::Line("save"),
+                Action::Frames(25),
+            ] {
                 let mut world = initial_state.world.clone();
                 _ = world.apply(action);
-                let ram = world.running.board.ram.peek_restart(Default::default());
-                _ = write!(text, "{:?} {ram:?}", world.running.main);
+                let ram = world
+                    .running_robot
+                    .board
+                    .ram
+                    .peek_restart(Default::default());
+                _ = write!(text, "{:?} {ram:?}", world.running_robot.main);
             }
         }
         for (owner, field, _) in RULES.iter().chain(LINE_ARRIVAL_FIELDS) {
-            assert!(text.contains(&format!("{owner} {{ ")), "{owner}");
-            assert!(text.contains(&format!(" {field}: ")), "{owner}.{field}");
+            assert!(has_field(&text, owner, field), "{owner}.{field}");
         }
+    }
+
+    /// True if a struct `owner` in the `Debug` text has the field itself, not in a struct inside it.
+    fn has_field(text: &str, owner: &str, field: &str) -> bool {
+        let field = format!(" {field}: ");
+        text.split(&format!("{owner} {{")).skip(1).any(|inside| {
+            let mut depth = 0;
+            let own_text: String = inside
+                .chars()
+                .map_while(|letter| {
+                    depth -= i32::from(letter == '}');
+                    let own_letter = if depth == 0 { letter } else { ' ' };
+                    depth += i32::from(letter == '{');
+                    (depth >= 0).then_some(own_letter)
+                })
+                .collect();
+            own_text.contains(&field)
+        })
     }
 }

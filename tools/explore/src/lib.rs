@@ -1,12 +1,11 @@
-//! An exhaustive search for sequences of commands and faults that break a safety rule. It tries all
-//! sequences, not a random sample, the shortest first, as many as time allows.
+//! A model checker: an exhaustive search for sequences of commands and faults that break a safety rule. The search
+//! tries all sequences, the shortest first, up to a number of states.
 //!
-//! The search does not explore a model of the firmware, but the firmware's own core, [`Main`], on
-//! the board without a chip, [`VirtualBoard`]. A [`World`] contains both and an
-//! [`Observer`](lizard_rules::Observer). An [`Action`] is a command or a fault. [`search()`]
-//! applies all actions to all initial states and to every state reached, breadth first, so the
-//! first sequence found that breaks a rule is a shortest one. States that differ little count as
-//! one ([`fingerprint`]).
+//! The search does not explore a model of the firmware, but the firmware's own core, [`Main`], on the
+//! [`VirtualBoard`]. A [`World`] contains both and an [`Observer`](lizard_rules::Observer). An [`Action`] is a command
+//! or a fault. [`search()`] applies all actions to all initial states and to every state that it reaches. It works
+//! breadth first, so the first sequence that breaks a rule is one of the shortest. States that differ little count as
+//! equal ([`fingerprint`]).
 //!
 //! [`Main`]: lizard_core::step::Main
 //! [`VirtualBoard`]: lizard_core::virtual_board::VirtualBoard
@@ -15,7 +14,7 @@ pub mod action;
 pub mod fingerprint;
 pub mod initial_states;
 pub mod search;
-pub mod small;
+pub mod small_robot;
 pub mod world;
 
 pub use action::Action;

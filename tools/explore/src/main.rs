@@ -1,8 +1,8 @@
-//! `make explore`: explores ten million states, or the number in the argument.
+//! `make explore`: explores ten million states, or as many as the argument says.
 
 use std::process::ExitCode;
 
-use lizard_explore::{search, small::small_robot};
+use lizard_explore::{search, small_robot::small_robot};
 
 fn main() -> ExitCode {
     let max_states = std::env::args()
@@ -17,20 +17,20 @@ fn main() -> ExitCode {
     let result = search(robot, max_states);
     println!(
         "{} distinct states by {} actions in {:.0} s, the longest sequence of {}, {}",
-        result.states,
-        result.tried,
+        result.state_count,
+        result.tried_action_count,
         start.elapsed().as_secs_f64(),
-        result.longest,
+        result.longest_sequence_length,
         if result.is_complete {
             "closed"
         } else {
             "not closed"
         },
     );
-    for (rule, (times, sequence)) in &result.broken {
-        println!("\nBROKEN {times} times: {}\n{sequence}", rule.sentence());
+    for (rule, (count, sequence)) in &result.broken_rules {
+        println!("\nBROKEN {count} times: {}\n{sequence}", rule.sentence());
     }
-    if result.broken.is_empty() {
+    if result.broken_rules.is_empty() {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

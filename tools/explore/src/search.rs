@@ -1,8 +1,8 @@
 //! Breadth-first search through all sequences of [`Action`]s, up to a number of states.
 //!
-//! All states that `n` actions reach are processed before the states that `n + 1` actions reach, by as
-//! many threads as there are processors. So the first sequence that breaks a rule is one of the
-//! shortest. Of a processed state, the search keeps only the fingerprint and the step that reached it.
+//! The search processes all states that `n` actions reach before the states that `n + 1` actions reach, so the first
+//! sequence that breaks a rule is one of the shortest. There are as many threads as processors. Of a processed state,
+//! the search keeps only the fingerprint and the step that reached the state.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -19,82 +19,85 @@ use crate::action::Action;
 use crate::initial_states::{self, InitialState};
 use crate::world::{Verdict, World};
 
-/// Number of states that a thread takes at a time.
-const CHUNK: usize = 256;
+/// Number of states that a thread takes from the queue at a time.
+const STATES_PER_CHUNK: usize = 256;
 
-type SeenStates = HashSet<u64>;
+/// The fingerprints of known states.
+type Fingerprints = HashSet<u64>;
 
 /// The results of a search.
 #[derive(Debug, Default)]
 pub struct SearchResult {
-    /// Number of distinct states.
-    pub states: usize,
-    /// Number of actions tried.
-    pub tried: usize,
+    /// Number of distinct states that were reached.
+    pub state_count: usize,
+    /// Number of actions that were tried, in all states together.
+    pub tried_action_count: usize,
     /// Number of actions in the longest sequence.
-    pub longest: usize,
+    pub longest_sequence_length: usize,
     /// True if no state is left to explore.
     pub is_complete: bool,
-    /// The broken rules, each with its count and its first sequence.
-    pub broken: BTreeMap<Rule, (usize, String)>,
+    /// The broken rules, each with the number of times that it was broken, and the first sequence that broke it.
+    pub broken_rules: BTreeMap<Rule, (usize, String)>,
 }
 
-/// A step of a sequence: the state before it, and the action.
+/// A step of a sequence.
 #[derive(Clone, Copy)]
 struct Step {
-    from: u32,
-    action: u8,
+    /// The index of the previous step; `u32::MAX` if the step is an initial state.
+    previous_step: u32,
+    action_index: u8,
 }
 
-/// Searches from all initial states, until `max` distinct states are reached or no state is left to explore.
-pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
+/// Searches from all initial states, until `max_states` distinct states are reached or no state is left to explore.
+pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
     let actions = Action::all();
     let initial_states = initial_states::all(robot);
-    let known_states: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
+    let known_states: Vec<Mutex<Fingerprints>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
     let mut result = SearchResult::default();
     let mut frontier: Vec<(World, u32)> = Vec::new();
     for (index, initial_state) in initial_states.iter().enumerate() {
         steps.push(Step {
-            from: u32::MAX,
-            action: 0,
+            previous_step: u32::MAX,
+            action_index: 0,
         });
-        if is_new(&known_states, initial_state.world.fingerprint()) {
+        if insert_if_new(&known_states, initial_state.world.fingerprint()) {
             frontier.push((initial_state.world.clone(), index as u32));
         }
     }
     let state_count = AtomicUsize::new(frontier.len());
-    // Each panic is reported as a broken rule.
+    // A panic is reported as a broken rule, so the hook prints nothing.
     let panic_hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
-    while !frontier.is_empty() && state_count.load(Ordering::Relaxed) < max {
-        result.longest += 1;
+    while !frontier.is_empty() && state_count.load(Ordering::Relaxed) < max_states {
+        result.longest_sequence_length += 1;
         let queue = Mutex::new(frontier.into_iter());
-        let threads = thread::available_parallelism().map_or(1, usize::from);
+        let thread_count = thread::available_parallelism().map_or(1, usize::from);
         let thread_results: Vec<ThreadResult> = thread::scope(|scope| {
-            let run_thread = || explore_queue(&queue, &actions, &known_states, &state_count, max);
-            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(run_thread)).collect();
+            let run_thread =
+                || explore_queue(&queue, &actions, &known_states, &state_count, max_states);
+            let threads: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_thread)).collect();
             threads
                 .into_iter()
-                .map(|thread| thread.join().expect("a thread of the walk"))
+                .map(|thread| thread.join().expect("a thread of the search"))
                 .collect()
         });
         let mut next_frontier = Vec::new();
-        let mut broken = Vec::new();
+        let mut all_broken = Vec::new();
         for thread_result in thread_results {
-            result.tried += thread_result.tried;
-            broken.extend(thread_result.broken);
-            next_frontier.extend(thread_result.reached);
+            result.tried_action_count += thread_result.tried_action_count;
+            all_broken.extend(thread_result.broken_rules);
+            next_frontier.extend(thread_result.reached_states);
         }
-        // The broken rules are sorted, so that the result does not depend on which thread was faster.
-        broken.sort_by_key(|(from, action, _)| (*from, *action));
-        for (from, action, fault) in broken {
-            let entry = result.broken.entry(fault.rule).or_insert_with(|| {
-                let description =
-                    describe(&initial_states, &steps, &actions, Step { from, action });
-                (0, format!("{description}\n  {}", fault.seen))
+        // Sorted, so that the result does not depend on which thread was faster.
+        all_broken.sort_by_key(|(step, _)| (step.previous_step, step.action_index));
+        for (step, broken_rule) in all_broken {
+            let entry = result.broken_rules.entry(broken_rule.rule);
+            let (count, _) = entry.or_insert_with(|| {
+                let description = describe_sequence(&initial_states, &steps, &actions, step);
+                (0, format!("{description}\n  {}", broken_rule.observation))
             });
-            entry.0 += 1;
+            *count += 1;
         }
         frontier = next_frontier
             .into_iter()
@@ -106,19 +109,20 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     }
     panic::set_hook(panic_hook);
     result.is_complete = frontier.is_empty();
-    result.states = state_count.into_inner();
+    result.state_count = state_count.into_inner();
     result
 }
 
 /// The results of one thread.
 #[derive(Default)]
 struct ThreadResult {
-    tried: usize,
-    reached: Vec<(World, Step)>,
-    broken: Vec<(u32, u8, BrokenRule)>,
+    tried_action_count: usize,
+    reached_states: Vec<(World, Step)>,
+    broken_rules: Vec<(Step, BrokenRule)>,
 }
 
-fn is_new(known_states: &[Mutex<SeenStates>], fingerprint: u64) -> bool {
+/// Inserts a fingerprint. Returns true if it was not known before.
+fn insert_if_new(known_states: &[Mutex<Fingerprints>], fingerprint: u64) -> bool {
     let shard = &known_states[(fingerprint >> 58) as usize];
     shard
         .lock()
@@ -129,51 +133,51 @@ fn is_new(known_states: &[Mutex<SeenStates>], fingerprint: u64) -> bool {
 fn explore_queue(
     queue: &Mutex<vec::IntoIter<(World, u32)>>,
     actions: &[Action],
-    known_states: &[Mutex<SeenStates>],
+    known_states: &[Mutex<Fingerprints>],
     state_count: &AtomicUsize,
-    max: usize,
+    max_states: usize,
 ) -> ThreadResult {
     let mut result = ThreadResult::default();
-    while state_count.load(Ordering::Relaxed) < max {
+    while state_count.load(Ordering::Relaxed) < max_states {
         let chunk: Vec<_> = {
             let mut queue = queue.lock().expect("no thread has failed");
-            queue.by_ref().take(CHUNK).collect()
+            queue.by_ref().take(STATES_PER_CHUNK).collect()
         };
         if chunk.is_empty() {
             break;
         }
-        for (world, from) in chunk {
-            result.expand(&world, from, actions, known_states, state_count);
+        for (world, step_index) in chunk {
+            result.expand(&world, step_index, actions, known_states, state_count);
         }
     }
     result
 }
 
 impl ThreadResult {
-    /// Applies every possible action to a state.
+    /// Applies every possible action to the state `world`, which the step with this index has reached.
     fn expand(
         &mut self,
         world: &World,
-        from: u32,
+        step_index: u32,
         actions: &[Action],
-        known_states: &[Mutex<SeenStates>],
+        known_states: &[Mutex<Fingerprints>],
         state_count: &AtomicUsize,
     ) {
-        for (number, action) in actions.iter().enumerate() {
+        for (action_index, action) in actions.iter().enumerate() {
             if !world.is_possible(*action) {
                 continue;
             }
-            self.tried += 1;
+            self.tried_action_count += 1;
             let mut next_world = world.clone();
             let step = Step {
-                from,
-                action: number as u8,
+                previous_step: step_index,
+                action_index: action_index as u8,
             };
             match apply_catching_panics(&mut next_world, *action) {
-                Err(broken) => self.broken.push((step.from, step.action, broken)),
-                Ok(()) if is_new(known_states, next_world.fingerprint()) => {
+                Err(broken_rule) => self.broken_rules.push((step, broken_rule)),
+                Ok(()) if insert_if_new(known_states, next_world.fingerprint()) => {
                     state_count.fetch_add(1, Ordering::Relaxed);
-                    self.reached.push((next_world, step));
+                    self.reached_states.push((next_world, step));
                 }
                 Ok(()) => {}
             }
@@ -187,24 +191,27 @@ fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     result.unwrap_or_else(|reason| {
         let message = reason.downcast_ref::<String>().cloned();
         let message = message.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
-        Err(BrokenRule::new(Rule::Lives, message.unwrap_or_default()))
+        Err(BrokenRule::new(
+            Rule::KeepsRunning,
+            message.unwrap_or_default(),
+        ))
     })
 }
 
-/// Describes the sequence that ends with the step `last` in words.
-fn describe(
+/// Returns a description of the sequence that ends with a step.
+fn describe_sequence(
     initial_states: &[InitialState],
     steps: &[Step],
     actions: &[Action],
-    last: Step,
+    last_step: Step,
 ) -> String {
-    let mut sequence = vec![actions[usize::from(last.action)]];
-    let mut index = last.from;
-    while steps[index as usize].from != u32::MAX {
-        sequence.push(actions[usize::from(steps[index as usize].action)]);
-        index = steps[index as usize].from;
+    let mut sequence = vec![actions[usize::from(last_step.action_index)]];
+    let mut step_index = last_step.previous_step;
+    while steps[step_index as usize].previous_step != u32::MAX {
+        sequence.push(actions[usize::from(steps[step_index as usize].action_index)]);
+        step_index = steps[step_index as usize].previous_step;
     }
-    let initial_state = &initial_states[index as usize];
+    let initial_state = &initial_states[step_index as usize];
     let mut text = format!("  power on with {}", initial_state.conditions);
     let all_actions = initial_state
         .actions

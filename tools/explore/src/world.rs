@@ -1,4 +1,4 @@
-//! A state of the search: a robot, the board it runs on, and an observer that checks the rules.
+//! A state of the search: the firmware, its board, and an observer that judges the robot by the rules.
 
 mod inside;
 mod lines;
@@ -16,43 +16,43 @@ use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
 use crate::fingerprint::{self, Fingerprint};
-use crate::small::{BUTTON, NOSE};
+use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 
 /// The verdict of the rules.
 pub type Verdict = Result<(), BrokenRule>;
 
-fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
-    Err(BrokenRule::new(rule, seen))
+fn broken_rule(rule: Rule, observation: impl Into<String>) -> Verdict {
+    Err(BrokenRule::new(rule, observation))
 }
 
-/// The bytes that a receiver at another rate reads in place of a line: enough wrong bytes to make the robot
-/// leave any rate.
+/// The bytes that a receiver reads if a line comes at another rate: enough wrong bytes to make the robot change its
+/// rate.
 const UNREADABLE: [u8; 40] = [GARBLED_BYTE; 40];
 
-/// Number of lines within which a robot must find the rate of the sender.
+/// Number of lines within which the robot must find the sender's rate.
 const MAX_LINES_TO_FIND_RATE: usize = 12;
 
-/// The cycles of a frame.
+/// The time of a frame, cycles.
 const FRAME: Time = 20 * MS;
 
 /// A state of the search.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The firmware on its board.
-    pub running: RunningRobot,
+    pub running_robot: RunningRobot,
     /// The observer, which sees the robot from outside.
     pub observer: Observer,
     now: Time,
-    /// True while three servos that wake pull the supply down.
-    sags_when_servos_wake: bool,
+    /// True while the supply is weak: three awake servos then cause a brown-out.
+    is_supply_weak: bool,
     /// True if main was late for the last frame.
-    is_late: bool,
-    /// The last line that was sent, until its answer is known.
-    unread: Option<&'static str>,
+    was_main_late: bool,
+    /// The last line that was sent; `None` once its answer has been judged.
+    unanswered_line: Option<&'static str>,
     /// The rate at which lines are sent.
     sender_rate: BaudRate,
-    /// Number of lines whose answers are judged already and not printed yet.
-    judged_answers: u8,
+    /// Number of answers that have been judged, but not printed yet.
+    judged_answer_count: u8,
 }
 
 impl World {
@@ -61,32 +61,35 @@ impl World {
         memory.write_delay = 4;
         memory.is_timed = true;
         let mut world = Self {
-            running: RunningRobot::with_memory(robot, memory, Restart::default()),
-            observer: Observer::new(inside::limits(&robot)),
+            running_robot: RunningRobot::with_memory(robot, memory, Restart::default()),
+            observer: Observer::new(inside::observer_limits(&robot)),
             now: 0,
-            sags_when_servos_wake: false,
-            is_late: false,
-            unread: None,
+            is_supply_weak: false,
+            was_main_late: false,
+            unanswered_line: None,
             sender_rate: BaudRate::Fastest,
-            judged_answers: 0,
+            judged_answer_count: 0,
         };
-        world.observe(Event::Supply(5_000));
-        world.observe(Event::Start(Cause::Power));
+        world.observe(Event::SupplyMv(5_000));
+        world.observe(Event::ProgramStart(Cause::Power));
         world
     }
 
-    /// Returns the number that equal states share.
+    /// Returns a number that is the same for equal states.
     pub fn fingerprint(&self) -> u64 {
-        let board = &self.running.board;
-        let mut fingerprint = Fingerprint(fingerprint::coarse_fingerprint(&self.running.main));
-        fingerprint.add(fingerprint::coarse_fingerprint(&self.observer.coarse()));
+        let board = &self.running_robot.board;
+        let mut fingerprint =
+            Fingerprint(fingerprint::coarse_fingerprint(&self.running_robot.main));
+        fingerprint.add(fingerprint::coarse_fingerprint(
+            &self.observer.coarse_state(),
+        ));
         let memory = board.memory.bytes();
-        for record in COPY_ADDRESSES
-            .map(|copy| copy.0)
+        for address in COPY_ADDRESSES
+            .map(|address| address.0)
             .into_iter()
             .chain([REST_POSE_ADDRESS.0])
         {
-            let record = &memory[usize::from(record)..][..usize::from(RECORD_BYTES)];
+            let record = &memory[usize::from(address)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
             let used_bytes = if record[0] == VALID_MARK {
                 record
@@ -113,11 +116,11 @@ impl World {
             board.last_restart().stance_before.is_some(),
             board.unread_count() > 0,
             board.is_frame_pending(),
-            board.closed_pins & 1 << BUTTON != 0,
-            board.closed_pins & 1 << NOSE != 0,
-            self.sags_when_servos_wake,
-            self.is_late,
-            self.judged_answers > 0,
+            board.closed_pins & 1 << BUTTON_PIN != 0,
+            board.closed_pins & 1 << NOSE_PIN != 0,
+            self.is_supply_weak,
+            self.was_main_late,
+            self.judged_answer_count > 0,
         ];
         fingerprint.add(
             flags
@@ -131,28 +134,29 @@ impl World {
 
     /// True if the action is possible now.
     pub fn is_possible(&self, action: Action) -> bool {
-        let board = &self.running.board;
+        let board = &self.running_robot.board;
         match action {
-            Action::Say(_) | Action::Noise => {
+            Action::Line(_) | Action::GarbledLine => {
                 board.unread_count() == 0
                     && !board.transmitter.is_held
-                    && !self.running.is_stopped_by_watchdog()
+                    && !self.running_robot.is_stopped_by_watchdog()
             }
-            Action::Step => {
-                self.running.has_output() || self.running.main.control().is_memory_in_use()
+            Action::MainStep => {
+                self.running_robot.has_output()
+                    || self.running_robot.main.control().is_memory_in_use()
             }
             Action::Frames(_)
             | Action::Stall(_)
             | Action::Reset(_)
-            | Action::LosePower(None)
-            | Action::Supply(_) => true,
-            Action::LosePower(Some(_)) => board.memory.address_in_write().is_some(),
-            Action::SendAt(rate) => rate != self.sender_rate,
-            Action::Weak(is_weak) => is_weak != self.sags_when_servos_wake,
-            Action::Late => board.late_edges < 3,
-            Action::Stack => board.is_stack_intact,
+            | Action::PowerLoss(None)
+            | Action::SupplyMv(_) => true,
+            Action::PowerLoss(Some(_)) => board.memory.address_in_write().is_some(),
+            Action::SenderRate(rate) => rate != self.sender_rate,
+            Action::WeakSupply(is_weak) => is_weak != self.is_supply_weak,
+            Action::LateEdge => board.late_edges < 3,
+            Action::StackOverflow => board.is_stack_intact,
             Action::Contact(pin, is_closed) => is_closed != (board.closed_pins & 1 << pin != 0),
-            Action::StopReading(is_deaf) => is_deaf != board.transmitter.is_held,
+            Action::HeldOutput(is_held) => is_held != board.transmitter.is_held,
         }
     }
 
@@ -161,51 +165,53 @@ impl World {
     /// # Errors
     /// Returns the first rule that the action breaks.
     pub fn apply(&mut self, action: Action) -> Verdict {
-        let was_kept = self.observer.rests() && self.rest_is_kept();
+        let was_rest_pose_saved = self.observer.must_rest() && self.is_rest_pose_saved();
         match action {
-            Action::Say(_) | Action::Noise if self.sender_rate != self.running.board.rate => {
-                self.say_at_another_rate()?;
+            Action::Line(_) | Action::GarbledLine
+                if self.sender_rate != self.running_robot.board.rate =>
+            {
+                self.send_line_at_other_rate()?;
             }
-            Action::Say(line) => self.say(line, line.as_bytes())?,
-            Action::SendAt(rate) => {
+            Action::Line(line) => self.send_line(line, line.as_bytes())?,
+            Action::SenderRate(rate) => {
                 self.sender_rate = rate;
                 self.check_rate_is_found()?;
             }
-            Action::Noise => self.say("", &[b'w', b'a', GARBLED_BYTE, b'k'])?,
-            Action::Step => {
-                self.running.main.step(&mut self.running.board);
-                self.listen(self.now)?;
+            Action::GarbledLine => self.send_line("", &[b'w', b'a', GARBLED_BYTE, b'k'])?,
+            Action::MainStep => {
+                self.running_robot.main.step(&mut self.running_robot.board);
+                self.observe_output(self.now)?;
             }
             Action::Frames(count) => self.run_frames(count)?,
-            Action::Stall(ms) => self.stall(ms)?,
-            Action::Supply(mv) => {
+            Action::Stall(ms) => self.stall_main(ms)?,
+            Action::SupplyMv(mv) => {
                 let supplies = self.robot().supplies();
                 let reading = compute_reading(&supplies, u32::from(mv), 0);
-                self.running.board.converter.set_true_reading(reading);
-                self.observe(Event::Supply(u32::from(mv)));
+                self.running_robot.board.converter.set_true_reading(reading);
+                self.observe(Event::SupplyMv(u32::from(mv)));
             }
-            Action::Weak(is_weak) => self.sags_when_servos_wake = is_weak,
-            Action::Late => {
-                self.running.board.late_edges += 1;
+            Action::WeakSupply(is_weak) => self.is_supply_weak = is_weak,
+            Action::LateEdge => {
+                self.running_robot.board.late_edges += 1;
                 self.observe(Event::Fault);
-                self.frame()?;
+                self.run_frame()?;
             }
-            Action::Stack => {
-                self.running.board.is_stack_intact = false;
+            Action::StackOverflow => {
+                self.running_robot.board.is_stack_intact = false;
                 self.observe(Event::Fault);
-                self.frame()?;
+                self.run_frame()?;
             }
             Action::Reset(cause) => self.reset(cause),
-            Action::LosePower(torn_byte) => {
-                self.running.lose_power(torn_byte);
+            Action::PowerLoss(torn_byte) => {
+                self.running_robot.lose_power(torn_byte);
                 self.note_restart(Cause::Power);
             }
             Action::Contact(pin, is_closed) => self.set_contact(pin, is_closed)?,
-            Action::StopReading(is_deaf) => self.running.board.transmitter.is_held = is_deaf,
+            Action::HeldOutput(is_held) => self.running_robot.board.transmitter.is_held = is_held,
         }
-        let is_resting = self.running.motion().is_resting();
-        if was_kept && is_resting && !self.rest_is_kept() {
-            return broken(Rule::RestKept, action.to_string());
+        let is_resting = self.running_robot.motion().is_resting();
+        if was_rest_pose_saved && is_resting && !self.is_rest_pose_saved() {
+            return broken_rule(Rule::RestPoseKept, action.to_string());
         }
         self.judge_writes()?;
         self.observer.drop_pending();
@@ -217,140 +223,133 @@ impl World {
     }
 
     fn robot(&self) -> Robot<'static> {
-        *self.running.motion().robot()
+        *self.running_robot.motion().robot()
     }
 
     fn reset(&mut self, cause: Cause) {
-        self.running.reset(cause);
+        self.running_robot.reset(cause);
         self.note_restart(cause);
     }
 
-    /// Records that the program has restarted, which cuts its output off.
+    /// Records that the program has restarted. Its remaining output is lost.
     fn note_restart(&mut self, cause: Cause) {
-        self.running.board.transmitter.text.clear();
-        self.unread = None;
-        self.judged_answers = 0;
-        self.observe(Event::Start(cause));
+        self.running_robot.board.transmitter.text.clear();
+        self.unanswered_line = None;
+        self.judged_answer_count = 0;
+        self.observe(Event::ProgramStart(cause));
     }
 
-    /// Runs some frames, with main running.
+    /// Runs several frames. If they are many, also checks that lines have been answered and that the LED shows the
+    /// fault.
     fn run_frames(&mut self, count: u8) -> Verdict {
         let start = self.now;
-        let stop_before = (self.fault(), self.observer.stopped_since());
+        let stop_before = (self.fault_code(), self.observer.stopped_since());
         let mut edges = Vec::new();
         for _ in 0..count {
-            let was_lit = self.running.board.is_lit();
-            self.frame()?;
-            let is_lit = self.running.board.is_lit();
+            let was_lit = self.running_robot.board.is_lit();
+            self.run_frame()?;
+            let is_lit = self.running_robot.board.is_lit();
             if is_lit != was_lit {
                 edges.push((self.now, is_lit));
             }
         }
-        if count < 100 || self.running.board.transmitter.is_held {
+        if count < 100 || self.running_robot.board.transmitter.is_held {
             return Ok(());
         }
         if self.observer.has_unanswered_lines() {
-            return broken(Rule::Answered, "frames went by");
+            return broken_rule(Rule::AnswersAlways, "frames went by");
         }
-        let is_same = (self.fault(), self.observer.stopped_since()) == stop_before;
-        if is_same && self.observer.runs_for() > self.now - start {
+        let is_stop_unchanged = (self.fault_code(), self.observer.stopped_since()) == stop_before;
+        if is_stop_unchanged && self.observer.time_since_start() > self.now - start {
             led::check_pattern(&edges, start + 3 * FRAME, self.now, stop_before.0)
-                .map_err(|message| BrokenRule::new(Rule::Led, message))?;
+                .map_err(|message| BrokenRule::new(Rule::LedShowsFault, message))?;
         }
         Ok(())
     }
 
-    /// Returns the code of the fault that stopped the robot, 0 for none.
-    fn fault(&self) -> u8 {
-        let fault = self.running.main.control().fault();
+    /// Returns the code of the fault that stopped the robot, or 0 if there is none.
+    fn fault_code(&self) -> u8 {
+        let fault = self.running_robot.main.control().fault();
         fault.map_or(0, Fault::code)
     }
 
-    fn frame(&mut self) -> Verdict {
-        if self.running.is_stopped_by_watchdog() {
-            // Main no longer runs; the watchdog is about to restart it.
-            return self.stall(20);
+    fn run_frame(&mut self) -> Verdict {
+        if self.running_robot.is_stopped_by_watchdog() {
+            // Main no longer runs; the watchdog resets the processor soon.
+            return self.stall_main(20);
         }
-        // `stand` and `stop` within one frame leave the robot held; that reason is already reported.
-        let was_held = self.running.motion().hazard().is_some();
+        // After `stand` and `stop` within one frame, the guard still holds the robot. This hold is already reported.
+        let was_held = self.running_robot.motion().hazard().is_some();
         let frame_start = self.now;
-        let was_resting = self.running.motion().is_resting();
-        self.running.run_frame();
-        if self.running.board.transmitter.is_held
-            && self.running.motion().is_resting() != was_resting
+        let was_resting = self.running_robot.motion().is_resting();
+        self.running_robot.run_frame();
+        if self.running_robot.board.transmitter.is_held
+            && self.running_robot.motion().is_resting() != was_resting
         {
-            self.predict_boot();
+            self.observe_held_boot_lines();
         }
         self.judge_pulses(true)?;
-        if !was_held && self.running.motion().hazard().is_some() {
+        if !was_held && self.running_robot.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
-        // Main decided at the start of the frame, so the output counts from there.
-        self.listen(frame_start + MS)?;
+        // Main composes its lines at the start of the frame.
+        self.observe_output(frame_start + MS)?;
         self.judge_writes()?;
-        let is_heard =
-            !self.running.board.transmitter.is_held && !self.running.is_stopped_by_watchdog();
-        if is_heard && !self.is_late {
-            self.observer.check_reported();
+        let is_output_read = !self.running_robot.board.transmitter.is_held
+            && !self.running_robot.is_stopped_by_watchdog();
+        if is_output_read && !self.was_main_late {
+            self.observer.check_stop_is_reported();
         }
-        self.is_late = false;
-        if self.sags_when_servos_wake
-            && self
-                .running
-                .board
-                .started_pulses()
-                .0
-                .iter()
-                .filter(|width| width.0 > 0)
-                .count()
-                == 3
-        {
+        self.was_main_late = false;
+        let pulses = self.running_robot.board.started_pulses();
+        let awake_count = pulses.0.iter().filter(|width| width.0 > 0).count();
+        if self.is_supply_weak && awake_count == 3 {
             self.reset(Cause::BrownOut);
         }
         self.observer.verdict()
     }
 
-    /// Stalls main. Afterwards main runs to the end of the frame, unless the watchdog has restarted the program.
-    fn stall(&mut self, ms: u16) -> Verdict {
-        self.observe(Event::Stalled(self.now + Time::from(ms) * MS));
+    /// Stalls main. Then main runs to the end of the frame, unless the watchdog has reset the processor.
+    fn stall_main(&mut self, ms: u16) -> Verdict {
+        self.observe(Event::MainStalled(self.now + Time::from(ms) * MS));
         for _ in 0..ms / 20 {
             if self.pass_time(20) {
-                return self.listen(self.now);
+                return self.observe_output(self.now);
             }
             self.judge_pulses(false)?;
         }
         let remaining_ms = ms % 20;
         if remaining_ms > 0 {
             if self.pass_time(remaining_ms) {
-                return self.listen(self.now);
+                return self.observe_output(self.now);
             }
-            self.running.settle();
+            self.running_robot.settle();
             if self.pass_time(20 - remaining_ms) {
-                return self.listen(self.now);
+                return self.observe_output(self.now);
             }
             self.judge_pulses(false)?;
         }
-        self.listen(self.now - FRAME)
+        self.observe_output(self.now - FRAME)
     }
 
-    /// Lets time pass while main does not run. Returns true if the watchdog has restarted the program.
+    /// Lets time pass while main does not run. Returns true if the watchdog has reset the processor.
     fn pass_time(&mut self, ms: u16) -> bool {
-        let was_reset = self.running.board.pass_time(ms);
+        let was_reset = self.running_robot.board.pass_time(ms);
         if was_reset {
             self.reset(Cause::Watchdog);
         }
         was_reset
     }
 
-    /// Judges the bytes that were written to the memory.
+    /// Judges the bytes that were written to the EEPROM.
     fn judge_writes(&mut self) -> Verdict {
-        let log = &mut self.running.board.memory.log;
+        let log = &mut self.running_robot.board.memory.log;
         if !log.is_empty() {
             log.clear();
-            if !self.running.board.converter.is_complete() {
-                return broken(Rule::Written, "before the supply is measured");
+            if !self.running_robot.board.converter.is_complete() {
+                return broken_rule(Rule::SafeWrites, "before the supply is measured");
             }
-            self.observe(Event::Written);
+            self.observe(Event::ByteWritten);
         }
         self.observer.verdict()
     }

@@ -1,25 +1,23 @@
-//! Test with a hundredth of the states of `make explore`: from any initial state, no sequence of a few actions breaks
-//! a rule.
+//! Test of the safety rules with a hundredth of the states of `make explore`.
 
-use lizard_explore::{search, small::small_robot};
+use lizard_explore::{search, small_robot::small_robot};
 
-/// Number of states to explore.
-const STATES: usize = 100_000;
+const MAX_STATES: usize = 100_000;
 
 #[test]
 fn no_short_sequence_of_actions_breaks_a_rule() {
     let robot = small_robot();
-    let result = search(robot, STATES);
+    let result = search(robot, MAX_STATES);
     assert!(
-        result.states >= STATES || result.is_complete,
+        result.state_count >= MAX_STATES || result.is_complete,
         "{} states",
-        result.states
+        result.state_count
     );
     let broken: Vec<String> = result
-        .broken
+        .broken_rules
         .iter()
-        .map(|(rule, (times, sequence))| {
-            format!("broken {times} times: {}\n{sequence}", rule.sentence())
+        .map(|(rule, (count, sequence))| {
+            format!("broken {count} times: {}\n{sequence}", rule.sentence())
         })
         .collect();
     assert!(broken.is_empty(), "{}", broken.join("\n\n"));

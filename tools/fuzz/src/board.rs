@@ -1,5 +1,4 @@
-//! The core on a virtual board, where time passes only in calls of [`Board::frame`]. An observer
-//! judges each byte and each frame.
+//! The core on a virtual board, with an observer that judges the robot after each byte and each frame.
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
@@ -11,47 +10,53 @@ use lizard_core::virtual_board::{Eeprom, RunningRobot};
 use lizard_robot::Robot;
 use lizard_rules::{Event, Limits, MS, Observer, Rule, Time};
 
-/// A virtual board with the core on it; time passes only in [`Board::frame`].
+/// A virtual board that runs the core. Time passes only in calls of [`Board::run_frame`].
 pub struct Board {
     robot: &'static Robot,
-    running: RunningRobot,
+    running_robot: RunningRobot,
     observer: Observer,
     now: Time,
     output: String,
-    /// The line so far, collected independently of the core.
+    /// The bytes of the line that has begun, collected independently of the core.
     line: Vec<u8>,
-    is_overlong: bool,
+    /// True if the line that has begun is too long or contains a garbled byte.
+    is_line_invalid: bool,
 }
 
-/// Returns the observer's limits for a robot whose supply is good and whose lines come between frames.
-fn limits(robot: &Robot) -> Limits {
-    let cycles_of = |us: f64| (us * 16.0).round() as u32;
+/// Returns the observer's limits for a robot that has a good supply and gets its lines between frames.
+fn observer_limits(robot: &Robot) -> Limits {
+    let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
     let servos = robot.servos().each_ref();
     Limits {
-        widths: servos.map(|servo| (cycles_of(servo.min_us) - 3, cycles_of(servo.max_us) + 3)),
+        width_ranges: servos.map(|servo| {
+            (
+                cycles_of_us(servo.min_us) - 3,
+                cycles_of_us(servo.max_us) + 3,
+            )
+        }),
         ..Limits::default()
     }
 }
 
 impl Board {
-    /// Starts a robot with this memory.
+    /// Powers a robot on with this EEPROM, and runs 30 frames.
     ///
     /// # Panics
     /// If the robot breaks a rule.
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
             robot,
-            running: RunningRobot::with_memory(*robot.firmware(), memory, Restart::default()),
-            observer: Observer::new(limits(robot)),
+            running_robot: RunningRobot::with_memory(*robot.firmware(), memory, Restart::default()),
+            observer: Observer::new(observer_limits(robot)),
             now: 0,
             output: String::new(),
             line: Vec::new(),
-            is_overlong: false,
+            is_line_invalid: false,
         };
-        board.observe(Event::Start(Cause::Power));
-        // A `save` waits until the supplies have been measured.
+        board.observe(Event::ProgramStart(Cause::Power));
+        // Runs until the supplies have been measured, since a `save` waits for that.
         for _ in 0..30 {
-            board.frame();
+            board.run_frame();
         }
         board
     }
@@ -62,13 +67,13 @@ impl Board {
 
     /// Runs the robot until it has printed all its output.
     fn settle(&mut self) {
-        self.running.settle();
-        let text = std::mem::take(&mut self.running.board.transmitter.text);
+        self.running_robot.settle();
+        let text = std::mem::take(&mut self.running_robot.board.transmitter.text);
         for line in text.lines() {
-            self.observe(Event::Printed(self.now, line));
+            self.observe(Event::LinePrinted(self.now, line));
         }
         self.output.push_str(&text);
-        self.running.board.memory.log.clear();
+        self.running_robot.board.memory.log.clear();
     }
 
     fn assert_rules_hold(&mut self) {
@@ -81,14 +86,14 @@ impl Board {
         );
     }
 
-    /// Returns the output since the last byte was sent.
+    /// Returns the output since the last byte that was sent.
     pub fn output(&self) -> &str {
         &self.output
     }
 
     /// Returns the robot's EEPROM.
     pub const fn memory(&self) -> &Eeprom {
-        &self.running.board.memory
+        &self.running_robot.board.memory
     }
 
     /// Sends a byte. If it ends a line, checks that the line gets exactly one answer.
@@ -101,24 +106,24 @@ impl Board {
         match byte {
             b'\r' | b'\n' => {
                 let line = std::mem::take(&mut self.line);
-                let is_overlong = std::mem::take(&mut self.is_overlong);
+                let is_line_invalid = std::mem::take(&mut self.is_line_invalid);
                 let text = String::from_utf8_lossy(&line).to_ascii_lowercase();
                 let text = text.trim().replace('\t', " ");
-                if is_overlong || !line.trim_ascii().is_empty() {
-                    let is_known = parse(text.as_bytes(), self.robot.firmware()).is_ok();
-                    let is_command = !is_overlong && is_known;
-                    self.observe(Event::Line { is_command });
-                    ended_line = Some(if is_overlong { String::new() } else { text });
+                if is_line_invalid || !line.trim_ascii().is_empty() {
+                    let is_parsed = parse(text.as_bytes(), self.robot.firmware()).is_ok();
+                    let is_command = !is_line_invalid && is_parsed;
+                    self.observe(Event::LineReceived { is_command });
+                    ended_line = Some(if is_line_invalid { String::new() } else { text });
                 }
             }
             0x08 | 0x7f => _ = self.line.pop(),
-            // A line with a garbled byte is answered, whatever else it contains.
-            0x80.. => self.is_overlong = true,
-            _ if self.line.len() == 63 => self.is_overlong = true,
+            // A line with a garbled byte always gets an answer, even if all its other bytes are spaces.
+            0x80.. => self.is_line_invalid = true,
+            _ if self.line.len() == 63 => self.is_line_invalid = true,
             _ => self.line.push(byte),
         }
-        self.observe(Event::Byte);
-        self.running.board.send(&[byte]);
+        self.observe(Event::ByteReceived);
+        self.running_robot.board.send(&[byte]);
         self.settle();
         if let Some(line) = ended_line {
             self.observe_answer(&line);
@@ -126,7 +131,7 @@ impl Board {
         self.assert_rules_hold();
     }
 
-    /// Passes the answer to a line on to the observer.
+    /// Passes the answer to a line to the observer.
     fn observe_answer(&mut self, line: &str) {
         assert!(
             !self.observer.has_unanswered_lines(),
@@ -136,51 +141,59 @@ impl Board {
         let effect = effect(line, self.robot.firmware());
         let output = std::mem::take(&mut self.output);
         let is_answer = |line: &&str| !line.starts_with('#');
-        let text = output
+        let answer = output
             .lines()
             .find(is_answer)
-            .expect("the observer counts it");
+            .expect("the observer has counted an answer");
         if matches!(effect, Effect::Moves | Effect::Freezes | Effect::Rests) {
-            let done = Some(text.starts_with("ok "));
-            self.observe(Event::Order { effect, done });
+            let is_accepted = Some(answer.starts_with("ok "));
+            self.observe(Event::Order {
+                effect,
+                is_accepted,
+            });
         }
-        let asked = self.now;
         self.observe(Event::Answer {
             line,
             effect,
-            asked,
-            text,
+            asked_at: self.now,
+            answer,
         });
         self.output = output;
     }
 
-    /// Runs the robot for one frame, 20 ms.
+    /// Runs the robot for a frame of 20 ms.
     ///
     /// # Panics
-    /// If its pulses break a rule.
-    pub fn frame(&mut self) {
-        self.running.run_frame();
-        let widths = self.running.board.started_pulses().0.map(|width| width.0);
+    /// If the robot breaks a rule.
+    pub fn run_frame(&mut self) {
+        self.running_robot.run_frame();
+        let widths = self
+            .running_robot
+            .board
+            .started_pulses()
+            .0
+            .map(|width| width.0);
         self.observer.observe_frame(self.now, widths);
         self.now += 20 * MS;
         self.settle();
         self.assert_rules_hold();
     }
 
-    /// Checks that the memory holds complete settings or none, and a complete pose or none.
+    /// Checks that the EEPROM holds complete settings or none, a complete rest pose or none, and nothing else.
     ///
     /// # Panics
-    /// If the memory holds anything else.
-    pub fn assert_memory_is_right(&self) {
-        let rule = Rule::Memory.sentence();
+    /// If one of these is not true.
+    pub fn assert_memory_is_valid(&self) {
+        let rule = Rule::MemoryWhole.sentence();
         let robot = self.robot.firmware();
         let mut settings = Settings::of(robot);
         let outcome = copies::load(robot, self.memory(), &mut settings);
-        let is_whole = matches!(outcome, SavedState::Latest | SavedState::Blank);
-        assert!(is_whole, "{rule}: {outcome:?}");
-        let is_forgotten = self.memory().read(REST_POSE_ADDRESS.0) == 0xff;
+        let are_settings_whole = matches!(outcome, SavedState::Latest | SavedState::Blank);
+        assert!(are_settings_whole, "{rule}: {outcome:?}");
+        let is_rest_pose_blank = self.memory().read(REST_POSE_ADDRESS.0) == 0xff;
         let has_rest_pose = copies::last_rest_pose(robot, self.memory()).is_some();
-        assert!(is_forgotten || has_rest_pose, "{rule}: a pose");
+        assert!(is_rest_pose_blank || has_rest_pose, "{rule}: a pose");
+        // No record reaches these addresses.
         assert!(
             (192..1024).all(|address| self.memory().read(address) == 0xff),
             "{rule}"

@@ -1,12 +1,11 @@
 //! Fuzz targets for the core: any bytes at its console, any bytes in its EEPROM.
 //!
-//! Bytes come from a half-open port, a modem manager or a cat on the keyboard; the
-//! EEPROM may hold another program's data. Whatever the bytes are, each line gets one
-//! answer, no pulse leaves a servo's limits, and saved settings stay intact.
+//! Unexpected bytes come from a half-open port, a modem manager or an open terminal, and the EEPROM may hold another
+//! program's data. For all bytes, each line must get one answer, every pulse must be within the servo's limits, and
+//! saved settings must stay intact.
 //!
-//! [`console`] and [`memory`] check one input. `make test` calls them with millions of
-//! seeded random bytes and lines, `make fuzz` with the inputs that LLVM's libFuzzer
-//! generates.
+//! [`check_console`] and [`check_memory`] check one input. `make fuzz` calls them with inputs that LLVM's libFuzzer
+//! generates. `make test` makes the same checks with millions of random bytes and lines.
 
 mod board;
 
@@ -20,42 +19,41 @@ use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
 
-/// Returns the robot in the file that `LIZARD_ROBOT` names, by default the source tree's robot.toml.
+/// Returns the robot of the file that `LIZARD_ROBOT` names, by default the source tree's robot.toml.
 ///
 /// # Panics
-/// If the file is not a valid robot.
+/// If the file does not describe a valid robot.
 pub fn robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        let built_in = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robot.toml").into();
+        let default_path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robot.toml").into();
         let path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-        Robot::load(path.unwrap_or(built_in)).unwrap_or_else(|error| panic!("{error}"))
+        Robot::load(path.unwrap_or(default_path)).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
 }
 
-/// Sends bytes to the console, with a frame after every eight bytes.
+/// Sends bytes to the console and runs a frame after every eight bytes.
 ///
 /// # Panics
 /// If the robot breaks a rule.
-pub fn console(data: &[u8]) {
+pub fn check_console(data: &[u8]) {
     let mut board = Board::new(robot(), Eeprom::blank());
     for chunk in data.chunks(8) {
         for byte in chunk {
             board.send_byte(*byte);
         }
-        board.frame();
+        board.run_frame();
     }
     board.send_byte(b'\n');
-    board.assert_memory_is_right();
+    board.assert_memory_is_valid();
 }
 
-/// Starts a robot with an EEPROM made from these bytes. The first bytes change the contents of the
-/// EEPROM's three records, which stay valid. Each further group of three bytes sets one byte at any
-/// address, which may damage a record.
+/// Starts a robot with an EEPROM that these bytes define. The first bytes change the contents of the three records,
+/// which stay valid. Each further group of three bytes sets a byte at some address, which may damage a record.
 ///
 /// # Panics
 /// If the robot breaks a rule.
-pub fn memory(data: &[u8]) {
+pub fn check_memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
     let (records, patches) = data.split_at(data.len().min(3 * CONTENT_BYTES));
@@ -73,22 +71,22 @@ pub fn memory(data: &[u8]) {
     }
     let memory_before = memory.clone();
     let mut board = Board::new(robot, memory);
-    // Three and a half seconds, so that the `boot` action runs, too.
+    // After three and a half seconds, the `boot` action has begun, too.
     for _ in 0..175 {
-        board.frame();
+        board.run_frame();
     }
     let bytes_after = board.memory().bytes();
     let settings_range = 0..usize::from(REST_POSE_ADDRESS.0);
     assert_eq!(
         bytes_after[settings_range.clone()],
         memory_before.bytes()[settings_range],
-        "nobody saved"
+        "no command saved settings"
     );
     for byte in b"status\nstand\n" {
         board.send_byte(*byte);
     }
     for _ in 0..50 {
-        board.frame();
+        board.run_frame();
     }
 }
 

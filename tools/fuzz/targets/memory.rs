@@ -1,7 +1,7 @@
-//! Any bytes in the EEPROM.
+//! Fuzz target: any bytes in the EEPROM.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(
     init: _ = lizard_fuzz::robot(),
-    |data: &[u8]| lizard_fuzz::memory(data)
+    |data: &[u8]| lizard_fuzz::check_memory(data)
 );

@@ -1,7 +1,5 @@
-// Loads Intel HEX files.
-
-/** Reads an Intel HEX file's text into `flash`, a Uint8Array. Throws a sentence that names the line. */
-export function load(text, flash) {
+/** Loads the text of an Intel HEX file into `flash`, a Uint8Array. Throws an error that names the line. */
+export function loadHex(text, flash) {
   let base = 0;
   let hasEnded = false;
   text.split(/\r?\n/).forEach((line, index) => {

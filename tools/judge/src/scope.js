@@ -1,29 +1,29 @@
 // An oscilloscope on the UNO's pins.
 
-/** Arduino's number of each port's bit 0: D0 to D7, D8 to D13, and 14 to 19 for A0 to A5. */
+/** Arduino's pin number of each port's bit 0. Port D has D0 to D7, B has D8 to D13, C has A0 to A5 as 14 to 19. */
 const FIRST_PIN = { D: 0, B: 8, C: 14 };
 
 export class Scope {
   /** Watches the ports of an Uno; calls `onPulse(pin, rise, width)` when a pulse has ended. */
   constructor(uno, onPulse) {
-    const rises = [];
+    const riseCycles = [];
     const changes = [];
-    for (const [name, port] of Object.entries(uno.ports)) {
-      port.addListener((now, before) => {
-        changes.push({ first: FIRST_PIN[name], now, before });
-        uno.hasChanged = true;
+    for (const [portName, port] of Object.entries(uno.ports)) {
+      port.addListener((value, oldValue) => {
+        changes.push({ firstPin: FIRST_PIN[portName], value, oldValue });
+        uno.hasPortChanged = true;
       });
     }
-    // An edge belongs to the end of its instruction, whichever kind of store it is.
-    uno.afterChange = () => {
-      for (const { first, now, before } of changes) {
+    // The cycle of an edge is the end of the instruction that makes it.
+    uno.afterPortChange = () => {
+      for (const { firstPin, value, oldValue } of changes) {
         for (let bit = 0; bit < 8; bit++) {
-          if (!(((now ^ before) >> bit) & 1)) continue;
-          const pin = first + bit;
-          if ((now >> bit) & 1) {
-            rises[pin] = uno.cpu.cycles;
-          } else if (rises[pin] !== undefined) {
-            onPulse(pin, rises[pin], uno.cpu.cycles - rises[pin]);
+          if (!(((value ^ oldValue) >> bit) & 1)) continue;
+          const pin = firstPin + bit;
+          if ((value >> bit) & 1) {
+            riseCycles[pin] = uno.cpu.cycles;
+          } else if (riseCycles[pin] !== undefined) {
+            onPulse(pin, riseCycles[pin], uno.cpu.cycles - riseCycles[pin]);
           }
         }
       }

@@ -1,38 +1,39 @@
 // A boot loader writes the part of flash that it does not run from, page by page (data sheet, chapter 26). avr8js
-// treats SPM as a NOP. Here an erase and a write take no time, so a loader's wait for their end is short.
+// treats SPM as a NOP. Here an erase and a write take no time, so a loader's wait for the end of either is short.
 import { avrInstruction } from 'avr8js';
 
 const SPM = 0x95e8;
 const SPMCSR = 0x57;
-const COMMAND = 0x1f;
-const FILL = 0x01;
-const ERASE = 0x03;
-const WRITE = 0x05;
+const COMMAND_MASK = 0x1f;
+const FILL_BUFFER = 0x01;
+const ERASE_PAGE = 0x03;
+const WRITE_PAGE = 0x05;
 const PAGE_BYTES = 128;
-const Z = 30;
+const ZL = 30;
+const ZH = 31;
 
-export function selfProgramming(uno) {
+export function addSelfProgramming(uno) {
   const { flash } = uno;
-  const page = new Uint8Array(PAGE_BYTES).fill(0xff);
+  const pageBuffer = new Uint8Array(PAGE_BYTES).fill(0xff);
   const execute = (cpu) => {
     const { data } = cpu;
     avrInstruction(cpu);
-    const address = data[Z] | (data[Z + 1] << 8);
-    const start = address & ~(PAGE_BYTES - 1) & (flash.length - 1);
-    switch (data[SPMCSR] & COMMAND) {
-      case FILL:
-        page.set(data.subarray(0, 2), address & (PAGE_BYTES - 2));
+    const address = data[ZL] | (data[ZH] << 8);
+    const pageStart = address & ~(PAGE_BYTES - 1) & (flash.length - 1);
+    switch (data[SPMCSR] & COMMAND_MASK) {
+      case FILL_BUFFER:
+        pageBuffer.set(data.subarray(0, 2), address & (PAGE_BYTES - 2));
         break;
-      case ERASE:
-        flash.fill(0xff, start, start + PAGE_BYTES);
+      case ERASE_PAGE:
+        flash.fill(0xff, pageStart, pageStart + PAGE_BYTES);
         break;
-      case WRITE:
-        // A cell can only be cleared; a set bit needs an erase.
-        page.forEach((byte, index) => (flash[start + index] &= byte));
-        page.fill(0xff);
+      case WRITE_PAGE:
+        // A write can only clear bits; only an erase sets them.
+        pageBuffer.forEach((byte, index) => (flash[pageStart + index] &= byte));
+        pageBuffer.fill(0xff);
         break;
     }
-    data[SPMCSR] &= ~COMMAND;
+    data[SPMCSR] &= ~COMMAND_MASK;
   };
-  uno.executeBy(execute, (opcode) => opcode === SPM);
+  uno.overrideInstructions(execute, (opcode) => opcode === SPM);
 }

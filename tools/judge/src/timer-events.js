@@ -1,36 +1,36 @@
-// avr8js counts a timer on every cycle that it steps, which is nearly all of its work. Here a timer
-// is updated only when its next flag is due, and before it is read or changed.
-// That changes nothing but the speed; a test compares the two.
+// avr8js updates a timer at each of its counts, which is nearly all of the simulator's work. Here a timer is updated
+// only when its next flag is due, and before the program reads or changes it. Only the speed differs; a test compares
+// both ways.
 
-/** Returns the cycle at which a running timer next sets a flag or wraps. */
+/** Returns the cycle at which a running timer sets its next flag or wraps. */
 function nextFlagCycle(timer) {
   const { tcnt, TOP, lastCycle, divider } = timer;
   let ticks = TOP + 1 - tcnt;
   for (const compare of [timer.ocrA, timer.ocrB]) {
     if (compare > tcnt && compare - tcnt < ticks) ticks = compare - tcnt;
   }
-  // A counter beyond its TOP, which was lowered: avr8js wraps it at the next step.
+  // A counter is beyond its TOP if TOP was lowered; avr8js wraps the counter at the next count.
   return lastCycle + Math.max(ticks, 1) * divider;
 }
 
 /** Updates the timers of an Uno only when a flag is due. */
 export function wakeTimersAtTheirFlags({ cpu, timers }) {
-  const timerOf = new Map(timers.map((timer) => [timer.count, timer]));
+  const timerByCallback = new Map(timers.map((timer) => [timer.count, timer]));
   const addClockEvent = cpu.addClockEvent.bind(cpu);
   cpu.addClockEvent = (callback, cycles) => {
-    const timer = timerOf.get(callback);
-    const isSteady = timer?.divider && !timer.updateDivider && !timer.tcntUpdated;
-    return addClockEvent(callback, isSteady ? nextFlagCycle(timer) - cpu.cycles : cycles);
+    const timer = timerByCallback.get(callback);
+    const isCountingSteadily = timer?.divider && !timer.updateDivider && !timer.tcntUpdated;
+    return addClockEvent(callback, isCountingSteadily ? nextFlagCycle(timer) - cpu.cycles : cycles);
   };
   for (const timer of timers) {
     const { OCRA, OCRB, TCNT, TCCRA, ICR } = timer.config;
     for (const register of [OCRA, OCRB, TCNT, TCCRA, ICR].filter(Boolean)) {
-      const write = cpu.writeHooks[register];
+      const writeRegister = cpu.writeHooks[register];
       cpu.writeHooks[register] = (...args) => {
         if (timer.divider) timer.count(false);
-        const isWritten = write(...args);
+        const isHandled = writeRegister(...args);
         if (timer.divider) cpu.updateClockEvent(timer.count, 1);
-        return isWritten;
+        return isHandled;
       };
     }
   }

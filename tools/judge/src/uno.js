@@ -27,17 +27,17 @@ const FLASH_WORDS = 16 * 1024;
 const SRAM_BYTES = 2048;
 const EEPROM_BYTES = 1024;
 
-/** Erase and write, 3.4 ms together (data sheet, table 8-2): half for each, since avr8js adds them. */
+/** Cycles of an erase and of a write. Together they take 3.4 ms (data sheet, table 8-2); avr8js adds both. */
 const EEPROM_CYCLES = (3.4e-3 * FREQUENCY_HZ) / 2;
 
 const MCUSR = 0x54;
 const SREG = 0x5f;
-const I = 0x80;
+const SREG_I = 0x80;
 const PORF = 0x01;
 const RXC = 0x80;
 
 export class Uno {
-  /** Makes a board at power-on, with these corrections of avr8js and an empty flash. */
+  /** Makes a board at power-on with an empty flash. Each of `corrections` is a function that corrects avr8js in it. */
   constructor(corrections) {
     const flashWords = new Uint16Array(FLASH_WORDS).fill(0xffff);
     this.flash = new Uint8Array(flashWords.buffer);
@@ -53,62 +53,63 @@ export class Uno {
     this.usart = new AVRUSART(cpu, usart0Config, FREQUENCY_HZ);
     this.adc = new AVRADC(cpu, adcConfig);
     const cycles = { eraseCycles: EEPROM_CYCLES, writeCycles: EEPROM_CYCLES };
-    const memory = new EEPROMMemoryBackend(EEPROM_BYTES);
-    this.eeprom = new AVREEPROM(cpu, memory, { ...eepromConfig, ...cycles });
-    /** The contents of the EEPROM, bytes. */
-    this.memory = memory.memory;
+    const eepromMemory = new EEPROMMemoryBackend(EEPROM_BYTES);
+    this.eeprom = new AVREEPROM(cpu, eepromMemory, { ...eepromConfig, ...cycles });
+    /** The contents of the EEPROM. */
+    this.eepromBytes = eepromMemory.memory;
     new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY_HZ));
     cpu.data[MCUSR] = PORF;
-    // avr8js resets the processor alone and leaves every peripheral as it was.
+    // A reset of avr8js would leave all peripherals unchanged.
     cpu.reset = () => {
       throw new Error(`the watchdog resets the UNO at cycle ${cpu.cycles}, which avr8js does not simulate`);
     };
 
     /** The cycle at which the run ends. */
-    this.until = 0;
-    /** Functions that execute an instruction, and for each opcode the number of its own; 0 is avr8js. */
+    this.endCycle = 0;
+    /** Functions that execute an instruction; the first is that of avr8js. */
     this.executors = [avrInstruction];
-    this.executorOf = new Uint8Array(0x10000);
+    /** The index in `executors` for each opcode. */
+    this.executorIndexes = new Uint8Array(0x10000);
     /** Called instead of an instruction while the processor sleeps; null while it is awake. */
-    this.sleep = null;
-    /** True if a port has changed. */
-    this.hasChanged = false;
-    /** Called after an instruction that has changed a port, before the events that are due by then. */
-    this.afterChange = () => {};
+    this.passSleep = null;
+    /** True if a port has changed during the last instruction. */
+    this.hasPortChanged = false;
+    /** Called after an instruction that has changed a port, before events that are due. */
+    this.afterPortChange = () => {};
 
     for (const correct of corrections) correct(this);
   }
 
-  /** Executes the instructions whose opcode passes a test by `execute(cpu)`. Only these cost more time than avr8js itself. */
-  executeBy(execute, matches) {
+  /** Makes `execute(cpu)` execute all instructions whose opcode `matches`. Other instructions run as fast as before. */
+  overrideInstructions(execute, matches) {
     const index = this.executors.push(execute) - 1;
-    for (let opcode = 0; opcode <= 0xffff; opcode++) if (matches(opcode)) this.executorOf[opcode] = index;
+    for (let opcode = 0; opcode <= 0xffff; opcode++) if (matches(opcode)) this.executorIndexes[opcode] = index;
   }
 
-  /** Runs to a cycle, or an instruction farther. */
+  /** Runs to a cycle; the last instruction may end after that cycle. */
   run(endCycle) {
-    const { cpu, executors, executorOf } = this;
+    const { cpu, executors, executorIndexes } = this;
     const { data, progMem } = cpu;
-    this.until = endCycle;
+    this.endCycle = endCycle;
     while (cpu.cycles < endCycle) {
-      if (this.sleep !== null) {
-        this.sleep();
+      if (this.passSleep !== null) {
+        this.passSleep();
       } else {
-        const executor = executorOf[progMem[cpu.pc]];
-        if (executor === 0) avrInstruction(cpu);
-        else executors[executor](cpu);
+        const index = executorIndexes[progMem[cpu.pc]];
+        if (index === 0) avrInstruction(cpu);
+        else executors[index](cpu);
       }
-      if (this.hasChanged) {
-        this.hasChanged = false;
-        this.afterChange();
+      if (this.hasPortChanged) {
+        this.hasPortChanged = false;
+        this.afterPortChange();
       }
       const event = cpu.nextClockEvent;
       const isDue = event !== null && event.cycles <= cpu.cycles;
-      if (isDue || (cpu.nextInterrupt >= 0 && data[SREG] & I)) cpu.tick();
+      if (isDue || (cpu.nextInterrupt >= 0 && data[SREG] & SREG_I)) cpu.tick();
     }
   }
 
-  /** Delivers bytes, each `{ cycle, byte }`, by the serial line. */
+  /** Delivers bytes, each `{ cycle, byte }`, over the serial line. */
   deliver(bytes) {
     const { cpu, usart } = this;
     const queue = bytes.values();
@@ -116,7 +117,7 @@ export class Uno {
       const { value } = queue.next();
       if (value === undefined) return;
       const arrive = () => {
-        // The receiver of an ATmega holds two bytes and a third, that of avr8js one.
+        // An ATmega's receiver holds three bytes; that of avr8js holds one.
         if (cpu.data[usart.config.UCSRA] & RXC) {
           throw new Error(`at cycle ${cpu.cycles} a byte comes before the last was read, which avr8js does not simulate`);
         }

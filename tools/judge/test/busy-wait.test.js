@@ -1,13 +1,13 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { busyWait } from '../src/busy-wait.js';
+import { skipBusyWaits } from '../src/busy-wait.js';
 import { corrections } from '../src/corrections/index.js';
-import { receiveBuffer } from '../src/receive-buffer.js';
-import { uno } from './program.js';
+import { addReceiveBuffer } from '../src/receive-buffer.js';
+import { makeUno } from './program.js';
 
-// Waits for a byte, then twice for timer 1 by other instructions, and keeps the byte and the timer's counts in SRAM from
-// X on. An interrupt comes meanwhile at changing distances.
+// The program waits for a byte, then twice for timer 1, each time by other instructions. It stores the byte and the
+// timer's counts in SRAM from X on. Meanwhile an interrupt comes at changing intervals.
 const PROGRAM = `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
@@ -17,7 +17,7 @@ const PROGRAM = `
     subi r22, 0x6b
     sts 0x89, r18     ; OCR1AH
     sts 0x88, r22
-    ldi r21, 252      ; so long that the next often waits
+    ldi r21, 252      ; so long that the next interrupt often waits
   late:
     dec r21
     brne late
@@ -62,8 +62,8 @@ const PROGRAM = `
     st X+, r24
     rjmp byte`;
 
-/** Runs the program while 40 bytes come; returns the board's state and the number of its jumps back. */
-function stateAfter(extra) {
+/** Runs the program while 40 bytes come; returns the board's state and the number of executed jumps back. */
+function stateAfter(extraCorrections) {
   let jumps = 0;
   const countJumps = (board) => {
     const execute = board.executors.at(-1);
@@ -72,25 +72,26 @@ function stateAfter(extra) {
       execute(cpu);
     };
   };
-  const board = uno([...corrections, receiveBuffer, ...extra, ...(extra.length > 0 ? [countJumps] : [])], PROGRAM);
-  for (let n = 1; n <= 40; n++) board.cpu.addClockEvent(() => board.receive(n), 3989 * n);
+  const extras = extraCorrections.length > 0 ? [...extraCorrections, countJumps] : [];
+  const board = makeUno([...corrections, addReceiveBuffer, ...extras], PROGRAM);
+  for (let byte = 1; byte <= 40; byte++) board.cpu.addClockEvent(() => board.receive(byte), 3989 * byte);
   board.run(170_001);
   return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data], jumps };
 }
 
-test('a program that waits for flags is at the same place at the same cycle, and its rounds pass in one step', () => {
-  const [slow, { jumps, ...fast }] = [stateAfter([]), stateAfter([busyWait])];
+test('a program that waits for flags has the same state at the same cycle, and its rounds are skipped', () => {
+  const [slow, { jumps, ...fast }] = [stateAfter([]), stateAfter([skipBusyWaits])];
   delete slow.jumps;
-  for (let n = 1; n <= 40; n++) assert.ok(slow.data.slice(0x100).includes(n), `byte ${n} was read`);
+  for (let byte = 1; byte <= 40; byte++) assert.ok(slow.data.slice(0x100).includes(byte), `byte ${byte} was read`);
   assert.deepEqual(fast, slow);
-  assert.ok(jumps > 100 && jumps < 3000, `${jumps} jumps in place of tens of thousands`);
+  assert.ok(jumps > 100 && jumps < 3000, `${jumps} jumps instead of tens of thousands`);
 });
 
-test('a loop that waits for a count takes each of its rounds', () => {
+test('no round is skipped of a loop that waits for a count', () => {
   const source = PROGRAM.replace('lds r24, 0xc0 ', 'lds r24, 0x84 ');
   assert.notEqual(source, PROGRAM);
-  const [slow, fast] = [[], [busyWait]].map((extra) => {
-    const board = uno([...corrections, receiveBuffer, ...extra], source);
+  const [slow, fast] = [[], [skipBusyWaits]].map((extraCorrections) => {
+    const board = makeUno([...corrections, addReceiveBuffer, ...extraCorrections], source);
     board.run(50_001);
     return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data] };
   });

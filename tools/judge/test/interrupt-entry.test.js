@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { interruptEntry } from '../src/corrections/interrupt-entry.js';
-import { fixed, run } from './program.js';
+import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
+import { fixedMessage, runProgram } from './program.js';
 
-// The timer is read before an interrupt, in r16, and first thing in its handler, in r17.
+// The program reads the timer into r16 before an interrupt; the first instruction of the handler reads it into r17.
 const program = `
     jmp main
     _LOC 0x4c         ; USART_UDRE
@@ -22,13 +22,13 @@ const program = `
     sei
     rjmp stop`;
 
-/** Cycles of the entry: between the readings there are also LDS, 2, and SEI, 1. */
+/** Returns the cycles of the interrupt's entry. Between the two readings, LDS takes 2 more cycles, and SEI 1. */
 function entryCycles(corrections) {
-  const { data } = run(corrections, program, 100).cpu;
+  const { data } = runProgram(corrections, program, 100).cpu;
   return data[17] - data[16] - 3;
 }
 
 test('an interrupt is entered in four cycles', () => {
-  assert.equal(entryCycles([]), 2, fixed('interrupt-entry.js'));
-  assert.equal(entryCycles([interruptEntry]), 4);
+  assert.equal(entryCycles([]), 2, fixedMessage('interrupt-entry.js'));
+  assert.equal(entryCycles([extendInterruptEntry]), 4);
 });

@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { interruptWaits } from '../src/corrections/interrupt-waits.js';
-import { fixed, run } from './program.js';
+import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
+import { fixedMessage, runProgram } from './program.js';
 
-// Both compare interrupts of timer 0 are due when interrupts are switched on; main counts in r16,
-// and each handler keeps what it sees, in r20 and r21.
+// Both compare interrupts of timer 0 are due when interrupts are switched on. Then main counts in r16, and the handlers
+// copy that count to r20 and r21.
 const program = (switchOn) => `
     jmp main
     _LOC 0x38         ; TIMER0_COMPA
@@ -35,13 +35,15 @@ const program = (switchOn) => `
   stop:
     rjmp stop`;
 
-const countsSeen = (corrections, switchOn) => run(corrections, program(switchOn), 100).cpu.data.slice(20, 22);
+const countsInHandlers = (corrections, switchOn) =>
+  runProgram(corrections, program(switchOn), 100).cpu.data.slice(20, 22);
 
-// 0x5f is SREG's address as a store has it.
-const pointZAtSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
-for (const switchOn of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', `${pointZAtSreg} std Z+1, r18`, `${pointZAtSreg} inc r30\n st Z, r18`]) {
+// The data address of SREG is 0x5f.
+const pointZBelowSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
+const [std, st] = [`${pointZBelowSreg} std Z+1, r18`, `${pointZBelowSreg} inc r30\n st Z, r18`];
+for (const switchOn of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', std, st]) {
   test(`one instruction runs between \`${switchOn}\` and an interrupt, and one between two interrupts`, () => {
-    assert.deepEqual([...countsSeen([], switchOn)], [0, 0], fixed('interrupt-waits.js'));
-    assert.deepEqual([...countsSeen([interruptWaits], switchOn)], [1, 2]);
+    assert.deepEqual([...countsInHandlers([], switchOn)], [0, 0], fixedMessage('interrupt-waits.js'));
+    assert.deepEqual([...countsInHandlers([delayInterruptAfterEnable], switchOn)], [1, 2]);
   });
 }

@@ -1,13 +1,14 @@
-// What firmware may rely on in this simulation beside timers and serial line, and what not.
+// Peripherals besides timers and serial line: behaviour that firmware may rely on in this simulation, and cases that
+// are not simulated.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { corrections } from '../src/corrections/index.js';
-import { run, uno } from './program.js';
+import { makeUno, runProgram } from './program.js';
 
 const CYCLES_PER_MS = 16_000;
 
-/** Writes r16 to EEPROM address 5, counts in r24 and r25 while EEPE is up, and reads it back to r17. */
+/** Writes r16 to EEPROM address 5, counts in r24 and r25 while EEPE is set, and reads the byte back into r17. */
 const WRITE_PROGRAM = `
     ldi r16, 0x5a
     ldi r18, 5
@@ -25,9 +26,9 @@ const WRITE_PROGRAM = `
     rjmp stop`;
 
 test('a byte of EEPROM takes 3.4 ms to write, and can be read back', () => {
-  const board = run(corrections, WRITE_PROGRAM, 5 * CYCLES_PER_MS);
+  const board = runProgram(corrections, WRITE_PROGRAM, 5 * CYCLES_PER_MS);
   const { data } = board.cpu;
-  // A turn of the loop takes five cycles.
+  // A round of the loop takes five cycles.
   const busyCycles = (data[24] + 256 * data[25]) * 5;
   assert.ok(Math.abs(busyCycles - 3.4 * CYCLES_PER_MS) < 20, `${busyCycles} cycles`);
   assert.equal(data[17], 0x5a);
@@ -36,11 +37,11 @@ test('a byte of EEPROM takes 3.4 ms to write, and can be read back', () => {
 
 test('EEPE without EEMPE just before writes nothing', () => {
   const lateProgram = WRITE_PROGRAM.replace('sbi 0x1f, 1 ', 'nop\n nop\n nop\n nop\n sbi 0x1f, 1 ');
-  assert.equal(run(corrections, lateProgram, 5 * CYCLES_PER_MS).eeprom.backend.memory[5], 0xff);
+  assert.equal(runProgram(corrections, lateProgram, 5 * CYCLES_PER_MS).eeprom.backend.memory[5], 0xff);
 });
 
 test('the bandgap against 5 V reads 225', () => {
-  const { data } = run(corrections, `
+  const { data } = runProgram(corrections, `
       ldi r16, 0x4e
       sts 0x7c, r16     ; ADMUX: AVcc, 1.1 V
       ldi r16, 0xc7
@@ -55,11 +56,11 @@ test('the bandgap against 5 V reads 225', () => {
     stop:
       rjmp stop`, CYCLES_PER_MS).cpu;
   assert.equal(data[18] + 256 * data[19], 225);
-  // The first conversion takes 25 cycles of its clock; a turn of the loop takes seven.
+  // The first conversion takes 25 cycles of its clock; a round of the loop takes seven.
   assert.ok(Math.abs((data[24] + 256 * data[25]) * 7 - 25 * 128) < 20);
 });
 
-/** The watchdog at 16 ms, interrupt and reset; the handler counts in r20 and leaves WDIE off. */
+/** Sets the watchdog to an interrupt after 16 ms and then a reset; the handler counts its calls in r20. */
 const watchdogProgram = (loop) => `
     jmp main
     _LOC 0x18         ; WDT
@@ -76,22 +77,22 @@ const watchdogProgram = (loop) => `
     ${loop}
     rjmp again`;
 
-test('a watchdog that is fed is silent', () => {
-  assert.equal(run(corrections, watchdogProgram('wdr'), 100 * CYCLES_PER_MS).cpu.data[20], 0);
+test('a watchdog that is fed does not interrupt', () => {
+  assert.equal(runProgram(corrections, watchdogProgram('wdr'), 100 * CYCLES_PER_MS).cpu.data[20], 0);
 });
 
 test('a watchdog that is not fed interrupts after 16 ms', () => {
-  assert.equal(run(corrections, watchdogProgram('nop'), 15 * CYCLES_PER_MS).cpu.data[20], 0);
-  assert.equal(run(corrections, watchdogProgram('nop'), 17 * CYCLES_PER_MS).cpu.data[20], 1);
+  assert.equal(runProgram(corrections, watchdogProgram('nop'), 15 * CYCLES_PER_MS).cpu.data[20], 0);
+  assert.equal(runProgram(corrections, watchdogProgram('nop'), 17 * CYCLES_PER_MS).cpu.data[20], 1);
 });
 
 test('a watchdog reset ends the run, because avr8js resets the processor alone', () => {
-  const board = uno(corrections, watchdogProgram('nop'));
+  const board = makeUno(corrections, watchdogProgram('nop'));
   assert.throws(() => board.run(40 * CYCLES_PER_MS), /^Error: the watchdog resets the UNO at cycle 51\d{4}, /);
 });
 
 test('a byte that would overrun the last one ends the run', () => {
-  const board = uno(corrections, 'ldi r16, 0x10\n sts 0xc1, r16\n again: rjmp again');
+  const board = makeUno(corrections, 'ldi r16, 0x10\n sts 0xc1, r16\n again: rjmp again');
   board.deliver([{ cycle: 100, byte: 1 }, { cycle: 1500, byte: 2 }]);
   assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte comes before the last was read/);
 });

@@ -1,10 +1,10 @@
-// Little AVR programs for the tests, run on avr8js with chosen corrections.
+// Helpers of the tests: they run small AVR programs on avr8js with chosen corrections.
 import assembler from 'avr8js/dist/cjs/utils/assembler.js';
 
 import { Uno } from '../src/uno.js';
 
-/** An Uno with a program, as its source, in flash. `_LOC n` continues at byte address n. */
-export function uno(corrections, source) {
+/** Makes an Uno with an assembled program in flash. In the source, `_LOC n` continues at byte address n. */
+export function makeUno(corrections, source) {
   const { bytes, errors } = assembler.assemble(source);
   if (errors.length > 0) throw new Error(`the program is wrong: ${JSON.stringify(errors)}`);
   const board = new Uno(corrections);
@@ -12,13 +12,13 @@ export function uno(corrections, source) {
   return board;
 }
 
-/** Runs a program for some cycles and returns the Uno. */
-export function run(corrections, source, cycles) {
-  const board = uno(corrections, source);
-  board.run(cycles);
+/** Makes an Uno with a program, runs it up to a cycle and returns it. */
+export function runProgram(corrections, source, endCycle) {
+  const board = makeUno(corrections, source);
+  board.run(endCycle);
   return board;
 }
 
-/** The message of a test whose fault avr8js no longer has. */
-export const fixed = (file) =>
-  `avr8js has fixed this fault: tools/judge/src/corrections/${file} and its test can go, and its line in docs/judges.md`;
+/** Returns the message of a test that fails because avr8js no longer has a fault. */
+export const fixedMessage = (file) =>
+  `avr8js has fixed this fault: remove tools/judge/src/corrections/${file}, its test and its line in docs/judges.md`;

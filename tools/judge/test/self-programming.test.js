@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { selfProgramming } from '../src/self-programming.js';
-import { run } from './program.js';
+import { addSelfProgramming } from '../src/self-programming.js';
+import { runProgram } from './program.js';
 
-// Fills the first word of the page at 0x200, erases the page, writes it.
-const program = (erase) => `
+// Fills the first word of the page buffer, erases the page at 0x200 if `isErased`, and writes it.
+const program = (isErased) => `
     ldi r30, 0x00
     ldi r31, 0x02
     ldi r16, 0x34
@@ -15,7 +15,7 @@ const program = (erase) => `
     ldi r16, 1
     out 0x37, r16     ; SPMCSR: fill
     spm
-    ldi r16, ${erase ? 3 : 0}
+    ldi r16, ${isErased ? 3 : 0}
     out 0x37, r16     ; erase
     spm
     ldi r16, 5
@@ -26,19 +26,19 @@ const program = (erase) => `
     rjmp stop`;
 
 test('a page is filled, erased and written', () => {
-  const wordsAfter = (corrections) => run(corrections, program(true), 100).cpu.progMem.subarray(0x100, 0x102);
+  const wordsAfter = (corrections) => runProgram(corrections, program(true), 100).cpu.progMem.subarray(0x100, 0x102);
   assert.equal(wordsAfter([])[0], 0xffff, 'avr8js itself can do it now: self-programming.js can go');
-  assert.deepEqual([...wordsAfter([selfProgramming])], [0x1234, 0xffff]);
+  assert.deepEqual([...wordsAfter([addSelfProgramming])], [0x1234, 0xffff]);
 });
 
 test('SPMCSR reports that the operation is done', () => {
-  assert.equal(run([selfProgramming], program(true), 100).cpu.data[20] & 0x1f, 0);
+  assert.equal(runProgram([addSelfProgramming], program(true), 100).cpu.data[20] & 0x1f, 0);
 });
 
 test('a write without an erase only clears bits', () => {
-  const programUsedByte = (board) => {
+  const setUsedByte = (board) => {
     board.flash[0x200] = 0xf0;
-    selfProgramming(board);
+    addSelfProgramming(board);
   };
-  assert.equal(run([programUsedByte], program(false), 100).cpu.progMem[0x100] & 0xff, 0x30);
+  assert.equal(runProgram([setUsedByte], program(false), 100).cpu.progMem[0x100] & 0xff, 0x30);
 });

@@ -1,14 +1,14 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { interruptEntry } from '../src/corrections/interrupt-entry.js';
-import { interruptWaits } from '../src/corrections/interrupt-waits.js';
-import { sleep } from '../src/corrections/sleep.js';
-import { fixed, run, uno } from './program.js';
+import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
+import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
+import { simulateSleep } from '../src/corrections/sleep.js';
+import { fixedMessage, makeUno, runProgram } from './program.js';
 
-// Timer 1 matches at 200; until then main sleeps or, in the other program, waits in a loop of NOPs.
-// The handler keeps the count that it sees, in r20, and how often main went on before, in r21.
-const program = (wait, mode) => `
+// Timer 1 matches at 200; until then main repeats a loop that begins with SLEEP. The handler stores the timer's count
+// in r20 and the number of completed rounds of the loop in r21.
+const program = (sleepMode) => `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
     lds r20, 0x84     ; TCNT1L
@@ -21,48 +21,50 @@ const program = (wait, mode) => `
     sts 0x88, r18     ; OCR1AL
     ldi r18, 2
     sts 0x6f, r18     ; TIMSK1
-    ldi r18, ${mode}
+    ldi r18, ${sleepMode}
     out 0x33, r18     ; SMCR
     ldi r18, 1
     sts 0x81, r18     ; TCCR1B: clock
     sei
   again:
-    ${wait}
+    sleep
     inc r16
     nop
     nop
     rjmp again`;
 
+const SLEEP_AND_INTERRUPTS = [extendInterruptEntry, delayInterruptAfterEnable, simulateSleep];
+
 test('SLEEP lasts until an interrupt', () => {
-  const loopCount = (corrections) => run(corrections, program('sleep', 1), 400).cpu.data[21];
-  assert.notEqual(loopCount([]), 0, fixed('sleep.js'));
-  assert.equal(loopCount([sleep]), 0);
+  const roundCount = (corrections) => runProgram(corrections, program(1), 400).cpu.data[21];
+  assert.notEqual(roundCount([]), 0, fixedMessage('sleep.js'));
+  assert.equal(roundCount([simulateSleep]), 0);
 });
 
 test('SLEEP does nothing unless SE is set', () => {
-  assert.notEqual(run([sleep], program('sleep', 0), 400).cpu.data[21], 0);
+  assert.notEqual(runProgram([simulateSleep], program(0), 400).cpu.data[21], 0);
 });
 
-test('an interrupt takes eight cycles from sleep', () => {
-  const { data } = run([interruptEntry, interruptWaits, sleep], program('sleep', 1), 400).cpu;
+test('the entry of an interrupt takes eight cycles from sleep', () => {
+  const { data } = runProgram(SLEEP_AND_INTERRUPTS, program(1), 400).cpu;
   // LDS reads in its second cycle.
   assert.equal(data[20], 200 + 8 + 1);
 });
 
 test('sleep is simulated event by event, not cycle by cycle', () => {
-  const board = uno([interruptEntry, interruptWaits, sleep], 'ldi r16, 1\n out 0x33, r16\n sei\n sleep\n');
-  let steps = 0;
+  const board = makeUno(SLEEP_AND_INTERRUPTS, 'ldi r16, 1\n out 0x33, r16\n sei\n sleep\n');
+  let sleepStepCount = 0;
   let passTime = null;
-  Object.defineProperty(board, 'sleep', {
+  Object.defineProperty(board, 'passSleep', {
     get: () => passTime,
-    set: (sleep) => {
+    set: (passSleep) => {
       passTime = () => {
-        steps += 1;
-        sleep();
+        sleepStepCount += 1;
+        passSleep();
       };
     },
   });
   board.run(16_000_000);
-  assert.ok(steps > 0 && steps < 10, `${steps} steps`);
+  assert.ok(sleepStepCount > 0 && sleepStepCount < 10, `${sleepStepCount} steps`);
   assert.equal(board.cpu.cycles, 16_000_000);
 });

@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { transmitBuffer } from '../src/corrections/transmit-buffer.js';
-import { fixed, uno } from './program.js';
+import { addTransmitBuffer } from '../src/corrections/transmit-buffer.js';
+import { fixedMessage, makeUno } from './program.js';
 
-// 1 Mbaud, 16 cycles a bit. Three bytes, each as soon as UDRE0 is up; r16 is the status right after
-// the first.
+// The program sends three bytes at 1 Mbaud, 16 cycles for each bit. It writes each byte as soon as UDRE0 is set, and
+// copies the status right after the first byte to r16.
 const program = `
     ldi r18, 0x08
     sts 0xc1, r18     ; UCSR0B: transmitter
@@ -25,20 +25,20 @@ const program = `
     rjmp stop`;
 
 function transmit(corrections) {
-  const board = uno(corrections, program);
+  const board = makeUno(corrections, program);
   const bytes = [];
   board.usart.onByteTransmit = (byte, cycle) => bytes.push({ byte, cycle });
   board.run(1000);
-  return { empty: (board.cpu.data[16] >> 5) & 1, bytes };
+  return { isBufferEmpty: (board.cpu.data[16] >> 5) & 1, bytes };
 }
 
 test('the transmitter takes a byte while it sends another', () => {
-  assert.equal(transmit([]).empty, 0, fixed('transmit-buffer.js'));
-  assert.equal(transmit([transmitBuffer]).empty, 1);
+  assert.equal(transmit([]).isBufferEmpty, 0, fixedMessage('transmit-buffer.js'));
+  assert.equal(transmit([addTransmitBuffer]).isBufferEmpty, 1);
 });
 
 test('bytes go out back to back, ten bits each', () => {
-  const { bytes } = transmit([transmitBuffer]);
+  const { bytes } = transmit([addTransmitBuffer]);
   assert.deepEqual(bytes.map(({ byte }) => byte), [0x61, 0x62, 0x63]);
   assert.deepEqual([bytes[1].cycle - bytes[0].cycle, bytes[2].cycle - bytes[1].cycle], [160, 160]);
 });

@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { waitingByte } from '../src/corrections/waiting-byte.js';
-import { fixed, uno } from './program.js';
+import { keepWaitingByte } from '../src/corrections/waiting-byte.js';
+import { fixedMessage, makeUno } from './program.js';
 
-// A byte comes while the receiver is on; then UCSR0B is written, and r16 and r17 get the status before
-// and after.
+// A byte comes while the receiver is on; then the program writes UCSR0B. It copies the status before that to r16 and
+// the status after that to r17.
 const program = (control) => `
     ldi r18, 0x10
     sts 0xc1, r18     ; UCSR0B: receiver
@@ -20,8 +20,9 @@ const program = (control) => `
   stop:
     rjmp stop`;
 
-function waitingFlag(corrections, control) {
-  const board = uno(corrections, program(control));
+/** Returns RXC0 after UCSR0B is written. */
+function receiveFlagAfter(corrections, control) {
+  const board = makeUno(corrections, program(control));
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   board.run(200);
   const { data } = board.cpu;
@@ -30,12 +31,12 @@ function waitingFlag(corrections, control) {
 }
 
 test('a waiting byte survives a write of UCSR0B if the receiver stays on', () => {
-  assert.equal(waitingFlag([], 0x18), 0, fixed('waiting-byte.js'));
-  assert.equal(waitingFlag([waitingByte], 0x18), 1);
+  assert.equal(receiveFlagAfter([], 0x18), 0, fixedMessage('waiting-byte.js'));
+  assert.equal(receiveFlagAfter([keepWaitingByte], 0x18), 1);
 });
 
 test('the interrupt of a waiting byte stays pending, too', () => {
-  const board = uno([waitingByte], program(0x98));
+  const board = makeUno([keepWaitingByte], program(0x98));
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   while (board.cpu.data[17] === 0) board.run(board.cpu.cycles + 1);
   assert.equal(board.cpu.nextInterrupt, 0x24);

@@ -3,12 +3,12 @@
 use object::build::elf::SymbolId;
 use object::elf::RelocationType;
 
-/// The content of a relocation: the address `symbol + addend`, to be filled in at an offset.
+/// The content of a relocation: the linker writes the address `symbol + addend` at an offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reference {
     /// Bytes from the beginning of the code.
     pub offset: u64,
-    /// The form in which the linker fills the address in.
+    /// The form in which the linker writes the address.
     pub kind: RelocationType,
     /// The symbol from which the address is counted.
     pub symbol: SymbolId,
@@ -21,26 +21,26 @@ pub struct Reference {
 pub struct Edit {
     /// Bytes from the beginning of the code.
     pub offset: u64,
-    /// The number of bytes that are replaced, together with their references.
-    pub remove: u64,
+    /// The number of bytes that are replaced; their references are replaced, too.
+    pub removed_bytes: u64,
     /// The new code, in words.
-    pub insert: Vec<u16>,
+    pub new_words: Vec<u16>,
     /// The references of the new code; their offsets count from the beginning of the new code.
     pub references: Vec<Reference>,
 }
 
 impl Edit {
     fn end(&self) -> u64 {
-        self.offset + self.remove
+        self.offset + self.removed_bytes
     }
 
-    fn length(&self) -> u64 {
-        self.insert.len() as u64 * 2
+    fn new_length(&self) -> u64 {
+        self.new_words.len() as u64 * 2
     }
 
     /// Returns the number of bytes that the edit saves.
-    pub fn gain(&self) -> i64 {
-        self.remove as i64 - self.length() as i64
+    pub fn saved_bytes(&self) -> i64 {
+        self.removed_bytes as i64 - self.new_length() as i64
     }
 
     /// True if an offset is inside the replaced bytes: after their first byte and before their end.
@@ -54,7 +54,7 @@ impl Edit {
 pub struct Edits(Vec<Edit>);
 
 impl Edits {
-    /// Orders the edits; `None` if two overlap or one covers an offset that something refers to.
+    /// Sorts the edits; `None` if two edits overlap, or if an edit covers an offset that something refers to.
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
         edits.sort_by_key(|edit| edit.offset);
         let are_apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
@@ -65,8 +65,8 @@ impl Edits {
     }
 
     /// Returns the number of bytes that the edits save.
-    pub fn gain(&self) -> i64 {
-        self.0.iter().map(Edit::gain).sum()
+    pub fn saved_bytes(&self) -> i64 {
+        self.0.iter().map(Edit::saved_bytes).sum()
     }
 
     /// Returns the new offset of the code that was at `offset`.
@@ -75,16 +75,16 @@ impl Edits {
             .0
             .iter()
             .filter(|edit| edit.offset < offset && edit.end() <= offset);
-        offset.wrapping_add_signed(-earlier_edits.map(Edit::gain).sum::<i64>())
+        offset.wrapping_add_signed(-earlier_edits.map(Edit::saved_bytes).sum::<i64>())
     }
 
     /// Returns the edited code.
-    pub fn bytes(&self, old: &[u8]) -> Vec<u8> {
+    pub fn edited_bytes(&self, old: &[u8]) -> Vec<u8> {
         let mut new_bytes = Vec::with_capacity(old.len());
         let mut copied_end = 0;
         for edit in &self.0 {
             new_bytes.extend_from_slice(&old[copied_end..edit.offset as usize]);
-            new_bytes.extend(edit.insert.iter().flat_map(|word| word.to_le_bytes()));
+            new_bytes.extend(edit.new_words.iter().flat_map(|word| word.to_le_bytes()));
             copied_end = edit.end() as usize;
         }
         new_bytes.extend_from_slice(&old[copied_end..]);
@@ -92,7 +92,7 @@ impl Edits {
     }
 
     /// Returns the references of the edited code, with new offsets but old addends.
-    pub fn references(&self, old: &[Reference]) -> Vec<Reference> {
+    pub fn edited_references(&self, old: &[Reference]) -> Vec<Reference> {
         let is_replaced = |offset: u64| {
             let contains_offset = |edit: &Edit| edit.offset <= offset && offset < edit.end();
             self.0.iter().any(contains_offset)

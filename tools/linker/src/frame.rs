@@ -17,23 +17,23 @@
 //! An epilogue removes the room, pops the registers in reverse order, and returns (`ret`).
 //!
 //! The routines also change r26, r0 and the flags. By the calling convention of avr-gcc and LLVM a
-//! caller relies on none of these after a call and passes nothing in them: arguments are in
+//! caller does not rely on these after a call and does not pass arguments in them: arguments are in
 //! r8 to r25 and on the stack, results in r18 to r25. With LLVM's `-enable-ipra` a caller may rely on
-//! any register that its callee happens not to change, so it must never be combined with this
-//! program. A test reads the flags in .cargo/config.toml.
+//! any register that the callee does not change, so never combine that option with this program.
+//! A test checks the options in .cargo/config.toml.
 //!
 //! There are routines only for a few lists of registers. If a function pushes exactly one of
-//! these lists, the layout of the stack is unchanged at each point of its body. Otherwise the routine
-//! pushes more registers, so that the arguments on the stack, which fit into no register, are farther
-//! above the variables than the body assumes. Such a routine is used only if the body does not depend
-//! on the distance. That is so if the body
+//! these lists, the layout of the stack in its body is unchanged. Otherwise the routine pushes more
+//! registers. Then the arguments on the stack, for which there were no registers, are further above
+//! the variables than the body assumes. Such a routine is used only if the body does not depend on
+//! this distance. That is the case if the body
 //!
-//! - never uses an address on the stack, because it has no variables on the stack and does not use the
-//!   stack pointer; or
-//! - uses only addresses of variables, whose distances from r28 are unchanged. The body reads
-//!   and writes by Y+q within the room for the variables, or copies r28 and at once adds a distance within
-//!   that room; and it uses r28 and r29 for nothing else. LLVM computes every address on the
-//!   stack from r28, so each access to an argument has a distance beyond the room.
+//! - uses no address on the stack: it has no variables on the stack and does not use the stack
+//!   pointer; or
+//! - uses only addresses of variables, whose distances from r28 are unchanged. The body accesses Y+q
+//!   within the room for the variables, or copies r28 and immediately adds a distance within that
+//!   room; and it uses r28 and r29 for nothing else. LLVM computes every address on the stack from
+//!   r28, so each access to an argument has a distance beyond the room.
 
 use object::build::elf::SymbolId;
 use object::elf;
@@ -50,25 +50,25 @@ const CALL_SAVED: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
-/// The lowest register that each pair of routines saves and restores.
+/// The lowest register that each pair of routines saves and restores, with all call-saved registers above it.
 pub const FIRST_REGISTERS: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
-/// The two routines for one of [`FIRST_REGISTERS`].
+/// The pair of routines for one of [`FIRST_REGISTERS`].
 #[derive(Debug, Clone, Copy)]
 pub struct Routines {
-    /// `__frame_save_K`.
+    /// The routine `__frame_save_K`.
     pub save: SymbolId,
-    /// `__frame_restore_K`.
+    /// The routine `__frame_restore_K`.
     pub restore: SymbolId,
 }
 
 /// The stack frame of a function that has one of the known forms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// The index in [`FIRST_REGISTERS`] of the routine that saves all registers of the function.
-    pub first: usize,
-    /// The size of the variables, bytes.
-    pub room: u8,
+    /// The index in [`FIRST_REGISTERS`] of the routines that save all registers of the function.
+    pub routine_index: usize,
+    /// The size of the room for variables, bytes.
+    pub room_bytes: u8,
     /// The size of the prologue, bytes.
     pub prologue_size: u64,
     /// The offset and the size of each epilogue.
@@ -78,7 +78,7 @@ pub struct Frame {
 impl Frame {
     /// Recognizes the frame of a function; `None` if the frame has none of the known forms.
     pub fn of(code: &Code) -> Option<Self> {
-        let registers: Vec<u8> = code.words(0).map_while(pushed_register).collect();
+        let registers: Vec<u8> = code.words_from(0).map_while(pushed_register).collect();
         let is_ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
         let lowest = *registers.first()?;
         if !is_ascending
@@ -88,35 +88,33 @@ impl Frame {
         {
             return None;
         }
-        let (room, room_length) = match prologue_room(code, registers.len()) {
-            Some((room, room_length)) => (room, room_length),
-            None => (0, 0),
-        };
-        let has_room = room_length > 0;
+        let (room, room_instruction_count) =
+            prologue_room(code, registers.len()).unwrap_or_default();
+        let has_room = room_instruction_count > 0;
         if has_room && !registers.ends_with(&[28, 29]) {
             return None;
         }
         let lowest = lowest.min(18);
-        let first = FIRST_REGISTERS.iter().rposition(|first| *first <= lowest)?;
-        let is_known = |register: &u8| *register >= FIRST_REGISTERS[first];
-        let is_same = registers
+        let routine_index = FIRST_REGISTERS.iter().rposition(|first| *first <= lowest)?;
+        let is_saved_by_routine = |register: &u8| *register >= FIRST_REGISTERS[routine_index];
+        let has_same_registers = registers.iter().eq(CALL_SAVED
             .iter()
-            .eq(CALL_SAVED.iter().filter(|register| is_known(register)));
-        let body = registers.len() + room_length;
+            .filter(|register| is_saved_by_routine(register)));
+        let body_start = registers.len() + room_instruction_count;
         let mut epilogue_spans = Vec::new();
-        let mut index = body;
-        // Every use of the stack pointer and every pop has to belong to an epilogue.
+        let mut index = body_start;
+        // Every use of the stack pointer, every push, pop and return must belong to an epilogue.
         while let Some(instruction) = code.instructions.get(index) {
             if let Some(length) = epilogue_length(code, index, &registers, room, has_room) {
-                let start = code.offset(index);
-                epilogue_spans.push((start, code.offset(index + length) - start));
+                let start = code.offset_of(index);
+                epilogue_spans.push((start, code.offset_of(index + length) - start));
                 index += length;
-            } else if accesses_stack_pointer(instruction.code)
-                || popped_register(instruction.code).is_some()
-                || pushed_register(instruction.code).is_some()
-                || instruction.code == RET
-                || instruction.code == RETI
-                || has_room && !is_same && !is_local(code, index, room)
+            } else if accesses_stack_pointer(instruction.first_word)
+                || popped_register(instruction.first_word).is_some()
+                || pushed_register(instruction.first_word).is_some()
+                || instruction.first_word == RET
+                || instruction.first_word == RETI
+                || has_room && !has_same_registers && !uses_only_variables(code, index, room)
             {
                 return None;
             } else {
@@ -124,19 +122,19 @@ impl Frame {
             }
         }
         Some(Self {
-            first,
-            room,
-            prologue_size: code.offset(body),
+            routine_index,
+            room_bytes: room,
+            prologue_size: code.offset_of(body_start),
             epilogues: epilogue_spans,
         })
     }
 
     /// Returns the edits that make the function use the shared routines.
     pub fn edits(&self, routines: Routines) -> Vec<Edit> {
-        let replace = |offset, remove, opcode, symbol| Edit {
+        let replacement = |offset, removed_bytes, opcode, symbol| Edit {
             offset,
-            remove,
-            insert: vec![encode_ldi_r26(self.room), opcode, 0],
+            removed_bytes,
+            new_words: vec![encode_ldi_r26(self.room_bytes), opcode, 0],
             references: vec![Reference {
                 offset: 2,
                 kind: elf::R_AVR_CALL,
@@ -144,11 +142,11 @@ impl Frame {
                 addend: 0,
             }],
         };
-        let mut edits = vec![replace(0, self.prologue_size, CALL, routines.save)];
+        let mut edits = vec![replacement(0, self.prologue_size, CALL, routines.save)];
         edits.extend(
             self.epilogues
                 .iter()
-                .map(|(offset, size)| replace(*offset, *size, JMP, routines.restore)),
+                .map(|(offset, size)| replacement(*offset, *size, JMP, routines.restore)),
         );
         edits
     }
@@ -157,7 +155,7 @@ impl Frame {
 /// Returns the room in bytes that a prologue makes below the registers, and the number of instructions that make
 /// it; `None` if no such instructions are at `index`.
 fn prologue_room(code: &Code, index: usize) -> Option<(u8, usize)> {
-    let words: Vec<u16> = code.words(index).take(9).collect();
+    let words: Vec<u16> = code.words_from(index).take(9).collect();
     let (subtract_word, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
     let (room, rest, count) = match (subtract_word, rest.split_first()) {
         // sbiw r28
@@ -176,8 +174,8 @@ fn prologue_room(code: &Code, index: usize) -> Option<(u8, usize)> {
 
 /// True if the instruction at an index uses the frame pointer only for the variables, from Y+1 to
 /// Y+room, or does not use it.
-fn is_local(code: &Code, index: usize, room: u8) -> bool {
-    let words: Vec<u16> = code.words(index).take(3).collect();
+fn uses_only_variables(code: &Code, index: usize, room: u8) -> bool {
+    let words: Vec<u16> = code.words_from(index).take(3).collect();
     let distance = match *words.as_slice() {
         [word, ..] if !may_use_frame_pointer(word) => return true,
         // ldd and std with Y+q, of other registers than r28 and r29
@@ -216,15 +214,15 @@ fn epilogue_length(
     room: u8,
     has_room: bool,
 ) -> Option<usize> {
-    let mut words = code.words(index).peekable();
+    let mut words = code.words_from(index).peekable();
     let mut count = 0;
     if has_room {
-        let low = u16::from(room);
-        let negative_room = low.wrapping_neg();
+        let room_word = u16::from(room);
+        let negative_room = room_word.wrapping_neg();
         let add_word = words.next()?;
         count += 1;
-        if add_word != 0x9620 | low << 2 & 0xc0 | low & 0x0f || room > 63 {
-            // subi r28 and sbci r29
+        if add_word != 0x9620 | room_word << 2 & 0xc0 | room_word & 0x0f || room > 63 {
+            // subi r28 and sbci r29, instead of adiw r28
             let expected_high = 0x40d0 | 0x0f0f;
             if add_word != 0x50c0 | negative_room << 4 & 0x0f00 | negative_room & 0x0f
                 || words.next()? != expected_high

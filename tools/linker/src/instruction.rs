@@ -1,5 +1,5 @@
-//! Properties of AVR instructions that decide how code may be edited, from the AVR Instruction
-//! Set Manual.
+//! Properties of AVR instructions that decide how code may be edited, from the AVR Instruction Set Manual. Each
+//! function takes the first word of an instruction.
 
 /// The opcode of `ret`.
 pub const RET: u16 = 0x9508;
@@ -16,23 +16,23 @@ pub const READ_STACK_POINTER: [u16; 2] = [0xb7cd, 0xb7de];
 pub const WRITE_STACK_POINTER: [u16; 5] = [0xb60f, 0x94f8, 0xbfde, 0xbe0f, 0xbfcd];
 
 /// True for an instruction of two words: `lds`, `sts`, `jmp`, `call`.
-pub const fn is_two_words(code: u16) -> bool {
-    code & 0xfe0f == 0x9000 || code & 0xfe0f == 0x9200 || code & 0xfe0c == 0x940c
+pub const fn is_two_words(word: u16) -> bool {
+    word & 0xfe0f == 0x9000 || word & 0xfe0f == 0x9200 || word & 0xfe0c == 0x940c
 }
 
 /// Returns the register that a `push` pushes; `None` for any other instruction.
-pub const fn pushed_register(code: u16) -> Option<u8> {
-    if code & 0xfe0f == 0x920f {
-        Some((code >> 4 & 0x1f) as u8)
+pub const fn pushed_register(word: u16) -> Option<u8> {
+    if word & 0xfe0f == 0x920f {
+        Some((word >> 4 & 0x1f) as u8)
     } else {
         None
     }
 }
 
 /// Returns the register that a `pop` pops; `None` for any other instruction.
-pub const fn popped_register(code: u16) -> Option<u8> {
-    if code & 0xfe0f == 0x900f {
-        Some((code >> 4 & 0x1f) as u8)
+pub const fn popped_register(word: u16) -> Option<u8> {
+    if word & 0xfe0f == 0x900f {
+        Some((word >> 4 & 0x1f) as u8)
     } else {
         None
     }
@@ -45,71 +45,73 @@ pub const fn encode_ldi_r26(value: u8) -> u16 {
 }
 
 /// True for an instruction with a relative target: a branch, `rjmp` or `rcall`.
-pub const fn is_relative(code: u16) -> bool {
-    is_branch(code) || code & 0xe000 == 0xc000
+pub const fn is_relative(word: u16) -> bool {
+    is_branch(word) || word & 0xe000 == 0xc000
 }
 
 /// True for a branch on a flag.
-pub const fn is_branch(code: u16) -> bool {
-    code & 0xf800 == 0xf000
+pub const fn is_branch(word: u16) -> bool {
+    word & 0xf800 == 0xf000
 }
 
 /// True for `rjmp`.
-pub const fn is_rjmp(code: u16) -> bool {
-    code & 0xf000 == 0xc000
+pub const fn is_rjmp(word: u16) -> bool {
+    word & 0xf000 == 0xc000
 }
 
 /// True for `call` and `rcall`.
-pub const fn is_call(code: u16) -> bool {
-    code & 0xfe0e == CALL || code & 0xf000 == 0xd000
+pub const fn is_call(word: u16) -> bool {
+    word & 0xfe0e == CALL || word & 0xf000 == 0xd000
 }
 
 /// True for instructions that may skip the next one: `cpse`, `sbrc`, `sbrs`, `sbic`, `sbis`.
-pub const fn may_skip_next(code: u16) -> bool {
-    code & 0xfc00 == 0x1000 || code & 0xfc08 == 0xfc00 || code & 0xfd00 == 0x9900
+pub const fn may_skip_next(word: u16) -> bool {
+    word & 0xfc00 == 0x1000 || word & 0xfc08 == 0xfc00 || word & 0xfd00 == 0x9900
 }
 
 /// True if an instruction reads or writes the stack pointer by `in` or `out`.
-pub const fn accesses_stack_pointer(code: u16) -> bool {
-    let port = code >> 5 & 0x30 | code & 0x0f;
-    code & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
+pub const fn accesses_stack_pointer(word: u16) -> bool {
+    let port = word >> 5 & 0x30 | word & 0x0f;
+    word & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
 }
 
-/// True if an instruction has r28 or r29 as an operand, or uses Y. Also true for `lpm` without an
-/// operand, which uses neither.
-pub fn may_use_frame_pointer(code: u16) -> bool {
+/// True if an instruction has r28 or r29 as an operand, or uses Y. Also true for `lpm` without an operand, although it
+/// uses neither.
+pub fn may_use_frame_pointer(word: u16) -> bool {
     let is_frame_pointer = |register: u16| register == 28 || register == 29;
-    let first = code >> 4 & 0x1f;
-    let second = code >> 5 & 0x10 | code & 0x0f;
-    let upper = 16 + (code >> 4 & 0x0f);
-    match code {
+    let first_operand = word >> 4 & 0x1f;
+    let second_operand = word >> 5 & 0x10 | word & 0x0f;
+    let upper_operand = 16 + (word >> 4 & 0x0f);
+    match word {
         // nop and movw, of register pairs
-        0x0000..=0x01ff => upper == 16 + 14 || code & 0x0f == 14,
+        0x0000..=0x01ff => upper_operand == 16 + 14 || word & 0x0f == 14,
         // muls, mulsu and fmul*, of r16 to r31
-        0x0200..=0x03ff => is_frame_pointer(upper) || is_frame_pointer(16 + (code & 0x0f)),
+        0x0200..=0x03ff => is_frame_pointer(upper_operand) || is_frame_pointer(16 + (word & 0x0f)),
         // Two register operands; mul
-        0x0400..=0x2fff | 0x9c00..=0x9fff => is_frame_pointer(first) || is_frame_pointer(second),
+        0x0400..=0x2fff | 0x9c00..=0x9fff => {
+            is_frame_pointer(first_operand) || is_frame_pointer(second_operand)
+        }
         // Immediate operand
-        0x3000..=0x7fff | 0xe000..=0xefff => is_frame_pointer(upper),
+        0x3000..=0x7fff | 0xe000..=0xefff => is_frame_pointer(upper_operand),
         // ldd and std
-        0x8000..=0x8fff | 0xa000..=0xafff => is_frame_pointer(first) || code & 8 != 0,
+        0x8000..=0x8fff | 0xa000..=0xafff => is_frame_pointer(first_operand) || word & 8 != 0,
         // Other loads and stores
-        0x9000..=0x93ff => is_frame_pointer(first) || code & 0x0f == 9 || code & 0x0f == 10,
+        0x9000..=0x93ff => is_frame_pointer(first_operand) || word & 0x0f == 9 || word & 0x0f == 10,
         // One register operand
-        0x9400..=0x95ff => is_frame_pointer(first),
+        0x9400..=0x95ff => is_frame_pointer(first_operand),
         // adiw and sbiw
-        0x9600..=0x97ff => code & 0x30 == 0x20,
+        0x9600..=0x97ff => word & 0x30 == 0x20,
         // cbi, sbi, sbic, sbis; rjmp, rcall and branches
         0x9800..=0x9bff | 0xc000..=0xdfff | 0xf000..=0xf7ff => false,
         // in and out; bld, bst, sbrc, sbrs
-        0xb000..=0xbfff | 0xf800..=0xffff => is_frame_pointer(first),
+        0xb000..=0xbfff | 0xf800..=0xffff => is_frame_pointer(first_operand),
     }
 }
 
-/// True if execution may continue after this last instruction of a function. A call does not continue,
-/// since a compiler ends a function only with a call that never returns.
-pub const fn falls_through(code: u16) -> bool {
-    let is_return = code == RET || code == RETI;
-    let is_jump = is_rjmp(code) || code & 0xfe0e == JMP || code & 0xffef == 0x9409;
-    !(is_return || is_jump || is_call(code))
+/// True if execution may continue after this last instruction of a function. False for a call, since a compiler ends a
+/// function only with a call that never returns.
+pub const fn falls_through(word: u16) -> bool {
+    let is_return = word == RET || word == RETI;
+    let is_jump = is_rjmp(word) || word & 0xfe0e == JMP || word & 0xffef == 0x9409;
+    !(is_return || is_jump || is_call(word))
 }

@@ -32,7 +32,7 @@ fn run() -> Result<ExitCode, String> {
     }
     let status = Command::new("avr-gcc").args(arguments).status();
     for path in written_files {
-        // A temporary file that is left behind does no harm.
+        // A temporary file that cannot be removed does no harm.
         let _ = fs::remove_file(path);
     }
     let status = status.map_err(|error| format!("avr-gcc, which links the firmware: {error}"))?;
@@ -43,8 +43,8 @@ fn run() -> Result<ExitCode, String> {
     })
 }
 
-/// Writes the routines that a shortened object calls, and the shortened object, next to the original.
-/// Returns their paths in this order; `None` for an argument that is not an object.
+/// Writes the routines that a shortened object calls, and the shortened object, next to the original object. Returns
+/// their paths in this order; `None` for an argument that is not an object file.
 fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     // If a file cannot be read, avr-gcc reports the error.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {

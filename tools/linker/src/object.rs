@@ -37,7 +37,7 @@ pub struct Savings {
     pub frames: i64,
     /// Bytes saved by opposite branches.
     pub branches: i64,
-    /// Bytes saved by functions near their callers, as estimated before linking.
+    /// Bytes saved by functions near their callers, estimated before linking.
     pub calls: i64,
 }
 
@@ -51,20 +51,20 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
         return Ok(None);
     }
     let mut object = Object(Builder::read(file)?);
-    object.name_sections();
+    object.add_section_name_table();
     let routines = object.add_routine_symbols();
     let mut savings = Savings::default();
     for (section, edits) in object.frame_edits(&routines) {
-        savings.frames += edits.gain();
-        object.apply(section, &edits);
+        savings.frames += edits.saved_bytes();
+        object.apply_edits(section, &edits);
     }
-    for section in object.functions() {
-        while let Some(edits) = object.find_next_edit(section, branch::edit) {
-            savings.branches += edits.gain();
-            object.apply(section, &edits);
+    for section in object.function_sections() {
+        while let Some(edits) = object.find_next_edit(section, branch::find_edit) {
+            savings.branches += edits.saved_bytes();
+            object.apply_edits(section, &edits);
         }
     }
-    savings.calls = object.order();
+    savings.calls = object.order_functions();
     let mut new_file = Vec::new();
     object.0.write(&mut new_file)?;
     Ok(Some((new_file, savings)))
@@ -73,9 +73,9 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
 struct Object<'a>(Builder<'a>);
 
 impl Object<'_> {
-    /// Adds a table for the names of sections. LLVM keeps them in one table with the names of symbols,
-    /// but the writer needs two.
-    fn name_sections(&mut self) {
+    /// Adds a table for the names of sections. LLVM keeps the names of sections and of symbols in one table, but the
+    /// writer needs two tables.
+    fn add_section_name_table(&mut self) {
         let is_table = |section: &Section| matches!(section.data, SectionData::SectionString);
         if !self.0.sections.iter().any(is_table) {
             let table = self.0.sections.add();
@@ -101,9 +101,9 @@ impl Object<'_> {
         FIRST_REGISTERS.iter().map(&mut routines_of).collect()
     }
 
-    /// Returns the sections that hold one function each, in the order of the file, without interrupt
-    /// handlers and assembly.
-    fn functions(&self) -> Vec<SectionId> {
+    /// Returns the sections that contain exactly one function, in the order of the file; without interrupt handlers and
+    /// assembly.
+    fn function_sections(&self) -> Vec<SectionId> {
         let is_function = |section: &&Section| {
             let mut function_count = 0;
             for symbol in &self.0.symbols {
@@ -156,7 +156,7 @@ impl Object<'_> {
     }
 
     fn code(&self, section: SectionId) -> Option<Code> {
-        Code::read(&self.bytes(section), self.references(section))
+        Code::decode(&self.bytes(section), self.references(section))
     }
 
     /// Returns the offset of a symbol plus an addend; `None` if the symbol is in another section.
@@ -170,7 +170,8 @@ impl Object<'_> {
         self.targets_without(section, None)
     }
 
-    /// Returns all offsets of a section that something refers to, except the code that `edit` replaces.
+    /// Returns all offsets of a section that something refers to. References in the code that `edit` replaces do not
+    /// count.
     fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
@@ -189,19 +190,22 @@ impl Object<'_> {
         targets
     }
 
-    /// Returns the edits of each function that gets shorter with shared prologues and epilogues.
+    /// Returns the edits of each function that becomes shorter with shared prologues and epilogues.
     fn frame_edits(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
         let edits_of = |section| {
             let frame = Frame::of(&self.code(section)?)?;
-            let edits = frame.edits(routines[frame.first]);
+            let edits = frame.edits(routines[frame.routine_index]);
             let edits = Edits::new(edits, &self.targets(section))?;
-            (edits.gain() > 0).then_some((section, edits))
+            (edits.saved_bytes() > 0).then_some((section, edits))
         };
-        self.functions().into_iter().filter_map(edits_of).collect()
+        self.function_sections()
+            .into_iter()
+            .filter_map(edits_of)
+            .collect()
     }
 
-    /// Returns the next edit that `edit` finds in a section; `None` if it finds no edit.
-    fn find_next_edit<F>(&self, section: SectionId, edit: F) -> Option<Edits>
+    /// Returns the next edit that `find_edit` finds in a section; `None` if it finds no edit.
+    fn find_next_edit<F>(&self, section: SectionId, find_edit: F) -> Option<Edits>
     where
         F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
     {
@@ -209,16 +213,16 @@ impl Object<'_> {
         let targets = self.targets(section);
         let offset_of =
             |reference: &Reference| self.symbol_offset(section, reference.symbol, reference.addend);
-        let edit = edit(&code, &targets, &offset_of)?;
+        let edit = find_edit(&code, &targets, &offset_of)?;
         let targets = self.targets_without(section, Some(&edit));
         Edits::new(vec![edit], &targets)
     }
 
-    /// Edits a section, and everything that refers to its offsets.
-    fn apply(&mut self, section: SectionId, edits: &Edits) {
-        let bytes = edits.bytes(&self.bytes(section));
-        let mut references = edits.references(&self.references(section));
-        let values: Vec<(SymbolId, u64)> = self
+    /// Edits a section, and changes everything that refers to its offsets.
+    fn apply_edits(&mut self, section: SectionId, edits: &Edits) {
+        let bytes = edits.edited_bytes(&self.bytes(section));
+        let mut references = edits.edited_references(&self.references(section));
+        let symbol_values: Vec<(SymbolId, u64)> = self
             .0
             .symbols
             .iter()
@@ -227,7 +231,7 @@ impl Object<'_> {
             .collect();
         // An addend changes by the difference between the shifts of its target and of its symbol.
         let new_addend = |symbol: SymbolId, addend: i64| {
-            let value = values.iter().find(|(id, _)| *id == symbol);
+            let value = symbol_values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
                 let target = value.wrapping_add_signed(addend);
                 edits
@@ -254,7 +258,7 @@ impl Object<'_> {
                 }
             }
         }
-        for (id, value) in &values {
+        for (id, value) in &symbol_values {
             let symbol = self.0.symbols.get_mut(*id);
             let end = edits.new_offset(value + symbol.st_size);
             symbol.st_value = edits.new_offset(*value);

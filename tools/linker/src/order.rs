@@ -1,9 +1,9 @@
 //! Search for an order of functions in which functions that call one another are near one another.
 //!
 //! A `call` has two words. If the target is less than 4 KB away, the linker turns it into
-//! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler writes
-//! functions in the order of its own work, and without a search the routines of `frames.S`, which
-//! nearly all functions call, would be far from most of them. So this module searches for the order in
+//! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler does not consider these
+//! distances. Nearly all functions call the routines of `frames.S`, and in the compiler's order most
+//! functions would be far from them. So this module searches for the order in
 //! which the fewest calls are out of reach; each near call also saves a cycle. The order cannot
 //! change a program's behaviour: every reference from one function to another is a
 //! relocation, and no function falls through into the next.
@@ -11,17 +11,17 @@
 /// The reach of a relative call, bytes, less the error of the estimated sizes.
 const REACH_BYTES: u32 = 4096 - 96;
 
-/// The cost of a call out of reach. Each byte beyond the reach adds 1, only to show the search in which
-/// direction an order improves.
+/// The cost of a call out of reach. Each byte beyond the reach adds 1, so that the search notices an improvement of the
+/// order before the call is within reach.
 const OUT_OF_REACH_COST: u32 = 16_384;
 
 /// The number of orders tried.
-const TRIES: u32 = 600_000;
+const TRY_COUNT: u32 = 600_000;
 
 /// The rise of the cost that is accepted at first; the accepted rise falls to 0 during the search.
-const MAX_EXTRA_COST: u32 = 4 * OUT_OF_REACH_COST;
+const INITIAL_RISE: u32 = 4 * OUT_OF_REACH_COST;
 
-/// The seed of the search; any number would do.
+/// The seed of the search; any other number would serve as well.
 const SEED: u64 = 1;
 
 /// A call or a jump from one piece of code to another.
@@ -51,17 +51,17 @@ impl Pieces {
     /// result is the same on every machine. The last piece stays the last.
     pub fn find_order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
-        let movable = self.sizes.len().saturating_sub(1);
+        let movable_count = self.sizes.len().saturating_sub(1);
         let mut random = fastrand::Rng::with_seed(SEED);
         let mut current_cost = self.cost(&order);
         let (mut best_order, mut best_cost) = (order.clone(), current_cost);
-        for tries_left in (0..TRIES).rev() {
-            if best_cost == 0 || movable < 2 {
+        for tries_left in (0..TRY_COUNT).rev() {
+            if best_cost == 0 || movable_count < 2 {
                 break;
             }
             let accepted_rise =
-                u64::from(MAX_EXTRA_COST) * u64::from(tries_left) / u64::from(TRIES);
-            let [from, to] = [0; 2].map(|_| random.usize(..movable));
+                u64::from(INITIAL_RISE) * u64::from(tries_left) / u64::from(TRY_COUNT);
+            let [from, to] = [0; 2].map(|_| random.usize(..movable_count));
             move_piece(&mut order, from, to);
             let cost = self.cost(&order);
             if cost > current_cost + accepted_rise {
@@ -77,7 +77,7 @@ impl Pieces {
     }
 
     /// Returns the number of calls out of reach in an order.
-    pub fn far_call_count(&self, order: &[usize]) -> usize {
+    pub fn out_of_reach_count(&self, order: &[usize]) -> usize {
         self.bytes_beyond_reach(order)
             .filter(|bytes| *bytes > 0)
             .count()
@@ -121,7 +121,7 @@ mod tests {
 
     /// Returns ten pairs of pieces, in each of which the first piece calls the second, ten pieces further on, and
     /// one piece at the end that the first piece calls.
-    fn pairs() -> Pieces {
+    fn pieces_in_pairs() -> Pieces {
         let mut pieces = Pieces {
             sizes: vec![700; 20],
             calls: Vec::new(),
@@ -146,16 +146,16 @@ mod tests {
 
     #[test]
     fn pieces_that_call_each_other_are_near_each_other_if_possible() {
-        let pieces = pairs();
+        let pieces = pieces_in_pairs();
         let compiled_order: Vec<usize> = (0..21).collect();
-        assert_eq!(pieces.far_call_count(&compiled_order), 11);
-        assert_eq!(pieces.far_call_count(&pieces.find_order()), 0);
+        assert_eq!(pieces.out_of_reach_count(&compiled_order), 11);
+        assert_eq!(pieces.out_of_reach_count(&pieces.find_order()), 0);
     }
 
     #[test]
     fn every_run_finds_the_same_order_of_all_pieces_with_the_last_in_its_place() {
-        let order = pairs().find_order();
-        assert_eq!(order, pairs().find_order());
+        let order = pieces_in_pairs().find_order();
+        assert_eq!(order, pieces_in_pairs().find_order());
         assert_eq!(order.last(), Some(&20));
         let mut sorted_order = order;
         sorted_order.sort_unstable();
@@ -174,6 +174,6 @@ mod tests {
             }],
         };
         assert_eq!(pieces.find_order(), [0, 1]);
-        assert_eq!(pieces.far_call_count(&[0, 1]), 1);
+        assert_eq!(pieces.out_of_reach_count(&[0, 1]), 1);
     }
 }

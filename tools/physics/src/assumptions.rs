@@ -1,4 +1,4 @@
-//! Assumptions that only MuJoCo can vary, not the contact model, and their effect: the floor, the
+//! Assumptions that the contact model cannot vary but MuJoCo can, and their effect on the gaits: the floor, the
 //! printed shape of pads, the drive of an analog servo, the distribution of mass.
 
 use std::collections::BTreeMap;
@@ -11,31 +11,32 @@ use crate::case::Case;
 use crate::crate_folder;
 use crate::figures::{Displacement, Figures};
 use crate::mujoco::scene_of;
-use crate::surface::{self, Surface, Surfaces};
-use crate::table::Part;
+use crate::surface::{self, Surface, SurfaceDisplacements};
+use crate::table::Component;
 
-/// The gaits that are walked, as in `lizard gaits --assumptions`.
+/// The gaits that are walked, the same as in `lizard gaits --assumptions`.
 pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
-/// The least change that matters, percent.
+/// The smallest change that the table shows as a number, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
 
 /// A changed assumption about the paper's robot or its floor.
 #[derive(Clone, Copy)]
 pub struct Assumption {
-    /// The changed assumption in words.
+    /// The description of the changed assumption, its name in the table.
     pub description: &'static str,
     /// A line of robot.toml, and the lines that replace it.
-    keys: Option<(&'static str, &'static str)>,
+    line_replacement: Option<(&'static str, &'static str)>,
     /// The floor, if it is not level and even.
     surface: Option<Surface>,
-    change: fn(&mut Scene),
+    /// The change of MuJoCo's scene.
+    change_scene: fn(&mut Scene),
 }
 
 const UNCHANGED: Assumption = Assumption {
     description: "",
-    keys: None,
+    line_replacement: None,
     surface: None,
-    change: |_| {},
+    change_scene: |_| {},
 };
 
 impl Assumption {
@@ -43,34 +44,34 @@ impl Assumption {
     pub const ALL: [Self; 6] = [
         Self {
             description: "analog servos that drive in bursts",
-            change: |scene| scene.drives_in_bursts = true,
+            change_scene: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
         Self {
             description: "bursts, and a rotor of 5 ms",
-            keys: Some(("[servo.A1]", "[servo]\nspin_up_ms = 5.0\n[servo.A1]")),
-            change: |scene| scene.drives_in_bursts = true,
+            line_replacement: Some(("[servo.A1]", "[servo]\nspin_up_ms = 5.0\n[servo.A1]")),
+            change_scene: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
         Self {
             description: "legs and links of a fifth of their mass",
-            change: |scene| scene.limb_mass_factor = 0.2,
+            change_scene: |scene| scene.limb_mass_factor = 0.2,
             ..UNCHANGED
         },
         Self {
             description: "mass centre 25 mm ahead",
-            keys: Some(("[body]", "[body]\ncentre = [25.0, 0.0]")),
+            line_replacement: Some(("[body]", "[body]\ncentre = [25.0, 0.0]")),
             ..UNCHANGED
         },
         Self {
             description: "mass centre 25 mm behind",
-            keys: Some(("[body]", "[body]\ncentre = [-25.0, 0.0]")),
+            line_replacement: Some(("[body]", "[body]\ncentre = [-25.0, 0.0]")),
             ..UNCHANGED
         },
         Self {
             description: "edge of 1 mm, pads with terraces of 0.1 mm",
             surface: Some(Surface::Edge(10)),
-            change: |scene| scene.pads = Pads::Terraces(0.1),
+            change_scene: |scene| scene.pads = Pads::Terraces(0.1),
             ..UNCHANGED
         },
     ];
@@ -80,52 +81,63 @@ impl Assumption {
     /// # Panics
     /// If robots/paper.toml does not have the table that is changed.
     pub fn robot(&self) -> Robot {
-        match self.keys {
-            Some((table, keys)) => paper_with(table, keys),
+        match self.line_replacement {
+            Some((old_line, new_lines)) => parse_paper_with(old_line, new_lines),
             None => crate::robot("paper"),
         }
     }
 
-    /// Returns the scene of a gait's walk; `level` is the gait's displacement with the unchanged robot.
+    /// Returns the scene of a gait's walk. `level_displacement` is the gait's displacement with the unchanged robot
+    /// on a level floor.
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn scene(&self, name: &str, assembly: &Assembly, gait: &str, level: Displacement) -> Scene {
+    pub fn scene(
+        &self,
+        name: &str,
+        assembly: &Assembly,
+        gait: &str,
+        level_displacement: Displacement,
+    ) -> Scene {
         let mut scene = match self.surface {
-            Some(surface) => surface.scene(name, assembly, gait, level),
+            Some(surface) => surface.scene(name, assembly, gait, level_displacement),
             None => scene_of(name, assembly, gait, Case::ALL[0]),
         };
-        (self.change)(&mut scene);
+        (self.change_scene)(&mut scene);
         scene
     }
 }
 
-/// Returns the paper's robot with a line of its file replaced.
-fn paper_with(old: &str, new: &str) -> Robot {
+/// Returns the paper's robot with a line of its file replaced by other lines.
+fn parse_paper_with(old_line: &str, new_lines: &str) -> Robot {
     let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
     let text = text.expect("robots/paper.toml");
-    let line = format!("\n{old}");
-    assert!(text.contains(&line), "{old}");
-    Robot::parse(&text.replacen(&line, &format!("\n{new}"), 1)).expect(new)
+    let old_text = format!("\n{old_line}");
+    assert!(text.contains(&old_text), "{old_line}");
+    Robot::parse(&text.replacen(&old_text, &format!("\n{new_lines}"), 1)).expect(new_lines)
 }
 
 /// MuJoCo's displacements by assumption and gait.
-pub type Assumptions = BTreeMap<String, BTreeMap<String, Displacement>>;
+pub type AssumptionDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// Returns the displacements stored in `assumptions.json`.
 ///
 /// # Panics
 /// If `assumptions.json` is not a table of displacements.
-pub fn stored() -> Assumptions {
+pub fn stored() -> AssumptionDisplacements {
     serde_json::from_str(include_str!("../assumptions.json")).expect("assumptions.json")
 }
 
-/// Returns a table of how the assumptions and the surfaces change each gait, in percent of MuJoCo's
-/// displacement on a level floor, from the largest change to the smallest.
+/// Returns a table of the changes of each gait by the assumptions and the surfaces, in percent of MuJoCo's displacement
+/// on a level floor, from the largest change to the smallest.
 ///
 /// # Panics
 /// If a displacement is missing.
-pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) -> String {
+pub fn table(
+    figures: &Figures,
+    surfaces: &SurfaceDisplacements,
+    assumptions: &AssumptionDisplacements,
+) -> String {
     let surface_rows = Surface::ALL.map(|surface| {
         let description = surface.to_string();
         let displacements = GAITS.map(|gait| surfaces["paper"][gait][&description]);
@@ -141,11 +153,11 @@ pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) 
             .zip(GAITS)
             .map(|(displacement, gait)| {
                 let level = surface::level_displacement(figures, gait);
-                let part = match level.0[0].abs() > level.0[2].abs() {
-                    true => Part::Ahead,
-                    false => Part::Turn,
+                let component = match level.0[0].abs() > level.0[2].abs() {
+                    true => Component::Ahead,
+                    false => Component::Turn,
                 };
-                100.0 * (part.value(displacement) / part.value(level) - 1.0)
+                100.0 * (component.value(displacement) / component.value(level) - 1.0)
             });
         std::array::from_fn(|_| changes.next().expect("one of each gait"))
     };

@@ -25,11 +25,11 @@ pub enum Feet {
 }
 
 impl Feet {
-    /// All variants, in the order of the tables.
+    /// All kinds of feet, in the order of the tables.
     pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
 
     /// Returns the excess length of the front left foot, mm.
-    pub fn excess_length(self) -> f64 {
+    pub fn excess_length_mm(self) -> f64 {
         match self {
             Self::Level => 0.0,
             Self::Stiff => 0.6,
@@ -37,7 +37,7 @@ impl Feet {
         }
     }
 
-    /// Returns the stiffness of a foot on this robot, N/mm.
+    /// Returns the stiffness of the feet's leaves on a robot, N/mm.
     pub fn stiffness(self, robot: &Robot) -> f64 {
         match self {
             Self::Stiff => 2.0,
@@ -77,7 +77,7 @@ impl Case {
         Ground {
             stance: Stance {
                 stiffness: self.feet.stiffness(robot),
-                twist: self.feet.excess_length(),
+                twist: self.feet.excess_length_mm(),
                 ..Stance::LEVEL
             },
             drive: match self.legs {

@@ -1,12 +1,12 @@
-//! Table of the expected results of trials with a real robot, each with the key of robot.toml that takes
-//! the measured result.
+//! Table of the expected results of trials with a real robot, each with the key of robot.toml for the measured
+//! result.
 
 use std::fmt::Write as _;
 
 use lizard_robot::{CheckedGait, Effort, GRAVITY, HIGH_LINE_SHARE, Robot, ServoType};
 
-/// Returns the table in `docs/measure.md`.
-pub fn expected(robot: &Robot) -> String {
+/// Returns the table of expected results for `docs/measure.md`.
+pub fn expected_table(robot: &Robot) -> String {
     let ground = robot.ground();
     let load = ground.body.mean_load();
     let grams = |newton: f64| 1000.0 * newton / GRAVITY;
@@ -106,7 +106,7 @@ pub fn expected(robot: &Robot) -> String {
             format!(
                 "{} V; {:.1} V or more will do",
                 servo.volts,
-                servo.volts * hardest_gait.line / HIGH_LINE_SHARE
+                servo.volts * hardest_gait.line_share / HIGH_LINE_SHARE
             ),
             "[servo] volts",
         ),
@@ -151,28 +151,35 @@ struct HardestGait<'a> {
     robot: &'a Robot,
     gait: &'a CheckedGait,
     /// The largest share of a servo's torque-speed line that the gait uses.
-    line: f64,
+    line_share: f64,
 }
 
 impl<'a> HardestGait<'a> {
     fn of(robot: &'a Robot) -> Self {
-        let line_share_of = |gait| Self::line(robot, gait, robot.servo_type());
-        let lines = robot.gaits().iter().map(|gait| (gait, line_share_of(gait)));
-        let hardest = lines.max_by(|(_, a), (_, b)| a.total_cmp(b));
-        let (gait, line) = hardest.expect("every robot stands");
-        Self { robot, gait, line }
+        let line_share_of = |gait| Self::line_share(robot, gait, robot.servo_type());
+        let line_shares = robot.gaits().iter().map(|gait| (gait, line_share_of(gait)));
+        let hardest = line_shares.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let (gait, line_share) = hardest.expect("every robot stands");
+        Self {
+            robot,
+            gait,
+            line_share,
+        }
     }
 
-    fn line(robot: &Robot, gait: &CheckedGait, servo: &ServoType) -> f64 {
+    /// Returns the largest share of the torque-speed line of `servo` that a gait uses.
+    fn line_share(robot: &Robot, gait: &CheckedGait, servo: &ServoType) -> f64 {
         let motors = robot.motors_of_type(servo, servo.volts);
         Effort::of(gait, robot.ground(), &motors).line_share(1.0, 1.0)
     }
 
-    /// Returns the value of a servo's key at which the gait nearly uses up the servo's torque-speed line. The search
-    /// stays within a factor of four of `own_value`, the servo's own value; `servo` makes the servo with another value.
-    fn limit(&self, own_value: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
-        let is_enough =
-            |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= HIGH_LINE_SHARE;
+    /// Returns the limit of a key of the servo: the value with which the gait uses [`HIGH_LINE_SHARE`] of the
+    /// torque-speed line. The search stays within a factor of four of `own_value`, the value of the robot's servo.
+    /// `servo_with` returns the servo with another value.
+    fn limit(&self, own_value: f64, servo_with: impl Fn(f64) -> ServoType) -> f64 {
+        let is_enough = |value: f64| {
+            Self::line_share(self.robot, self.gait, &servo_with(value)) <= HIGH_LINE_SHARE
+        };
         let mut good_value = own_value;
         let mut bad_value = if is_enough(2.0 * own_value) {
             own_value / 4.0

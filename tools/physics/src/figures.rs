@@ -1,4 +1,4 @@
-//! Stored displacements that the contact model and MuJoCo gave in their last run.
+//! Stored displacements from the last run of the contact model and of MuJoCo.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,9 @@ use lizard_robot::Travel;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Feet};
+use crate::text::format_nested_blocks;
 
-/// A displacement in one cycle: mm forward, mm to the left, deg counter-clockwise; two decimals.
+/// A displacement in one cycle: mm forward, mm to the left, deg counter-clockwise; rounded to two decimals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement(pub [f64; 3]);
 
@@ -35,28 +36,27 @@ impl From<Travel> for Displacement {
 /// The displacements in one cycle that the contact model and MuJoCo compute.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answers {
-    /// The contact model's displacement; `None` if two feet pull against the other two, so that the
-    /// smallest difference between the pads decides.
+    /// The contact model's displacement. `None` if two feet pull against the other two: then the result depends on
+    /// the smallest difference between the pads.
     pub model: Option<Displacement>,
     /// MuJoCo's displacement, for the robot as `lizard model` writes it.
     pub mujoco: Displacement,
 }
 
-/// Allowed differences between MuJoCo and the model: mm or, if larger, a share of the distance; and
-/// deg. `LEVEL` is for level feet, `SOFT_FOOT_TOLERANCE` and `STIFF` for one foot too long: on soft leaves, and on
-/// stiff leaves, where a few hundredths of a mm decide which feet stick.
+/// Allowed difference between MuJoCo and the model with level feet: mm or, if larger, a share of the distance; and deg.
 const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
+/// The same with one foot too long on soft leaves.
 const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
+/// The same with one foot too long on stiff leaves, where a few hundredths of a mm decide which feet stick.
 const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
-/// If a gait moves less than this in the model, mm and deg, MuJoCo may differ by
-/// [`STANDSTILL_TOLERANCE_MM`]: the robot moves nearly equally fast in both directions, so that
-/// inertia decides.
+/// The displacement in the model, mm and deg, below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot
+/// then moves nearly equally fast in both directions, so the result depends on inertia.
 const STANDSTILL_LIMITS: (f64, f64) = (1.0, 0.5);
 const STANDSTILL_TOLERANCE_MM: f64 = 3.5;
 
 impl Answers {
     /// Returns the allowed difference between MuJoCo and the model, mm and deg.
-    pub fn bound(&self, case: Case) -> (f64, f64) {
+    pub fn allowed_difference(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
             Feet::Level => LEVEL_FEET_TOLERANCE,
             Feet::Soft => SOFT_FOOT_TOLERANCE,
@@ -74,7 +74,7 @@ impl Answers {
     /// displacement, `None`.
     pub fn disagreement(&self, case: Case) -> Option<String> {
         let (error, turn_error) = self.mujoco.distance_to(&self.model?);
-        let (mm, deg) = self.bound(case);
+        let (mm, deg) = self.allowed_difference(case);
         (error > mm || turn_error > deg).then(|| {
             format!(
                 "MuJoCo is {error:.1} mm and {turn_error:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
@@ -92,28 +92,17 @@ impl Figures {
     /// Returns the figures stored in `figures.json`.
     ///
     /// # Panics
-    /// If `figures.json` is not as [`Figures::text`] makes it.
+    /// If `figures.json` does not have the format of [`Figures::to_json`].
     pub fn stored() -> Self {
         serde_json::from_str(include_str!("../figures.json")).expect("figures.json")
     }
 
-    /// Returns the text of `figures.json`: a line for each walk.
+    /// Returns the text of `figures.json`, with a line for each walk.
     ///
     /// # Panics
     /// Never: names and numbers can always be written as JSON.
-    pub fn text(&self) -> String {
-        let json_object = |lines: Vec<String>| format!("{{\n{}\n}}", lines.join(",\n"));
-        let robots = self.0.iter().map(|(robot, gaits)| {
-            let gaits = gaits.iter().map(|(gait, cases)| {
-                let cases = cases.iter().map(|(case, answers)| {
-                    let answers = serde_json::to_string(answers).expect("numbers");
-                    format!("{case:?}: {answers}")
-                });
-                format!("{gait:?}: {}", json_object(cases.collect()))
-            });
-            format!("{robot:?}: {}", json_object(gaits.collect()))
-        });
-        json_object(robots.collect()) + "\n"
+    pub fn to_json(&self) -> String {
+        format_nested_blocks(&self.0)
     }
 
     /// Returns the answers for a robot's gait in a case; `None` if none are stored.
@@ -129,7 +118,7 @@ impl Figures {
     }
 
     /// Returns the number of walks.
-    pub fn count(&self) -> usize {
+    pub fn walk_count(&self) -> usize {
         let gaits = self.0.values().flat_map(BTreeMap::values);
         gaits.map(BTreeMap::len).sum()
     }

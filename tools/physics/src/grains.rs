@@ -1,5 +1,5 @@
-//! Comparison of the contact model and MuJoCo on pads with a grain, which grip more backward than forward: the
-//! speeds of the gaits of `robots/grain.toml` at five ratios of friction.
+//! Comparison of the contact model and MuJoCo on pads with a grain, which have more friction backward than forward: the
+//! speeds of the gaits of `robots/grain.toml` at five friction ratios.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -14,10 +14,9 @@ use crate::mujoco::{Jobs, MujocoError};
 
 /// The name of the robot's file.
 pub const ROBOT: &str = "grain";
-/// Ratios of backward to forward friction.
+/// The ratios of backward to forward friction that are compared.
 pub const RATIOS: [f64; 5] = [1.0, 1.1, 1.2, 1.5, 2.0];
-/// The gaits measured, without mirror images. The flag is true if a gait pushes some pads against
-/// the grain.
+/// The gaits that are compared, without mirror images. The flag is true if the gait pushes some pads against the grain.
 pub const GAITS: [(&str, bool); 5] = [
     ("run", false),
     ("walk", false),
@@ -25,15 +24,15 @@ pub const GAITS: [(&str, bool); 5] = [
     ("left", true),
     ("arc-left", false),
 ];
-/// Largest ratio at which model and MuJoCo have to agree on a gait against the grain. Above this ratio, the
-/// pushing pads have barely more grip than the returning one, so the result depends on inertia, which the
-/// model ignores.
+/// The largest ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio, the pads
+/// that push have hardly more friction than the pad that returns, so the result depends on inertia, which the model
+/// ignores.
 const MAX_RATIO_AGAINST: f64 = 1.5;
-/// The allowed difference between MuJoCo and the model in a cycle. For the distance, the larger
-/// of the bounds `mm` and `share` counts.
+/// An allowed difference between MuJoCo and the model in a cycle. The larger of `mm` and `share` is the bound of the
+/// distance.
 struct Bound {
     mm: f64,
-    /// Share of the model's distance.
+    /// A share of the model's distance.
     share: f64,
     deg: f64,
 }
@@ -43,26 +42,25 @@ const BOUND: Bound = Bound {
     share: 0.2,
     deg: 2.0,
 };
-/// Time until the motion repeats from cycle to cycle, s, since a gait has to bring the body from rest to its
-/// speed first.
+/// The time that a gait needs to accelerate the body from rest, s. After it the motion repeats from cycle to cycle.
 const SETTLING_S: f64 = 1.5;
 
 /// The answers by gait, in the order of [`RATIOS`].
-pub type Grains = BTreeMap<String, Vec<Answers>>;
+pub type GrainAnswers = BTreeMap<String, Vec<Answers>>;
 
 /// Returns the answers stored in `grains.json`.
 ///
 /// # Panics
-/// If `grains.json` is not as [`text`] makes it.
-pub fn stored() -> Grains {
+/// If `grains.json` does not have the format of [`to_json`].
+pub fn stored() -> GrainAnswers {
     serde_json::from_str(include_str!("../grains.json")).expect("grains.json")
 }
 
-/// Returns the text of `grains.json`: a line for each walk.
+/// Returns the text of `grains.json`, with a line for each walk.
 ///
 /// # Panics
 /// Never: names and numbers can always be written as JSON.
-pub fn text(grains: &Grains) -> String {
+pub fn to_json(grains: &GrainAnswers) -> String {
     let gaits = grains.iter().map(|(gait, answers)| {
         let lines = answers
             .iter()
@@ -72,9 +70,9 @@ pub fn text(grains: &Grains) -> String {
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
 }
 
-/// Returns the model's displacement with level feet; `None` if two feet pull against the other two, so
-/// that the model cannot decide.
-pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
+/// Returns the model's displacement with level feet; `None` if two feet pull against the other two, so that the model
+/// has no answer.
+pub fn model_displacement(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {
         stance: Stance {
             stiffness: robot.ground().stance.stiffness,
@@ -94,7 +92,7 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
 ///
 /// # Panics
 /// If the robot does not have the gaits.
-pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
+pub fn measure(robot: &Robot) -> Result<GrainAnswers, MujocoError> {
     let assembly = Assembly::new(robot);
     let walk_name = |gait: &str, index: usize| format!("{gait}-{index}");
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect(name));
@@ -110,7 +108,7 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
             .into_iter()
             .enumerate()
             .map(|(index, ratio)| Answers {
-                model: model(robot, gait, ratio),
+                model: model_displacement(robot, gait, ratio),
                 mujoco: by_mujoco[&walk_name(gait.name(), index)],
             });
         (gait.name().to_owned(), answers.collect())
@@ -118,8 +116,8 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
     Ok(grains.collect())
 }
 
-/// Returns the number of cycles after which a gait's motion repeats from cycle to cycle.
-pub(crate) fn settling_cycles(gait: &CheckedGait) -> u32 {
+/// Returns the number of cycles until a gait's motion repeats from cycle to cycle.
+pub(crate) fn settling_cycle_count(gait: &CheckedGait) -> u32 {
     (SETTLING_S / gait.period()).ceil() as u32
 }
 
@@ -132,7 +130,7 @@ pub(crate) fn answers_at_own_ratio(answers: &[Answers]) -> Answers {
 
 fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
     let robot = assembly.robot();
-    let cycles = settling_cycles(gait) + 1;
+    let cycles = settling_cycle_count(gait) + 1;
     Scene {
         name,
         friction_ratio: ratio,
@@ -143,7 +141,7 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
 }
 
 /// Returns a message for each answer of MuJoCo that is too far from the model's.
-pub fn disagreements(grains: &Grains) -> Vec<String> {
+pub fn disagreements(grains: &GrainAnswers) -> Vec<String> {
     let mut messages = Vec::new();
     for (gait, is_against_grain) in GAITS {
         for (ratio, answers) in RATIOS.into_iter().zip(&grains[gait]) {
@@ -166,14 +164,14 @@ pub fn disagreements(grains: &Grains) -> Vec<String> {
 ///
 /// # Panics
 /// If a gait is missing.
-pub fn table(robot: &Robot, grains: &Grains) -> String {
+pub fn table(robot: &Robot, grains: &GrainAnswers) -> String {
     let mut text = format!("{:16}", "model, MuJoCo");
     for ratio in RATIOS {
         let heading = format!("r = {ratio:.1}");
         _ = write!(text, "  {heading:>13}");
     }
     text.push('\n');
-    // The part of the displacement for which a gait is made: 0 is ahead, 2 the turn.
+    // The component of the displacement that is the gait's purpose: 0 is the distance ahead, 2 is the turn.
     let rows = GAITS.into_iter().flat_map(|(gait, _)| match gait {
         "left" => vec![(gait, 2)],
         "arc-left" => vec![(gait, 0), (gait, 2)],
@@ -195,10 +193,10 @@ pub fn table(robot: &Robot, grains: &Grains) -> String {
     text
 }
 
-/// Stores the answers.
+/// Writes the answers to `grains.json`.
 ///
 /// # Errors
 /// Fails if the file cannot be written.
-pub fn store(grains: &Grains) -> std::io::Result<()> {
-    std::fs::write(crate_folder().join("grains.json"), text(grains))
+pub fn store(grains: &GrainAnswers) -> std::io::Result<()> {
+    std::fs::write(crate_folder().join("grains.json"), to_json(grains))
 }

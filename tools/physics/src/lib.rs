@@ -1,13 +1,12 @@
 //! Comparison of the contact model with MuJoCo, a physics engine of other authors.
 //!
-//! Every prediction of a path over the floor comes from this project's own contact model.
-//! A fault of that model would affect every table, the page and the choice of gaits. So
-//! MuJoCo, which does not use the model, walks the same gaits with the robot as `lizard model`
-//! writes it.
+//! Every prediction of a path over the floor comes from this project's own contact model. A fault of that model would
+//! affect every table, the page and the choice of gaits. So MuJoCo, which does not use the model, walks the same gaits
+//! with the robot that `lizard model` writes.
 //!
-//! `make physics` runs MuJoCo ([`mujoco`]), compares its displacements with the model's and with the
-//! stored ones in `figures.json`, and prints them all. The tables of the documentation are made from the
-//! stored figures ([`Figures`], [`table`]), so a test without MuJoCo keeps them current.
+//! `make physics` runs MuJoCo ([`mujoco`]), compares its displacements with the model's and with the stored ones in
+//! `figures.json`, and prints all of them. The tables of the documentation are made from the stored figures
+//! ([`Figures`], [`table`]), so a test without MuJoCo keeps the tables current.
 
 pub mod assumptions;
 mod case;
@@ -17,24 +16,25 @@ mod figures;
 pub mod grains;
 pub mod mujoco;
 pub mod pads;
-mod row;
 pub mod servos;
 pub mod surface;
 mod table;
 pub mod text;
+mod walk;
 
 pub use case::{Case, Feet, Legs};
 pub use crossing::Crossing;
-pub use expected::expected;
+pub use expected::expected_table;
 pub use figures::{Answers, Displacement, Figures};
-pub use row::{Row, rows};
-pub use table::{spread, table};
+pub use table::{displacement_table, table};
+pub use walk::{Walk, walks_of};
 
 use std::path::PathBuf;
 
 use lizard_robot::Robot;
 
-/// The files of robots/ that are compared, without their extension. `grain` has a table of its own ([`grains`]).
+/// The names of the files of robots/ that are compared, without their extension. `grain` has a table of its own
+/// ([`grains`]).
 pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 
 /// Loads a file of robots/ by its name without the extension.

@@ -1,41 +1,43 @@
-//! `make physics`: walks every gait of the robots of robots/ by the contact model and by MuJoCo.
-//! MuJoCo alone also walks the robots over edges and blocks, and the paper's robot on slopes and other
-//! floors. With `--write` the new results replace the stored ones; with `--one-in N` only every N-th
-//! walk is done.
+//! `make physics`: compares the displacement of every gait of the robots of robots/ in the contact model and in
+//! MuJoCo. Only MuJoCo walks the robots over edges and blocks, and the paper's robot on slopes and other floors.
+//! With `--write` the new results replace the stored ones; with `--one-in N` only every N-th walk is simulated.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
 use lizard_parts::Assembly;
-use lizard_physics::assumptions::{self, Assumption, Assumptions};
-use lizard_physics::grains::{self, Grains};
+use lizard_physics::assumptions::{self, Assumption, AssumptionDisplacements};
+use lizard_physics::grains::{self, GrainAnswers};
 use lizard_physics::mujoco::{Jobs, MujocoError};
-use lizard_physics::pads::{self, SURFACES, Shape, Shapes};
-use lizard_physics::servos::{self, Servos, Variant, servos_table};
-use lizard_physics::surface::{self, Surface, Surfaces, surfaces_table};
-use lizard_physics::text::{blocks, lines};
+use lizard_physics::pads::{self, PadShape, SURFACES, ShapeDisplacements};
+use lizard_physics::servos::{self, ServoAnswers, Variant, servos_table};
+use lizard_physics::surface::{self, Surface, SurfaceDisplacements, surfaces_table};
+use lizard_physics::text::{format_blocks, format_lines};
 use lizard_physics::{
-    Answers, Displacement, Figures, Legs, ROBOTS, Row, crate_folder, robot, rows, table,
+    Answers, Displacement, Figures, Legs, ROBOTS, Walk, crate_folder, robot, table, walks_of,
 };
 use lizard_robot::Robot;
 
-/// Largest difference from the stored displacement, mm and deg, without a change of the model, MuJoCo or the
-/// robot.
+/// The largest difference from a stored displacement, mm and deg, that is not reported as a change.
 const TOLERANCES: (f64, f64) = (0.6, 0.4);
-/// The message for an answer that cannot be compared because none is stored for its walk.
-const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these";
-/// The prefixes of the names of walks on other floors, with other servos, assumptions and pads.
-const SURFACE: &str = "surface";
-const SERVOS: &str = "servos";
-const ASSUMPTIONS: &str = "assumptions";
-const PADS: &str = "pads";
+/// The message for a walk without a stored answer.
+const NOT_STORED: &str = "no figures are kept; `make physics WRITE=1` keeps these";
+/// Prefixes of the names of walks: on other floors, with other servos, with other assumptions, with other pads.
+const SURFACE_PREFIX: &str = "surface";
+const SERVOS_PREFIX: &str = "servos";
+const ASSUMPTIONS_PREFIX: &str = "assumptions";
+const PADS_PREFIX: &str = "pads";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let one_in = match &arguments[..] {
         [] => Some(1),
         [write] if write == "--write" => None,
-        [flag, n] if flag == "--one-in" && n.parse().is_ok_and(|n: usize| n > 0) => n.parse().ok(),
+        [flag, number]
+            if flag == "--one-in" && number.parse().is_ok_and(|number: usize| number > 0) =>
+        {
+            number.parse().ok()
+        }
         _ => {
             eprintln!("physics: --write, or --one-in and a number from 1 on, not {arguments:?}");
             return ExitCode::from(2);
@@ -60,13 +62,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Returns the name of a walk, by which its file is written and its answer is found.
-fn walk_name(robot: &str, index: usize) -> String {
-    format!("{robot}-{index}")
+/// Returns the name of a walk, which is also the name of its file.
+fn walk_name(prefix: &str, index: usize) -> String {
+    format!("{prefix}-{index}")
 }
 
-/// Does every `one_in`-th walk and compares the answers with the stored ones; with `None`, does all walks
-/// and stores their answers. Returns a message for each fault.
+/// Simulates every `one_in`-th walk and compares the answers with the stored ones; with `None`, simulates all walks and
+/// stores their answers. Returns a message for each fault.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (is_writing, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
@@ -76,9 +78,14 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             .next()
             .is_some_and(|n: usize| n.is_multiple_of(one_in))
     };
-    let rows_by_robot: Vec<Vec<Row>> = robots
+    let walks_by_robot: Vec<Vec<Walk>> = robots
         .iter()
-        .map(|(_, robot)| rows(robot).into_iter().filter(|_| is_chosen()).collect())
+        .map(|(_, robot)| {
+            walks_of(robot)
+                .into_iter()
+                .filter(|_| is_chosen())
+                .collect()
+        })
         .collect();
     let stored_figures = Figures::stored();
     let uneven_walks: Vec<UnevenWalk> = UnevenWalk::all(&stored_figures)
@@ -86,20 +93,20 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         .filter(|_| is_chosen())
         .collect();
     let mut jobs = Jobs::new()?;
-    for ((robot_name, robot), rows) in robots.iter().zip(&rows_by_robot) {
+    for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
         let assembly = Assembly::new(robot);
-        let indexed_rows = rows.iter().enumerate();
-        let walks =
-            indexed_rows.map(|(index, row)| row.scene(&walk_name(robot_name, index), &assembly));
-        jobs.add(&assembly, walks)?;
+        let indexed_walks = walks.iter().enumerate();
+        let scenes =
+            indexed_walks.map(|(index, walk)| walk.scene(&walk_name(robot_name, index), &assembly));
+        jobs.add(&assembly, scenes)?;
     }
     for (index, walk) in uneven_walks.iter().enumerate() {
         let assembly = Assembly::new(&robot(walk.robot));
         let scene = walk.surface.scene(
-            &walk_name(SURFACE, index),
+            &walk_name(SURFACE_PREFIX, index),
             &assembly,
             &walk.gait,
-            walk.level,
+            walk.level_displacement,
         );
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
@@ -111,7 +118,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         .collect();
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
         let assembly = Assembly::new(&variant.robot());
-        let scene = variant.scene(&walk_name(SERVOS, index), &assembly, gait);
+        let scene = variant.scene(&walk_name(SERVOS_PREFIX, index), &assembly, gait);
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
     let assumption_walks =
@@ -124,64 +131,69 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
         let assembly = Assembly::new(&assumption.robot());
         let level = surface::level_displacement(&stored_figures, gait);
-        let scene = assumption.scene(&walk_name(ASSUMPTIONS, index), &assembly, gait, level);
+        let scene = assumption.scene(
+            &walk_name(ASSUMPTIONS_PREFIX, index),
+            &assembly,
+            gait,
+            level,
+        );
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
-    let pad_walks = Shape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
-    let pad_walks: Vec<(Shape, Surface)> = pad_walks
+    let pad_walks = PadShape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
+    let pad_walks: Vec<(PadShape, Surface)> = pad_walks
         .concat()
         .into_iter()
         .filter(|_| is_chosen())
         .collect();
     let paper = Assembly::new(&robot("paper"));
-    let walks = pad_walks
+    let scenes = pad_walks
         .iter()
         .enumerate()
         .map(|(index, (shape, surface))| {
             let level = surface::level_displacement(&stored_figures, pads::GAIT);
             (
                 Legs::Rigid,
-                shape.scene(&walk_name(PADS, index), &paper, *surface, level),
+                shape.scene(&walk_name(PADS_PREFIX, index), &paper, *surface, level),
             )
         });
-    jobs.add(&paper, walks)?;
+    jobs.add(&paper, scenes)?;
     println!(
         "physics: {} walks by MuJoCo take some minutes",
-        jobs.count()
+        jobs.walk_count()
     );
     let by_mujoco = jobs.start()?.wait()?;
 
     let (mut figures, mut faults) = (Figures::default(), Vec::new());
-    for ((robot_name, robot), rows) in robots.iter().zip(&rows_by_robot) {
-        for (index, row) in rows.iter().enumerate() {
+    for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
+        for (index, walk) in walks.iter().enumerate() {
             let answers = Answers {
-                model: row.model(robot),
+                model: walk.model_displacement(robot),
                 mujoco: by_mujoco[&walk_name(robot_name, index)],
             };
-            let mut messages: Vec<String> = answers.disagreement(row.case).into_iter().collect();
+            let mut messages: Vec<String> = answers.disagreement(walk.case).into_iter().collect();
             if !is_writing {
                 messages.extend(describe_changes(
-                    stored_figures.get(robot_name, &row.gait, row.case),
+                    stored_figures.get(robot_name, &walk.gait, walk.case),
                     &answers,
                 ));
             }
             let describe =
-                |message| format!("{robot_name}: {} ({}): {message}", row.gait, row.case);
+                |message| format!("{robot_name}: {} ({}): {message}", walk.gait, walk.case);
             faults.extend(messages.into_iter().map(describe));
-            figures.store(robot_name, &row.gait, row.case, answers);
+            figures.store(robot_name, &walk.gait, walk.case, answers);
         }
         println!("\n{}", table(robot_name, robot, &figures));
     }
-    let (stored_surfaces, mut surfaces) = (surface::stored(), Surfaces::new());
+    let (stored_surfaces, mut surfaces) = (surface::stored(), SurfaceDisplacements::new());
     for (index, walk) in uneven_walks.iter().enumerate() {
         let UnevenWalk {
             robot,
             gait,
-            level,
+            level_displacement,
             surface,
         } = walk;
-        let displacement = by_mujoco[&walk_name(SURFACE, index)];
-        let mut messages = surface::excess_losses(*surface, *level, displacement);
+        let displacement = by_mujoco[&walk_name(SURFACE_PREFIX, index)];
+        let mut messages = surface::excess_losses(*surface, *level_displacement, displacement);
         if surface::is_known_shortfall(robot, gait, *surface) {
             messages.clear();
         }
@@ -195,7 +207,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
                 Some(stored_displacement) => {
                     describe_difference("MuJoCo", *stored_displacement, displacement)
                 }
-                None => Some(NOT_KEPT.to_owned()),
+                None => Some(NOT_STORED.to_owned()),
             });
         }
         let describe = |message| format!("{robot}: {gait} ({surface}): {message}");
@@ -210,11 +222,11 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             surfaces_table(robot, &stored_figures, &surfaces)
         );
     }
-    let (stored_servos, mut by_servos) = (servos::stored(), Servos::new());
+    let (stored_servos, mut by_servos) = (servos::stored(), ServoAnswers::new());
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
         let answers = Answers {
-            model: Some(variant.model(gait)),
-            mujoco: by_mujoco[&walk_name(SERVOS, index)],
+            model: Some(variant.model_displacement(gait)),
+            mujoco: by_mujoco[&walk_name(SERVOS_PREFIX, index)],
         };
         let mut messages: Vec<String> = variant.disagreement(gait, &answers).into_iter().collect();
         if !is_writing {
@@ -229,18 +241,21 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         by_gait.insert((*gait).to_owned(), answers);
     }
     println!("\n{}", servos_table(&by_servos));
-    let mut by_assumption = Assumptions::new();
+    let mut by_assumption = AssumptionDisplacements::new();
     for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
-        let displacement = by_mujoco[&walk_name(ASSUMPTIONS, index)];
+        let displacement = by_mujoco[&walk_name(ASSUMPTIONS_PREFIX, index)];
         let by_gait = by_assumption
             .entry(assumption.description.to_owned())
             .or_default();
         by_gait.insert((*gait).to_owned(), displacement);
     }
-    let mut by_shape = Shapes::new();
+    let mut by_shape = ShapeDisplacements::new();
     for (index, (shape, surface)) in pad_walks.iter().enumerate() {
         let by_surface = by_shape.entry(shape.name()).or_default();
-        by_surface.insert(surface.to_string(), by_mujoco[&walk_name(PADS, index)]);
+        by_surface.insert(
+            surface.to_string(),
+            by_mujoco[&walk_name(PADS_PREFIX, index)],
+        );
     }
     println!("\n{}", pads::table(&by_shape));
     if !is_writing {
@@ -251,7 +266,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         faults.extend(describe_displacement_changes(&pads::stored(), &by_shape));
     }
     let grain_robot = robot(grains::ROBOT);
-    // With `--one-in`, which saves time, the pads with a grain are left out.
+    // A shortened run (`--one-in`) leaves out the pads with a grain.
     if one_in == 1 {
         let grain_answers = grains::measure(&grain_robot)?;
         println!(
@@ -265,20 +280,26 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         }
     }
     if is_writing {
-        std::fs::write(crate_folder().join("figures.json"), figures.text())?;
-        std::fs::write(crate_folder().join("surfaces.json"), blocks(&surfaces))?;
+        std::fs::write(crate_folder().join("figures.json"), figures.to_json())?;
+        std::fs::write(
+            crate_folder().join("surfaces.json"),
+            format_blocks(&surfaces),
+        )?;
         std::fs::write(
             crate_folder().join("assumptions.json"),
-            lines(&by_assumption),
+            format_lines(&by_assumption),
         )?;
-        std::fs::write(crate_folder().join("pads.json"), lines(&by_shape))?;
-        std::fs::write(crate_folder().join("servos.json"), servos::text(&by_servos))?;
+        std::fs::write(crate_folder().join("pads.json"), format_lines(&by_shape))?;
+        std::fs::write(
+            crate_folder().join("servos.json"),
+            format_blocks(&by_servos),
+        )?;
         println!("physics: written to tools/physics; `make docs` puts it into the pages");
-    } else if one_in == 1 && stored_figures.count() != figures.count() {
+    } else if one_in == 1 && stored_figures.walk_count() != figures.walk_count() {
         faults.push(format!(
             "{} figures are kept, and there are {}; `make physics WRITE=1` keeps these",
-            stored_figures.count(),
-            figures.count()
+            stored_figures.walk_count(),
+            figures.walk_count()
         ));
     }
     Ok(faults)
@@ -289,7 +310,7 @@ struct UnevenWalk {
     robot: &'static str,
     gait: String,
     /// The gait's displacement on a level floor.
-    level: Displacement,
+    level_displacement: Displacement,
     surface: Surface,
 }
 
@@ -297,11 +318,11 @@ impl UnevenWalk {
     fn all(figures: &Figures) -> Vec<Self> {
         let mut walks = Vec::new();
         for robot in surface::ROBOTS {
-            for (gait, level) in surface::gaits(figures, robot) {
+            for (gait, level_displacement) in surface::walking_gaits(figures, robot) {
                 let walk_on = |surface| Self {
                     robot,
                     gait: gait.clone(),
-                    level,
+                    level_displacement,
                     surface,
                 };
                 walks.extend(Surface::of(robot).into_iter().map(walk_on));
@@ -312,7 +333,7 @@ impl UnevenWalk {
 }
 
 /// Returns a message for each answer on pads with a grain that differs from the stored one.
-fn describe_grain_changes(stored: &Grains, current: &Grains) -> Vec<String> {
+fn describe_grain_changes(stored: &GrainAnswers, current: &GrainAnswers) -> Vec<String> {
     let messages = current.iter().flat_map(|(gait, answers)| {
         let stored = stored.get(gait).map_or(&[][..], Vec::as_slice);
         let pairs = answers.iter().zip(grains::RATIOS).enumerate();
@@ -326,12 +347,12 @@ fn describe_grain_changes(stored: &Grains, current: &Grains) -> Vec<String> {
 }
 
 /// Displacements by group and name: by assumption and gait, or by pad shape and surface.
-type StoredDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
+type GroupedDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// Returns a message for each displacement that differs from the stored one.
 fn describe_displacement_changes(
-    stored: &StoredDisplacements,
-    current: &StoredDisplacements,
+    stored: &GroupedDisplacements,
+    current: &GroupedDisplacements,
 ) -> Vec<String> {
     let displacements = current.iter().flat_map(|(group, by_name)| {
         by_name
@@ -343,19 +364,19 @@ fn describe_displacement_changes(
             Some(stored_displacement) => {
                 describe_difference("MuJoCo", *stored_displacement, *displacement)?
             }
-            None => NOT_KEPT.to_owned(),
+            None => NOT_STORED.to_owned(),
         };
         Some(format!("paper, {group}: {name}: {message}"))
     });
     messages.collect()
 }
 
-/// Returns a message for each answer that differs from the stored one, the model's and MuJoCo's.
+/// Returns a message for each of the two answers, the model's and MuJoCo's, that differs from the stored one.
 fn describe_changes(stored: Option<&Answers>, current: &Answers) -> Vec<String> {
     let Some(stored) = stored else {
-        return vec![NOT_KEPT.to_owned()];
+        return vec![NOT_STORED.to_owned()];
     };
-    // If two feet pull against two, the model has no answer, and MuJoCo's differs between machines.
+    // If two feet pull against two, the model has no answer, and MuJoCo's answer differs between machines.
     let (Some(stored_model), Some(current_model)) = (stored.model, current.model) else {
         return Vec::new();
     };

@@ -1,5 +1,5 @@
-//! Interface to MuJoCo through its Python package: the judge, `tools/physics/judge.py`, simulates the
-//! walks in the files of a folder.
+//! Interface to MuJoCo through its Python package. The judge, the program `tools/physics/judge.py`, simulates the walks
+//! in the files of a folder.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -27,23 +27,23 @@ pub enum MujocoError {
     Ended(std::process::ExitStatus),
     /// The judge printed something other than an answer.
     #[error("tools/physics/judge.py says {0}")]
-    Words(String),
-    /// MuJoCo warned during a walk.
+    UnknownAnswer(String),
+    /// The judge could not simulate a walk, or MuJoCo warned during it.
     #[error("{file}: {trouble}")]
-    Trouble {
+    FailedWalk {
         /// Robot, gait and case.
         file: String,
         /// The judge's message.
         trouble: String,
     },
-    /// A part has no surface.
+    /// A part of the robot cannot be built.
     #[error(transparent)]
-    Unfit(#[from] lizard_parts::BuildProblem),
+    Build(#[from] lizard_parts::BuildProblem),
 }
 
-/// A line of the judge's answer.
+/// The judge's answer for a walk: a line of its output.
 #[derive(Deserialize)]
-struct Line {
+struct JudgeAnswer {
     file: String,
     way: Option<[f64; 3]>,
     trouble: Option<String>,
@@ -74,11 +74,11 @@ impl Jobs {
     }
 
     /// Returns the number of walks.
-    pub fn count(&self) -> usize {
+    pub fn walk_count(&self) -> usize {
         self.count
     }
 
-    /// Adds a robot's walks, each with its legs and a scene under a name of its own.
+    /// Adds a robot's walks: legs and scenes. Each scene must have a different name.
     ///
     /// # Errors
     /// Fails if a file cannot be made or written.
@@ -131,11 +131,11 @@ impl Jobs {
 /// Returns the scene of two cycles of a gait, of which the second is measured.
 pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) -> Scene {
     let robot = assembly.robot();
-    let gait = robot.gait(gait).expect("it is the robot's");
+    let gait = robot.gait(gait).expect("a gait of the robot");
     let strut = robot.strut_with_coil(&robot.parts().spring);
     Scene {
         name: name.to_owned(),
-        excess_lengths: [case.feet.excess_length(), 0.0, 0.0, 0.0],
+        excess_lengths: [case.feet.excess_length_mm(), 0.0, 0.0, 0.0],
         leaf_stiffness: case.feet.stiffness(robot),
         // Friction is equal in all directions, as in `Case::ground`; `grains.rs` is for other pads.
         friction_ratio: 1.0,
@@ -144,7 +144,7 @@ pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) 
             rate: strut.rate,
         }),
         course: Some(Course::of(robot, gait, 2, 1)),
-        // Shapes are only for pictures; MuJoCo reads the file ten times as fast without them.
+        // Only pictures need shapes; without them MuJoCo reads the file ten times as fast.
         has_shapes: false,
         ..Scene::of(assembly)
     }
@@ -154,7 +154,7 @@ impl RunningJudge {
     /// Waits for all walks and returns their displacements by name.
     ///
     /// # Errors
-    /// Fails if the judge ended early, or MuJoCo warned of a walk.
+    /// Fails if the judge ended early or could not simulate a walk, or if MuJoCo warned during a walk.
     pub fn wait(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
         let output = self.judge.wait_with_output()?;
         if !output.status.success() {
@@ -162,10 +162,10 @@ impl RunningJudge {
         }
         let mut displacements = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
-            let answer: Line =
-                serde_json::from_str(line).map_err(|_| MujocoError::Words(line.to_owned()))?;
+            let answer: JudgeAnswer = serde_json::from_str(line)
+                .map_err(|_| MujocoError::UnknownAnswer(line.to_owned()))?;
             let Some(displacement) = answer.way else {
-                return Err(MujocoError::Trouble {
+                return Err(MujocoError::FailedWalk {
                     file: answer.file,
                     trouble: answer.trouble.unwrap_or_default(),
                 });

@@ -1,4 +1,4 @@
-//! Comparison of pad shapes, flat and domed, that walk over edges and blocks.
+//! Comparison of flat and domed pads on walks over edges and blocks.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -18,16 +18,16 @@ pub const SURFACES: [Surface; 4] = [
     Surface::Blocks(10),
 ];
 
-/// A pad shape, one row of the table.
+/// The shape of the pads; each shape is a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum PadShape {
     /// A flat disc, 8 mm wide.
     Flat,
     /// A dome of this radius, mm.
     Dome(u8),
 }
 
-impl Shape {
+impl PadShape {
     /// All shapes, in the order of the table.
     pub const ALL: [Self; 7] = [
         Self::Flat,
@@ -47,15 +47,15 @@ impl Shape {
         }
     }
 
-    /// Returns the scene of a walk; `level` is the gait's displacement on a level floor.
+    /// Returns the scene of a walk; `level_displacement` is the gait's displacement on a level floor.
     pub fn scene(
         self,
         name: &str,
         paper: &Assembly,
         surface: Surface,
-        level: Displacement,
+        level_displacement: Displacement,
     ) -> Scene {
-        let mut scene = surface.scene(name, paper, GAIT, level);
+        let mut scene = surface.scene(name, paper, GAIT, level_displacement);
         scene.pads = match self {
             Self::Flat => Pads::Flat(8.0),
             Self::Dome(radius) => Pads::Domes(f64::from(radius)),
@@ -65,24 +65,24 @@ impl Shape {
 }
 
 /// MuJoCo's displacements by shape and surface.
-pub type Shapes = BTreeMap<String, BTreeMap<String, Displacement>>;
+pub type ShapeDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// Returns the displacements stored in `pads.json`.
 ///
 /// # Panics
 /// If `pads.json` is not a table of displacements.
-pub fn stored() -> Shapes {
+pub fn stored() -> ShapeDisplacements {
     serde_json::from_str(include_str!("../pads.json")).expect("pads.json")
 }
 
-/// Returns the table in Markdown, mm forward per cycle, with a dash where a walk is missing.
-pub fn table(shapes: &Shapes) -> String {
-    let heads = SURFACES.map(|surface| format!(" {surface} |")).concat();
+/// Returns the table in Markdown: mm forward per cycle, or a dash if a walk is missing.
+pub fn table(shapes: &ShapeDisplacements) -> String {
+    let headings = SURFACES.map(|surface| format!(" {surface} |")).concat();
     let mut text = format!(
-        "| radius, mm |{heads}\n|---|{}\n",
+        "| radius, mm |{headings}\n|---|{}\n",
         "---|".repeat(SURFACES.len())
     );
-    for shape in Shape::ALL {
+    for shape in PadShape::ALL {
         let by_surface = shapes.get(&shape.name());
         let cells = SURFACES.map(|surface| {
             let displacement =

@@ -1,5 +1,5 @@
-//! Comparison of gaits with servos that lag behind their pulses: the contact model with motors, and
-//! MuJoCo with the motors that `lizard model` writes. The servos have no dead band here.
+//! Comparison of the contact model with motors and of MuJoCo with the motors that `lizard model` writes, for servos
+//! that lag behind their pulses. The servos have no dead band here.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,8 +10,8 @@ use lizard_robot::Robot;
 use crate::crate_folder;
 use crate::figures::{Answers, Displacement};
 
-/// The gaits, and the index of the part of the displacement that is compared: 0 for the distance
-/// forward, 2 for the turn.
+/// The gaits, each with the index of the component of the displacement that is compared: 0 for the distance forward, 2
+/// for the turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
 /// The allowed difference between the model and MuJoCo, as a share of MuJoCo's displacement.
 const MAX_DEVIATION_SHARE: f64 = 0.10;
@@ -21,13 +21,15 @@ const MAX_DEVIATION_SHARE: f64 = 0.10;
 pub struct Variant {
     /// The variant's name in the table.
     pub name: &'static str,
-    /// Lines for the tables `[servo]` and, in `joints`, `[joints]` of robot.toml.
-    servo: &'static str,
-    joints: &'static str,
-    /// Friction of each pin of MuJoCo's robot, N mm, in place of `drag`; `None` keeps `drag`.
-    pins: Option<f64>,
+    /// Lines of the table `[servo]` of robot.toml.
+    servo_lines: &'static str,
+    /// Lines of the table `[joints]` of robot.toml.
+    joint_lines: &'static str,
+    /// Friction of each pin of MuJoCo's robot, N mm, instead of `drag`; `None` keeps `drag`.
+    pin_friction: Option<f64>,
     /// Additional mass, g.
     extra_mass: f64,
+    /// Coefficient of friction of the pads.
     friction: f64,
     /// Gaits that may differ by more than [`MAX_DEVIATION_SHARE`], with the share that is allowed instead.
     exceptions: &'static [(&'static str, f64)],
@@ -35,23 +37,23 @@ pub struct Variant {
 
 const SG90: Variant = Variant {
     name: "SG-90",
-    servo: "",
-    joints: "",
-    pins: None,
+    servo_lines: "",
+    joint_lines: "",
+    pin_friction: None,
     extra_mass: 0.0,
     friction: 0.7,
     exceptions: &[],
 };
 const COPY: Variant = Variant {
     name: "copy, 50 g more, friction 1, joints that run easily",
-    servo: "model = \"copy\"",
+    servo_lines: "model = \"copy\"",
     extra_mass: 50.0,
     friction: 1.0,
     ..SG90
 };
-const STIFF: Variant = Variant {
+const STIFF_JOINTS: Variant = Variant {
     name: "copy, 50 g more, friction 1, stiff joints",
-    joints: "drag = 17.0\nslider = 0.5",
+    joint_lines: "drag = 17.0\nslider = 0.5",
     ..COPY
 };
 
@@ -60,34 +62,34 @@ impl Variant {
     pub const ALL: [Self; 7] = [
         SG90,
         COPY,
-        STIFF,
+        STIFF_JOINTS,
         Self {
             name: "the same, but 3 N mm in each pin of MuJoCo's robot",
-            pins: Some(3.0),
-            // The pins of head and tail turn if one leg swings alone; without their friction, the error is 6 %.
+            pin_friction: Some(3.0),
+            // The pins of head and tail turn when a single leg swings; without their friction, the error is 6 %.
             exceptions: &[("crawl", 0.17)],
-            ..STIFF
+            ..STIFF_JOINTS
         },
         Self {
             name: "the same copy on 4.2 V",
-            servo: "model = \"copy\"\nvolts = 4.2",
-            // This near to a stall, small details of the robot change MuJoCo's walk by a tenth.
+            servo_lines: "model = \"copy\"\nvolts = 4.2",
+            // The servos nearly stall, so small details of the robot change MuJoCo's walk by a tenth.
             exceptions: &[("walk", 0.21), ("left", 0.12)],
-            ..STIFF
+            ..STIFF_JOINTS
         },
         Self {
             name: "a rotor of 2 ms",
-            servo: "spin_up_ms = 2.0",
+            servo_lines: "spin_up_ms = 2.0",
             ..SG90
         },
         Self {
             name: "a rotor of 2 ms, and full torque at 1 deg",
-            servo: "spin_up_ms = 2.0\nfull_torque_deg = 1.0",
+            servo_lines: "spin_up_ms = 2.0\nfull_torque_deg = 1.0",
             ..SG90
         },
     ];
 
-    /// Makes the robot of this variant.
+    /// Returns the robot of this variant.
     ///
     /// # Panics
     /// If robots/paper.toml does not have the lines that are replaced.
@@ -103,7 +105,7 @@ impl Variant {
             "[servo.A1]",
             &format!(
                 "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
-                self.joints, self.servo
+                self.joint_lines, self.servo_lines
             ),
         );
         replace(
@@ -129,8 +131,8 @@ impl Variant {
             has_shapes: false,
             ..Scene::of(assembly)
         };
-        if let Some(pins) = self.pins {
-            (scene.pin_friction, scene.motors.joints.pin_torque) = (pins, 0.0);
+        if let Some(pin_friction) = self.pin_friction {
+            (scene.pin_friction, scene.motors.joints.pin_torque) = (pin_friction, 0.0);
         }
         scene
     }
@@ -139,7 +141,7 @@ impl Variant {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn model(&self, gait: &str) -> Displacement {
+    pub fn model_displacement(&self, gait: &str) -> Displacement {
         let robot = self.robot();
         let gait = robot.gait(gait).expect(gait);
         gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
@@ -166,44 +168,24 @@ impl Variant {
 }
 
 /// The answers by variant and gait.
-pub type Servos = BTreeMap<String, BTreeMap<String, Answers>>;
+pub type ServoAnswers = BTreeMap<String, BTreeMap<String, Answers>>;
 
 /// Returns the answers stored in `servos.json`.
 ///
 /// # Panics
-/// If `servos.json` is not as [`text`] makes it.
-pub fn stored() -> Servos {
+/// If `servos.json` does not have the format of [`format_blocks`].
+pub fn stored() -> ServoAnswers {
     serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
 }
 
-/// Returns the text of `servos.json`: a line for each gait of a variant.
-///
-/// # Panics
-/// Never: names and numbers can always be serialized.
-pub fn text(servos: &Servos) -> String {
-    let variants = servos.iter().map(|(variant, gaits)| {
-        let lines = gaits.iter().map(|(gait, answers)| {
-            format!(
-                "{gait:?}: {}",
-                serde_json::to_string(answers).expect("numbers")
-            )
-        });
-        format!(
-            "{variant:?}: {{\n{}\n}}",
-            lines.collect::<Vec<_>>().join(",\n")
-        )
-    });
-    format!("{{\n{}\n}}\n", variants.collect::<Vec<_>>().join(",\n"))
-}
-
-/// Returns the table of all variants in Markdown, with a dash where an answer is missing.
-pub fn servos_table(servos: &Servos) -> String {
-    let heads = GAITS.map(|(gait, component)| {
+/// Returns the table of all variants in Markdown, with a dash for a missing answer.
+pub fn servos_table(servos: &ServoAnswers) -> String {
+    let headings = GAITS.map(|(gait, component)| {
         let unit = if component == 2 { "deg" } else { "mm" };
         format!(" {gait}, {unit} |")
     });
     let lines = "---|".repeat(GAITS.len());
-    let mut table = format!("| model, MuJoCo |{}\n|---|{lines}\n", heads.concat());
+    let mut table = format!("| model, MuJoCo |{}\n|---|{lines}\n", headings.concat());
     for variant in Variant::ALL {
         _ = write!(table, "| {} |", variant.name);
         for (gait, component) in GAITS {

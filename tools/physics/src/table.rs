@@ -1,4 +1,4 @@
-//! The figures as text: a table of all figures of a robot, and a Markdown table with one row per gait.
+//! Tables of the stored figures: a text table of all figures of a robot, and a Markdown table with one row per gait.
 
 use std::fmt::Write as _;
 
@@ -7,28 +7,28 @@ use lizard_robot::Robot;
 use crate::case::{Case, Feet, Legs};
 use crate::figures::{Displacement, Figures};
 
-/// Displacement per cycle up to which a component counts as zero: mm ahead, and deg of turn.
-const MIN_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
+/// The displacement per cycle up to which a component counts as zero: mm ahead, and deg of turn.
+const NEGLIGIBLE_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
 /// A component of a displacement: the distance ahead, or the turn.
 #[derive(Clone, Copy)]
-pub(crate) enum Part {
+pub(crate) enum Component {
     Ahead,
     Turn,
 }
 
-impl Part {
-    /// Returns the components that are not negligible; `Ahead` if both are negligible.
+impl Component {
+    /// Returns the components of a displacement that are not negligible; `Ahead` if both are negligible.
     pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = displacement.0.map(f64::abs);
-        let mut parts = Vec::new();
-        if ahead > MIN_DISPLACEMENT.0 || turn <= MIN_DISPLACEMENT.1 {
-            parts.push(Self::Ahead);
+        let mut components = Vec::new();
+        if ahead > NEGLIGIBLE_DISPLACEMENT.0 || turn <= NEGLIGIBLE_DISPLACEMENT.1 {
+            components.push(Self::Ahead);
         }
-        if turn > MIN_DISPLACEMENT.1 {
-            parts.push(Self::Turn);
+        if turn > NEGLIGIBLE_DISPLACEMENT.1 {
+            components.push(Self::Turn);
         }
-        parts
+        components
     }
 
     pub(crate) fn unit(self) -> &'static str {
@@ -46,8 +46,8 @@ impl Part {
     }
 }
 
-/// Returns the table of all figures of a robot: model and MuJoCo side by side, one block for each
-/// kind of legs.
+/// Returns a table of all figures of a robot as plain text, with the model and MuJoCo side by side and one block for
+/// each kind of legs.
 pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = String::new();
     for legs in [Legs::Rigid, Legs::Strut] {
@@ -61,14 +61,14 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             .into_iter()
             .filter(|case| Case::ALL.contains(case))
             .collect();
-        let width = gaits(robot).map(str::len).max().unwrap_or(0);
+        let width = moving_gait_names(robot).map(str::len).max().unwrap_or(0);
         _ = write!(text, "{:width$}    ", "");
-        let heads = cases.iter().map(|case| match case.feet {
+        let headings = cases.iter().map(|case| match case.feet {
             Feet::Level => "level",
             Feet::Stiff => "0.6 mm long, 2 N/mm",
             Feet::Soft => "1.0 mm long",
         });
-        for head in heads {
+        for head in headings {
             _ = write!(text, "  {head:<20}");
         }
         text = text.trim_end().to_owned();
@@ -77,12 +77,12 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             _ = write!(text, "  {:>6}  {:>6}      ", "model", "MuJoCo");
         }
         text = text.trim_end().to_owned() + "\n";
-        for gait in gaits(robot) {
+        for gait in moving_gait_names(robot) {
             let Some(first_answers) = figures.get(name, gait, cases[0]) else {
                 continue;
             };
-            for part in Part::of(first_answers.model.unwrap_or(first_answers.mujoco)) {
-                _ = write!(text, "{gait:<width$} {:>3}", part.unit());
+            for component in Component::of(first_answers.model.unwrap_or(first_answers.mujoco)) {
+                _ = write!(text, "{gait:<width$} {:>3}", component.unit());
                 for answers in cases
                     .iter()
                     .filter_map(|case| figures.get(name, gait, *case))
@@ -90,7 +90,7 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
                     for displacement in [answers.model, Some(answers.mujoco)] {
                         _ = match displacement {
                             Some(displacement) => {
-                                write!(text, "  {:>+6.1}", part.value(displacement))
+                                write!(text, "  {:>+6.1}", component.value(displacement))
                             }
                             None => write!(text, "  {:>6}", "-"),
                         };
@@ -106,33 +106,33 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
 }
 
 /// Returns the names of the gaits that move, in the order of robot.toml.
-fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
+fn moving_gait_names(robot: &Robot) -> impl Iterator<Item = &str> {
     let moving = robot.gaits().iter().filter(|gait| gait.has_movement());
     moving.map(|gait| gait.name())
 }
 
-/// Returns the displacement per cycle of each gait, as a Markdown table. For level feet: the model's prediction with
-/// ideal servos and with the robot's, and MuJoCo's result. With a foot 1.0 mm too long: the range
-/// from the model with ideal servos to MuJoCo.
-pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
+/// Returns the displacement per cycle of each gait as a Markdown table. For level feet: the model's prediction with
+/// ideal servos and with the robot's servos, and MuJoCo's result. For a foot 1.0 mm too long: the range from the
+/// model's prediction with ideal servos to MuJoCo's result.
+pub fn displacement_table(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
         let answers_with = |feet: Feet| {
             let legs = Legs::Rigid;
             figures.get(name, gait.name(), Case { legs, feet })
         };
-        let (Some(level), Some(long)) = (answers_with(Feet::Level), answers_with(Feet::Soft))
+        let (Some(level), Some(long_foot)) = (answers_with(Feet::Level), answers_with(Feet::Soft))
         else {
             continue;
         };
-        let (Some(model), Some(long_model)) = (level.model, long.model) else {
+        let (Some(model), Some(long_model)) = (level.model, long_foot.model) else {
             continue;
         };
         let cell_of = |displacements: &[Displacement]| {
-            let parts = Part::of(model)
+            let components = Component::of(model)
                 .into_iter()
-                .map(|part| range_text(part, displacements));
-            parts.collect::<Vec<_>>().join(", ")
+                .map(|component| range_text(component, displacements));
+            components.collect::<Vec<_>>().join(", ")
         };
         _ = writeln!(
             text,
@@ -144,21 +144,21 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
                 .simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
                 .into()]),
             cell_of(&[level.mujoco]),
-            cell_of(&[long_model, long.mujoco])
+            cell_of(&[long_model, long_foot.mujoco])
         );
     }
     text
 }
 
-fn range_text(part: Part, displacements: &[Displacement]) -> String {
+fn range_text(component: Component, displacements: &[Displacement]) -> String {
     let values = displacements
         .iter()
-        .map(|displacement| part.value(*displacement));
+        .map(|displacement| component.value(*displacement));
     let smallest = values.clone().fold(f64::INFINITY, f64::min);
     let largest = values.fold(f64::NEG_INFINITY, f64::max);
     let ([smallest, largest], unit) = (
         [smallest, largest].map(|value| format!("{value:+.1}")),
-        part.unit(),
+        component.unit(),
     );
     match smallest == largest {
         true => format!("{smallest} {unit}"),

@@ -1,23 +1,39 @@
-//! The stored displacements as JSON with one entry per line, so that a diff shows each change.
+//! The text of stored displacements: JSON with one entry per line, so that a diff shows each change, and the
+//! tables of the documentation.
 
 use std::collections::BTreeMap;
+use std::fs;
 
 use serde::Serialize;
+
+use crate::crate_folder;
 
 /// Formats a map as a JSON object with one line per key.
 ///
 /// # Panics
 /// Never: the values are names and numbers.
-pub fn lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
-    join_lines(map, |value| serde_json::to_string(value).expect("numbers")) + "\n"
+pub fn format_lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
+    join_lines(map, to_json) + "\n"
 }
 
 /// Formats a map of maps as a JSON object of objects with one line per inner key.
 ///
 /// # Panics
 /// Never: the values are names and numbers.
-pub fn blocks<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
-    join_lines(map, |inner| lines(inner).trim_end().to_owned()) + "\n"
+pub fn format_blocks<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
+    join_lines(map, |inner| join_lines(inner, to_json)) + "\n"
+}
+
+/// Formats maps as a JSON object of objects with one line per key of the innermost map.
+///
+/// # Panics
+/// Never: the values are names and numbers.
+pub fn format_nested_blocks<T: Serialize>(
+    map: &BTreeMap<String, BTreeMap<String, BTreeMap<String, T>>>,
+) -> String {
+    join_lines(map, |outer| {
+        join_lines(outer, |inner| join_lines(inner, to_json))
+    }) + "\n"
 }
 
 fn join_lines<T>(map: &BTreeMap<String, T>, text_of: impl Fn(&T) -> String) -> String {
@@ -25,4 +41,29 @@ fn join_lines<T>(map: &BTreeMap<String, T>, text_of: impl Fn(&T) -> String) -> S
         .iter()
         .map(|(key, value)| format!("{key:?}: {}", text_of(value)));
     format!("{{\n{}\n}}", lines.collect::<Vec<_>>().join(",\n"))
+}
+
+fn to_json<T: Serialize>(value: &T) -> String {
+    serde_json::to_string(value).expect("numbers")
+}
+
+/// Compares the text between `begin` and `end` in a file of the project with `expected_text`; replaces it if
+/// `BLESS_PHYSICS` is set.
+///
+/// # Panics
+/// If the file has another text there, or neither `begin` nor `end`.
+pub fn check_block(path: &str, begin: &str, end: &str, expected_text: &str) {
+    let file = crate_folder().join("../..").join(path);
+    let text = fs::read_to_string(&file).expect(path);
+    let start = text.find(begin).expect(begin) + begin.len();
+    let end_index = start + text[start..].find(end).expect(end);
+    let new_text = format!("{}{expected_text}{}", &text[..start], &text[end_index..]);
+    if std::env::var_os("BLESS_PHYSICS").is_some() {
+        fs::write(&file, new_text).expect(path);
+    } else {
+        assert_eq!(
+            text, new_text,
+            "{path} is out of date; run with BLESS_PHYSICS=1"
+        );
+    }
 }

@@ -1,53 +1,40 @@
-//! Tests of the figures in the documentation: they are the stored ones, and the contact model agrees
-//! with MuJoCo within the bounds.
+//! Tests of the figures in the documentation: they are equal to the stored figures, and the contact model agrees with
+//! MuJoCo within the bounds.
 //!
-//! With `BLESS_PHYSICS=1` the tables are written instead of compared, as `make docs` does.
+//! With `BLESS_PHYSICS=1`, as in `make docs`, the tables are written instead of compared.
 
 use lizard_robot::Robot;
 
 use lizard_physics::assumptions::{self, Assumption};
-use lizard_physics::pads::{self, SURFACES, Shape};
+use lizard_physics::pads::{self, PadShape, SURFACES};
 use lizard_physics::surface::{self, Surface, surfaces_table};
-use lizard_physics::text::{blocks, lines};
+use lizard_physics::text::{check_block, format_blocks, format_lines};
 use lizard_physics::{
-    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOTS, crate_folder, expected, robot, rows,
-    spread, table,
+    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOTS, crate_folder, displacement_table,
+    expected_table, robot, table, walks_of,
 };
 
-/// Compares the text between a marker and the next end marker of a page with `expected_text`; replaces it if
-/// `BLESS_PHYSICS` is set.
-fn check_block(page: &str, marker: &str, expected_text: &str) {
-    let file = crate_folder().join("../..").join(page);
-    let text = std::fs::read_to_string(&file).expect(page);
+/// Compares the text between a marker and the next end marker of a page with `expected_text`.
+fn check_page(page: &str, marker: &str, expected_text: &str) {
     let begin = format!("<!-- {marker} -->\n");
-    let start = text.find(&begin).expect(&begin) + begin.len();
-    let end = start + text[start..].find("<!-- end -->").expect("an end");
-    let new_text = format!("{}{expected_text}{}", &text[..start], &text[end..]);
-    if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, new_text).expect(page);
-    } else {
-        assert_eq!(
-            text, new_text,
-            "{page} is out of date; run with BLESS_PHYSICS=1"
-        );
-    }
+    check_block(page, &begin, "<!-- end -->", expected_text);
 }
 
 #[test]
-fn the_pages_have_the_displacements_of_model_and_engine() {
+fn the_pages_have_the_displacements_by_the_model_and_by_mujoco() {
     let figures = Figures::stored();
     for name in ROBOTS {
         let robot = robot(name);
         let fenced_table = format!("```text\n{}```\n", table(name, &robot, &figures));
-        check_block(
+        check_page(
             "docs/judges.md",
             &format!("physics of robots/{name}.toml"),
             &fenced_table,
         );
         if name == "paper" {
-            let displacements = spread(name, &robot, &figures);
+            let displacements = displacement_table(name, &robot, &figures);
             for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
-                check_block(page, "ways of robots/paper.toml", &displacements);
+                check_page(page, "ways of robots/paper.toml", &displacements);
             }
         }
     }
@@ -55,17 +42,17 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
     for name in surface::ROBOTS {
         let table = surfaces_table(name, &figures, &surfaces);
         let marker = format!("surfaces of robots/{name}.toml");
-        check_block("docs/judges.md", &marker, &table);
+        check_page("docs/judges.md", &marker, &table);
     }
-    check_block("docs/judges.md", "pads", &pads::table(&pads::stored()));
+    check_page("docs/judges.md", "pads", &pads::table(&pads::stored()));
     let changes = assumptions::table(&figures, &surfaces, &assumptions::stored());
     let fenced = format!("```text\n{changes}```\n");
-    check_block("docs/limits.md", "assumptions by MuJoCo", &fenced);
+    check_page("docs/limits.md", "assumptions by MuJoCo", &fenced);
     let robot = robot("paper");
-    check_block(
+    check_page(
         "docs/measure.md",
         "expected of robots/paper.toml",
-        &expected(&robot),
+        &expected_table(&robot),
     );
 }
 
@@ -73,7 +60,7 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
 fn the_stored_figures_are_written_as_they_are_read() {
     let file = crate_folder().join("figures.json");
     let text = std::fs::read_to_string(&file).expect("figures.json");
-    let new_text = Figures::stored().text();
+    let new_text = Figures::stored().to_json();
     if std::env::var_os("BLESS_PHYSICS").is_some() {
         std::fs::write(&file, new_text).expect("figures.json");
     } else {
@@ -82,11 +69,11 @@ fn the_stored_figures_are_written_as_they_are_read() {
 }
 
 #[test]
-fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() {
+fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_floor() {
     let (figures, stored_surfaces) = (Figures::stored(), surface::stored());
-    let mut count = 0;
+    let mut walk_count = 0;
     for name in surface::ROBOTS {
-        for (gait, level) in surface::gaits(&figures, name) {
+        for (gait, level) in surface::walking_gaits(&figures, name) {
             for surface in Surface::of(name) {
                 let displacement = stored_surfaces[name][&gait][&surface.to_string()];
                 let losses = surface::excess_losses(surface, level, displacement);
@@ -96,7 +83,7 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
                     is_known_shortfall,
                     "{name}: {gait}, {surface}: {losses:?}"
                 );
-                count += 1;
+                walk_count += 1;
             }
         }
     }
@@ -104,11 +91,11 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
     let stored_counts = stored_counts.map(std::collections::BTreeMap::len);
     assert_eq!(
         stored_counts.sum::<usize>(),
-        count,
+        walk_count,
         "and no others are kept"
     );
-    assert!(count > 100, "{count}");
-    // The check fails for a robot that an edge keeps from moving or turning, or that turns in the wrong direction.
+    assert!(walk_count > 100, "{walk_count}");
+    // The check reports a robot that cannot move or turn at an edge, and a robot that turns in the wrong direction.
     let no_displacement = Displacement([0.0; 3]);
     for (gait, loss_count) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
         let level = surface::level_displacement(&figures, gait);
@@ -123,40 +110,43 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
 }
 
 #[test]
-fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gaits_that_only_turn() {
+fn every_foot_of_a_gait_that_does_not_only_turn_starts_before_the_edge_and_ends_beyond_it() {
     let figures = Figures::stored();
     let mut turning_gaits = Vec::new();
     for name in surface::ROBOTS {
         let feet = robot(name).ground().feet.positions([0.0; 4]);
-        for (gait, level) in surface::gaits(&figures, name) {
+        for (gait, level) in surface::walking_gaits(&figures, name) {
             let crossing = Crossing::of(&robot(name), level, 0);
             if !crossing.is_crossed {
                 turning_gaits.push(gait);
                 continue;
             }
             let block = crossing.block(2.0);
-            // The edge as a line: a point on it and the direction across it, computed from the block alone, so
-            // that a wrong block is noticed.
+            // A point on the edge and the direction across it are computed from the block alone, so that a wrong block
+            // is noticed.
             let (sin, cos) = block.rotation.to_radians().sin_cos();
-            let half = block.size[1] / 2.0;
-            let edge = [block.centre[0] + half * sin, block.centre[1] - half * cos];
+            let half_length = block.size[1] / 2.0;
+            let edge = [
+                block.centre[0] + half_length * sin,
+                block.centre[1] - half_length * cos,
+            ];
             let distance_beyond =
                 |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
             let mut pose = [0.0; 3];
             for [ahead, left] in feet {
                 assert!(
                     distance_beyond([-left, ahead]) < -20.0,
-                    "{name}: {gait} starts behind it"
+                    "{name}: {gait} does not start before the edge"
                 );
             }
-            for _ in 0..crossing.cycles {
+            for _ in 0..crossing.cycle_count {
                 pose = move_pose(pose, level.0);
             }
             for [ahead, left] in feet {
                 let [ahead, left, _] = move_pose(pose, [ahead, left, 0.0]);
                 assert!(
                     distance_beyond([-left, ahead]) > 20.0,
-                    "{name}: {gait} ends beyond it"
+                    "{name}: {gait} does not end beyond the edge"
                 );
             }
         }
@@ -173,17 +163,17 @@ fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gait
 }
 
 /// Returns a pose (mm ahead, mm to the left, deg) after a displacement in the pose's own frame.
-fn move_pose([x, y, turn]: [f64; 3], [ahead, left, turn_change]: [f64; 3]) -> [f64; 3] {
-    let (sin, cos) = turn.to_radians().sin_cos();
+fn move_pose([x, y, heading]: [f64; 3], [ahead, left, turn]: [f64; 3]) -> [f64; 3] {
+    let (sin, cos) = heading.to_radians().sin_cos();
     [
         x + ahead * cos - left * sin,
         y + ahead * sin + left * cos,
-        turn + turn_change,
+        heading + turn,
     ]
 }
 
 #[test]
-fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
+fn every_other_assumption_and_pad_shape_is_stored_in_the_format_that_is_written() {
     let (stored_assumptions, shapes) = (assumptions::stored(), pads::stored());
     for Assumption { description, .. } in Assumption::ALL {
         assert_eq!(
@@ -193,25 +183,26 @@ fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
         );
     }
     assert_eq!(stored_assumptions.len(), Assumption::ALL.len());
-    for shape in Shape::ALL {
+    for shape in PadShape::ALL {
         assert_eq!(shapes[&shape.name()].len(), SURFACES.len());
     }
-    assert_eq!(shapes.len(), Shape::ALL.len());
+    assert_eq!(shapes.len(), PadShape::ALL.len());
     for (file, text) in [
-        ("assumptions.json", lines(&stored_assumptions)),
-        ("pads.json", lines(&shapes)),
-        ("surfaces.json", blocks(&surface::stored())),
+        ("assumptions.json", format_lines(&stored_assumptions)),
+        ("pads.json", format_lines(&shapes)),
+        ("surfaces.json", format_blocks(&surface::stored())),
     ] {
         assert_eq!(
             std::fs::read_to_string(crate_folder().join(file)).expect(file),
             text
         );
     }
-    // The row `30` has the pads of robot.toml, so surfaces.json must have the same displacements for `walk`.
-    let default_row = &shapes["30"];
+    // The shape `30` is that of the pads in robot.toml, so surfaces.json must have the same displacements for `walk`.
+    let default_displacements = &shapes["30"];
     for surface in SURFACES {
         let name = surface.to_string();
-        let (mm, _) = default_row[&name].distance_to(&surface::stored()["paper"]["walk"][&name]);
+        let (mm, _) =
+            default_displacements[&name].distance_to(&surface::stored()["paper"]["walk"][&name]);
         assert!(mm < 0.05, "{name}: {mm}");
     }
 }
@@ -246,26 +237,27 @@ fn every_walk_is_stored_and_close_to_the_model() {
             }
         }
     }
-    assert_eq!(figures.count(), count, "and no others are kept");
+    assert_eq!(figures.walk_count(), count, "and no others are kept");
 }
 
 #[test]
 fn the_stored_answers_of_the_model_are_up_to_date() {
     let (figures, robot) = (Figures::stored(), robot("paper"));
     let mut count = 0;
-    for row in rows(&robot) {
+    for walk in walks_of(&robot) {
         let answers = figures
-            .get("paper", &row.gait, row.case)
-            .expect("it is kept");
-        assert_eq!(answers.model.is_some(), row.is_decided, "{}", row.gait);
-        let (Some(stored), Some(computed)) = (answers.model, row.model(&robot)) else {
+            .get("paper", &walk.gait, walk.case)
+            .expect("a stored answer");
+        assert_eq!(answers.model.is_some(), walk.is_decided, "{}", walk.gait);
+        let (Some(stored), Some(computed)) = (answers.model, walk.model_displacement(&robot))
+        else {
             continue;
         };
         let (mm, deg) = stored.distance_to(&computed);
         assert!(
             mm < 0.05 && deg < 0.05,
             "{}: {stored:?} {computed:?}",
-            row.gait
+            walk.gait
         );
         count += 1;
     }
@@ -326,7 +318,7 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
 fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
     let text =
         std::fs::read_to_string(crate_folder().join("../../robots/paper.toml")).expect("paper");
-    let table = expected(&robot("paper"));
+    let table = expected_table(&robot("paper"));
     let keys = table.lines().skip(2).flat_map(|line| {
         let cell = line.rsplit(" | ").next().expect("a key");
         cell.trim_end_matches(" |")
@@ -337,12 +329,16 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
     for key in keys {
         let (section, name) = key.split_once("] ").expect(key);
         let header = format!("\n{section}]");
-        // No key takes an array, so a known key is refused for its type; an unknown key gives another error.
+        // No key takes an array, so a known key is refused because of its type, and an unknown key because it is
+        // unknown.
         let wrong_text = match text.contains(&header) {
             true => {
-                let header_start = text.find(&header).expect("it is there") + 1;
-                let body_start =
-                    header_start + text[header_start..].find('\n').expect("its line ends") + 1;
+                let header_start = text.find(&header).expect("the header") + 1;
+                let body_start = header_start
+                    + text[header_start..]
+                        .find('\n')
+                        .expect("the end of the header's line")
+                    + 1;
                 let end = text[body_start..]
                     .find("\n[")
                     .map_or(text.len(), |end| body_start + end);

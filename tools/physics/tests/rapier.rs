@@ -1,22 +1,21 @@
-//! Tests of the contact model against the physics engine rapier: at other frictions, on legs mounted
-//! outward, and for a tuned gait.
+//! Tests of the contact model against the physics engine rapier: with other friction, with legs mounted outward, and
+//! for a tuned gait.
 //!
-//! The displacements were computed by the engine rapier 0.36 for a chassis with inertia and four
-//! dragging balls, without the model. The engine is no longer compiled; its results stay, so that a
-//! wrong change of the model is noticed. The engine walked gaits that depend on inertia at a slower
-//! pace.
+//! The engine, rapier 0.36, computed the displacements without the model, for a chassis with inertia and four balls
+//! that are dragged over the floor. The engine is no longer compiled; its results stay, so that a wrong change of the
+//! model is noticed. Gaits that depend on inertia were simulated at a slower pace.
 
 use lizard_physics::{Displacement, robot};
 use lizard_robot::{Body, Feet, Ground};
 
-/// Gaits none of which is a mirror image or a reversal of another.
+/// The compared gaits; no gait is a mirror image or the reversal of another.
 const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 
 /// The displacement in one cycle of each gait: mm forward, mm to the left, deg counter-clockwise.
 type Displacements = [[f64; 3]; 5];
 
-/// The ground of the paper's robot with a body of 280 g.
-fn ground() -> Ground {
+/// Returns the ground of the paper's robot with a body of 280 g.
+fn ground_with_280_g() -> Ground {
     Ground {
         body: Body {
             mass: 280.0,
@@ -35,31 +34,31 @@ fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64
         let (distance, turn) = by_model.distance_to(&Displacement(*displacement));
         assert!(
             distance <= mm && turn <= deg,
-            "{name} goes {displacement:?} by the engine, {by_model:?} by the model, with {:?}",
+            "{name}: {displacement:?} by the engine, {by_model:?} by the model, with {:?}",
             ground.drive
         );
     }
 }
 
 #[test]
-fn rigid_legs_go_where_the_engine_went_on_a_slippery_and_on_a_rough_floor() {
-    for (friction, displacements) in [(0.4, SLIPPERY), (1.0, ROUGH)] {
+fn rigid_legs_move_as_in_the_engine_on_a_slippery_and_on_a_rough_floor() {
+    for (friction, displacements) in [(0.4, SLIPPERY_FLOOR), (1.0, ROUGH_FLOOR)] {
         let ground = Ground {
             friction_coefficient: friction,
-            ..ground()
+            ..ground_with_280_g()
         };
         assert_agreement(&ground, &displacements, 0.5, 0.3);
     }
 }
 
 #[test]
-fn legs_mounted_outward_lose_what_they_lost_in_the_engine() {
-    let ground = ground();
+fn legs_mounted_outward_move_as_in_the_engine() {
+    let ground = ground_with_280_g();
     let feet = Feet {
         mount_angle: 45.0,
         ..ground.feet
     };
-    assert_agreement(&Ground { feet, ..ground }, &MOUNTED, 0.5, 0.3);
+    assert_agreement(&Ground { feet, ..ground }, &MOUNTED_OUTWARD, 0.5, 0.3);
 }
 
 #[test]
@@ -67,7 +66,7 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     let (paper, tuned) = (robot("paper"), robot("own-gaits"));
     let stride = tuned.gait("stride").expect("stride");
     let walk = paper.gait("walk").expect("walk");
-    let by_model = Displacement::from(stride.simulate_cycle(&ground()).travel);
+    let by_model = Displacement::from(stride.simulate_cycle(&ground_with_280_g()).travel);
     let (distance, turn) = by_model.distance_to(&Displacement([40.95, -0.44, 0.0]));
     assert!(distance <= 0.5 && turn <= 0.3, "{by_model:?}");
     let stored = lizard_physics::Figures::stored();
@@ -84,7 +83,7 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
 }
 
 /// The engine's displacements on rigid legs at a friction of 0.4.
-const SLIPPERY: Displacements = [
+const SLIPPERY_FLOOR: Displacements = [
     [34.58, -0.02, 0.0],
     [26.64, -0.08, 0.0],
     [30.63, 0.02, 0.02],
@@ -93,7 +92,7 @@ const SLIPPERY: Displacements = [
 ];
 
 /// The engine's displacements on rigid legs at a friction of 1.0.
-const ROUGH: Displacements = [
+const ROUGH_FLOOR: Displacements = [
     [34.46, -0.02, 0.0],
     [26.66, -0.08, 0.0],
     [30.63, 0.07, 0.0],
@@ -102,7 +101,7 @@ const ROUGH: Displacements = [
 ];
 
 /// The engine's displacements on rigid legs mounted 45 degrees outward, at half the pace.
-const MOUNTED: Displacements = [
+const MOUNTED_OUTWARD: Displacements = [
     [5.57, 0.0, 0.0],
     [12.87, 0.27, 0.0],
     [22.81, -0.06, 0.01],

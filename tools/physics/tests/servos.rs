@@ -1,58 +1,46 @@
 //! Tests of the stored displacements with servos that cannot follow, by the contact model and by MuJoCo.
 //!
-//! With `BLESS_PHYSICS=1` the table is written into docs/judges.md, as `make docs` does.
+//! With `BLESS_PHYSICS=1`, as in `make docs`, the table is written into docs/judges.md.
 
 use lizard_physics::crate_folder;
-use lizard_physics::servos::{GAITS, Variant, servos_table, stored, text};
+use lizard_physics::servos::{GAITS, Variant, servos_table, stored};
+use lizard_physics::text::{check_block, format_blocks};
 
 #[test]
-fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
+fn a_gait_with_servos_that_cannot_follow_loses_as_much_in_the_model_as_in_mujoco() {
     let stored = stored();
-    let mut count = 0;
+    let mut answer_count = 0;
     for variant in Variant::ALL {
         for (gait, component) in GAITS {
             let answers = stored[variant.name][gait];
             let name = variant.name;
             assert_eq!(variant.disagreement(gait, &answers), None, "{name}, {gait}");
-            let (stored_displacement, displacement) =
-                (answers.model.expect("a way"), variant.model(gait));
+            let stored_displacement = answers.model.expect("a displacement");
+            let displacement = variant.model_displacement(gait);
             let error = (stored_displacement.0[component] - displacement.0[component]).abs();
             assert!(
                 error < 0.05,
                 "{name}, {gait}: {stored_displacement:?} {displacement:?}"
             );
             // Half of MuJoCo's displacement must be reported as a disagreement.
-            let mut halved = answers;
-            halved.mujoco.0[component] /= 2.0;
+            let mut halved_answers = answers;
+            halved_answers.mujoco.0[component] /= 2.0;
             assert!(
-                variant.disagreement(gait, &halved).is_some(),
+                variant.disagreement(gait, &halved_answers).is_some(),
                 "{name}, {gait}"
             );
-            count += 1;
+            answer_count += 1;
         }
     }
     let stored_count: usize = stored.values().map(std::collections::BTreeMap::len).sum();
-    assert_eq!(stored_count, count, "and no others are stored");
+    assert_eq!(stored_count, answer_count, "and no others are stored");
     let file = std::fs::read_to_string(crate_folder().join("servos.json")).expect("servos.json");
-    assert_eq!(file, text(&stored));
+    assert_eq!(file, format_blocks(&stored));
 }
 
 #[test]
-fn the_page_has_the_ways_of_model_and_mujoco() {
-    let file = crate_folder().join("../../docs/judges.md");
-    let page = std::fs::read_to_string(&file).expect("judges.md");
+fn the_page_has_the_displacements_by_the_model_and_by_mujoco() {
     let begin = "<!-- servos of robots/paper.toml -->\n";
-    let start = page.find(begin).expect(begin) + begin.len();
-    let end = start + page[start..].find("<!-- end -->").expect("an end");
-    let new_page = format!(
-        "{}{}{}",
-        &page[..start],
-        servos_table(&stored()),
-        &page[end..]
-    );
-    if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, new_page).expect("judges.md");
-    } else {
-        assert_eq!(page, new_page, "run with BLESS_PHYSICS=1");
-    }
+    let table = servos_table(&stored());
+    check_block("docs/judges.md", begin, "<!-- end -->", &table);
 }

@@ -1,4 +1,4 @@
-//! The robot's answers, and the promises that they make.
+//! The rules for the robot's answers, and for the promises in them.
 
 use lizard_core::console::word::Effect;
 
@@ -7,16 +7,16 @@ use crate::observer::Observer;
 use crate::rule::Rule;
 
 /// Longest time from the answer to an order until all four servos have pulses.
-const UNTIL_AWAKE: Time = 600 * MS;
+const MAX_WAKE_TIME: Time = 600 * MS;
 
-/// Time from an answer that promises no pulses to the end of the check that none begins.
-const QUIET_TIME: Time = 140 * MS;
+/// Time after an answer that promises no pulses in which no pulse may begin.
+const NO_PULSES_TIME: Time = 140 * MS;
 
 /// Longest time from `rest` until the complete record of the rest pose is in the EEPROM.
-const SAVING_TIME: Time = 400 * MS;
+const MAX_SAVE_TIME: Time = 400 * MS;
 
-/// Lines that no robot may accept.
-const WRONG_LINES: [&str; 7] = [
+/// Lines that every robot must refuse.
+const INVALID_LINES: [&str; 7] = [
     "walk 0",
     "nonsense",
     "trim 1 90",
@@ -27,41 +27,45 @@ const WRONG_LINES: [&str; 7] = [
 ];
 
 impl Observer {
-    /// Judges the answer to a line sent at `asked`, and records the promises in it.
-    pub(crate) fn answer(&mut self, line: &str, effect: Effect, asked: Time, text: &str) {
+    /// Judges the answer to a line that was sent at `asked_at`, and records the promises in it.
+    pub(crate) fn judge_answer(
+        &mut self,
+        line: &str,
+        effect: Effect,
+        asked_at: Time,
+        answer: &str,
+    ) {
         let now = self.now;
-        if text.starts_with("ok gait=") {
-            return self.status(text);
+        if answer.starts_with("ok gait=") {
+            return self.judge_status(answer);
         }
-        if !text.starts_with("ok") {
+        if !answer.starts_with("ok") {
             return;
         }
-        if WRONG_LINES.contains(&line) {
-            self.fail(Rule::Wrong, format!("{line}: {text}"));
+        if INVALID_LINES.contains(&line) {
+            self.fail(Rule::InvalidRefused, format!("{line}: {answer}"));
         }
-        self.note_done(text);
+        self.note_accepted_command(answer);
         match effect {
-            Effect::Moves if !self.is_troubled(now) => {
-                self.pending.moves = Some((now, now + UNTIL_AWAKE, [false; 4]));
+            Effect::Moves if !self.was_troubled_since(now) => {
+                self.pending.motion = Some((now, now + MAX_WAKE_TIME, [false; 4]));
             }
             Effect::Rests => {
-                if self.disturbed <= asked {
-                    self.pending.quiet = Some((
-                        now + self.limits.frame_left,
-                        now + QUIET_TIME,
-                        Rule::RestEnds,
+                if self.disturbed_until <= asked_at {
+                    self.pending.no_pulses = Some((
+                        now + self.limits.max_frame_remainder,
+                        now + NO_PULSES_TIME,
+                        Rule::RestEndsPulses,
                     ));
                 }
-                let least_good_mv = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                let is_good = self
-                    .supply
-                    .is_good_since(self.first_rest_command, least_good_mv);
-                let is_repeated = self.first_rest_command > self.start
-                    && asked > self.first_rest_command + SAVING_TIME;
-                if is_repeated && is_good && self.limits.keeps_memory {
-                    self.pending.unwritten = Some(asked + 500 * MS);
-                } else if self.first_rest_command < self.start {
-                    self.first_rest_command = asked;
+                let min_good_mv = self.limits.levels_mv[0] + crate::supply::GOOD_MARGIN_MV;
+                let is_good = self.supply.is_good_since(self.first_rest_at, min_good_mv);
+                let is_repeated = self.first_rest_at > self.started_at
+                    && asked_at > self.first_rest_at + MAX_SAVE_TIME;
+                if is_repeated && is_good && self.limits.is_memory_reliable {
+                    self.pending.no_writes_until = Some(asked_at + 500 * MS);
+                } else if self.first_rest_at < self.started_at {
+                    self.first_rest_at = asked_at;
                 }
             }
             _ => {}
@@ -69,52 +73,61 @@ impl Observer {
     }
 
     /// Judges the promises that are due.
-    pub(crate) fn check_pending(&mut self) {
-        if let Some((from, until, has_pulses)) = self.pending.moves
+    pub(crate) fn judge_due_promises(&mut self) {
+        if let Some((from, until, has_pulses)) = self.pending.motion
             && self.now > until
         {
-            self.pending.moves = None;
+            self.pending.motion = None;
             let missing_servo = has_pulses.iter().position(|has_pulse| !has_pulse);
             if let Some(servo) = missing_servo
-                && !self.is_troubled(from)
+                && !self.was_troubled_since(from)
             {
-                self.fail(Rule::Moves, format!("A{} has no pulses", servo + 1));
+                self.fail(
+                    Rule::MotionHasPulses,
+                    format!("A{} has no pulses", servo + 1),
+                );
             }
         }
-        if let Some((until, text)) = self.pending.status.take_if(|(until, _)| self.now > *until)
-            && !self.is_troubled(until - 600 * MS)
+        if let Some((until, answer)) = self
+            .pending
+            .pulses_after_status
+            .take_if(|(until, _)| self.now > *until)
+            && !self.was_troubled_since(until - 600 * MS)
         {
-            self.fail(Rule::StatusSaysWhy, text);
+            self.fail(Rule::StatusNamesCause, answer);
         }
-        self.pending.unwritten.take_if(|until| self.now > *until);
+        self.pending
+            .no_writes_until
+            .take_if(|until| self.now > *until);
     }
 
-    /// Judges the promises about pulses when a pulse begins.
-    pub(crate) fn judge_expected_pulse(&mut self, servo: usize) {
+    /// Judges the promises about pulses at the start of a pulse.
+    pub(crate) fn judge_promises_about_pulse(&mut self, servo: usize) {
         let now = self.now;
-        if let Some((_, _, has_pulses)) = &mut self.pending.moves {
+        if let Some((_, _, has_pulses)) = &mut self.pending.motion {
             has_pulses[servo] = true;
         }
-        self.pending.status = None;
-        if let Some((from, until, rule)) = self.pending.quiet
+        self.pending.pulses_after_status = None;
+        if let Some((from, until, rule)) = self.pending.no_pulses
             && (from..until).contains(&now)
-            && (rule == Rule::RestEnds || !self.is_troubled(from - self.limits.frame_left))
+            && (rule == Rule::RestEndsPulses
+                || !self.was_troubled_since(from - self.limits.max_frame_remainder))
         {
-            let ms = (now - from + self.limits.frame_left) / MS;
+            let ms = (now - from + self.limits.max_frame_remainder) / MS;
             self.fail(rule, format!("A{} has a pulse {ms} ms later", servo + 1));
-            self.pending.quiet = None;
+            self.pending.no_pulses = None;
         }
     }
 
-    /// True if a servo must wake in its rest pose after a restart at this moment: the supply was good and main
-    /// undisturbed for long enough to save the pose of the last whole pulse.
+    /// True if a servo must wake in its rest pose after a restart now. Since the last whole pulse, the supply has been
+    /// good and main has been undisturbed for long enough to save the pose.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
-        let since = self.servos[servo].whole_at;
-        let least_good_mv = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-        self.limits.keeps_memory
-            && self.now - since > SAVING_TIME
-            && self.supply.is_good_since(since, least_good_mv)
-            && self.disturbed <= since
-            && !self.is_unsaved
+        let last_whole_start = self.servos[servo].last_whole_start;
+        let min_good_mv = self.limits.levels_mv[0] + crate::supply::GOOD_MARGIN_MV;
+        self.limits.is_memory_reliable
+            && self.now - last_whole_start > MAX_SAVE_TIME
+            && self.supply.is_good_since(last_whole_start, min_good_mv)
+            && self.disturbed_until <= last_whole_start
+            && !self.has_unsaved_settings
     }
 }

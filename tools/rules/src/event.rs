@@ -1,4 +1,4 @@
-//! Events that are observed from outside the robot, and their times.
+//! Events that a tool observes from outside the robot, and their times.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -6,7 +6,7 @@ use lizard_core::memory::restart::Cause;
 /// A time in cycles of 1/16 us.
 pub type Time = i64;
 
-/// Cycles of a millisecond.
+/// A millisecond, in cycles.
 pub const MS: Time = 16_000;
 
 /// A time before any event.
@@ -21,43 +21,42 @@ pub struct Pulse {
     pub width: u32,
     /// True if a reset or the loss of the supply cut the pulse short.
     pub is_cut: bool,
-    /// True if interrupts were blocked when the pulse should have ended.
-    pub is_held_up: bool,
+    /// True if interrupts were blocked when the pulse should have ended, so that it may be too long.
+    pub is_end_late: bool,
 }
 
-/// An event that is observed from outside the robot.
+/// An event that a tool observes from outside the robot.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
-    /// Time passes.
-    Pass,
+    /// Nothing happens, but promises may become due.
+    TimePasses,
     /// The program starts.
-    Start(Cause),
-    /// RESET is pulled, or power is lost.
-    Cut,
+    ProgramStart(Cause),
+    /// The program is cut off: RESET is pulled low, or power is lost.
+    ProgramCut,
     /// The main loop is stalled until this time.
-    Stalled(Time),
+    MainStalled(Time),
     /// Interrupts are blocked until this time.
-    HeldUp(Time),
-    /// The supply has this many mV from now on.
-    Supply(u32),
+    InterruptsBlocked(Time),
+    /// The supply changes to this voltage, mV.
+    SupplyMv(u32),
     /// A byte arrives at the robot.
-    Byte,
+    ByteReceived,
     /// The last byte of a line that needs an answer arrives.
-    Line {
-        /// True if the line is a command, accepted or not: no other line restarts the time of `deadman`.
+    LineReceived {
+        /// True if the line is a command, accepted or not. Only a command restarts the time of `deadman`.
         is_command: bool,
     },
-    /// A command that moves, freezes or rests the robot; `done` is true if it was accepted,
-    /// false if refused, `None` if unknown.
+    /// A command that moves, freezes or rests the robot.
     Order {
         /// The command's effect on the servos.
         effect: Effect,
-        /// The outcome of the command.
-        done: Option<bool>,
+        /// True if the robot accepted the command, false if the robot refused it, `None` if the answer is not known.
+        is_accepted: Option<bool>,
     },
-    /// The calibration of the servos changes.
-    Calibrated {
-        /// True if the settings in use are saved.
+    /// The calibration of the servos changes or is saved.
+    CalibrationChanged {
+        /// True if the settings in use are now saved.
         is_saved: bool,
     },
     /// The answer to a line.
@@ -67,18 +66,18 @@ pub enum Event<'a> {
         /// The line's effect on the servos.
         effect: Effect,
         /// The time at which the line was sent.
-        asked: Time,
+        asked_at: Time,
         /// The answer.
-        text: &'a str,
+        answer: &'a str,
     },
-    /// The line, sent at this time, was not answered.
+    /// The line that was sent at this time got no answer.
     Unanswered(Time, &'a str),
-    /// A line that the robot printed, answers included, and the time at which its first byte was written.
-    Printed(Time, &'a str),
+    /// The robot has printed this line, which may be an answer; its first byte was written at this time.
+    LinePrinted(Time, &'a str),
     /// A pulse begins.
     Pulse(Pulse),
     /// A byte of the EEPROM is written.
-    Written,
+    ByteWritten,
     /// A fault that stops the robot occurs.
     Fault,
 }

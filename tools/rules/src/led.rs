@@ -1,50 +1,51 @@
-//! The LED's patterns: for a fault, as many short flashes as its code, then a pause; without a
-//! fault, a slow beat.
+//! The LED's patterns: for a fault, as many short flashes as the fault's code, then a pause; without a fault, slow
+//! regular flashes.
 
 use crate::event::{MS, Time};
 
-/// The words of `fault=` in `status`; the index is the fault's code.
-const FAULTS: [&str; 8] = [
+/// The words after `fault=` in `status`. The index of a word is the fault's code.
+const FAULT_WORDS: [&str; 8] = [
     "none", "guard", "supply", "link", "watchdog", "late", "stack", "brownout",
 ];
 
 /// Returns the code of a fault from its word in `status`.
 ///
 /// # Errors
-/// Fails if `status` has no such word.
-pub fn code(fault: &str) -> Result<u8, String> {
-    let code = FAULTS.iter().position(|word| *word == fault);
+/// Returns a message if no fault has this word.
+pub fn fault_code(fault: &str) -> Result<u8, String> {
+    let code = FAULT_WORDS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
         .ok_or_else(|| format!("fault={fault} is not known"))
 }
 
-/// Checks that the LED shows only the pattern of the fault `code` in `from..to`; 0 is no fault.
-/// `edges` are the LED's changes: a time, and true if it was switched on.
+/// Checks that the LED shows only the pattern of the fault `code` in `from..to`; code 0 means no fault. `edges` are the
+/// LED's changes: a time, and true if the LED was switched on.
 ///
 /// # Errors
-/// Returns a message about the first flash, pause or count that does not fit this code.
+/// Returns a message about the first flash, pause or count that does not match this code.
 pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
-    let mut flashes = None;
+    let mut flash_count = None;
     for pair in edges.windows(2) {
-        if pair[0].0 < from || pair[1].0 > to {
+        let ((start, is_high), (end, _)) = (pair[0], pair[1]);
+        if start < from || end > to {
             continue;
         }
-        let ms = (pair[1].0 - pair[0].0) / MS;
-        match (pair[0].1, ms) {
-            (true, 150..=170) if code > 0 => flashes = flashes.map(|n: u8| n + 1),
+        let ms = (end - start) / MS;
+        match (is_high, ms) {
+            (true, 150..=170) if code > 0 => flash_count = flash_count.map(|count: u8| count + 1),
             (false, 150..=170) if code > 0 => {}
             (false, 1_100..=1_140) if code > 0 => {
-                // None until the first pause: the count before it is incomplete.
-                if let Some(count) = flashes
+                // The count before the first pause is incomplete, so it is not checked.
+                if let Some(count) = flash_count
                     && count != code
                 {
                     return Err(format!("fault {code}: the LED flashes {count} times"));
                 }
-                flashes = Some(0);
+                flash_count = Some(0);
             }
             (_, 630..=650) if code == 0 => {}
-            (is_high, ms) => {
-                let start_ms = pair[0].0 as f64 / MS as f64;
+            _ => {
+                let start_ms = start as f64 / MS as f64;
                 let message =
                     format!("the LED is high={is_high} for {ms} ms from {start_ms:.3} ms on");
                 return Err(format!("fault {code}: {message}"));

@@ -1,14 +1,12 @@
-//! The rules of safety: a list of sentences that a user may rely on, and an observer that judges a
-//! robot by these rules.
+//! The safety rules: a list of sentences on which a user may rely, and an observer that judges a robot by these rules.
 //!
-//! The model checker (`tools/explore`), the search for trouble on the simulated UNO
-//! (`make trouble`) and the search for harmful bytes (`tools/fuzz`) all test these rules.
-//! Each tool turns what its robot does into a sequence of [`Event`]s with their times, and the
-//! [`Observer`] judges the events. It knows nothing of the robot's inner state: only lines,
-//! pulses, resets, the supply and what is written to the EEPROM.
+//! Three tools test these rules: the model checker (`tools/explore`), the search with combined faults on the simulated
+//! UNO (`make trouble`) and the fuzzer (`tools/fuzz`). Each tool converts the behaviour of its robot to a sequence of
+//! [`Event`]s with times, and the [`Observer`] judges these events. The observer does not know the robot's inner state,
+//! but only lines, pulses, resets, the supply and writes to the EEPROM.
 //!
-//! A rule about the inner state is also in the list, [`Rule`], but only the tools that see the
-//! inner state check it.
+//! The list of rules, [`Rule`], also contains rules about the inner state. Only the tools that see the inner state
+//! check these.
 
 mod answers;
 mod event;
@@ -22,5 +20,5 @@ mod supply;
 
 pub use event::{Event, MS, Pulse, Time};
 pub use observer::{Limits, Observer};
-pub use print::frames_class;
+pub use print::rounded_age_frames;
 pub use rule::{BrokenRule, Rule};

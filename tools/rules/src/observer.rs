@@ -6,55 +6,55 @@ use lizard_core::memory::restart::Cause;
 use crate::event::{Event, MS, NEVER, Pulse, Time};
 use crate::reports::Reports;
 use crate::rule::{BrokenRule, Rule};
-use crate::servos::{Permission, Servo};
-use crate::supply::Supply;
+use crate::servos::{Permission, ServoHistory};
+use crate::supply::SupplyHistory;
 
-/// The robot's limits, and the precision with which the test apparatus observes it.
+/// The robot's limits, and the accuracy with which a tool observes the robot.
 #[derive(Clone, Debug)]
 pub struct Limits {
     /// The largest change of a servo's pulse from one frame to the next, cycles.
-    pub leap: [u32; 4],
+    pub max_leap_cycles: [u32; 4],
     /// The shortest and the longest pulse of each servo, cycles.
-    pub widths: [(u32, u32); 4],
-    /// Levels below which the supply forbids writing, moving and pulses, mV.
-    pub levels: [u32; 3],
-    /// The largest error of the robot's own measurement of the supply, mV: one step of the
-    /// converter, and the rounding to two decimals.
+    pub width_ranges: [(u32, u32); 4],
+    /// The voltages below which the supply forbids EEPROM writes, motions and pulses, mV.
+    pub levels_mv: [u32; 3],
+    /// The largest error of the robot's own measurement of the supply, mV: a step of the converter, and the rounding to
+    /// two decimals.
     pub supply_error_mv: u32,
     /// The longest time that remains of the current frame when a line has been answered.
-    pub frame_left: Time,
+    pub max_frame_remainder: Time,
     /// The longest time from a fault to its report on the console.
-    pub report_time: Time,
-    /// The longest time for which a line of the robot waits behind other lines before it is printed.
-    pub queued: Time,
-    /// The longest rest that a routine contains as a step; 0 if no routine rests.
-    pub longest_rest: Time,
+    pub max_report_time: Time,
+    /// The longest time for which a line of the robot waits until it is printed.
+    pub max_queue_time: Time,
+    /// The longest rest within a routine; 0 if no routine rests.
+    pub max_routine_rest: Time,
     /// True if the robot's `boot` setting may be `rest`.
-    pub boots_to_rest: bool,
-    /// True if the EEPROM keeps what is written to it.
-    pub keeps_memory: bool,
+    pub may_boot_to_rest: bool,
+    /// True if the EEPROM keeps every byte that is written to it.
+    pub is_memory_reliable: bool,
     /// True if a brown-out may clear RAM.
     pub brown_outs_clear_ram: bool,
     /// True if the saved travel may be narrower than the travel in use.
-    pub is_narrowed: bool,
+    pub is_saved_travel_narrower: bool,
 }
 
 impl Default for Limits {
     /// The limits of a robot that is observed exactly, between its frames.
     fn default() -> Self {
         Self {
-            leap: [u32::MAX; 4],
-            widths: [(1_000, 63_000); 4],
-            levels: [0; 3],
+            max_leap_cycles: [u32::MAX; 4],
+            width_ranges: [(1_000, 63_000); 4],
+            levels_mv: [0; 3],
             supply_error_mv: 40,
-            frame_left: MS,
-            report_time: 60 * MS - 1,
-            queued: 0,
-            longest_rest: 0,
-            boots_to_rest: false,
-            keeps_memory: true,
+            max_frame_remainder: MS,
+            max_report_time: 60 * MS - 1,
+            max_queue_time: 0,
+            max_routine_rest: 0,
+            may_boot_to_rest: false,
+            is_memory_reliable: true,
             brown_outs_clear_ram: false,
-            is_narrowed: false,
+            is_saved_travel_narrower: false,
         }
     }
 }
@@ -64,93 +64,93 @@ impl Default for Limits {
 pub struct Observer {
     /// The robot's limits.
     pub limits: Limits,
-    pub(crate) broken: Vec<BrokenRule>,
+    pub(crate) broken_rules: Vec<BrokenRule>,
     pub(crate) now: Time,
-    pub(crate) start: Time,
-    pub(crate) cause: Cause,
-    pub(crate) cut: Time,
-    /// The end of the last disturbance: a stall of main, or blocked interrupts.
-    pub(crate) disturbed: Time,
+    pub(crate) started_at: Time,
+    pub(crate) start_cause: Cause,
+    pub(crate) cut_at: Time,
+    /// End of the last disturbance: a stall of main, or blocked interrupts.
+    pub(crate) disturbed_until: Time,
+    /// Start and end of each recent stall of main.
     pub(crate) stalls: Vec<(Time, Time)>,
     /// Time of the last order that was not refused.
-    pub(crate) ordered: Time,
+    pub(crate) ordered_at: Time,
     /// Time of the last `rest` that was not refused.
-    pub(crate) sent_to_rest: Time,
+    pub(crate) rest_ordered_at: Time,
     /// Time at which `boot` reported that the robot rests.
-    pub(crate) booted_to_rest: Time,
-    pub(crate) lines: i32,
-    pub(crate) last_line: Time,
-    pub(crate) last_byte: Time,
-    pub(crate) deadman: Time,
+    pub(crate) boot_rest_at: Time,
+    pub(crate) unanswered_line_count: i32,
+    pub(crate) last_command_at: Time,
+    pub(crate) deadman_time: Time,
     /// The latest time at which the last command may have been read.
-    pub(crate) command_read: Time,
-    /// True if the last motion is a gait or a routine, which `deadman` ends.
-    pub(crate) is_driven: bool,
-    pub(crate) is_unsaved: bool,
-    /// Number of motions begun since the last reset, less the number reported as done.
-    pub(crate) unfinished_motions: i32,
+    pub(crate) last_command_read_at: Time,
+    /// True if the last motion is a gait other than `stand`, or a routine: `deadman` ends these.
+    pub(crate) is_gait_or_routine: bool,
+    pub(crate) has_unsaved_settings: bool,
+    /// Number of motions begun since the last reset, less the number of motions reported as done.
+    pub(crate) unfinished_motion_count: i32,
     pub(crate) permission: Permission,
-    pub(crate) servos: [Servo; 4],
-    pub(crate) last_begin: (usize, Time, bool),
-    pub(crate) is_silence_judged: bool,
-    pub(crate) supply: Supply,
+    pub(crate) servos: [ServoHistory; 4],
+    /// The servo that woke last, the time of its first pulse, and true if a hang had interrupted its pulses.
+    pub(crate) last_wake: (usize, Time, bool),
+    pub(crate) is_pulse_end_judged: bool,
+    pub(crate) supply: SupplyHistory,
     pub(crate) reports: Reports,
-    pub(crate) pending: Pending,
+    pub(crate) pending: PendingPromises,
     /// Time of the first of consecutive `rest` commands; `NEVER` after any other order.
-    pub(crate) first_rest_command: Time,
-    pub(crate) brown_outs: [Time; 5],
+    pub(crate) first_rest_at: Time,
+    pub(crate) brown_out_times: [Time; 5],
 }
 
 /// Promises of the robot's answers that are not due yet.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Pending {
-    /// Start and end of the time in which each servo must get a pulse; true for each servo that got one.
-    pub moves: Option<(Time, Time, [bool; 4])>,
-    /// Start and end of the time in which no pulse may begin, and the rule that forbids it.
-    pub quiet: Option<(Time, Time, Rule)>,
-    /// The time by which there must be a pulse, and the answer to `status` that gave no reason for
-    /// a lack of pulses.
-    pub status: Option<(Time, String)>,
-    /// The time until which no byte of the EEPROM may be written.
-    pub unwritten: Option<Time>,
+pub(crate) struct PendingPromises {
+    /// Start and end of the time in which every servo must get a pulse; true for each servo that has got a pulse.
+    pub motion: Option<(Time, Time, [bool; 4])>,
+    /// Start and end of the time in which no pulse may begin, and the rule that forbids pulses.
+    pub no_pulses: Option<(Time, Time, Rule)>,
+    /// The time by which a pulse must begin, and the answer to `status` that named no cause for a lack of pulses.
+    pub pulses_after_status: Option<(Time, String)>,
+    /// The time before which no byte of the EEPROM may be written.
+    pub no_writes_until: Option<Time>,
 }
 
 impl Observer {
-    /// An observer of a robot whose power is still off.
+    /// Returns an observer of a robot whose power is still off.
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
-            broken: Vec::new(),
+            broken_rules: Vec::new(),
             now: NEVER,
-            start: NEVER,
-            cause: Cause::Power,
-            cut: NEVER,
-            disturbed: NEVER,
+            started_at: NEVER,
+            start_cause: Cause::Power,
+            cut_at: NEVER,
+            disturbed_until: NEVER,
             stalls: Vec::new(),
-            ordered: NEVER,
-            sent_to_rest: NEVER,
-            booted_to_rest: NEVER,
-            lines: 0,
-            last_line: NEVER,
-            last_byte: NEVER,
-            deadman: 0,
-            command_read: NEVER,
-            is_driven: false,
-            is_unsaved: false,
-            unfinished_motions: 0,
+            ordered_at: NEVER,
+            rest_ordered_at: NEVER,
+            boot_rest_at: NEVER,
+            unanswered_line_count: 0,
+            last_command_at: NEVER,
+            deadman_time: 0,
+            last_command_read_at: NEVER,
+            is_gait_or_routine: false,
+            has_unsaved_settings: false,
+            unfinished_motion_count: 0,
             permission: Permission::default(),
-            servos: [Servo::UNKNOWN; 4],
-            last_begin: (0, NEVER, false),
-            is_silence_judged: true,
-            supply: Supply::default(),
+            servos: [ServoHistory::UNKNOWN; 4],
+            last_wake: (0, NEVER, false),
+            is_pulse_end_judged: true,
+            supply: SupplyHistory::default(),
             reports: Reports::default(),
-            pending: Pending::default(),
-            first_rest_command: NEVER,
-            brown_outs: [NEVER; 5],
+            pending: PendingPromises::default(),
+            first_rest_at: NEVER,
+            brown_out_times: [NEVER; 5],
         }
     }
 
-    /// Observes a frame's pulses and its end; `widths` are the pulse widths of A1 to A4 in cycles, 0 for no pulse.
+    /// Observes the pulses of a frame, and the frame's end. `widths` are the pulse widths of A1 to A4 in cycles, 0 for
+    /// no pulse.
     pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
         for (servo, width) in widths
             .into_iter()
@@ -161,93 +161,95 @@ impl Observer {
                 servo,
                 width: width.into(),
                 is_cut: false,
-                is_held_up: false,
+                is_end_late: false,
             };
             // Nominal times, to about a millisecond: A1's pulse begins 4 ms after the tick, each further servo's
             // pulse one slot of 4 ms later.
             self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
         }
-        self.observe(start + 20 * MS, Event::Pass);
+        self.observe(start + 20 * MS, Event::TimePasses);
     }
 
-    /// Returns `Ok` if no rule was broken since the last call; forgets all broken rules.
+    /// Returns `Ok` if no rule was broken since the last call, and forgets all broken rules.
     ///
     /// # Errors
-    /// Returns the rule that was broken first.
+    /// Returns the first rule that was broken.
     pub fn verdict(&mut self) -> Result<(), BrokenRule> {
-        let mut broken = std::mem::take(&mut self.broken);
-        if broken.is_empty() {
-            Ok(())
-        } else {
-            Err(broken.swap_remove(0))
-        }
+        self.take_broken_rules()
+            .into_iter()
+            .next()
+            .map_or(Ok(()), Err)
     }
 
     /// Returns all rules that were broken since the last call, and forgets them.
-    pub fn take_broken(&mut self) -> Vec<BrokenRule> {
-        std::mem::take(&mut self.broken)
+    pub fn take_broken_rules(&mut self) -> Vec<BrokenRule> {
+        std::mem::take(&mut self.broken_rules)
     }
 
-    pub(crate) fn fail(&mut self, rule: Rule, seen: impl Into<String>) {
-        self.broken.push(BrokenRule::new(rule, seen));
+    /// Records that a rule is broken.
+    pub(crate) fn fail(&mut self, rule: Rule, observation: impl Into<String>) {
+        self.broken_rules.push(BrokenRule::new(rule, observation));
     }
 
     /// True while the robot has not answered every line.
     pub const fn has_unanswered_lines(&self) -> bool {
-        self.lines > 0
+        self.unanswered_line_count > 0
     }
 
     /// True while the robot has no permission to begin pulses.
-    pub const fn rests(&self) -> bool {
-        !self.permission.may
+    pub const fn must_rest(&self) -> bool {
+        !self.permission.is_granted
     }
 
-    /// The time at which a fault stopped the robot; `None` if no fault did, or if an order has ended the stop.
+    /// The time at which a fault stopped the robot; `None` if no fault has occurred, or if an order has ended the stop.
     pub const fn stopped_since(&self) -> Option<Time> {
-        self.reports.stopped
+        self.reports.stopped_at
     }
 
     /// True from a stop until the console reports it.
-    pub const fn is_unreported(&self) -> bool {
-        self.reports.stopped.is_some() && !self.reports.is_reported
+    pub const fn is_stop_unreported(&self) -> bool {
+        self.reports.stopped_at.is_some() && !self.reports.is_reported
     }
 
-    /// True if the supply was below a level within the last `within` cycles. `level` is 0 for writing, 1 for moving,
-    /// 2 for pulses.
+    /// True if the supply was below a level during the time `within` before now. `level` is an index of
+    /// [`Limits::levels_mv`].
     pub fn was_low(&self, level: usize, within: Time) -> bool {
-        let mv = self.limits.levels[level];
+        let mv = self.limits.levels_mv[level];
         self.supply.time_below(mv, self.now - within, self.now + 1) > 0
     }
 
     /// The time until the last pending promise is due; `None` if no promise is pending.
-    pub fn due_in(&self) -> Option<Time> {
+    pub fn time_until_due(&self) -> Option<Time> {
         let pending = &self.pending;
         let ends = [
-            pending.moves.map(|(_, until, _)| until),
-            pending.quiet.map(|(_, until, _)| until),
-            pending.status.as_ref().map(|(until, _)| *until),
-            pending.unwritten,
+            pending.motion.map(|(_, until, _)| until),
+            pending.no_pulses.map(|(_, until, _)| until),
+            pending
+                .pulses_after_status
+                .as_ref()
+                .map(|(until, _)| *until),
+            pending.no_writes_until,
         ];
         ends.into_iter().flatten().max().map(|end| end - self.now)
     }
 
     /// Drops all pending promises.
     pub fn drop_pending(&mut self) {
-        self.pending = Pending::default();
+        self.pending = PendingPromises::default();
     }
 
     /// The time since the last reset.
-    pub const fn runs_for(&self) -> Time {
-        self.now - self.start
+    pub const fn time_since_start(&self) -> Time {
+        self.now - self.started_at
     }
 
-    /// True if a cause outside the firmware may have ended the pulses since this time: a reset, a stall, blocked
+    /// True if a cause outside the firmware may have ended the pulses since a time: a reset, a stall, blocked
     /// interrupts or a low supply.
-    pub(crate) fn is_troubled(&self, since: Time) -> bool {
-        let rest_mv = self.limits.levels[2] + self.limits.supply_error_mv;
-        self.start >= since
-            || self.cut >= since
-            || self.disturbed > since
+    pub(crate) fn was_troubled_since(&self, since: Time) -> bool {
+        let rest_mv = self.limits.levels_mv[2] + self.limits.supply_error_mv;
+        self.started_at >= since
+            || self.cut_at >= since
+            || self.disturbed_until > since
             || self.supply.time_below(rest_mv, since - 400 * MS, self.now) > 0
     }
 
@@ -255,61 +257,61 @@ impl Observer {
     pub fn observe(&mut self, time: Time, event: Event<'_>) {
         self.advance(time);
         match event {
-            Event::Pass => {}
-            Event::Start(cause) => self.note_program_start(cause),
-            Event::Cut => self.cut = time,
-            Event::Stalled(until) => {
-                self.disturbed = self.disturbed.max(until);
+            Event::TimePasses => {}
+            Event::ProgramStart(cause) => self.note_program_start(cause),
+            Event::ProgramCut => self.cut_at = time,
+            Event::MainStalled(until) => {
+                self.disturbed_until = self.disturbed_until.max(until);
                 self.stalls.retain(|(_, end)| time - end < 300 * MS);
                 self.stalls.push((time, until));
                 self.cancel_promises();
             }
-            Event::HeldUp(until) => {
-                self.disturbed = self.disturbed.max(until);
+            Event::InterruptsBlocked(until) => {
+                self.disturbed_until = self.disturbed_until.max(until);
                 self.cancel_promises();
                 for servo in &mut self.servos {
-                    servo.miss_pulses(until);
+                    servo.note_blocked_interrupts(until);
                 }
             }
-            Event::Supply(mv) => {
-                let poor_below_mv = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                self.supply.set(time, mv, poor_below_mv);
+            Event::SupplyMv(mv) => {
+                let min_good_mv = self.limits.levels_mv[0] + crate::supply::GOOD_MARGIN_MV;
+                self.supply.record(time, mv, min_good_mv);
             }
-            Event::Byte => {
-                self.last_byte = time;
-                self.permission.boot = None;
-            }
-            Event::Line { is_command } => {
-                self.lines += 1;
+            Event::ByteReceived => self.permission.boot_grant_at = None,
+            Event::LineReceived { is_command } => {
+                self.unanswered_line_count += 1;
                 if is_command {
-                    self.last_line = time;
-                    self.command_read = time;
+                    self.last_command_at = time;
+                    self.last_command_read_at = time;
                 }
             }
-            Event::Order { effect, done } => self.note_order(effect, done),
-            Event::Calibrated { is_saved } => {
-                self.is_unsaved = !is_saved;
+            Event::Order {
+                effect,
+                is_accepted,
+            } => self.note_order(effect, is_accepted),
+            Event::CalibrationChanged { is_saved } => {
+                self.has_unsaved_settings = !is_saved;
                 if !is_saved {
                     for servo in &mut self.servos {
-                        servo.is_calibrated = true;
+                        servo.is_recalibrated = true;
                     }
                 }
             }
             Event::Answer {
                 line,
                 effect,
-                asked,
-                text,
-            } => self.answer(line, effect, asked, text),
-            Event::Unanswered(asked, line) => {
-                if !self.is_troubled(asked - MS) {
-                    self.fail(Rule::Answered, format!("no answer to {line}"));
+                asked_at,
+                answer,
+            } => self.judge_answer(line, effect, asked_at, answer),
+            Event::Unanswered(asked_at, line) => {
+                if !self.was_troubled_since(asked_at - MS) {
+                    self.fail(Rule::AnswersAlways, format!("no answer to {line}"));
                 }
             }
-            Event::Printed(since, line) => self.judge_line(since, line),
-            Event::Pulse(pulse) => self.pulse(pulse),
-            Event::Written => self.judge_write(),
-            Event::Fault => self.reports.stop(time),
+            Event::LinePrinted(first_byte_at, line) => self.judge_printed_line(first_byte_at, line),
+            Event::Pulse(pulse) => self.judge_pulse(pulse),
+            Event::ByteWritten => self.judge_write(),
+            Event::Fault => self.reports.note_stop(time),
         }
     }
 
@@ -317,115 +319,122 @@ impl Observer {
     fn advance(&mut self, time: Time) {
         self.now = self.now.max(time);
         self.permission.advance(self.now);
-        self.check_silence();
-        self.check_pending();
-        let stop_mv = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
+        self.judge_end_of_pulses();
+        self.judge_due_promises();
+        let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = self.now - 280 * MS;
-        let is_calm = low_since > self.start && self.disturbed < low_since;
-        if self.reports.stopped.is_none() && is_calm && self.supply.is_low_since(stop_mv, low_since)
+        let is_calm = low_since > self.started_at && self.disturbed_until < low_since;
+        if self.reports.stopped_at.is_none()
+            && is_calm
+            && self.supply.is_low_since(stop_mv, low_since)
         {
-            self.reports.stop(self.now);
+            self.reports.note_stop(self.now);
         }
     }
 
     fn cancel_promises(&mut self) {
         self.permission.cancel_order();
-        self.pending.moves = None;
-        self.pending.quiet = None;
-        self.pending.status = None;
+        self.pending.motion = None;
+        self.pending.no_pulses = None;
+        self.pending.pulses_after_status = None;
     }
 
     fn note_program_start(&mut self, cause: Cause) {
         let now = self.now;
-        // A brown-out may last long, and the program may have hung before it.
+        // A brown-out may last long: the program hung if a disturbance came shortly before the brown-out began.
         let ran_until = if cause == Cause::BrownOut {
-            self.cut.max(self.start)
+            self.cut_at.max(self.started_at)
         } else {
             now
         };
-        let is_hung = cause == Cause::Watchdog || self.disturbed > ran_until - 300 * MS;
-        self.check_reset(cause);
+        let has_hung = cause == Cause::Watchdog || self.disturbed_until > ran_until - 300 * MS;
+        self.judge_reset(cause);
         for servo in 0..4 {
-            let outlasts_rest = self.must_keep_rest_pose(servo);
-            let takes_over = cause != Cause::Power && !self.limits.is_narrowed;
-            let is_lost = match cause {
-                Cause::BrownOut => self.limits.brown_outs_clear_ram && !is_hung,
+            let is_rest_pose_saved = self.must_keep_rest_pose(servo);
+            let keeps_position = cause != Cause::Power && !self.limits.is_saved_travel_narrower;
+            let is_ram_lost = match cause {
+                Cause::BrownOut => self.limits.brown_outs_clear_ram && !has_hung,
                 cause => cause == Cause::Power,
             };
-            self.servos[servo].is_lost |= is_lost;
-            self.servos[servo].restart(is_hung, self.permission.may, takes_over, outlasts_rest);
+            self.servos[servo].is_position_lost |= is_ram_lost;
+            self.servos[servo].note_restart(
+                has_hung,
+                self.permission.is_granted,
+                keeps_position,
+                is_rest_pose_saved,
+            );
         }
-        self.start = now;
-        self.cause = cause;
-        self.lines = 0;
-        self.last_line = now;
-        self.deadman = 0;
-        self.is_driven = false;
-        self.first_rest_command = NEVER;
-        self.unfinished_motions = 0;
-        self.permission.start(cause, now, self.limits.boots_to_rest);
-        let is_rest_promised = matches!(self.pending.quiet, Some((.., Rule::RestEnds)));
-        let quiet = self
+        self.started_at = now;
+        self.start_cause = cause;
+        self.unanswered_line_count = 0;
+        self.last_command_at = now;
+        self.deadman_time = 0;
+        self.is_gait_or_routine = false;
+        self.first_rest_at = NEVER;
+        self.unfinished_motion_count = 0;
+        self.permission
+            .note_start(cause, now, self.limits.may_boot_to_rest);
+        let is_rest_promised = matches!(self.pending.no_pulses, Some((.., Rule::RestEndsPulses)));
+        let no_pulses = self
             .pending
-            .quiet
+            .no_pulses
             .filter(|_| is_rest_promised && cause != Cause::Power);
-        self.pending = Pending {
-            quiet,
-            ..Pending::default()
+        self.pending = PendingPromises {
+            no_pulses,
+            ..PendingPromises::default()
         };
-        self.reports.start(cause, now);
+        self.reports.note_start(cause, now);
     }
 
-    /// The total time for which main was stalled in the 300 ms before `time`.
-    pub(crate) fn stalled(&self, time: Time) -> Time {
+    /// Returns the total time for which main was stalled in the 300 ms before `time`.
+    pub(crate) fn stalled_time_before(&self, time: Time) -> Time {
         let recent = self.stalls.iter().filter(|(_, end)| *end > time - 300 * MS);
         recent.map(|(start, end)| end.min(&time) - start).sum()
     }
 
-    fn check_reset(&mut self, cause: Cause) {
+    fn judge_reset(&mut self, cause: Cause) {
         let now = self.now;
         if cause == Cause::Watchdog {
-            let stalled_time = self.stalled(now);
-            // The watchdog's first stage, less the frame in which the watchdog was fed. At the end of
-            // the first stage the pulses end; the reset follows in the second stage.
+            let stalled_time = self.stalled_time_before(now);
+            // 100 ms are the watchdog's first stage, less the frame in which the watchdog was fed. The pulses end after
+            // the first stage; the reset follows after the second stage.
             if stalled_time < 100 * MS {
                 let ms = stalled_time / MS;
-                self.fail(Rule::NeedlessReset, format!("stalled for {ms} ms"));
+                self.fail(Rule::NoNeedlessReset, format!("stalled for {ms} ms"));
             }
         }
         if cause == Cause::BrownOut {
-            let first_brown_out = self.brown_outs[0];
-            if first_brown_out > now - 4_000 * MS && self.ordered < first_brown_out {
+            let first_brown_out = self.brown_out_times[0];
+            if first_brown_out > now - 4_000 * MS && self.ordered_at < first_brown_out {
                 let ms = (now - first_brown_out) / MS;
-                self.fail(Rule::BrownOuts, format!("six of them in {ms} ms"));
+                self.fail(Rule::BrownOutsEnd, format!("six of them in {ms} ms"));
             }
-            self.brown_outs.rotate_left(1);
-            self.brown_outs[4] = now;
+            self.brown_out_times.rotate_left(1);
+            self.brown_out_times[4] = now;
         }
     }
 
-    fn note_order(&mut self, effect: Effect, done: Option<bool>) {
-        self.pending.moves = None;
-        if done == Some(false) {
+    fn note_order(&mut self, effect: Effect, is_accepted: Option<bool>) {
+        self.pending.motion = None;
+        if is_accepted == Some(false) {
             return;
         }
-        self.ordered = self.now;
-        self.pending = Pending::default();
-        let is_rest = effect == Effect::Rests;
-        if is_rest {
-            self.sent_to_rest = self.now;
+        self.ordered_at = self.now;
+        self.pending = PendingPromises::default();
+        if effect == Effect::Rests {
+            self.rest_ordered_at = self.now;
             for servo in &mut self.servos {
-                servo.forget_pulse();
+                servo.forget_reset();
             }
         } else {
-            self.first_rest_command = NEVER;
+            self.first_rest_at = NEVER;
         }
         if effect == Effect::Moves {
-            self.reports.order(done.is_some());
-            self.unfinished_motions += 1;
+            self.reports.note_order(is_accepted.is_some());
+            self.unfinished_motion_count += 1;
         }
-        let is_calm = self.disturbed <= self.now;
+        let is_calm = self.disturbed_until <= self.now;
         self.permission
-            .order(self.now, effect, done.is_some() && is_calm);
+            .note_order(self.now, effect, is_accepted.is_some() && is_calm);
     }
 }

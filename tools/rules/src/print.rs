@@ -1,13 +1,12 @@
-//! The observer's state, rounded so that equivalent states are equal: the model checker then visits
-//! them only once.
+//! The observer's coarse state. It is equal for equivalent states, so the model checker explores these only once.
 
 use std::fmt;
 
 use crate::event::{MS, Time};
 use crate::observer::Observer;
 
-/// Sorts an age, in frames of 20 ms, into a few classes; returns the class's least number of frames.
-pub const fn frames_class(age: Time) -> u8 {
+/// Rounds an age down to one of a few classes. Returns the smallest number of frames in the class.
+pub const fn rounded_age_frames(age: Time) -> u8 {
     match age / (20 * MS) {
         ..=0 => 0,
         1..=3 => 1,
@@ -18,65 +17,65 @@ pub const fn frames_class(age: Time) -> u8 {
 }
 
 impl Observer {
-    /// A value whose `Debug` output is the same for equivalent states.
-    pub fn coarse(&self) -> impl fmt::Debug + use<> {
-        let age_class = |time: Time| frames_class(self.now.saturating_sub(time));
-        let signed_class = |age: i64| {
+    /// Returns a value whose `Debug` output is the same for equivalent states.
+    pub fn coarse_state(&self) -> impl fmt::Debug + use<> {
+        let rounded_age = |time: Time| rounded_age_frames(self.now.saturating_sub(time));
+        let rounded_signed_age = |age: i64| {
             if age > 0 {
-                i16::from(frames_class(age))
+                i16::from(rounded_age_frames(age))
             } else {
-                -i16::from(frames_class(-age)) - 1
+                -i16::from(rounded_age_frames(-age)) - 1
             }
         };
         let servos = self.servos.map(|servo| {
-            let is_on = self.now - servo.at < 30 * MS;
+            let has_pulses = self.now - servo.last_start < 30 * MS;
             (
-                servo.width >> 11,
-                is_on,
-                servo.since,
-                servo.is_hung,
-                servo.is_lost,
+                servo.last_whole_width >> 11,
+                has_pulses,
+                servo.interruption,
+                servo.was_hung,
+                servo.is_position_lost,
             )
         });
-        let last_pulse = self.servos.iter().map(|servo| servo.at).max();
-        let silence_class = last_pulse.map(age_class);
-        let frames_since_line = if self.deadman > 0 {
-            (self.now - self.last_line) / (20 * MS)
+        let last_pulse_at = self.servos.iter().map(|servo| servo.last_start).max();
+        let last_pulse_age = last_pulse_at.map(rounded_age);
+        let frames_since_command = if self.deadman_time > 0 {
+            (self.now - self.last_command_at) / (20 * MS)
         } else {
             0
         };
         let is_recent = |time: Time, ms: Time| self.now - time < ms * MS;
-        let brown_outs = self
-            .brown_outs
+        let recent_brown_outs = self
+            .brown_out_times
             .iter()
-            .filter(|time| is_recent(**time, 4_000) && **time > self.ordered);
+            .filter(|time| is_recent(**time, 4_000) && **time > self.ordered_at);
         (
             (
                 servos,
-                silence_class,
-                (frames_since_line, self.is_driven),
-                self.deadman,
-                self.lines,
+                last_pulse_age,
+                (frames_since_command, self.is_gait_or_routine),
+                self.deadman_time,
+                self.unanswered_line_count,
             ),
             (
-                self.permission.may,
-                self.permission.ends(),
-                self.permission.boot.is_some(),
+                self.permission.is_granted,
+                self.permission.has_expiry(),
+                self.permission.boot_grant_at.is_some(),
             ),
             (
-                is_recent(self.start, 500),
-                is_recent(self.ordered, 45),
-                is_recent(self.disturbed, 300),
+                is_recent(self.started_at, 500),
+                is_recent(self.ordered_at, 45),
+                is_recent(self.disturbed_until, 300),
             ),
             self.supply
-                .times_since_crossed(self.limits.levels, self.now)
-                .map(signed_class),
+                .times_since_crossed(self.limits.levels_mv, self.now)
+                .map(rounded_signed_age),
             (
-                self.reports.stopped.map(age_class),
+                self.reports.stopped_at.map(rounded_age),
                 self.reports.is_reported,
                 is_recent(self.reports.reported_at, 400),
             ),
-            (brown_outs.count(), self.cause),
+            (recent_brown_outs.count(), self.start_cause),
         )
     }
 }

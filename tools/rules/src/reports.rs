@@ -11,12 +11,12 @@ use crate::rule::Rule;
 /// The last stop by a fault, and whether the console has reported it.
 #[derive(Clone, Debug)]
 pub(crate) struct Reports {
-    /// Time at which a fault stopped the robot, until the user acts.
-    pub stopped: Option<Time>,
-    /// True once the console has reported the reason.
+    /// Time at which a fault stopped the robot; `None` if no fault has occurred since the last order to move.
+    pub stopped_at: Option<Time>,
+    /// True if the console has reported the cause of the stop.
     pub is_reported: bool,
-    /// True if, after the report, an order was sent that may not have reached the robot: a robot that
-    /// is still stopped does not report the stop again.
+    /// True if an order after the report may not have reached the robot. If the robot is then still stopped, it does
+    /// not report the stop again.
     may_still_be_stopped: bool,
     /// Time of the last report of a fault on the console.
     pub reported_at: Time,
@@ -25,7 +25,7 @@ pub(crate) struct Reports {
 impl Default for Reports {
     fn default() -> Self {
         Self {
-            stopped: None,
+            stopped_at: None,
             is_reported: false,
             may_still_be_stopped: false,
             reported_at: NEVER,
@@ -34,155 +34,163 @@ impl Default for Reports {
 }
 
 impl Reports {
-    /// Records that a fault stops the robot.
-    pub(crate) fn stop(&mut self, time: Time) {
-        if self.stopped.is_none() {
-            self.stopped = Some(time);
+    /// Records that a fault stops the robot, unless the robot is already stopped.
+    pub(crate) fn note_stop(&mut self, time: Time) {
+        if self.stopped_at.is_none() {
+            self.stopped_at = Some(time);
             self.is_reported = self.may_still_be_stopped || time - self.reported_at < 400 * MS;
         }
     }
 
-    pub(crate) fn start(&mut self, cause: Cause, time: Time) {
+    pub(crate) fn note_start(&mut self, cause: Cause, time: Time) {
         *self = Self::default();
         if cause == Cause::Watchdog {
-            self.stopped = Some(time);
+            self.stopped_at = Some(time);
         }
     }
 
-    /// Ends a stop because of an order to move, which may have been lost unless `is_sure`.
-    pub(crate) const fn order(&mut self, is_sure: bool) {
-        let was_reported = self.stopped.is_some() && self.is_reported;
-        self.may_still_be_stopped = !is_sure && (was_reported || self.may_still_be_stopped);
-        self.stopped = None;
+    /// Records an order to move, which ends a stop. If `is_certain` is false, the order may have been lost.
+    pub(crate) const fn note_order(&mut self, is_certain: bool) {
+        let was_reported = self.stopped_at.is_some() && self.is_reported;
+        self.may_still_be_stopped = !is_certain && (was_reported || self.may_still_be_stopped);
+        self.stopped_at = None;
     }
 }
 
 impl Observer {
-    /// Judges a line that the robot printed; `since` is the time at which the line's first byte was written.
-    pub(crate) fn judge_line(&mut self, since: Time, line: &str) {
-        // After a reset the banner follows on the line that the reset has cut off, which is then no answer.
+    /// Judges a line that the robot has printed; `first_byte_at` is the time at which its first byte was written.
+    pub(crate) fn judge_printed_line(&mut self, first_byte_at: Time, line: &str) {
+        // If a reset cuts a line off, the banner follows in the same line. Such a line is not an answer.
         if is_answer(line) && !line.contains("# lizard ") {
-            self.lines -= 1;
-            if self.lines < 0 {
+            self.unanswered_line_count -= 1;
+            if self.unanswered_line_count < 0 {
                 self.fail(Rule::OneAnswer, format!("unasked: {line}"));
             }
-            if self.lines > 0 {
-                // The next command may have waited until this answer was written.
-                self.command_read = self.now;
+            if self.unanswered_line_count > 0 {
+                // The robot may have read the next command only now, after this answer.
+                self.last_command_read_at = self.now;
             }
         }
-        self.note_done(line);
+        self.note_accepted_command(line);
         if line.starts_with("# fault: ") || line.starts_with("# held") {
             self.reports.is_reported = true;
             self.reports.reported_at = self.now;
             if line.contains("no line for") {
-                // A line printed just after an order may report a stop that the order has ended already.
-                if since - self.ordered >= self.limits.queued {
-                    self.reports.stop(self.now);
+                // Soon after an order, the line may report a stop that the order has already ended.
+                if first_byte_at - self.ordered_at >= self.limits.max_queue_time {
+                    self.reports.note_stop(self.now);
                 }
-                let silence = since - self.last_line;
-                if (self.limits.queued..self.deadman).contains(&silence) {
-                    let (silence_ms, deadman_ms) = (silence / MS, self.deadman / MS);
+                let silence = first_byte_at - self.last_command_at;
+                if (self.limits.max_queue_time..self.deadman_time).contains(&silence) {
+                    let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);
                     self.fail(
-                        Rule::Deadman,
+                        Rule::DeadmanNotEarly,
                         format!("deadman {deadman_ms}, after {silence_ms} ms"),
                     );
                 }
             }
         }
         if line == "# done" {
-            self.unfinished_motions -= 1;
-            if self.unfinished_motions < 0 {
-                self.fail(Rule::Done, "once too often");
+            self.unfinished_motion_count -= 1;
+            if self.unfinished_motion_count < 0 {
+                self.fail(Rule::DoneOncePerMotion, "once too often");
             }
         }
-        if let Some(text) = line.strip_prefix("# supply: ") {
-            self.judge_supply_line(text);
+        if let Some(report) = line.strip_prefix("# supply: ") {
+            self.judge_supply_report(report);
         }
-        if let Some(boot) = line.strip_prefix("# boot: ") {
-            if boot == "rest" {
-                self.booted_to_rest = self.now;
+        if let Some(boot_action) = line.strip_prefix("# boot: ") {
+            if boot_action == "rest" {
+                self.boot_rest_at = self.now;
             }
-            self.unfinished_motions += 1;
-            self.permission.note_boot(self.now, boot);
+            self.unfinished_motion_count += 1;
+            self.permission.note_boot(self.now, boot_action);
         }
-        let is_end = line.ends_with("pulses ended") || line.contains("several times in a row");
-        // An order that came while the line waited or was being printed has overtaken it.
-        if is_end && since - self.ordered > self.limits.queued {
-            self.permission.end(self.now);
+        let reports_rest =
+            line.ends_with("pulses ended") || line.contains("several times in a row");
+        // If an order came while the line waited or was printed, the line no longer describes the robot.
+        if reports_rest && first_byte_at - self.ordered_at > self.limits.max_queue_time {
+            self.permission.schedule_expiry(self.now);
         }
     }
 
-    /// Updates `deadman` and `is_driven` from the answer to a line; a refusal changes nothing.
-    pub(crate) fn note_done(&mut self, answer: &str) {
+    /// Updates `deadman_time` and `is_gait_or_routine` from an answer. A refusal changes nothing.
+    pub(crate) fn note_accepted_command(&mut self, answer: &str) {
         let Some(accepted) = answer.strip_prefix("ok ") else {
             return;
         };
         let (word, arguments) = accepted.split_once(' ').unwrap_or((accepted, ""));
         match Word::find(word.as_bytes()) {
-            Some(Word::Deadman) => self.deadman = arguments.parse().unwrap_or(0) * MS,
-            // Another `deadman` time may have been saved.
-            Some(Word::Load | Word::Factory) => self.deadman = 0,
+            Some(Word::Deadman) => self.deadman_time = arguments.parse().unwrap_or(0) * MS,
+            // The saved `deadman` time may differ, so the observer stops judging by it.
+            Some(Word::Load | Word::Factory) => self.deadman_time = 0,
             _ => {}
         }
         match Word::find(word.as_bytes()).map(Word::effect) {
-            // No word of the console, so the name of a gait or a routine.
-            None if !word.starts_with("gait=") => self.is_driven = word != "stand",
-            Some(Effect::Moves | Effect::Calibrates) => self.is_driven = false,
+            // The word is not a command, so it is the name of a gait or a routine.
+            None if !word.starts_with("gait=") => self.is_gait_or_routine = word != "stand",
+            Some(Effect::Moves | Effect::Calibrates) => self.is_gait_or_routine = false,
             _ => {}
         }
     }
 
-    /// Checks that a stop has been reported on the console by now. Called only while somebody
-    /// reads the console.
-    pub fn check_reported(&mut self) {
-        let stopped_at = self.reports.stopped;
-        let is_due = |time| self.now - time > self.limits.report_time;
+    /// Checks that the console has reported a stop by now. Must be called only while a host reads the console.
+    pub fn check_stop_is_reported(&mut self) {
+        let stopped_at = self.reports.stopped_at;
+        let is_due = |time| self.now - time > self.limits.max_report_time;
         if stopped_at.is_some_and(is_due) && !self.reports.is_reported {
-            self.fail(Rule::Told, "nothing on the console");
+            self.fail(Rule::StopReported, "nothing on the console");
         }
     }
 
     /// Judges an answer to `status`.
-    pub(crate) fn status(&mut self, text: &str) {
+    pub(crate) fn judge_status(&mut self, answer: &str) {
         let now = self.now;
         let value_of = |key: &str| {
-            let mut pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
+            let mut pairs = answer.split(' ').filter_map(|pair| pair.split_once('='));
             pairs.find(|(name, _)| *name == key).map(|(_, value)| value)
         };
         let (gait, fault) = (value_of("gait"), value_of("fault"));
         let has_fault = fault != Some("none");
         if !has_fault && value_of("guard") == Some("held") {
-            self.fail(Rule::GuardNamed, text);
+            self.fail(Rule::GuardFaultNamed, answer);
         }
-        let report_time = self.limits.report_time;
-        let is_due = |since| now - since > report_time;
-        if !has_fault && self.reports.stopped.is_some_and(is_due) {
-            self.fail(Rule::Told, text);
+        let max_report_time = self.limits.max_report_time;
+        let is_due = |since| now - since > max_report_time;
+        if !has_fault && self.reports.stopped_at.is_some_and(is_due) {
+            self.fail(Rule::StopReported, answer);
         }
-        let is_hung = self.cause == Cause::Watchdog && is_due(self.start);
-        if is_hung && value_of("reset") != Some("watchdog") {
-            self.fail(Rule::Told, text);
+        let is_watchdog_reset_due = self.start_cause == Cause::Watchdog && is_due(self.started_at);
+        if is_watchdog_reset_due && value_of("reset") != Some("watchdog") {
+            self.fail(Rule::StopReported, answer);
         }
-        let stop_mv = self.limits.levels[1].saturating_sub(self.limits.supply_error_mv);
+        let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = now - 340 * MS;
-        if !has_fault && low_since > self.start && self.supply.is_low_since(stop_mv, low_since) {
-            self.fail(Rule::Told, format!("the supply is low: {text}"));
+        if !has_fault && low_since > self.started_at && self.supply.is_low_since(stop_mv, low_since)
+        {
+            self.fail(Rule::StopReported, format!("the supply is low: {answer}"));
         }
-        self.check_reported();
-        if has_fault && self.reports.stopped.is_none() {
-            self.reports.stopped = Some(now);
+        self.check_stop_is_reported();
+        if has_fault && self.reports.stopped_at.is_none() {
+            self.reports.stopped_at = Some(now);
             self.reports.is_reported = true;
         }
         if gait == Some("rest") {
-            self.pending.quiet = Some((
-                now + self.limits.frame_left,
+            self.pending.no_pulses = Some((
+                now + self.limits.max_frame_remainder,
                 now + 140 * MS,
-                Rule::RestIsRest,
+                Rule::NoPulsesInRest,
             ));
-        } else if !has_fault && self.ordered < now - 400 * MS && !self.is_troubled(now - 400 * MS) {
-            let is_silent = self.servos.iter().all(|servo| servo.at < now - 200 * MS);
-            self.pending.status = is_silent.then(|| (now + 200 * MS, text.to_owned()));
+        } else if !has_fault
+            && self.ordered_at < now - 400 * MS
+            && !self.was_troubled_since(now - 400 * MS)
+        {
+            let has_no_pulses = self
+                .servos
+                .iter()
+                .all(|servo| servo.last_start < now - 200 * MS);
+            self.pending.pulses_after_status =
+                has_no_pulses.then(|| (now + 200 * MS, answer.to_owned()));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The rules for pulses: the permission to begin, and the distance from one pulse to the next.
+//! The rules for pulses: when they may begin and must end, and how much their widths may change.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -7,242 +7,254 @@ use crate::event::{MS, NEVER, Pulse, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Longest time from one pulse of a servo to its next while the servo gets a pulse in every frame.
+/// Longest time between consecutive pulses of a servo that gets a pulse in every frame.
 const MAX_PULSE_GAP: Time = 30 * MS;
 
-/// Longest time for which a gait may go on after `deadman` has run out.
-const MAX_LATE_TIME: Time = 40 * MS;
+/// Longest time for which a gait may continue after the time of `deadman`.
+const MAX_DEADMAN_DELAY: Time = 40 * MS;
 
-/// Largest difference of consecutive pulses of a servo that stands still, cycles.
-const STEADY_CYCLES: u32 = 16;
+/// Largest difference between consecutive pulses of a servo that stands still, cycles.
+const MAX_STEADY_CHANGE: u32 = 16;
 
 /// Longest time from a `rest` order to the end of the last pulse.
-const UNTIL_REST: Time = 45 * MS;
+const MAX_TIME_TO_REST: Time = 45 * MS;
 
-/// Shortest time from a reset until `boot` acts: 3 s, less about a frame, since the first tick comes
-/// early.
-const BOOT_TIME: Time = 2_975 * MS;
+/// Shortest time from a reset until `boot` acts: 3 s less about a frame, since the first tick comes early.
+const MIN_BOOT_TIME: Time = 2_975 * MS;
 
-/// Shortest time between the first pulses of two servos that wake: 0.1 s, less about a frame.
+/// Shortest time between the first pulses of two servos that wake: 0.1 s less about a frame.
 const MIN_WAKE_GAP: Time = 75 * MS;
 
-/// Longest time from the end of the pulses to the reset after a hang: the watchdog's second stage and a
-/// frame.
-const UNTIL_RESET: Time = 160 * MS;
+/// Longest time from the end of the pulses in a hang to the reset: the watchdog's second stage and a frame.
+const MAX_TIME_TO_RESET: Time = 160 * MS;
 
-/// Permission for pulses to begin.
+/// The permission for pulses to begin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Permission {
     /// True while pulses may begin.
-    pub may: bool,
-    /// The time at which the permission ends, and true if an order has set this time; `None` if no end is known.
-    end: Option<(Time, bool)>,
-    /// The earliest time at which `boot` grants the permission; `None` if `boot` grants none.
-    pub boot: Option<Time>,
+    pub is_granted: bool,
+    /// The time at which the permission ends, and true if an order has set this time; `None` if the permission has no
+    /// end.
+    expiry: Option<(Time, bool)>,
+    /// The earliest time at which `boot` grants the permission; `None` if `boot` does not grant it.
+    pub boot_grant_at: Option<Time>,
 }
 
 impl Permission {
     pub(crate) fn advance(&mut self, now: Time) {
-        if self.boot.take_if(|time| *time <= now).is_some() {
-            self.may = true;
+        if self.boot_grant_at.take_if(|time| *time <= now).is_some() {
+            self.is_granted = true;
         }
-        if self.end.take_if(|(time, _)| *time <= now).is_some() {
-            self.may = false;
+        if self.expiry.take_if(|(time, _)| *time <= now).is_some() {
+            self.is_granted = false;
         }
     }
 
-    /// Cancels the end of the permission that an order has set: another event came first, so the robot may not
-    /// have carried the order out.
+    /// Cancels an end of the permission that an order has set. Another event came first, so the robot may not have
+    /// carried out the order.
     pub(crate) fn cancel_order(&mut self) {
-        self.end.take_if(|(_, is_order)| *is_order);
+        self.expiry.take_if(|(_, is_order)| *is_order);
     }
 
-    pub(crate) fn start(&mut self, cause: Cause, time: Time, boots_to_rest: bool) {
+    pub(crate) fn note_start(&mut self, cause: Cause, time: Time, may_boot_to_rest: bool) {
         self.cancel_order();
-        self.may |= cause == Cause::Power;
-        let can_boot = cause != Cause::Watchdog && !boots_to_rest;
-        self.boot = can_boot.then_some(time + BOOT_TIME);
+        self.is_granted |= cause == Cause::Power;
+        let can_boot = cause != Cause::Watchdog && !may_boot_to_rest;
+        self.boot_grant_at = can_boot.then_some(time + MIN_BOOT_TIME);
     }
 
-    pub(crate) fn order(&mut self, time: Time, effect: Effect, is_sure: bool) {
+    pub(crate) fn note_order(&mut self, time: Time, effect: Effect, is_certain: bool) {
         self.cancel_order();
         match effect {
-            Effect::Rests if is_sure => self.end = Some((time + UNTIL_REST, true)),
+            Effect::Rests if is_certain => self.expiry = Some((time + MAX_TIME_TO_REST, true)),
             Effect::Moves => {
-                self.may = true;
-                self.end = None;
+                self.is_granted = true;
+                self.expiry = None;
             }
             _ => {}
         }
     }
 
-    pub(crate) fn note_boot(&mut self, time: Time, boot: &str) {
-        if boot == "rest" {
-            self.end(time);
+    pub(crate) fn note_boot(&mut self, time: Time, boot_action: &str) {
+        if boot_action == "rest" {
+            self.schedule_expiry(time);
         } else {
-            self.may = true;
+            self.is_granted = true;
         }
     }
 
-    pub(crate) const fn end(&mut self, time: Time) {
-        self.end = Some((time + UNTIL_REST, false));
+    pub(crate) const fn schedule_expiry(&mut self, time: Time) {
+        self.expiry = Some((time + MAX_TIME_TO_REST, false));
     }
 
-    pub(crate) const fn ends(&self) -> bool {
-        self.end.is_some()
+    pub(crate) const fn has_expiry(&self) -> bool {
+        self.expiry.is_some()
     }
 }
 
-/// The event since a servo's last whole pulse that decides which leap the next pulse may have.
+/// The event since a servo's last whole pulse that decides which rule limits the next pulse's leap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Since {
-    /// No event: a leap breaks the slew limit.
+pub(crate) enum Interruption {
+    /// No event: the slew limit applies.
     Nothing,
     /// A reset that kept the RAM, while the robot had pulses.
     Reset,
     /// A reset while the robot rested.
     ResetInRest,
-    /// The servo's position is unknown.
+    /// An event after which the servo's position is unknown.
     Unknown,
 }
 
-/// A servo's last pulses.
+/// The history of a servo's pulses.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Servo {
+pub(crate) struct ServoHistory {
     /// The start of the last pulse.
-    pub at: Time,
+    pub last_start: Time,
     /// The end of the last pulse.
-    pub end: Time,
-    /// The width of the last whole pulse.
-    pub width: u32,
+    pub last_end: Time,
+    /// The width of the last whole pulse, cycles. A whole pulse is neither cut short nor delayed at its end.
+    pub last_whole_width: u32,
     /// The start of the last whole pulse.
-    pub whole_at: Time,
-    pub since: Since,
-    /// True if a hang interrupted the pulses.
-    pub is_hung: bool,
-    /// True if the robot has forgotten the servo's position in a reset.
-    pub is_lost: bool,
+    pub last_whole_start: Time,
+    pub interruption: Interruption,
+    /// True if a hang interrupted the pulses after the last whole pulse.
+    pub was_hung: bool,
+    /// True if a reset has cleared the servo's position in RAM.
+    pub is_position_lost: bool,
     /// True if the servo's settings have changed since its last whole pulse.
-    pub is_calibrated: bool,
-    /// The time up to which interrupts are blocked, so that pulses may be missing.
-    held_up: Time,
+    pub is_recalibrated: bool,
+    /// The time until which interrupts are blocked, so that pulses may be missing.
+    blocked_until: Time,
 }
 
-impl Servo {
+impl ServoHistory {
     pub(crate) const UNKNOWN: Self = Self {
-        at: NEVER,
-        end: NEVER,
-        width: 0,
-        whole_at: NEVER,
-        since: Since::Unknown,
-        is_hung: false,
-        is_lost: false,
-        is_calibrated: false,
-        held_up: NEVER,
+        last_start: NEVER,
+        last_end: NEVER,
+        last_whole_width: 0,
+        last_whole_start: NEVER,
+        interruption: Interruption::Unknown,
+        was_hung: false,
+        is_position_lost: false,
+        is_recalibrated: false,
+        blocked_until: NEVER,
     };
 
-    /// Notes that pulses may be missing up to a time, since interrupts are blocked.
-    pub(crate) fn miss_pulses(&mut self, until: Time) {
-        self.held_up = until;
-        if self.since == Since::Nothing {
-            self.since = Since::Unknown;
+    /// Notes that interrupts are blocked until a time, so that pulses may be missing.
+    pub(crate) fn note_blocked_interrupts(&mut self, until: Time) {
+        self.blocked_until = until;
+        if self.interruption == Interruption::Nothing {
+            self.interruption = Interruption::Unknown;
         }
     }
 
-    /// Drops the rule that a reset sets for the next pulse, since an order to rest replaces it.
-    pub(crate) fn forget_pulse(&mut self) {
-        if self.since == Since::Reset {
-            self.since = Since::Unknown;
+    /// Forgets a reset: after an order to rest, the reset's rule for the next pulse no longer applies.
+    pub(crate) fn forget_reset(&mut self) {
+        if self.interruption == Interruption::Reset {
+            self.interruption = Interruption::Unknown;
         }
     }
 
-    /// Notes a restart. The arguments are true if the program hung before the restart; if pulses were allowed; if
-    /// the robot takes over the servo's position from RAM; and if the rest pose in the EEPROM is still valid.
-    pub(crate) fn restart(
+    /// Notes a restart. `has_hung` is true if the program hung before the restart, `keeps_position` if the robot keeps
+    /// the servo's position in RAM, `is_rest_pose_saved` if the EEPROM contains the servo's present rest pose.
+    pub(crate) fn note_restart(
         &mut self,
-        is_hung: bool,
-        was_allowed: bool,
-        takes_over: bool,
-        outlasts_rest: bool,
+        has_hung: bool,
+        were_pulses_permitted: bool,
+        keeps_position: bool,
+        is_rest_pose_saved: bool,
     ) {
-        self.is_hung |= is_hung;
-        self.since = match self.since {
-            Since::Nothing if !was_allowed && outlasts_rest => Since::ResetInRest,
-            Since::Nothing | Since::Reset if was_allowed && takes_over => Since::Reset,
-            Since::ResetInRest => Since::ResetInRest,
-            Since::Reset if takes_over => Since::Reset,
-            _ => Since::Unknown,
+        self.was_hung |= has_hung;
+        self.interruption = match self.interruption {
+            Interruption::Nothing if !were_pulses_permitted && is_rest_pose_saved => {
+                Interruption::ResetInRest
+            }
+            Interruption::Nothing | Interruption::Reset
+                if were_pulses_permitted && keeps_position =>
+            {
+                Interruption::Reset
+            }
+            Interruption::ResetInRest => Interruption::ResetInRest,
+            Interruption::Reset if keeps_position => Interruption::Reset,
+            _ => Interruption::Unknown,
         };
     }
 }
 
 impl Observer {
     /// Judges a pulse by its width, its permission and the servo's previous pulses.
-    pub(crate) fn pulse(&mut self, pulse: Pulse) {
+    pub(crate) fn judge_pulse(&mut self, pulse: Pulse) {
         let now = self.now;
         let servo = self.servos[pulse.servo];
         let name = format_args!("A{}", pulse.servo + 1);
-        let (min, max) = self.limits.widths[pulse.servo];
+        let (min, max) = self.limits.width_ranges[pulse.servo];
         let is_short = pulse.width < min && !pulse.is_cut;
-        // A falling edge that is held up comes late, at worst with the next slot.
-        let is_long = pulse.width > max && !pulse.is_held_up || pulse.width > 65_000;
+        // Blocked interrupts delay a falling edge, at most until the next slot.
+        let is_long = pulse.width > max && !pulse.is_end_late || pulse.width > 65_000;
         if is_short || is_long {
-            let seen = format!("{name} gets {} cycles", pulse.width);
-            self.fail(Rule::Travel, seen);
+            let observation = format!("{name} gets {} cycles", pulse.width);
+            self.fail(Rule::PulseWidth, observation);
         }
-        let is_first = now - servo.at > MAX_PULSE_GAP;
+        let is_first = now - servo.last_start > MAX_PULSE_GAP;
         if is_first {
             self.judge_first_pulse(pulse);
         }
-        self.judge_expected_pulse(pulse.servo);
-        let leap = pulse.width.abs_diff(servo.width);
-        let is_whole = !pulse.is_cut && !pulse.is_held_up;
-        let is_known = servo.whole_at > NEVER && !(is_first && servo.is_calibrated);
-        if is_whole && is_known && leap > self.limits.leap[pulse.servo] {
-            let seen = format!("{name} has {} cycles and then {}", servo.width, pulse.width);
-            match servo.since {
-                Since::Nothing => self.fail(Rule::Leap, seen),
-                Since::Reset => self.fail(Rule::LeapByReset, seen),
-                Since::ResetInRest => self.fail(Rule::RestPose, seen),
-                Since::Unknown => {}
+        self.judge_promises_about_pulse(pulse.servo);
+        let leap = pulse.width.abs_diff(servo.last_whole_width);
+        let is_whole = !pulse.is_cut && !pulse.is_end_late;
+        let is_comparable = servo.last_whole_start > NEVER && !(is_first && servo.is_recalibrated);
+        if is_whole && is_comparable && leap > self.limits.max_leap_cycles[pulse.servo] {
+            let observation = format!(
+                "{name} has {} cycles and then {}",
+                servo.last_whole_width, pulse.width
+            );
+            match servo.interruption {
+                Interruption::Nothing => self.fail(Rule::SlewLimit, observation),
+                Interruption::Reset => self.fail(Rule::NoLeapByReset, observation),
+                Interruption::ResetInRest => self.fail(Rule::WakesInRestPose, observation),
+                Interruption::Unknown => {}
             }
         }
-        if is_whole && !is_first && leap > STEADY_CYCLES {
-            self.judge_silence(pulse.servo);
+        if is_whole && !is_first && leap > MAX_STEADY_CHANGE {
+            self.judge_deadman(pulse.servo);
         }
         let servo = &mut self.servos[pulse.servo];
-        servo.at = now;
-        servo.end = now + Time::from(pulse.width);
+        servo.last_start = now;
+        servo.last_end = now + Time::from(pulse.width);
         if is_whole {
-            *servo = Servo {
-                width: pulse.width,
-                whole_at: now,
-                since: if servo.held_up > now {
-                    Since::Unknown
+            *servo = ServoHistory {
+                last_whole_width: pulse.width,
+                last_whole_start: now,
+                interruption: if servo.blocked_until > now {
+                    Interruption::Unknown
                 } else {
-                    Since::Nothing
+                    Interruption::Nothing
                 },
-                is_hung: false,
-                is_lost: false,
-                is_calibrated: false,
+                was_hung: false,
+                is_position_lost: false,
+                is_recalibrated: false,
                 ..*servo
             };
         }
-        self.is_silence_judged = false;
+        self.is_pulse_end_judged = false;
     }
 
-    /// Judges a pulse that moves a servo: the last command must not be older than `deadman` allows.
-    fn judge_silence(&mut self, servo: usize) {
-        let silence = self.now - self.command_read;
-        // For about a frame after a stall, main is late.
-        let is_calm = self.disturbed + 25 * MS <= self.command_read;
-        if self.is_driven && self.deadman > 0 && is_calm && silence > self.deadman + MAX_LATE_TIME {
-            let (silence_ms, deadman_ms) = (silence / MS, self.deadman / MS);
-            let seen = format!(
+    /// Judges a pulse that moves a servo: the last command must not be older than the time of `deadman` allows.
+    fn judge_deadman(&mut self, servo: usize) {
+        let silence = self.now - self.last_command_read_at;
+        // Main is late for about a frame after a stall.
+        let is_calm = self.disturbed_until + 25 * MS <= self.last_command_read_at;
+        if self.is_gait_or_routine
+            && self.deadman_time > 0
+            && is_calm
+            && silence > self.deadman_time + MAX_DEADMAN_DELAY
+        {
+            let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);
+            let observation = format!(
                 "deadman {deadman_ms}, A{} moves after {silence_ms} ms",
                 servo + 1
             );
-            self.fail(Rule::Silenced, seen);
+            self.fail(Rule::DeadmanNotLate, observation);
         }
     }
 
@@ -251,65 +263,73 @@ impl Observer {
         let now = self.now;
         let servo = self.servos[pulse.servo];
         let name = format!("A{}", pulse.servo + 1);
-        if !self.permission.may {
-            self.fail(Rule::Begins, format!("{name} begins"));
+        if !self.permission.is_granted {
+            self.fail(Rule::PulsesPermitted, format!("{name} begins"));
         }
-        // The frame that has begun is completed even if an order to rest comes in it.
-        let hung_until = self.start.max(servo.whole_at);
-        let is_rest_over = self.sent_to_rest > hung_until && now - self.sent_to_rest > UNTIL_REST;
-        let is_after_hang = servo.is_hung
-            && !servo.is_lost
-            && servo.whole_at > NEVER
-            && now - servo.whole_at < 1_000 * MS
-            && !is_rest_over;
-        let is_unordered = self.ordered < servo.whole_at;
-        let leap = pulse.width.abs_diff(servo.width);
-        if is_after_hang && is_unordered && !pulse.is_cut && leap > self.limits.leap[pulse.servo] {
-            let seen = format!(
+        // The frame after a hang is completed even if an order to rest comes within the frame.
+        let hung_until = self.started_at.max(servo.last_whole_start);
+        let has_rested =
+            self.rest_ordered_at > hung_until && now - self.rest_ordered_at > MAX_TIME_TO_REST;
+        let is_after_hang = servo.was_hung
+            && !servo.is_position_lost
+            && servo.last_whole_start > NEVER
+            && now - servo.last_whole_start < 1_000 * MS
+            && !has_rested;
+        let has_no_order = self.ordered_at < servo.last_whole_start;
+        let leap = pulse.width.abs_diff(servo.last_whole_width);
+        if is_after_hang
+            && has_no_order
+            && !pulse.is_cut
+            && leap > self.limits.max_leap_cycles[pulse.servo]
+        {
+            let observation = format!(
                 "{name} had {} cycles before and {} after",
-                servo.width, pulse.width
+                servo.last_whole_width, pulse.width
             );
-            self.fail(Rule::Held, seen);
+            self.fail(Rule::HeldAfterHang, observation);
         }
-        let (last_servo, last_time, was_after_hang) = self.last_begin;
-        let is_soon = now - last_time < MIN_WAKE_GAP;
-        let has_missed = servo.held_up > servo.at && now - servo.at <= 2 * MAX_PULSE_GAP;
-        if is_soon && pulse.servo == last_servo || has_missed {
-            // A late pulse has cost the servo a frame or two; this is no new wake-up.
+        let (last_servo, last_wake_at, was_after_hang) = self.last_wake;
+        let is_soon = now - last_wake_at < MIN_WAKE_GAP;
+        let was_blocked =
+            servo.blocked_until > servo.last_start && now - servo.last_start <= 2 * MAX_PULSE_GAP;
+        if is_soon && pulse.servo == last_servo || was_blocked {
+            // The servo has missed a frame or two, so it does not wake now.
             return;
         }
         if is_soon && !(is_after_hang && was_after_hang) {
-            let ms = (now - last_time) / MS;
-            self.fail(Rule::OneByOne, format!("{name}, {ms} ms after another"));
+            let ms = (now - last_wake_at) / MS;
+            self.fail(Rule::WakeOneByOne, format!("{name}, {ms} ms after another"));
         }
-        self.last_begin = (pulse.servo, now, is_after_hang);
+        self.last_wake = (pulse.servo, now, is_after_hang);
     }
 
-    /// Judges an unexplained end of all pulses: the program hung, so a reset must follow.
-    pub(crate) fn check_silence(&mut self) {
-        let Some(end) = self.servos.iter().map(|servo| servo.end).max() else {
+    /// Judges the end of all pulses: if it has no other cause, the program hung, and a reset must follow.
+    pub(crate) fn judge_end_of_pulses(&mut self) {
+        let Some(end) = self.servos.iter().map(|servo| servo.last_end).max() else {
             return;
         };
-        if self.is_silence_judged || self.now - end < UNTIL_RESET + self.limits.longest_rest {
+        if self.is_pulse_end_judged
+            || self.now - end < MAX_TIME_TO_RESET + self.limits.max_routine_rest
+        {
             return;
         }
-        self.is_silence_judged = true;
+        self.is_pulse_end_judged = true;
         let [_, stop_mv, rest_mv] = self
             .limits
-            .levels
+            .levels_mv
             .map(|mv| mv + self.limits.supply_error_mv);
-        let has_reason = self.sent_to_rest > end - 400 * MS
-            || self.cut > end - 25 * MS
-            || self.start > end - 25 * MS
-            || self.booted_to_rest > end - 60 * MS
+        let has_reason = self.rest_ordered_at > end - 400 * MS
+            || self.cut_at > end - 25 * MS
+            || self.started_at > end - 25 * MS
+            || self.boot_rest_at > end - 60 * MS
             || self.supply.time_below(rest_mv, end - 600 * MS, end) > 0
-            // A rest within a routine is final if the supply forbids to move on, or if no line arrives.
-            || self.supply.time_below(stop_mv, end, end + self.limits.longest_rest) > 0
+            // A rest within a routine does not end if the supply forbids motions or if no line arrives.
+            || self.supply.time_below(stop_mv, end, end + self.limits.max_routine_rest) > 0
             || self.reports.reported_at > end;
         if !has_reason {
             let ms = (self.now - end) / MS;
             self.fail(
-                Rule::Silence,
+                Rule::ResetAfterHang,
                 format!("no pulses for {ms} ms, and no reset"),
             );
         }

@@ -1,4 +1,4 @@
-//! A board that is lifted until the robot on it slides, with static and sliding friction.
+//! Simulation of a board that is lifted until the robot on it slides, with static and sliding friction.
 
 use std::f64::consts::PI;
 
@@ -8,82 +8,98 @@ use lizard_film::Picture;
 use crate::render::Studio;
 
 /// Acceleration of free fall, mm/s^2.
-const GRAVITY: f64 = 9806.65;
+const GRAVITY_MM_S2: f64 = 9806.65;
 /// Time step of the simulation, s.
-const STEP: f64 = 0.0005;
-/// Distance downhill after which a hand stops the robot, mm.
-const STOP_DISTANCE: f64 = 110.0;
+const STEP_S: f64 = 0.0005;
+/// Distance downhill after which the user stops the robot, mm.
+const STOP_DISTANCE_MM: f64 = 110.0;
 
 /// A board that is lifted, with a robot on it.
 #[derive(Clone, Copy)]
 pub struct Board {
     /// Coefficient of static friction.
-    pub resting: f64,
-    /// Coefficient of friction while the robot slides.
-    pub sliding: f64,
-    /// Rate of the lift, deg/s.
-    pub lift: f64,
+    pub static_friction: f64,
+    /// Coefficient of sliding friction.
+    pub sliding_friction: f64,
+    /// Speed of the lift, deg/s.
+    pub lift_deg_per_s: f64,
     /// Time at which the lift begins, s.
-    pub from: f64,
+    pub lift_start_s: f64,
     /// Tilt before the lift, deg.
-    pub begin: f64,
+    pub start_tilt_deg: f64,
     /// Tilt at which the lift ends, deg.
-    pub end: f64,
-    /// Direction of the head, relative to downhill, deg.
-    pub head: f64,
-    /// Direction of the slide, relative to downhill, deg.
-    pub aside: f64,
+    pub end_tilt_deg: f64,
+    /// Direction of the robot's head, relative to downhill, deg.
+    pub head_direction_deg: f64,
+    /// Direction in which the robot slides, relative to downhill, deg.
+    pub slide_direction_deg: f64,
 }
 
-/// A board that is lifted evenly, with a robot that faces downhill and slides straight down.
-pub const BOARD: Board = Board {
-    resting: 0.75,
-    sliding: 0.68,
-    lift: 6.0,
-    from: 1.2,
-    begin: 0.0,
-    end: 50.0,
-    head: 0.0,
-    aside: 0.0,
+/// A board that is lifted evenly. Its robot faces downhill and slides straight down.
+pub const EVEN_BOARD: Board = Board {
+    static_friction: 0.75,
+    sliding_friction: 0.68,
+    lift_deg_per_s: 6.0,
+    lift_start_s: 1.2,
+    start_tilt_deg: 0.0,
+    end_tilt_deg: 50.0,
+    head_direction_deg: 0.0,
+    slide_direction_deg: 0.0,
 };
 
 impl Board {
     /// The board's tilt at a time, deg.
-    fn tilt(&self, seconds: f64) -> f64 {
-        (self.begin + self.lift * (seconds - self.from).max(0.0)).min(self.end)
+    fn tilt_deg_at(&self, seconds: f64) -> f64 {
+        (self.start_tilt_deg + self.lift_deg_per_s * (seconds - self.lift_start_s).max(0.0))
+            .min(self.end_tilt_deg)
     }
 
-    /// The robot's distance downhill, mm, at every [`STEP`] up to a time in seconds.
-    fn distances(&self, seconds: f64) -> Vec<f64> {
-        let (mut distance, mut speed) = (0.0, 0.0);
-        let advance = |i: usize| {
-            let (sin, cos) = self.tilt(i as f64 * STEP).to_radians().sin_cos();
-            let friction = if speed > 0.0 {
-                self.sliding
+    /// The robot's distance downhill, mm, at every [`STEP_S`] up to a time in seconds.
+    fn slide_distances(&self, seconds: f64) -> Vec<f64> {
+        let (mut distance_mm, mut speed_mm_s) = (0.0, 0.0);
+        let advance = |step: usize| {
+            let (sin, cos) = self
+                .tilt_deg_at(step as f64 * STEP_S)
+                .to_radians()
+                .sin_cos();
+            let friction = if speed_mm_s > 0.0 {
+                self.sliding_friction
             } else {
-                self.resting
+                self.static_friction
             };
-            speed = f64::max(0.0, speed + GRAVITY * (sin - friction * cos) * STEP);
-            distance = f64::min(STOP_DISTANCE, distance + speed * STEP);
-            distance
+            speed_mm_s = f64::max(
+                0.0,
+                speed_mm_s + GRAVITY_MM_S2 * (sin - friction * cos) * STEP_S,
+            );
+            distance_mm = f64::min(STOP_DISTANCE_MM, distance_mm + speed_mm_s * STEP_S);
+            distance_mm
         };
-        (0..(seconds / STEP) as usize).map(advance).collect()
+        (0..(seconds / STEP_S) as usize).map(advance).collect()
     }
 
-    /// Takes pictures of the board, at the full rate only around the slide, and passes them on with their times.
-    pub fn pictures(&self, studio: &Studio, rate: f64, mut take: impl FnMut(f64, &Picture)) {
+    /// Takes pictures of the board and passes each with its time to `use_picture`. The full rate is used only around
+    /// the slide.
+    pub fn take_pictures(
+        &self,
+        studio: &Studio,
+        pictures_per_s: f64,
+        mut use_picture: impl FnMut(f64, &Picture),
+    ) {
         let mut rng = Rng::with_seed(11);
-        let duration = self.from + (self.end.min(45.0) - self.begin) / self.lift + 0.5;
-        let distances = self.distances(duration);
-        let distance_at =
-            |seconds: f64| distances[((seconds.max(0.0) / STEP) as usize).min(distances.len() - 1)];
+        let duration = self.lift_start_s
+            + (self.end_tilt_deg.min(45.0) - self.start_tilt_deg) / self.lift_deg_per_s
+            + 0.5;
+        let distances = self.slide_distances(duration);
+        let distance_at = |seconds: f64| {
+            distances[((seconds.max(0.0) / STEP_S) as usize).min(distances.len() - 1)]
+        };
         let mut seconds = 0.0;
-        while seconds < duration && distance_at(seconds - 0.1) < STOP_DISTANCE {
-            let mut tilted = studio.clone();
-            tilted.board = self.tilt(seconds);
+        while seconds < duration && distance_at(seconds - 0.1) < STOP_DISTANCE_MM {
+            let mut tilted_studio = studio.clone();
+            tilted_studio.board_tilt = self.tilt_deg_at(seconds);
             // Downhill is to the left in the scene.
-            let heading = PI + self.head.to_radians();
-            let (sin, cos) = (PI + self.aside.to_radians()).sin_cos();
+            let heading = PI + self.head_direction_deg.to_radians();
+            let (sin, cos) = (PI + self.slide_direction_deg.to_radians()).sin_cos();
             let robot = |time: f64| {
                 [
                     55.0 + distance_at(time) * cos,
@@ -91,10 +107,10 @@ impl Board {
                     heading,
                 ]
             };
-            let background = tilted.background(&mut rng);
-            take(seconds, &background.picture(seconds, robot, &mut rng));
+            let background = tilted_studio.background(&mut rng);
+            use_picture(seconds, &background.picture(seconds, robot, &mut rng));
             seconds += if distance_at(seconds + 0.25) > 0.5 {
-                1.0 / rate
+                1.0 / pictures_per_s
             } else {
                 0.2
             };
@@ -102,14 +118,18 @@ impl Board {
     }
 }
 
-/// A studio with few pixels, whose picture the sheet fills.
-pub fn studio() -> Studio {
+/// Returns a studio with few pixels, in which the sheet fills the picture.
+pub fn small_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
-    (studio.size, studio.focal) = ([640, 480], 0.85);
-    (studio.height, studio.tilt, studio.direction) = (850.0, 12.0, 90.0);
-    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
+    (studio.size, studio.focal_length) = ([640, 480], 0.85);
+    (
+        studio.camera_height,
+        studio.camera_tilt,
+        studio.camera_direction,
+    ) = (850.0, 12.0, 90.0);
+    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
     // A robot that is not aligned with the strips needs more room between them.
     studio.strips = [[5.0, -180.0, 0.03], [-5.0, 180.0, PI - 0.02]];
-    studio.shutter = 1.0 / 250.0;
+    studio.exposure_s = 1.0 / 250.0;
     studio
 }

@@ -1,8 +1,22 @@
-//! Films whose true values are known, for the tests of what measures films: the robot on the sheet ([`walk`]), a
-//! servo's horn ([`servo`]) and a sliding board ([`board`]), seen by a camera with noise, blur, distortion and uneven
-//! light ([`render`]).
+//! Simulated films with known true values, for tests of the programs that measure films: the robot on the sheet
+//! ([`walk`]), a servo's horn ([`servo`]) and a lifted board ([`board`]). The simulated camera ([`render`]) has noise,
+//! blur, distortion and uneven light.
+
+use jpeg_encoder::{ColorType, Encoder, EncodingError};
+use lizard_film::Picture;
 
 pub mod board;
 pub mod render;
 pub mod servo;
 pub mod walk;
+
+/// Encodes a picture as a camera stores it; `quality` is 1 to 100.
+///
+/// # Errors
+/// Fails for a picture wider or higher than JPEG allows, 65 535 pixels.
+pub fn encode_jpeg(picture: &Picture, quality: u8) -> Result<Vec<u8>, EncodingError> {
+    let [width, height] = picture.size().map(|length| length.try_into().unwrap_or(0));
+    let mut bytes = Vec::new();
+    Encoder::new(&mut bytes, quality).encode(picture.grey(), width, height, ColorType::Luma)?;
+    Ok(bytes)
+}

@@ -1,49 +1,53 @@
-//! Renders a film of a walk whose displacement is known, for the page's tests: FOLDER/film.y4m, which a browser
-//! uses as its camera; the same pictures in FOLDER/pictures; and the true displacement per cycle in
-//! FOLDER/truth.json.
+//! Renders a film of a walk with a known displacement, for the page's tests. Writes FOLDER/film.y4m, which a browser
+//! uses as its camera; the same pictures in FOLDER/pictures; and the true displacement per cycle in FOLDER/truth.json.
 //!
-//! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: the given number of cycles of the paper's `walk`, with a rest before
-//! and after.
+//! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: WIDTH is in pixels. The robot walks CYCLES cycles of the paper's
+//! `walk` and rests before and after them. Tags with the ids HIDDEN TAG are covered.
 
 use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
 use fastrand::Rng;
-use jpeg_encoder::{ColorType, Encoder};
+use lizard_studio::encode_jpeg;
 use lizard_studio::render::Studio;
-use lizard_studio::walk::{Variation, Walk, gait, truth};
+use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-/// Pictures per second. Chromium keeps a late picture in step if the delay is shorter than the time of one picture,
-/// so a low rate stays in step on a busy machine.
-const RATE: u32 = 10;
-/// The neutral value of the two colour planes of a picture.
-const COLOURLESS: u8 = 128;
-/// Standard deviations of a cycle's displacement and turn: mm, mm, rad.
-const CYCLE: [f64; 3] = [0.1, 0.1, 0.002];
-const QUALITY: u8 = 85;
+/// Pictures per second. Chromium shows a late picture at the right time if the delay is shorter than one picture, so a
+/// low rate is reliable on a busy machine.
+const PICTURES_PER_S: u32 = 10;
+/// The value of the two colour planes of a grey picture.
+const NEUTRAL_COLOUR: u8 = 128;
+/// Standard deviations of a cycle's displacement from the gait's: mm forward, mm to the left, rad.
+const CYCLE_DEVIATION: [f64; 3] = [0.1, 0.1, 0.002];
+/// Quality of the JPEG pictures, 1 to 100.
+const JPEG_QUALITY: u8 = 85;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);
-    let mut next_word = || {
+    let mut next_argument = || {
         arguments
             .next()
             .ok_or("FOLDER WIDTH CYCLES [HIDDEN TAG]...")
     };
-    let folder = PathBuf::from(next_word()?);
-    let (width, cycles): (usize, usize) = (next_word()?.parse()?, next_word()?.parse()?);
+    let folder = PathBuf::from(next_argument()?);
+    let (width, cycles): (usize, usize) = (next_argument()?.parse()?, next_argument()?.parse()?);
     let rng = &mut Rng::with_seed(4);
     let mut studio = Studio::random(rng);
-    (studio.size, studio.focal) = ([width, width * 9 / 16], 0.95);
-    (studio.height, studio.tilt, studio.direction) = (800.0, 15.0, 90.0);
-    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
-    studio.deck = 95.0;
-    studio.hidden = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
-    let gait = gait("walk");
-    let truth = truth(&gait);
+    (studio.size, studio.focal_length) = ([width, width * 9 / 16], 0.95);
+    (
+        studio.camera_height,
+        studio.camera_tilt,
+        studio.camera_direction,
+    ) = (800.0, 15.0, 90.0);
+    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
+    studio.deck_tag_height = 95.0;
+    studio.hidden_tags = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
+    let gait = paper_gait("walk");
+    let truth = true_displacement(&gait);
     let start = -truth.forward * cycles as f64 / 2.0;
     let variation = Variation {
-        cycle: CYCLE,
+        cycle_deviation: CYCLE_DEVIATION,
         ..Variation::default()
     };
     let walk = Walk::new(&gait, [start, 0.0, 0.0], cycles, variation, rng);
@@ -52,17 +56,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&pictures)?;
     let [film_width, film_height] = studio.size;
     let mut film =
-        format!("YUV4MPEG2 W{film_width} H{film_height} F{RATE}:1 Ip A1:1 C420jpeg\n").into_bytes();
-    for i in 0..(walk.seconds() * f64::from(RATE)) as usize {
-        let seconds = i as f64 / f64::from(RATE);
-        let picture = background.picture(seconds, |time| walk.at(time), rng);
-        let [width, height] = picture.size().map(|length| length as u16);
-        let mut jpeg = Vec::new();
-        Encoder::new(&mut jpeg, QUALITY).encode(picture.grey(), width, height, ColorType::Luma)?;
-        fs::write(pictures.join(format!("{:.4}s.jpg", seconds)), &jpeg)?;
+        format!("YUV4MPEG2 W{film_width} H{film_height} F{PICTURES_PER_S}:1 Ip A1:1 C420jpeg\n")
+            .into_bytes();
+    for i in 0..(walk.duration_s() * f64::from(PICTURES_PER_S)) as usize {
+        let seconds = i as f64 / f64::from(PICTURES_PER_S);
+        let picture = background.picture(seconds, |time| walk.pose_at(time), rng);
+        let jpeg = encode_jpeg(&picture, JPEG_QUALITY)?;
+        fs::write(pictures.join(format!("{seconds:.4}s.jpg")), jpeg)?;
         film.extend(b"FRAME\n");
         film.extend(picture.grey());
-        film.resize(film.len() + film_width * film_height / 2, COLOURLESS);
+        film.resize(film.len() + film_width * film_height / 2, NEUTRAL_COLOUR);
     }
     fs::write(folder.join("film.y4m"), film)?;
     let truth = format!(

@@ -1,27 +1,27 @@
-//! Walks whose true path is known: the twin's path, cycle after cycle, with the random deviations of a
-//! built robot.
+//! Simulation of walks with known true paths: the twin's path, cycle after cycle, with random deviations like those of
+//! a built robot.
 
 use fastrand::Rng;
 use lizard_film::Gait;
 use lizard_robot::{Place, Robot, Travel};
 use lizard_twin::{ServoModel, Twin};
 
-use crate::render::{Spot, normal};
+use crate::render::{Pose, random_normal};
 
-/// Time before the start and after the stop, s.
-pub const REST: f64 = 0.5;
+/// Rest before the start and after the end of a walk, s.
+pub const REST_S: f64 = 0.5;
 
-/// A gait of the paper's robot as the twin walks it: the second cycle, from its start.
-pub fn gait(name: &str) -> Gait {
+/// Returns a gait of the paper's robot with the path that the twin walks in the second cycle.
+pub fn paper_gait(name: &str) -> Gait {
     let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("a robot");
     let gait = robot.gait(name).expect("a gait");
     let mut twin = Twin::new(&robot, ServoModel::of(&robot));
-    let frames = gait.frames().count() - 1;
+    let frame_count = gait.frames().count() - 1;
     let mut places = Vec::new();
-    for i in 0..=2 * frames {
-        let phase = gait.frames().nth(i % frames).expect("a frame").1;
+    for i in 0..=2 * frame_count {
+        let phase = gait.frames().nth(i % frame_count).expect("a frame").1;
         let place = twin.push_angles(gait.table_angles(phase)).place;
-        if i >= frames {
+        if i >= frame_count {
             places.push(place);
         }
     }
@@ -39,75 +39,78 @@ pub fn gait(name: &str) -> Gait {
     }
 }
 
-/// Number of parts of a cycle; each deviates independently, as if a foot slipped now and then.
-const PARTS: usize = 12;
+/// Number of parts of a cycle; each part deviates independently, as if a foot slipped sometimes.
+const PARTS_PER_CYCLE: usize = 12;
 
 /// A walk of some cycles.
 pub struct Walk {
     gait: Gait,
     period: f64,
-    begins: Vec<Place>,
-    /// The deviation of each cycle from the gait, at even intervals from its beginning to its end: mm, mm, rad.
-    extras: Vec<[[f64; 3]; PARTS + 1]>,
+    /// The place at the start of each cycle, and at the end of the last one.
+    cycle_starts: Vec<Place>,
+    /// The deviation of each cycle from the gait at the ends of its parts: mm, mm, rad.
+    deviations: Vec<[[f64; 3]; PARTS_PER_CYCLE + 1]>,
 }
 
 /// Standard deviations of a walk and of its measures.
 #[derive(Clone, Copy, Default)]
 pub struct Variation {
     /// Deviation of each cycle from the gait: mm, mm, rad.
-    pub cycle: [f64; 3],
-    /// Deviation of the robot's clock, a share.
-    pub clock: f64,
-    /// Deviation of a height that a user measures, mm, and of the sheet, thousandths.
-    pub ruler: f64,
+    pub cycle_deviation: [f64; 3],
+    /// Deviation of the robot's clock, as a share.
+    pub clock_deviation: f64,
+    /// Deviation of a height measured by the user, mm, and of the sheet's scale, thousandths.
+    pub ruler_deviation: f64,
 }
 
 impl Walk {
     /// Makes a walk of some cycles of a gait, from a place.
     pub fn new(
         gait: &Gait,
-        start: Spot,
+        start: Pose,
         cycles: usize,
         variation: Variation,
         rng: &mut Rng,
     ) -> Self {
-        let mut begins = vec![Place {
+        let mut cycle_starts = vec![Place {
             forward: start[0],
             left: start[1],
             heading: start[2],
         }];
-        let mut extras = Vec::new();
+        let mut deviations = Vec::new();
         for _ in 0..cycles {
-            let mut extra = [[0.0; 3]; PARTS + 1];
-            for i in 1..=PARTS {
+            let mut cycle_deviations = [[0.0; 3]; PARTS_PER_CYCLE + 1];
+            for i in 1..=PARTS_PER_CYCLE {
                 let step = variation
-                    .cycle
-                    .map(|sigma| sigma * normal(rng) / (PARTS as f64).sqrt());
-                extra[i] = [0, 1, 2].map(|axis| extra[i - 1][axis] + step[axis]);
+                    .cycle_deviation
+                    .map(|sigma| sigma * random_normal(rng) / (PARTS_PER_CYCLE as f64).sqrt());
+                cycle_deviations[i] =
+                    [0, 1, 2].map(|axis| cycle_deviations[i - 1][axis] + step[axis]);
             }
-            let begin = begins[begins.len() - 1];
-            begins.push(compose(
-                compose(begin, gait.path[gait.path.len() - 1]),
-                place_of(extra[PARTS]),
+            let start_place = cycle_starts[cycle_starts.len() - 1];
+            cycle_starts.push(compose(
+                compose(start_place, gait.path[gait.path.len() - 1]),
+                place_from(cycle_deviations[PARTS_PER_CYCLE]),
             ));
-            extras.push(extra);
+            deviations.push(cycle_deviations);
         }
         Self {
             gait: gait.clone(),
-            period: gait.period * (1.0 + variation.clock * normal(rng)),
-            begins,
-            extras,
+            period: gait.period * (1.0 + variation.clock_deviation * random_normal(rng)),
+            cycle_starts,
+            deviations,
         }
     }
 
-    /// The length of the film, s.
-    pub fn seconds(&self) -> f64 {
-        self.period * self.extras.len() as f64 + 2.0 * REST
+    /// Returns the duration of the walk with its rests, s.
+    pub fn duration_s(&self) -> f64 {
+        self.period * self.deviations.len() as f64 + 2.0 * REST_S
     }
 
-    /// The place at a time.
-    pub fn at(&self, seconds: f64) -> Spot {
-        let phase = ((seconds - REST) / self.period).clamp(0.0, self.extras.len() as f64 - 1e-9);
+    /// Returns the robot's pose at a time.
+    pub fn pose_at(&self, seconds: f64) -> Pose {
+        let phase =
+            ((seconds - REST_S) / self.period).clamp(0.0, self.deviations.len() as f64 - 1e-9);
         let (cycle, cycle_share) = (phase as usize, phase.fract());
         let path = &self.gait.path;
         let position = cycle_share * (path.len() - 1) as f64;
@@ -116,89 +119,92 @@ impl Walk {
             path[position as usize + 1],
             position.fract(),
         );
-        let mix = |coordinate: fn(&Place) -> f64| {
+        let interpolate = |coordinate: fn(&Place) -> f64| {
             coordinate(&a) + share * (coordinate(&b) - coordinate(&a))
         };
-        let gait_place = place_of([
-            mix(|place| place.forward),
-            mix(|place| place.left),
-            mix(|place| place.heading),
+        let gait_place = place_from([
+            interpolate(|place| place.forward),
+            interpolate(|place| place.left),
+            interpolate(|place| place.heading),
         ]);
-        let position = cycle_share * PARTS as f64;
+        let position = cycle_share * PARTS_PER_CYCLE as f64;
         let (i, share) = (position as usize, position.fract());
         let [from, to] = [
-            self.extras[cycle][i],
-            self.extras[cycle][(i + 1).min(PARTS)],
+            self.deviations[cycle][i],
+            self.deviations[cycle][(i + 1).min(PARTS_PER_CYCLE)],
         ];
-        let extra = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-        let place = compose(compose(self.begins[cycle], gait_place), place_of(extra));
+        let deviation = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        let place = compose(
+            compose(self.cycle_starts[cycle], gait_place),
+            place_from(deviation),
+        );
         [place.forward, place.left, place.heading]
     }
 }
 
-/// Consecutive walks, each starting where the previous one ended, with rests between them.
-pub struct Show {
-    /// Each walk, and the time at which its first rest begins, s.
+/// Consecutive walks with rests between them. Each walk starts at the end of the previous one.
+pub struct WalkSeries {
+    /// The walks, each with the time at which the rest before it begins, s.
     walks: Vec<(f64, Walk)>,
-    seconds: f64,
+    duration_s: f64,
 }
 
-impl Show {
-    /// Makes walks, each of a gait and a number of cycles. Between two walks the robot rests for `rest` seconds.
+impl WalkSeries {
+    /// Makes the walks, each from a gait and a number of cycles. The robot rests for `rest_s` between two walks.
     pub fn new(
-        start: Spot,
+        start: Pose,
         walks: &[(&Gait, usize)],
-        rest: f64,
+        rest_s: f64,
         variation: Variation,
         rng: &mut Rng,
     ) -> Self {
-        let mut show = Self {
+        let mut series = Self {
             walks: Vec::new(),
-            seconds: 2.0 * REST - rest,
+            duration_s: 2.0 * REST_S - rest_s,
         };
         let mut start = start;
         for (gait, cycles) in walks {
             let walk = Walk::new(gait, start, *cycles, variation, rng);
-            let start_seconds = show.seconds + rest - 2.0 * REST;
-            show.seconds = start_seconds + walk.seconds();
-            start = walk.at(walk.seconds());
-            show.walks.push((start_seconds, walk));
+            let start_s = series.duration_s + rest_s - 2.0 * REST_S;
+            series.duration_s = start_s + walk.duration_s();
+            start = walk.pose_at(walk.duration_s());
+            series.walks.push((start_s, walk));
         }
-        show
+        series
     }
 
-    /// The duration from the first rest to the end of the last one, s.
-    pub fn seconds(&self) -> f64 {
-        self.seconds
+    /// Returns the duration from the start of the first rest to the end of the last one, s.
+    pub fn duration_s(&self) -> f64 {
+        self.duration_s
     }
 
-    /// The begin and end of each walk's movement, s.
-    pub fn spans(&self) -> Vec<[f64; 2]> {
-        let span_of = |(start_seconds, walk): &(f64, Walk)| {
-            [start_seconds + REST, start_seconds + walk.seconds() - REST]
+    /// Returns the start and the end of each walk's movement, s.
+    pub fn movement_spans(&self) -> Vec<[f64; 2]> {
+        let span_of = |(start_s, walk): &(f64, Walk)| {
+            [start_s + REST_S, start_s + walk.duration_s() - REST_S]
         };
         self.walks.iter().map(span_of).collect()
     }
 
-    /// The place at a time.
-    pub fn at(&self, seconds: f64) -> Spot {
-        let has_begun = |(start_seconds, _): &&(f64, Walk)| start_seconds + REST <= seconds;
-        let (start_seconds, walk) = self
+    /// Returns the robot's pose at a time.
+    pub fn pose_at(&self, seconds: f64) -> Pose {
+        let has_begun = |(start_s, _): &&(f64, Walk)| start_s + REST_S <= seconds;
+        let (start_s, walk) = self
             .walks
             .iter()
             .rev()
             .find(has_begun)
             .unwrap_or(&self.walks[0]);
-        walk.at(seconds - start_seconds)
+        walk.pose_at(seconds - start_s)
     }
 }
 
-/// The true displacement of a cycle.
-pub fn truth(gait: &Gait) -> Travel {
+/// Returns the true displacement of a cycle.
+pub fn true_displacement(gait: &Gait) -> Travel {
     gait.path[gait.path.len() - 1].travel()
 }
 
-fn place_of([forward, left, heading]: [f64; 3]) -> Place {
+fn place_from([forward, left, heading]: [f64; 3]) -> Place {
     Place {
         forward,
         left,
@@ -209,5 +215,5 @@ fn place_of([forward, left, heading]: [f64; 3]) -> Place {
 /// Converts a place relative to `from` to a place on the floor.
 fn compose(from: Place, relative: Place) -> Place {
     let [forward, left] = from.to_floor([relative.forward, relative.left]);
-    place_of([forward, left, from.heading + relative.heading])
+    place_from([forward, left, from.heading + relative.heading])
 }

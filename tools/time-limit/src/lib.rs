@@ -1,17 +1,16 @@
-//! Waits with a time limit. A test that waits for another program, a port or a thread that never
-//! answers would hang, and with it the run of all tests. Here every wait has a limit, after which
-//! the test fails with a message that names the missing event.
+//! Waits with a time limit. A test that waits for another program, a port or a thread would hang forever if there were
+//! no answer, and the run of all tests would hang, too. Here every wait has a limit; after it the test fails with a
+//! message that names the missing event.
 //!
-//! The limit does not measure speed: a machine may be busy, and only a test that hangs
-//! should fail. All waits use one limit, [`LIMIT`]. Do not use it outside of tests, or to
-//! assert that something is fast.
+//! The limit does not measure speed: a machine may be busy, and only a test that hangs should fail. All waits use the
+//! same limit, [`LIMIT`]. Do not use it outside of tests, and do not use it to assert that something is fast.
 //!
 //! ```
 //! use lizard_time_limit::LIMIT;
-//! let (send, receive) = std::sync::mpsc::channel();
-//! std::thread::spawn(move || send.send(5));
-//! let five = LIMIT.within("a number of the other thread", move || receive.recv());
-//! assert_eq!(five, Ok(5));
+//! let (sender, receiver) = std::sync::mpsc::channel();
+//! std::thread::spawn(move || sender.send(5));
+//! let number = LIMIT.within("a number from the other thread", move || receiver.recv());
+//! assert_eq!(number, Ok(5));
 //! ```
 
 use std::fmt;
@@ -22,12 +21,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// The time from one check of a condition to the next.
-const POLL: Duration = Duration::from_millis(1);
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// The limit of all tests: much longer than anything takes on a busy machine.
+/// The limit of all tests, much longer than any successful wait on a busy machine.
 pub const LIMIT: TimeLimit = TimeLimit::new(Duration::from_secs(300));
 
-/// The longest time that a test waits for one thing.
+/// The longest time that a test waits for an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimeLimit(Duration);
 
@@ -38,23 +37,23 @@ impl fmt::Display for TimeLimit {
 }
 
 impl TimeLimit {
-    /// Makes another limit, for a test of waits.
+    /// Makes another limit, for tests of this crate.
     pub const fn new(time: Duration) -> Self {
         Self(time)
     }
 
-    /// Waits for a condition; returns false if it does not hold within the limit. For a test that needs a
-    /// longer message than [`TimeLimit::expect`] gives.
+    /// Waits until a condition holds; returns false if it does not hold within the limit. For a test that needs a
+    /// longer message than that of [`TimeLimit::expect`].
     pub fn wait_for(self, mut condition: impl FnMut() -> bool) -> bool {
-        let end = Instant::now() + self.0;
+        let deadline = Instant::now() + self.0;
         loop {
             if condition() {
                 return true;
             }
-            if Instant::now() > end {
+            if Instant::now() > deadline {
                 return false;
             }
-            thread::sleep(POLL);
+            thread::sleep(POLL_INTERVAL);
         }
     }
 
@@ -67,8 +66,8 @@ impl TimeLimit {
         assert!(self.wait_for(condition), "waited {self} for {event}");
     }
 
-    /// Runs `work`, which may block as a read or a join does, and returns its result. `work` runs on a
-    /// thread of its own, which outlives the call if the limit is reached first.
+    /// Runs `work`, which may block, as a read or a join does, and returns its result. `work` runs on a separate
+    /// thread, which continues after the call if the limit is reached first.
     ///
     /// # Panics
     /// If `work` does not return within the limit, with the message of [`TimeLimit::expect`]; or if `work` panics.
@@ -80,7 +79,7 @@ impl TimeLimit {
     ) -> T {
         let (sender, receiver) = mpsc::channel();
         let worker = thread::spawn(move || {
-            // The receiver is gone if the limit was reached first.
+            // There is no receiver if the limit was reached first.
             let _ = sender.send(work());
         });
         match receiver.recv_timeout(self.0) {
@@ -88,18 +87,18 @@ impl TimeLimit {
             Err(RecvTimeoutError::Timeout) => panic!("waited {self} for {event}"),
             Err(RecvTimeoutError::Disconnected) => match worker.join() {
                 Err(panic) => std::panic::resume_unwind(panic),
-                Ok(()) => unreachable!("a worker that returns has sent"),
+                Ok(()) => unreachable!("a worker that returns has sent its result"),
             },
         }
     }
 
-    /// Waits for a program to exit and returns its status. If the program's output is piped, another thread must
-    /// read it.
+    /// Waits until a program exits and returns its status. If the program's output is piped, another thread must read
+    /// the output.
     ///
     /// # Errors
     /// Returns the system's error. Returns [`ErrorKind::TimedOut`] with a message if the program does not exit
     /// within the limit; the program is then killed.
-    pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
+    pub fn wait_for_exit(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut wait_result = Ok(None);
         self.wait_for(|| {
             wait_result = child.try_wait();
@@ -117,8 +116,8 @@ impl TimeLimit {
     /// Runs a program with `input` on its standard input, and returns its output.
     ///
     /// # Errors
-    /// Fails if the program cannot be started. Returns [`ErrorKind::TimedOut`] with a message if the program runs
-    /// beyond the limit, or if a process that it started keeps its output open for that long.
+    /// Fails if the program cannot be started. Returns [`ErrorKind::TimedOut`] with a message if the program does not
+    /// exit within the limit, or if a process that the program has started keeps the output open for that long.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let timeout_error = |process: &str| {
@@ -132,7 +131,7 @@ impl TimeLimit {
             .spawn()?;
         if let Some(mut stdin) = child.stdin.take() {
             let input = input.to_vec();
-            // Writing fails, which is no error, if the program reads no input or refuses its arguments.
+            // A failed write is no error: the program may ignore its input or refuse its arguments.
             thread::spawn(move || stdin.write_all(&input));
         }
         let readers = [
@@ -140,7 +139,7 @@ impl TimeLimit {
             child.stderr.take().map(read_all),
         ];
         let status = self
-            .end_of(&mut child)
+            .wait_for_exit(&mut child)
             .map_err(|error| match error.kind() {
                 ErrorKind::TimedOut => timeout_error(""),
                 _ => error,
@@ -160,7 +159,7 @@ impl TimeLimit {
     }
 }
 
-/// Reads a pipe to its end on a thread of its own, since a full pipe would block its program.
+/// Reads a pipe to its end on a separate thread, since a full pipe would block its program.
 fn read_all(mut pipe: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<Vec<u8>>> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {

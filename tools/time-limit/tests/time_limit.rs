@@ -1,5 +1,5 @@
-//! Tests of waits with a time limit: those that hang fail with a message, all others succeed.
-#![cfg(unix)] // the programs that these tests start are on every Unix
+//! Tests of waits with a time limit: a wait that hangs fails with a message, every other wait succeeds.
+#![cfg(unix)] // every Unix has the programs that these tests start
 
 use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,16 +9,14 @@ use std::time::{Duration, Instant};
 
 use lizard_time_limit::{LIMIT, TimeLimit};
 
-const SHORT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
+const SHORT_LIMIT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
-/// Returns the message of the panic in which `wait` ends.
+/// Returns the message with which `wait` panics.
 fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
-    let panic = catch_unwind(AssertUnwindSafe(wait))
-        .err()
-        .expect("it fails");
+    let panic = catch_unwind(AssertUnwindSafe(wait)).err().expect("a panic");
     match panic.downcast::<String>() {
         Ok(message) => *message,
-        Err(panic) => (*panic.downcast::<&str>().expect("it fails with words")).to_owned(),
+        Err(panic) => (*panic.downcast::<&str>().expect("a message")).to_owned(),
     }
 }
 
@@ -30,16 +28,16 @@ fn shell(script: &str) -> Command {
 
 #[test]
 fn a_condition_that_never_holds_fails_and_names_the_event() {
-    let message = panic_message(|| SHORT.expect("the cows", || false));
-    assert_eq!(message, "waited 100ms for the cows");
-    assert!(!SHORT.wait_for(|| false));
+    let message = panic_message(|| SHORT_LIMIT.expect("a reply", || false));
+    assert_eq!(message, "waited 100ms for a reply");
+    assert!(!SHORT_LIMIT.wait_for(|| false));
 }
 
 #[test]
 fn a_condition_is_checked_until_it_holds() {
     let start = Instant::now();
     let mut check_count = 0;
-    LIMIT.expect("the third time", || {
+    LIMIT.expect("the third check", || {
         check_count += 1;
         check_count == 3
     });
@@ -49,13 +47,13 @@ fn a_condition_is_checked_until_it_holds() {
 
 #[test]
 fn work_that_blocks_fails_and_names_the_event() {
-    let (_send, receive) = mpsc::channel::<()>();
-    let message = panic_message(|| SHORT.within("a word of nobody", move || receive.recv()));
-    assert_eq!(message, "waited 100ms for a word of nobody");
+    let (_sender, receiver) = mpsc::channel::<()>();
+    let message = panic_message(|| SHORT_LIMIT.within("a message", move || receiver.recv()));
+    assert_eq!(message, "waited 100ms for a message");
 }
 
 #[test]
-fn work_that_ends_gives_its_result_or_its_own_failure() {
+fn work_that_ends_returns_its_result_or_fails_with_its_own_message() {
     assert_eq!(LIMIT.within("a sum", || 2 + 2), 4);
     let message = panic_message(|| LIMIT.within("a sum", || panic!("no sum")));
     assert_eq!(message, "no sum");
@@ -63,48 +61,53 @@ fn work_that_ends_gives_its_result_or_its_own_failure() {
 
 #[test]
 fn a_program_that_does_not_end_is_killed() {
-    let mut child = Command::new("sleep").arg("60").spawn().expect("it starts");
-    let error = SHORT.end_of(&mut child).expect_err("it sleeps");
+    let mut child = Command::new("sleep")
+        .arg("60")
+        .spawn()
+        .expect("the program starts");
+    let error = SHORT_LIMIT
+        .wait_for_exit(&mut child)
+        .expect_err("the program sleeps");
     assert_eq!(error.kind(), ErrorKind::TimedOut);
     let id = child.id();
     assert_eq!(
         error.to_string(),
         format!("waited 100ms for the end of process {id}")
     );
-    let status = child.try_wait().expect("it is ours").expect("it has ended");
-    assert_eq!(status.code(), None, "by a signal");
+    let status = child.try_wait().expect("a child").expect("an exit status");
+    assert_eq!(status.code(), None, "killed by a signal");
 }
 
 #[test]
 fn the_status_of_a_program_that_ends_is_returned() {
-    let mut child = shell("exit 3").spawn().expect("it starts");
-    let status = LIMIT.end_of(&mut child).expect("it ends");
+    let mut child = shell("exit 3").spawn().expect("the program starts");
+    let status = LIMIT.wait_for_exit(&mut child).expect("the program ends");
     assert_eq!(status.code(), Some(3));
 }
 
 #[test]
 fn a_program_gets_its_input_and_both_its_outputs_are_read() {
-    // More than a pipe's buffer holds, in both directions.
+    // The input and the outputs are larger than a pipe's buffer.
     let input = vec![b'x'; 1 << 20];
     let output = LIMIT
         .output(&mut shell("tee /dev/stderr; exit 3"), &input)
-        .expect("it ends");
+        .expect("the program ends");
     assert!(output.stdout == input && output.stderr == input);
     assert_eq!(output.status.code(), Some(3));
 }
 
 #[test]
-fn a_program_that_prints_forever_fails_with_its_name() {
-    let error = SHORT.output(&mut Command::new("yes"), b"");
-    let error = error.expect_err("it never ends");
+fn the_error_of_a_program_that_prints_forever_has_its_name() {
+    let error = SHORT_LIMIT.output(&mut Command::new("yes"), b"");
+    let error = error.expect_err("the program never ends");
     assert_eq!(error.kind(), ErrorKind::TimedOut);
     assert_eq!(error.to_string(), "waited 100ms for the end of `yes`");
 }
 
 #[test]
 fn processes_that_a_program_leaves_running_are_not_waited_for() {
-    let error = SHORT.output(&mut shell("sleep 2 &"), b"");
-    let message = error.expect_err("it may still print").to_string();
+    let error = SHORT_LIMIT.output(&mut shell("sleep 2 &"), b"");
+    let message = error.expect_err("the process may still print").to_string();
     assert_eq!(
         message,
         "waited 100ms for the end of what was started by `sh`"
@@ -115,7 +118,7 @@ fn processes_that_a_program_leaves_running_are_not_waited_for() {
 fn a_program_that_is_missing_is_an_error_of_the_system() {
     let error = LIMIT.output(&mut Command::new("no-such-program"), b"");
     assert_eq!(
-        error.expect_err("it is not there").kind(),
+        error.expect_err("the program is missing").kind(),
         ErrorKind::NotFound
     );
 }

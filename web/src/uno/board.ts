@@ -1,10 +1,10 @@
 // A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset makes a
 // new chip with the old memories.
-import { busyWait } from '../../../tools/judge/src/busy-wait.js';
+import { skipBusyWaits } from '../../../tools/judge/src/busy-wait.js';
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
-import { receiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
+import { addReceiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
 import { Scope } from '../../../tools/judge/src/scope.js';
-import { selfProgramming } from '../../../tools/judge/src/self-programming.js';
+import { addSelfProgramming } from '../../../tools/judge/src/self-programming.js';
 import { Uno } from '../../../tools/judge/src/uno.js';
 
 /** Clock frequency of the chip, Hz. */
@@ -81,7 +81,7 @@ export class SimulatedBoard {
 
   /** The whole EEPROM. */
   get eeprom(): Uint8Array {
-    return this.uno.memory;
+    return this.uno.eepromBytes;
   }
 
   /** Runs for a number of cycles. */
@@ -124,20 +124,20 @@ export class SimulatedBoard {
 
   /** Resets the chip; flash, EEPROM and RAM keep their content. */
   reset(cause: ResetCause): void {
-    const { cpu, flash, memory } = this.uno;
+    const { cpu, flash, eepromBytes } = this.uno;
     this.cyclesBeforeReset += cpu.cycles;
     this.bytesToDeliver.length = 0;
     this.isLineBusy = false;
     const ram = cpu.data.slice(RAM_START);
-    this.begin(cause, flash, memory);
+    this.begin(cause, flash, eepromBytes);
     if (cause !== 'power') this.uno.cpu.data.set(ram, RAM_START);
   }
 
   private begin(cause: ResetCause, flash: Uint8Array, eeprom?: Uint8Array): void {
-    const uno = new Uno([...corrections, selfProgramming, receiveBuffer, busyWait]);
+    const uno = new Uno([...corrections, addSelfProgramming, addReceiveBuffer, skipBusyWaits]);
     this.uno = uno;
     uno.flash.set(flash);
-    if (eeprom) uno.memory.set(eeprom);
+    if (eeprom) uno.eepromBytes.set(eeprom);
     uno.cpu.data[MCUSR] = RESET_CAUSE_BITS[cause];
     uno.cpu.pc = flash[BOOT_START] === 0xff && flash[BOOT_START + 1] === 0xff ? 0 : BOOT_START / 2;
     uno.cpu.reset = () => {

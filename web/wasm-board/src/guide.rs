@@ -1,7 +1,7 @@
 //! The class with which JavaScript calibrates a robot.
 #![allow(clippy::missing_errors_doc)] // each rejects with the page's own error, or with the robot's refusal as a sentence
 
-use lizard_calibrate::{SCALE_TURNS, SIGN_TURNS, SendError};
+use lizard_calibrate::{SCALE_TURNS_DEG, SIGN_TURNS_DEG, SendError};
 use wasm_bindgen::prelude::*;
 
 use crate::calibration::{from_js, to_js};
@@ -53,13 +53,19 @@ impl Guide {
     /// Turns one servo from its neutral angle far enough to see its direction; returns the turn.
     #[wasm_bindgen(js_name = turnForSign)]
     pub async fn turn_for_sign(&mut self, servo: usize) -> Result<f64, JsValue> {
-        self.0.turn(servo, &SIGN_TURNS).await.map_err(error_to_js)
+        self.0
+            .turn(servo, &SIGN_TURNS_DEG)
+            .await
+            .map_err(error_to_js)
     }
 
     /// Turns one servo from its neutral angle far enough to measure its scale; returns the turn.
     #[wasm_bindgen(js_name = turnForScale)]
     pub async fn turn_for_scale(&mut self, servo: usize) -> Result<f64, JsValue> {
-        self.0.turn(servo, &SCALE_TURNS).await.map_err(error_to_js)
+        self.0
+            .turn(servo, &SCALE_TURNS_DEG)
+            .await
+            .map_err(error_to_js)
     }
 
     /// Moves one servo to an angle, and the others to neutral; returns the angle, 0 to 360.

@@ -2,8 +2,8 @@
 
 use fastrand::Rng;
 use lizard_film::{CameraEstimate, Film, Gait, Mean, MeasuredGait, read_tags};
-use lizard_studio::render::{Studio, normal};
-use lizard_studio::walk::{Variation, Walk, gait, truth};
+use lizard_studio::render::{Studio, random_normal};
+use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
 use crate::studio::{TRUE_SIZE, film_walk, small_studio};
 
@@ -17,9 +17,9 @@ fn measure_film(
 ) -> (MeasuredGait, CameraEstimate) {
     let mut studio = Studio::random(rng);
     // The errors of the user's ruler.
-    studio.deck += variation.ruler * normal(rng);
-    studio.print = [1.0 + variation.ruler / 1000.0 * normal(rng); 2];
-    let distance = truth(gait).forward * cycles as f64;
+    studio.deck_tag_height += variation.ruler_deviation * random_normal(rng);
+    studio.print_scale = [1.0 + variation.ruler_deviation / 1000.0 * random_normal(rng); 2];
+    let distance = true_displacement(gait).forward * cycles as f64;
     let start = [-distance / 2.0, 0.0, rng.f64() * 0.3 - 0.15];
     let walk = Walk::new(gait, start, cycles, variation, rng);
     analyse_and_measure(&film_walk(&studio, &walk, rate, rng), gait)
@@ -36,7 +36,7 @@ fn analyse_and_measure(film: &Film, gait: &Gait) -> (MeasuredGait, CameraEstimat
 
 /// The measured forward, left and turn of a cycle, each with its true value.
 fn means_and_truths(measured: &MeasuredGait, gait: &Gait) -> [(Mean, f64); 3] {
-    let truth = truth(gait);
+    let truth = true_displacement(gait);
     [
         (measured.forward, truth.forward),
         (measured.left, truth.left),
@@ -48,7 +48,7 @@ fn means_and_truths(measured: &MeasuredGait, gait: &Gait) -> [(Mean, f64); 3] {
 fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     let mut rng = Rng::with_seed(1);
     for name in ["walk", "left"] {
-        let gait = gait(name);
+        let gait = paper_gait(name);
         let (measured, sight) = measure_film(&gait, 5, 12.0, Variation::default(), &mut rng);
         assert!(measured.cycles.len() >= 3, "{:?}", measured.calm_times);
         for (i, (mean, truth)) in means_and_truths(&measured, &gait).into_iter().enumerate() {
@@ -112,11 +112,11 @@ const PART_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
     let film_count = number_from_environment("FILMS", 200);
     let variation = Variation {
-        cycle: [0.2, 0.2, 0.3f64.to_radians()],
-        clock: 0.003,
-        ruler: 1.0,
+        cycle_deviation: [0.2, 0.2, 0.3f64.to_radians()],
+        clock_deviation: 0.003,
+        ruler_deviation: 1.0,
     };
-    let gaits = ["walk", "left", "crawl", "arc-left"].map(gait);
+    let gaits = ["walk", "left", "crawl", "arc-left"].map(paper_gait);
     let results = measure_films(film_count, &gaits, |gait, rng| {
         measure_film(gait, 6, 12.0, variation, rng).0
     });
@@ -150,7 +150,7 @@ fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
 #[ignore = "takes minutes; make measure-test"]
 fn ten_cycles_at_720p_on_a_tripod_have_small_errors_and_little_spread() {
     let film_count = number_from_environment("FILMS", 200) / 10;
-    let gaits = ["walk", "left", "crawl", "arc-left", "back"].map(gait);
+    let gaits = ["walk", "left", "crawl", "arc-left", "back"].map(paper_gait);
     let no_variation = Variation::default();
     let results = measure_films(film_count, &gaits, |gait, rng| {
         measure_film(gait, 10, 30.0, no_variation, rng).0
@@ -179,24 +179,28 @@ fn ten_cycles_at_720p_on_a_tripod_have_small_errors_and_little_spread() {
 #[ignore = "takes minutes; make measure-test"]
 fn a_hand_held_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     let mut rng = Rng::with_seed(number_from_environment("SEED", 1) as u64);
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let mut studio = Studio::random(&mut rng);
-    (studio.height, studio.tilt, studio.focal) = (750.0, 20.0, 0.75);
-    (studio.direction, studio.roll, studio.aim) = (90.0, 0.0, [0.0; 2]);
-    let start = [-2.5 * truth(&gait).forward, 0.0, 0.0];
+    (
+        studio.camera_height,
+        studio.camera_tilt,
+        studio.focal_length,
+    ) = (750.0, 20.0, 0.75);
+    (studio.camera_direction, studio.camera_roll, studio.aim) = (90.0, 0.0, [0.0; 2]);
+    let start = [-2.5 * true_displacement(&gait).forward, 0.0, 0.0];
     let walk = Walk::new(&gait, start, 5, Variation::default(), &mut rng);
     let mut film = Film::default();
-    for i in 0..(walk.seconds() * 12.0) as usize {
+    for i in 0..(walk.duration_s() * 12.0) as usize {
         let mut shaken_studio = studio.clone();
-        shaken_studio.height += 3.0 * normal(&mut rng);
+        shaken_studio.camera_height += 3.0 * random_normal(&mut rng);
         shaken_studio.aim = shaken_studio
             .aim
-            .map(|value| value + 3.0 * normal(&mut rng));
-        shaken_studio.tilt += 0.3 * normal(&mut rng);
-        shaken_studio.roll += 0.3 * normal(&mut rng);
+            .map(|value| value + 3.0 * random_normal(&mut rng));
+        shaken_studio.camera_tilt += 0.3 * random_normal(&mut rng);
+        shaken_studio.camera_roll += 0.3 * random_normal(&mut rng);
         let seconds = i as f64 / 12.0;
         let background = shaken_studio.background(&mut rng);
-        let picture = background.picture(seconds, |time| walk.at(time), &mut rng);
+        let picture = background.picture(seconds, |time| walk.pose_at(time), &mut rng);
         film.add(seconds, &picture)
             .expect("the picture fits the film");
     }
@@ -230,7 +234,7 @@ fn tags_are_found_as_in_a_search_of_the_whole_picture_even_after_a_leap() {
         } else {
             [-distance, 15.0, 0.4]
         };
-        studio.aim = [2.0 * normal(&mut rng), 2.0 * normal(&mut rng)];
+        studio.aim = [2.0 * random_normal(&mut rng), 2.0 * random_normal(&mut rng)];
         let background = studio.background(&mut rng);
         let picture = background.picture(f64::from(i), |_| robot, &mut rng);
         let (mut found_tags, mut expected_tags) = (film.find_tags(&picture), read_tags(&picture));

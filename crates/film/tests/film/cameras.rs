@@ -2,8 +2,8 @@
 
 use fastrand::Rng;
 use lizard_film::Film;
-use lizard_studio::render::{Studio, normal};
-use lizard_studio::walk::{Variation, Walk, gait, truth};
+use lizard_studio::render::{Studio, random_normal};
+use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
 use crate::accuracy::number_from_environment;
 use crate::studio::{TRUE_SIZE, film_robot};
@@ -26,8 +26,12 @@ struct Camera {
 /// A studio with a good camera: 720p, on a tripod.
 fn good_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
-    (studio.focal, studio.height, studio.tilt) = (0.78, 780.0, 20.0);
-    (studio.direction, studio.roll, studio.aim) = (90.0, 3.0, [0.0; 2]);
+    (
+        studio.focal_length,
+        studio.camera_height,
+        studio.camera_tilt,
+    ) = (0.78, 780.0, 20.0);
+    (studio.camera_direction, studio.camera_roll, studio.aim) = (90.0, 3.0, [0.0; 2]);
     studio
 }
 
@@ -50,20 +54,22 @@ fn cameras() -> Vec<Camera> {
         on_tripod("1920 x 1080", &|studio| studio.size = [1920, 1080]),
         camera("12 pictures in a second", &|_| {}, 12.0, 0.0),
         camera("60 pictures in a second", &|_| {}, 60.0, 0.0),
-        on_tripod("straight down", &|studio| studio.tilt = 2.0),
-        on_tripod("tilt 40 deg", &|studio| studio.tilt = 40.0),
+        on_tripod("straight down", &|studio| studio.camera_tilt = 2.0),
+        on_tripod("tilt 40 deg", &|studio| studio.camera_tilt = 40.0),
         on_tripod("600 mm above, wide lens", &|studio| {
-            (studio.height, studio.focal) = (600.0, 0.6);
+            (studio.camera_height, studio.focal_length) = (600.0, 0.6);
         }),
         on_tripod("1100 mm above", &|studio| {
-            (studio.height, studio.focal) = (1100.0, 1.1);
+            (studio.camera_height, studio.focal_length) = (1100.0, 1.1);
         }),
-        on_tripod("rolling shutter of 30 ms", &|studio| studio.readout = 0.03),
+        on_tripod("rolling shutter of 30 ms", &|studio| {
+            studio.readout_s = 0.03
+        }),
         on_tripod("rolling shutter upside down", &|studio| {
-            (studio.readout, studio.roll) = (0.03, 177.0);
+            (studio.readout_s, studio.camera_roll) = (0.03, 177.0);
         }),
         on_tripod("shutter open for 1/30 s", &|studio| {
-            studio.shutter = 1.0 / 30.0;
+            studio.exposure_s = 1.0 / 30.0;
         }),
         on_tripod("evening: 40 % of the light, noise of 10", &|studio| {
             (studio.light, studio.noise) = (0.4, 10.0);
@@ -74,7 +80,7 @@ fn cameras() -> Vec<Camera> {
         camera("in the hand", &|_| {}, 12.0, 3.0),
         camera(
             "in the hand, rolling shutter",
-            &|studio| studio.readout = 0.02,
+            &|studio| studio.readout_s = 0.02,
             12.0,
             3.0,
         ),
@@ -89,19 +95,28 @@ fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
         ..
     } = camera;
     if *shake == 0.0 {
-        return film_robot(studio, walk.seconds(), *rate, |time| walk.at(time), rng);
+        return film_robot(
+            studio,
+            walk.duration_s(),
+            *rate,
+            |time| walk.pose_at(time),
+            rng,
+        );
     }
     let mut film = Film::default();
-    for i in 0..(walk.seconds() * rate) as usize {
+    for i in 0..(walk.duration_s() * rate) as usize {
         let mut shaken_studio = studio.clone();
-        shaken_studio.height += shake * normal(rng);
-        shaken_studio.aim = shaken_studio.aim.map(|value| value + shake * normal(rng));
-        shaken_studio.tilt += shake / 10.0 * normal(rng);
-        shaken_studio.roll += shake / 10.0 * normal(rng);
+        shaken_studio.camera_height += shake * random_normal(rng);
+        shaken_studio.aim = shaken_studio
+            .aim
+            .map(|value| value + shake * random_normal(rng));
+        shaken_studio.camera_tilt += shake / 10.0 * random_normal(rng);
+        shaken_studio.camera_roll += shake / 10.0 * random_normal(rng);
         let seconds = i as f64 / rate;
-        let picture = shaken_studio
-            .background(rng)
-            .picture(seconds, |time| walk.at(time), rng);
+        let picture =
+            shaken_studio
+                .background(rng)
+                .picture(seconds, |time| walk.pose_at(time), rng);
         film.add(seconds, &picture)
             .expect("the picture fits the film");
     }
@@ -113,11 +128,11 @@ fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
 #[ignore = "takes minutes; make measure-test"]
 fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     let seed = number_from_environment("SEED", 1) as u64;
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     println!("error of the mean and one cycle's sd: ahead, left, turn (mm, mm, deg)");
     for camera in cameras() {
         let mut rng = Rng::with_seed(seed);
-        let start = -truth(&gait).forward * CYCLE_COUNT as f64 / 2.0;
+        let start = -true_displacement(&gait).forward * CYCLE_COUNT as f64 / 2.0;
         let walk = Walk::new(
             &gait,
             [start, 0.0, 0.05],
@@ -128,7 +143,7 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
         let measured = film_walk(&camera, &walk, &mut rng)
             .measure(TRUE_SIZE, &gait)
             .unwrap_or_else(|trouble| panic!("{}: {trouble}", camera.name));
-        let truth = truth(&gait);
+        let truth = true_displacement(&gait);
         let parts = [
             (measured.forward, truth.forward),
             (measured.left, truth.left),

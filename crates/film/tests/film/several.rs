@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Gait, Likeness, MeasuredGait, Trouble, shortest_rest};
 use lizard_studio::render::Studio;
-use lizard_studio::walk::{Show, Variation, gait, truth};
+use lizard_studio::walk::{Variation, WalkSeries, paper_gait, true_displacement};
 
 use crate::studio::{TRUE_SIZE, film_robot, small_studio};
 
@@ -11,18 +11,27 @@ use crate::studio::{TRUE_SIZE, film_robot, small_studio};
 const PICTURE_RATE: f64 = 8.0;
 /// A small variation of the cycles, as real robots show it.
 const VARIATION: Variation = Variation {
-    cycle: [0.2, 0.2, 0.004],
-    clock: 0.0,
-    ruler: 0.0,
+    cycle_deviation: [0.2, 0.2, 0.004],
+    clock_deviation: 0.0,
+    ruler_deviation: 0.0,
 };
 
 /// Films walks with rests of `rest` seconds between them, and finds the camera and the path.
-fn film_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, Show) {
+fn film_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, WalkSeries) {
     let mut rng = Rng::with_seed(6);
-    let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIATION, &mut rng);
-    let robot = |time: f64| show.at(time);
-    let film = film_robot(&studio(), show.seconds(), PICTURE_RATE, robot, &mut rng);
-    (film.analyse(TRUE_SIZE).expect("all tags are visible"), show)
+    let series = WalkSeries::new([-60.0, 0.0, 0.0], walks, rest, VARIATION, &mut rng);
+    let robot = |time: f64| series.pose_at(time);
+    let film = film_robot(
+        &studio(),
+        series.duration_s(),
+        PICTURE_RATE,
+        robot,
+        &mut rng,
+    );
+    (
+        film.analyse(TRUE_SIZE).expect("all tags are visible"),
+        series,
+    )
 }
 
 fn studio() -> Studio {
@@ -31,7 +40,7 @@ fn studio() -> Studio {
 
 /// Checks that a result agrees with the true movement of a gait.
 fn check_result(measured: &MeasuredGait, gait: &Gait) {
-    let truth = truth(gait);
+    let truth = true_displacement(gait);
     let parts = [
         (measured.forward, truth.forward, 0.4),
         (measured.left, truth.left, 0.4),
@@ -49,12 +58,12 @@ fn check_result(measured: &MeasuredGait, gait: &Gait) {
 #[test]
 fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let names = ["walk", "left", "back", "trot"];
-    let gaits = names.map(gait);
+    let gaits = names.map(paper_gait);
     let order = [0, 1, 2, 0];
     let (analysed_film, show) = film_walks(&order.map(|i| (&gaits[i], 4)), 1.6);
     let walks = analysed_film.walks(shortest_rest(&gaits));
     assert_eq!(walks.len(), order.len(), "{walks:?}");
-    for (found_span, true_span) in walks.iter().zip(show.spans()) {
+    for (found_span, true_span) in walks.iter().zip(show.movement_spans()) {
         // A found walk includes parts of the rests around it, and misses at most one picture of the movement.
         let early = true_span[0] - found_span[0];
         let late = found_span[1] - true_span[1];
@@ -89,8 +98,8 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
 
 #[test]
 fn two_gaits_with_the_same_path_are_both_named() {
-    let walk = gait("walk");
-    let gaits = [gait("back"), walk.clone(), walk.clone()];
+    let walk = paper_gait("walk");
+    let gaits = [paper_gait("back"), walk.clone(), walk.clone()];
     let (analysed_film, _) = film_walks(&[(&walk, 4)], 1.0);
     let walks = analysed_film.walks(shortest_rest(&gaits));
     let likeness = analysed_film.likeness(&gaits, walks[0]);
@@ -102,7 +111,7 @@ fn two_gaits_with_the_same_path_are_both_named() {
 
 #[test]
 fn a_walk_in_slow_motion_or_of_an_unknown_gait_resembles_no_gait() {
-    let gaits = ["walk", "left", "back", "trot"].map(gait);
+    let gaits = ["walk", "left", "back", "trot"].map(paper_gait);
     let slow = Gait {
         period: 2.0 * gaits[0].period,
         path: gaits[0].path.clone(),
@@ -113,7 +122,7 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_resembles_no_gait() {
         half_speed.likeness(&gaits, walks[0]),
         Likeness::None(Trouble::AnotherPace { ratio: 2 })
     );
-    let unknown = gait("right");
+    let unknown = paper_gait("right");
     let (analysed_film, _) = film_walks(&[(&unknown, 4)], 1.0);
     let walks = analysed_film.walks(shortest_rest(&gaits));
     let likeness = analysed_film.likeness(&gaits, walks[0]);
@@ -122,7 +131,7 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_resembles_no_gait() {
 
 #[test]
 fn gaits_without_a_rest_between_them_are_not_mixed() {
-    let [walk, arc, left] = ["walk", "arc-left", "left"].map(gait);
+    let [walk, arc, left] = ["walk", "arc-left", "left"].map(paper_gait);
     for (first, second) in [(&walk, &arc), (&walk, &left), (&arc, &walk)] {
         let (analysed_film, _) = film_walks(&[(first, 4), (second, 4)], 0.0);
         let gaits = [walk.clone(), arc.clone(), left.clone()];
@@ -149,7 +158,7 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
 
 #[test]
 fn a_short_turn_of_one_degree_during_a_rest_is_no_walk() {
-    let walk = gait("walk");
+    let walk = paper_gait("walk");
     let extra_heading_at = |time: f64| {
         if (4.0..4.5).contains(&time) {
             0.02
@@ -158,9 +167,9 @@ fn a_short_turn_of_one_degree_during_a_rest_is_no_walk() {
         }
     };
     let mut rng = Rng::with_seed(6);
-    let show = Show::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
+    let show = WalkSeries::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
     let robot = |time: f64| {
-        let [x, y, heading] = show.at(time);
+        let [x, y, heading] = show.pose_at(time);
         [x, y, heading + extra_heading_at(time - 2.0)]
     };
     let film = film_robot(&studio(), 8.0, PICTURE_RATE, robot, &mut rng);
@@ -181,7 +190,7 @@ fn largest_deviation(measured: &MeasuredGait) -> (f64, usize, f64) {
 
 #[test]
 fn a_deviation_from_the_predicted_path_is_found_at_its_phase() {
-    let walk = gait("walk");
+    let walk = paper_gait("walk");
     let mut swerving = walk.clone();
     let count = walk.path.len() - 1;
     for (i, place) in swerving.path.iter_mut().enumerate() {

@@ -2,8 +2,8 @@
 
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
-use lizard_studio::board::{BOARD, Board, studio};
-use lizard_studio::render::{Studio, normal};
+use lizard_studio::board::{Board, EVEN_BOARD, small_studio};
+use lizard_studio::render::{Studio, random_normal};
 
 /// The setup of all films.
 const SETUP: Setup = Setup {
@@ -14,7 +14,7 @@ const SETUP: Setup = Setup {
 /// Films a board while it is lifted.
 fn film_board(board: &Board, studio: &Studio, rate: f64) -> Film {
     let mut film = Film::default();
-    board.pictures(studio, rate, |seconds, picture| {
+    board.take_pictures(studio, rate, |seconds, picture| {
         film.add(seconds, picture)
             .expect("the picture fits the film");
     });
@@ -22,7 +22,7 @@ fn film_board(board: &Board, studio: &Studio, rate: f64) -> Film {
 }
 
 fn measure_slide(board: &Board) -> Result<Slide, SlideTrouble> {
-    Slide::of(&analyse(&film_board(board, &studio(), 30.0)))
+    Slide::of(&analyse(&film_board(board, &small_studio(), 30.0)))
 }
 
 fn analyse(film: &Film) -> AnalysedFilm {
@@ -43,10 +43,10 @@ fn check_figure(figure: Figure, truth: f64, max_error: f64) {
 fn a_slide_shows_static_and_sliding_friction_with_head_or_tail_first() {
     for (head, resting, sliding) in [(8.0, 0.75, 0.68), (-175.0, 0.5, 0.5)] {
         let board = Board {
-            resting,
-            sliding,
-            head,
-            ..BOARD
+            static_friction: resting,
+            sliding_friction: sliding,
+            head_direction_deg: head,
+            ..EVEN_BOARD
         };
         let slide = measure_slide(&board).expect("the slide can be measured");
         assert_eq!(slide.is_head_first, head == 8.0);
@@ -58,11 +58,11 @@ fn a_slide_shows_static_and_sliding_friction_with_head_or_tail_first() {
 
 /// A board with little friction, which needs only a short film.
 const SLIPPERY: Board = Board {
-    resting: 0.35,
-    sliding: 0.3,
-    lift: 8.0,
-    end: 30.0,
-    ..BOARD
+    static_friction: 0.35,
+    sliding_friction: 0.3,
+    lift_deg_per_s: 8.0,
+    end_tilt_deg: 30.0,
+    ..EVEN_BOARD
 };
 
 #[test]
@@ -70,7 +70,7 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
     let reason_of =
         |board: Board| measure_slide(&board).expect_err("the film shows no measurable slide");
     let not_slid = reason_of(Board {
-        end: 12.0,
+        end_tilt_deg: 12.0,
         ..SLIPPERY
     });
     assert!(
@@ -78,12 +78,12 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
         "{not_slid}"
     );
     let moving = reason_of(Board {
-        from: 0.3,
+        lift_start_s: 0.3,
         ..SLIPPERY
     });
     assert!(matches!(moving, SlideTrouble::NotAtRest { .. }), "{moving}");
     let across_slope = reason_of(Board {
-        head: 36.0,
+        head_direction_deg: 36.0,
         ..SLIPPERY
     });
     assert!(
@@ -91,7 +91,7 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
         "{across_slope}"
     );
     let pushed = reason_of(Board {
-        aside: 180.0,
+        slide_direction_deg: 180.0,
         ..SLIPPERY
     });
     assert!(
@@ -99,14 +99,14 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
         "{pushed}"
     );
     let fast = reason_of(Board {
-        lift: 40.0,
+        lift_deg_per_s: 40.0,
         ..SLIPPERY
     });
     assert!(
         matches!(fast, SlideTrouble::LiftedTooFast { rate } if rate > 20.0),
         "{fast}"
     );
-    let film = film_board(&SLIPPERY, &studio(), 5.0);
+    let film = film_board(&SLIPPERY, &small_studio(), 5.0);
     let result = Slide::of(&analyse(&film));
     assert!(
         matches!(result, Err(SlideTrouble::TooFewPictures { .. })),
@@ -122,21 +122,22 @@ fn in_at_least_14_of_16_films_friction_lies_within_two_errors_of_the_truth() {
     let film_count = 16;
     let (mut static_hits, mut sliding_hits) = (0, 0);
     for i in 0..film_count {
-        let begin = 0.3 * normal(&mut rng);
+        let begin = 0.3 * random_normal(&mut rng);
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         let friction = random_between(0.35, 0.8);
         let board = Board {
-            resting: friction,
-            sliding: friction * random_between(0.8, 1.0),
-            lift: random_between(2.0, 9.0),
-            head: 180.0 * (i % 2) as f64 + random_between(-12.0, 12.0),
-            begin,
-            ..BOARD
+            static_friction: friction,
+            sliding_friction: friction * random_between(0.8, 1.0),
+            lift_deg_per_s: random_between(2.0, 9.0),
+            head_direction_deg: 180.0 * (i % 2) as f64 + random_between(-12.0, 12.0),
+            start_tilt_deg: begin,
+            ..EVEN_BOARD
         };
-        let mut studio = studio();
+        let mut studio = small_studio();
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
-        (studio.tilt, studio.lens) = (random_between(0.0, 18.0), random_between(-0.006, 0.006));
-        studio.readout = 0.015;
+        (studio.camera_tilt, studio.distortion) =
+            (random_between(0.0, 18.0), random_between(-0.006, 0.006));
+        studio.readout_s = 0.015;
         let slide = Slide::of(&analyse(&film_board(
             &board,
             &studio,
@@ -145,12 +146,21 @@ fn in_at_least_14_of_16_films_friction_lies_within_two_errors_of_the_truth() {
         let slide = slide.expect("the slide can be measured");
         println!(
             "static {:?} of {:.3}, sliding {:?} of {:.3}",
-            slide.static_friction, board.resting, slide.sliding_friction, board.sliding
+            slide.static_friction,
+            board.static_friction,
+            slide.sliding_friction,
+            board.sliding_friction
         );
         let is_within_two_errors =
             |figure: Figure, truth: f64| (figure.value - truth).abs() < 2.0 * figure.error;
-        static_hits += usize::from(is_within_two_errors(slide.static_friction, board.resting));
-        sliding_hits += usize::from(is_within_two_errors(slide.sliding_friction, board.sliding));
+        static_hits += usize::from(is_within_two_errors(
+            slide.static_friction,
+            board.static_friction,
+        ));
+        sliding_hits += usize::from(is_within_two_errors(
+            slide.sliding_friction,
+            board.sliding_friction,
+        ));
     }
     println!("{film_count} films: within two errors static {static_hits}, sliding {sliding_hits}");
     assert!(

@@ -2,8 +2,8 @@
 
 use fastrand::Rng;
 use lizard_film::{Film, Gait, MeasuredGait, Picture, Setup, Trouble};
-use lizard_studio::render::{Spot, Studio};
-use lizard_studio::walk::{Variation, Walk, gait, truth};
+use lizard_studio::render::{Pose, Studio};
+use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
 use crate::studio::{TRUE_SIZE, film_robot, small_studio};
 
@@ -16,7 +16,7 @@ fn studio() -> Studio {
 
 /// A walk that is centred on the origin.
 fn centred_walk(gait: &Gait, cycles: usize) -> Walk {
-    let start = -truth(gait).forward * cycles as f64 / 2.0;
+    let start = -true_displacement(gait).forward * cycles as f64 / 2.0;
     Walk::new(
         gait,
         [start, 0.0, 0.0],
@@ -28,12 +28,12 @@ fn centred_walk(gait: &Gait, cycles: usize) -> Walk {
 
 /// Films five cycles of `walk`.
 fn film_five_cycles(studio: &Studio) -> Film {
-    let walk = centred_walk(&gait("walk"), 5);
+    let walk = centred_walk(&paper_gait("walk"), 5);
     film_robot(
         studio,
-        walk.seconds(),
+        walk.duration_s(),
         PICTURE_RATE,
-        |time| walk.at(time),
+        |time| walk.pose_at(time),
         &mut Rng::with_seed(2),
     )
 }
@@ -41,31 +41,34 @@ fn film_five_cycles(studio: &Studio) -> Film {
 /// The reason why five cycles of `walk` cannot be measured in this studio.
 fn trouble_of(studio: &Studio, setup: Setup) -> Trouble {
     film_five_cycles(studio)
-        .measure(setup, &gait("walk"))
+        .measure(setup, &paper_gait("walk"))
         .expect_err("the film cannot be measured")
 }
 
 #[test]
 fn without_a_tag_in_any_picture_there_is_nothing_to_measure() {
     assert_eq!(
-        Film::default().measure(TRUE_SIZE, &gait("walk")),
+        Film::default().measure(TRUE_SIZE, &paper_gait("walk")),
         Err(Trouble::NoPictures)
     );
     let mut film = Film::default();
     let grey = Picture::new(320, 240, vec![128; 320 * 240]).expect("the picture is complete");
     film.add(0.0, &grey).expect("the picture fits the film");
-    assert_eq!(film.measure(TRUE_SIZE, &gait("walk")), Err(Trouble::NoTag));
+    assert_eq!(
+        film.measure(TRUE_SIZE, &paper_gait("walk")),
+        Err(Trouble::NoTag)
+    );
 }
 
 #[test]
 fn a_tag_that_is_always_covered_is_named() {
     let mut studio = studio();
-    studio.hidden = vec![2];
+    studio.hidden_tags = vec![2];
     assert_eq!(
         trouble_of(&studio, TRUE_SIZE),
         Trouble::NoFloorTag { id: 2 }
     );
-    studio.hidden = vec![4];
+    studio.hidden_tags = vec![4];
     assert!(matches!(
         trouble_of(&studio, TRUE_SIZE),
         Trouble::DeckTagTooRare {
@@ -97,15 +100,15 @@ fn in_the_dark_and_in_the_glare_no_tag_is_found() {
 
 #[test]
 fn a_card_whose_arrow_points_to_the_tail_is_reported_as_another_gait() {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 5);
     let turned_robot = |time| {
-        let [x, y, heading] = walk.at(time);
+        let [x, y, heading] = walk.pose_at(time);
         [x, y, heading + std::f64::consts::PI]
     };
     let film = film_robot(
         &studio(),
-        walk.seconds(),
+        walk.duration_s(),
         PICTURE_RATE,
         turned_robot,
         &mut Rng::with_seed(2),
@@ -136,19 +139,20 @@ fn pictures_of_another_size_and_times_that_do_not_increase_are_refused() {
 
 /// Films a walk with a camera that is moved once in the middle. In the second half, the tags `hidden` are covered.
 fn film_with_moved_camera(hidden: Vec<usize>) -> Film {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
     let mut film = Film::default();
     let first = studio();
     let mut second = first.clone();
-    (second.tilt, second.aim[0], second.hidden) = (first.tilt + 1.0, first.aim[0] + 12.0, hidden);
+    (second.camera_tilt, second.aim[0], second.hidden_tags) =
+        (first.camera_tilt + 1.0, first.aim[0] + 12.0, hidden);
     let backgrounds = [first, second].map(|studio| studio.background(&mut rng));
-    let count = (walk.seconds() * PICTURE_RATE) as usize;
+    let count = (walk.duration_s() * PICTURE_RATE) as usize;
     for i in 0..count {
         let seconds = i as f64 / PICTURE_RATE;
         let background = &backgrounds[2 * i / count];
-        let picture = background.picture(seconds, |time| walk.at(time), &mut rng);
+        let picture = background.picture(seconds, |time| walk.pose_at(time), &mut rng);
         film.add(seconds, &picture)
             .expect("the picture fits the film");
     }
@@ -157,7 +161,7 @@ fn film_with_moved_camera(hidden: Vec<usize>) -> Film {
 
 #[test]
 fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let analysed_film = film_with_moved_camera(Vec::new())
         .analyse(TRUE_SIZE)
         .expect("all tags are visible");
@@ -165,7 +169,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let measured = analysed_film
         .measure(&gait, None)
         .expect("the gait can be measured");
-    let error = measured.forward.value - truth(&gait).forward;
+    let error = measured.forward.value - true_displacement(&gait).forward;
     assert!(error.abs() < 0.3, "{:?}", measured.forward);
     let trouble = film_with_moved_camera(vec![1])
         .measure(TRUE_SIZE, &gait)
@@ -178,23 +182,23 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
 
 /// Checks that the measured distance is the true one.
 fn check_distance(measured: &MeasuredGait, gait: &Gait) {
-    let error = measured.forward.value - truth(gait).forward;
+    let error = measured.forward.value - true_displacement(gait).forward;
     assert!(error.abs() < 0.2, "{:?}", measured.forward);
 }
 
 #[test]
 fn a_tag_that_is_covered_for_a_while_does_no_harm_if_the_camera_stands_still() {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
     let mut film = Film::default();
     let uncovered = studio();
     let mut covered = uncovered.clone();
-    covered.hidden = vec![0];
+    covered.hidden_tags = vec![0];
     let backgrounds = [uncovered, covered].map(|studio| studio.background(&mut rng));
-    for i in 0..(walk.seconds() * PICTURE_RATE) as usize {
+    for i in 0..(walk.duration_s() * PICTURE_RATE) as usize {
         let seconds = i as f64 / PICTURE_RATE;
-        let picture = backgrounds[i / 8 % 2].picture(seconds, |time| walk.at(time), &mut rng);
+        let picture = backgrounds[i / 8 % 2].picture(seconds, |time| walk.pose_at(time), &mut rng);
         film.add(seconds, &picture)
             .expect("the picture fits the film");
     }
@@ -207,12 +211,12 @@ fn a_tag_that_is_covered_for_a_while_does_no_harm_if_the_camera_stands_still() {
 #[test]
 fn a_sheet_printed_too_small_gives_the_true_distance_if_its_ruler_is_measured() {
     let mut studio = studio();
-    studio.print = [0.972; 2];
+    studio.print_scale = [0.972; 2];
     let setup = Setup {
         print_scale: 0.972,
         ..TRUE_SIZE
     };
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let measured = film_five_cycles(&studio)
         .measure(setup, &gait)
         .expect("the gait can be measured");
@@ -222,7 +226,7 @@ fn a_sheet_printed_too_small_gives_the_true_distance_if_its_ruler_is_measured() 
 #[test]
 fn tags_that_were_cut_apart_and_moved_are_refused() {
     let mut studio = studio();
-    studio.cut = 0.95;
+    studio.tag_distance_factor = 0.95;
     let trouble = trouble_of(&studio, TRUE_SIZE);
     assert!(
         matches!(trouble, Trouble::WrongTagSize { edge } if edge > 51.5)
@@ -236,7 +240,7 @@ fn tags_that_were_cut_apart_and_moved_are_refused() {
 #[test]
 fn a_card_at_another_height_than_given_is_noticed_by_its_size() {
     let mut studio = studio();
-    studio.deck = 83.0;
+    studio.deck_tag_height = 83.0;
     let wrong_setup = Setup {
         deck_height: 40.0,
         ..TRUE_SIZE
@@ -249,9 +253,9 @@ fn a_card_at_another_height_than_given_is_noticed_by_its_size() {
 }
 
 /// The reason why a film of a robot whose place is given by `robot` cannot be measured.
-fn trouble_of_robot(robot: impl Fn(f64) -> Spot) -> Trouble {
+fn trouble_of_robot(robot: impl Fn(f64) -> Pose) -> Trouble {
     let film = film_robot(&studio(), 4.0, PICTURE_RATE, robot, &mut Rng::with_seed(2));
-    film.measure(TRUE_SIZE, &gait("walk"))
+    film.measure(TRUE_SIZE, &paper_gait("walk"))
         .expect_err("the film shows no walk")
 }
 
@@ -268,7 +272,7 @@ fn a_robot_that_stands_has_not_moved() {
 fn a_robot_too_far_from_the_strips_is_refused() {
     let mut studio = studio();
     (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
-    studio.height = 1000.0;
+    studio.camera_height = 1000.0;
     let far_robot = |_: f64| [430.0, 0.0, 0.0];
     let film = film_robot(
         &studio,
@@ -278,7 +282,7 @@ fn a_robot_too_far_from_the_strips_is_refused() {
         &mut Rng::with_seed(2),
     );
     let trouble = film
-        .measure(TRUE_SIZE, &gait("walk"))
+        .measure(TRUE_SIZE, &paper_gait("walk"))
         .expect_err("the robot is too far away");
     assert!(
         matches!(trouble, Trouble::TooFarFromStrips { distance, .. } if distance > 400.0),
@@ -301,17 +305,17 @@ fn movements_that_are_not_the_gait_are_refused() {
 
 #[test]
 fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     for multiple in [2, 4] {
         let slow = Gait {
             period: gait.period * f64::from(multiple),
             path: gait.path.clone(),
         };
         let walk = centred_walk(&slow, 3);
-        let robot = |time: f64| walk.at(time);
+        let robot = |time: f64| walk.pose_at(time);
         let film = film_robot(
             &studio(),
-            walk.seconds(),
+            walk.duration_s(),
             5.0,
             robot,
             &mut Rng::with_seed(2),
@@ -325,17 +329,17 @@ fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
 
 #[test]
 fn a_film_whose_rate_is_off_by_some_percent_shows_the_distance_per_cycle_and_its_duration() {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     for rate_error in [0.94, 1.04] {
         let stretched = Gait {
             period: gait.period * rate_error,
             path: gait.path.clone(),
         };
         let walk = centred_walk(&stretched, 6);
-        let robot = |time: f64| walk.at(time);
+        let robot = |time: f64| walk.pose_at(time);
         let film = film_robot(
             &studio(),
-            walk.seconds(),
+            walk.duration_s(),
             12.0,
             robot,
             &mut Rng::with_seed(2),
@@ -392,13 +396,13 @@ fn a_second_copy_that_appears_later_is_noticed_within_sixteen_pictures() {
 
 #[test]
 fn two_cycles_are_too_few() {
-    let gait = gait("walk");
+    let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 2);
     let film = film_robot(
         &studio(),
-        walk.seconds(),
+        walk.duration_s(),
         PICTURE_RATE,
-        |time| walk.at(time),
+        |time| walk.pose_at(time),
         &mut Rng::with_seed(2),
     );
     let trouble = film

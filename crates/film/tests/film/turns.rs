@@ -3,8 +3,8 @@
 use fastrand::Rng;
 use lizard_contact::Place;
 use lizard_film::{Figure, Film, Jig, MeasuredServo, PathPoint, ServoTrouble, Setup};
-use lizard_studio::render::{Studio, normal};
-use lizard_studio::servo::{FRICTION, FULL, Servo};
+use lizard_studio::render::{Studio, random_normal};
+use lizard_studio::servo::{FRICTION_SHARE, FULL_TORQUE_DEG, Servo};
 
 /// The jig for steps in the counter-clockwise direction.
 const JIG: Jig = Jig {
@@ -39,16 +39,16 @@ impl AngleCamera {
     /// The path of a card as its tag would show it: each angle is the mean over the time that the shutter is open.
     fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
         const BEGIN: f64 = 0.3;
-        let horn_angles = servo.turns(1.0);
+        let horn_angles = servo.simulate(1.0);
         let picture_at = |i: usize| {
             let seconds = i as f64 / self.picture_rate + BEGIN;
             let shares = [-0.4, -0.2, 0.0, 0.2, 0.4];
             let angles =
-                shares.map(|share| horn_angles.at(seconds + share * self.exposure_seconds));
-            let angle = angles.iter().sum::<f64>() / 5.0 + self.angle_sigma * normal(rng);
+                shares.map(|share| horn_angles.angle_at(seconds + share * self.exposure_seconds));
+            let angle = angles.iter().sum::<f64>() / 5.0 + self.angle_sigma * random_normal(rng);
             point_at(seconds, angle)
         };
-        let picture_count = (servo.end() - BEGIN) * self.picture_rate;
+        let picture_count = (servo.end_s() - BEGIN) * self.picture_rate;
         (0..picture_count as usize).map(picture_at).collect()
     }
 }
@@ -69,11 +69,11 @@ fn random_servo(rng: &mut Rng) -> Servo {
     let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
     Servo {
         gain: random_between(0.9, 1.1),
-        rate: random_between(350.0, 700.0),
+        no_load_rate: random_between(350.0, 700.0),
         spin_up: random_between(0.012, 0.03),
         dead_band: random_between(0.3, 1.6),
-        begin: random_between(0.3, 1.5),
-        neutral: random_between(-180.0, 180.0),
+        first_order_s: random_between(0.3, 1.5),
+        neutral_heading: random_between(-180.0, 180.0),
         ..Servo::default()
     }
 }
@@ -91,7 +91,7 @@ fn hit_share_and_mean_error(figures: &[(Figure, f64)]) -> [f64; 2] {
 /// The true width of the dead band that is nearest to the measured one, deg: any value between the controller's own
 /// width and that plus the effect of the gears' friction is right.
 fn nearest_dead_band(servo: &Servo, found_width: f64) -> f64 {
-    let friction = 2.0 * FRICTION * FULL;
+    let friction = 2.0 * FRICTION_SHARE * FULL_TORQUE_DEG;
     found_width.clamp(servo.dead_band, servo.dead_band + friction)
 }
 
@@ -106,7 +106,7 @@ fn over_90_percent_of_figures_lie_within_two_errors_at_60_to_240_pictures_a_seco
             let measured = MeasuredServo::of(&path, JIG).expect("the servo can be measured");
             let width = measured.dead_band.width.expect("the dead band is measured");
             figures[0].push((measured.gain, servo.gain));
-            figures[1].push((measured.rate, servo.own_rate()));
+            figures[1].push((measured.rate, servo.steady_rate()));
             figures[2].push((width, nearest_dead_band(&servo, width.value)));
             figures[3].extend(measured.spin_up.map(|spin_up| (spin_up, servo.spin_up)));
         }
@@ -130,7 +130,7 @@ fn a_known_load_gives_the_stall_torque_within_two_errors_in_over_90_percent_of_f
         let free = random_servo(rng);
         let loaded = Servo {
             load: LOAD_SHARE,
-            begin: 1.1,
+            first_order_s: 1.1,
             ..free.clone()
         };
         [free, loaded].map(|servo| {
@@ -144,7 +144,7 @@ fn a_known_load_gives_the_stall_torque_within_two_errors_in_over_90_percent_of_f
             .stall_torque(&loaded, 19.6)
             .expect("the load slows the servo");
         // The gears' friction reduces the stall torque.
-        stall_torques.push((stall_torque, 19.6 / LOAD_SHARE * (1.0 - FRICTION)));
+        stall_torques.push((stall_torque, 19.6 / LOAD_SHARE * (1.0 - FRICTION_SHARE)));
         assert_eq!(
             loaded.stall_torque(&free, 19.6),
             Err(ServoTrouble::FilmsSwapped)
@@ -257,7 +257,7 @@ fn a_film_in_slow_motion_or_with_few_pictures_is_refused_with_the_reason() {
 fn a_slew_limit_below_the_rate_of_the_servo_is_not_taken_for_its_rate() {
     let slew = 300.0;
     let servo = Servo {
-        slew,
+        slew_rate: slew,
         ..Servo::default()
     };
     let path = AngleCamera::phone(120.0).path(&servo, &mut Rng::with_seed(8));
@@ -282,10 +282,10 @@ fn in_at_least_85_percent_of_rendered_films_the_truth_lies_within_two_errors() {
     for rate in [60.0, 120.0, 240.0] {
         for shutter in [1.0 / 100.0, 1.0 / 250.0, 1.0 / 1000.0] {
             let mut studio = Studio::random(&mut rng);
-            (studio.deck, studio.shutter, studio.readout) = (40.0, shutter, 0.015);
+            (studio.deck_tag_height, studio.exposure_s, studio.readout_s) = (40.0, shutter, 0.015);
             let servo = random_servo(&mut rng);
             let mut film = Film::default();
-            servo.pictures(&studio, 1.0, rate, &mut rng, |seconds, picture| {
+            servo.take_pictures(&studio, 1.0, rate, &mut rng, |seconds, picture| {
                 film.add(seconds, picture)
                     .expect("the picture fits the film");
             });
@@ -298,11 +298,11 @@ fn in_at_least_85_percent_of_rendered_films_the_truth_lies_within_two_errors() {
                 measured.gain,
                 servo.gain,
                 measured.rate,
-                servo.own_rate(),
+                servo.steady_rate(),
                 servo.dead_band
             );
             figures[0].push((measured.gain, servo.gain));
-            figures[1].push((measured.rate, servo.own_rate()));
+            figures[1].push((measured.rate, servo.steady_rate()));
             figures[2].push((width, nearest_dead_band(&servo, width.value)));
         }
     }

@@ -1,12 +1,13 @@
 //! The reading of a film's file, and the search for the robot's path in it.
 
 use std::fmt::Display;
+use std::fs;
 use std::path::Path;
 
-use lizard_film::{Film, Setup, Trouble};
+use lizard_film::{Film, Picture, Setup, Trouble};
 use lizard_measure::NamedFilm;
 
-use super::{frames, grey, through_ffmpeg};
+use super::{frames, through_ffmpeg};
 use crate::Failure;
 use crate::shared::files::note_input;
 
@@ -37,7 +38,7 @@ fn read_film(
     let mut film = Film::default();
     if path.is_dir() {
         for (seconds, file) in frames::list_pictures(path, rate)? {
-            film.add(seconds, &grey::read_picture(&file)?)
+            film.add(seconds, &read_picture(&file)?)
                 .map_err(&failure_of)?;
         }
         return Ok(film);
@@ -52,4 +53,14 @@ fn read_film(
         film.add(seconds, picture).map(|_| ()).map_err(&failure_of)
     })?;
     Ok(film)
+}
+
+/// Reads a PNG or JPEG file as a grey picture.
+fn read_picture(path: &Path) -> Result<Picture, Failure> {
+    let name = path.display();
+    let bytes =
+        fs::read(path).map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    Picture::decode(&bytes).map_err(|reason| {
+        Failure::Input(format!("{name} is no picture that can be read: {reason}"))
+    })
 }

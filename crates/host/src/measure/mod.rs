@@ -6,7 +6,6 @@ mod figures;
 mod film;
 mod filming;
 mod frames;
-mod grey;
 mod keys;
 mod keys_report;
 mod picture;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use lizard_robot::Robot;
 
-use crate::program::{robot, run_in};
+use crate::program::{robot_path, run_in};
 
 /// An image of 20 bytes, as avr-objcopy writes it.
 const HEX: &str = "\
@@ -13,8 +13,13 @@ const HEX: &str = "\
 :0400100001020304E2\n\
 :00000001FF\n";
 
+/// Address of the robot in flash.
+const ROBOT_START: usize = 0x6e00;
+/// Address of the boot loader, where the space of the robot ends.
+const BOOT_LOADER_START: usize = 0x7e00;
+
 #[test]
-fn without_a_board_and_without_a_firmware_built_it_gets_as_far_as_the_port() {
+fn flash_needs_no_built_firmware_and_fails_only_at_the_missing_port() {
     let folder = tempfile::tempdir().expect("a folder");
     for options in [&[][..], &["--only-robot"], &["--robot", "large"]] {
         let arguments = [&["flash", "/dev/no-such-port"], options].concat();
@@ -39,34 +44,34 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
             "{:?}",
             start.elapsed()
         );
-        assert_eq!(outcome.err, "");
+        assert_eq!(outcome.stderr, "");
         let output = outcome.expect_success();
         assert!(
             output.starts_with("x.hex: ") && output.contains(&format!("robot {name} ")),
             "{output}"
         );
-        let text = fs::read_to_string(folder.path().join("x.hex")).expect("it is written");
+        let text = fs::read_to_string(folder.path().join("x.hex")).expect("a file");
         let pipe_arguments = [&["flash", "image", "--robot", name], options].concat();
         let piped_text = run_in(folder.path(), &pipe_arguments, "").expect_success();
-        assert!(piped_text == text, "the same goes to a pipe");
-        // Read by the simulator's loader, not by the code that wrote it.
-        let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
-        let robot = Robot::load(robot(name)).expect("it is right");
+        assert!(piped_text == text, "a pipe gets another image");
+        // The simulator's loader reads the file, not the code that wrote it.
+        let image = simulated_uno::Image::parse_hex(&text).expect("Intel HEX");
+        let robot = Robot::load(robot_path(name)).expect("a robot");
         let flash = image.flash();
-        assert!(flash[0x6e00..] == robot.section());
+        assert!(flash[ROBOT_START..] == robot.section());
         let is_code = flash[..2] == [0x0c, 0x94];
-        assert_eq!(is_code, options.is_empty(), "a jump, where the chip starts");
+        assert_eq!(is_code, options.is_empty(), "a jump at the reset vector");
     }
 }
 
 #[test]
-fn a_script_reads_what_an_image_has() {
+fn a_script_reads_the_content_of_an_image_as_json() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
     let summary =
         run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_success();
-    let summary: serde_json::Value = serde_json::from_str(&summary).expect("it is JSON");
-    let robot = Robot::load(robot("large")).expect("it is right");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    let robot = Robot::load(robot_path("large")).expect("a robot");
     let hash = robot.firmware().hash();
     assert_eq!(
         summary,
@@ -75,7 +80,7 @@ fn a_script_reads_what_an_image_has() {
             "firmware": env!("CARGO_PKG_VERSION"),
             "robot": { "name": "large", "hash": format!("{hash:08x}") },
             "robot_bytes": robot.section().len(),
-            "robot_space": 0x7e00 - 0x6e00,
+            "robot_space": BOOT_LOADER_START - ROBOT_START,
         })
     );
     let refusal = run_in(folder.path(), &["flash", "image", "--json"], "").expect_refusal();

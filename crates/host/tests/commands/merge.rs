@@ -1,17 +1,17 @@
 //! Long computations that are split into parts: independent processes compute the parts, and `lizard merge` prints
-//! what one process alone would print. `make parallel-test` tests this with GNU parallel and commands that take
-//! longer.
+//! the output of one process that computes all. `make parallel-test` tests this with GNU parallel and longer commands.
 
-use crate::program::{lizard, paper};
+use crate::program::{run_line, with_paper};
 
 fn refusal_of(arguments: &str, input: &str) -> String {
-    lizard(arguments, input).expect_refusal()
+    run_line(arguments, input).expect_refusal()
 }
 
 /// Computes all parts and returns their output, the last part first.
-fn parts_of(arguments: &str, part_count: usize) -> String {
-    let output_of_part =
-        |number| lizard(&format!("{arguments} --part {number}/{part_count}"), "").expect_success();
+fn compute_parts(arguments: &str, part_count: usize) -> String {
+    let output_of_part = |number| {
+        run_line(&format!("{arguments} --part {number}/{part_count}"), "").expect_success()
+    };
     (1..=part_count).rev().map(output_of_part).collect()
 }
 
@@ -24,30 +24,32 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
         // More parts than there are items to compute.
         ("design --search --step 0.1 --top 3 --json", 5),
     ] {
-        let arguments = paper(arguments);
-        let whole_output = lizard(&arguments, "").expect_success();
+        let arguments = with_paper(arguments);
+        let whole_output = run_line(&arguments, "").expect_success();
         assert!(whole_output.len() > 100, "{arguments}: {whole_output}");
-        let merged_output = lizard("merge", parts_of(&arguments, part_count)).expect_success();
+        let merged_output =
+            run_line("merge", compute_parts(&arguments, part_count)).expect_success();
         assert_eq!(merged_output, whole_output, "{arguments}");
     }
 }
 
 #[test]
 fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
-    let arguments = paper("design --search --step 0.1");
-    let parts = parts_of(&arguments, 2);
+    let arguments = with_paper("design --search --step 0.1");
+    let parts = compute_parts(&arguments, 2);
     let (last_part, first_part) = parts.split_once('\n').expect("two lines");
     assert_eq!(
         refusal_of("merge", last_part),
         "lizard: part 1/2 is missing"
     );
     let other_robot = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
-    let other_robot = lizard(other_robot, "").expect_success();
+    let other_robot = run_line(other_robot, "").expect_success();
     assert_eq!(
         refusal_of("merge", &format!("{last_part}\n{other_robot}")),
         "lizard: part 1/2 has a different robot from another part"
     );
-    let other_step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").expect_success();
+    let other_step =
+        run_line(&with_paper("design --search --step 0.2 --part 1/2"), "").expect_success();
     assert!(
         refusal_of("merge", &format!("{last_part}\n{other_step}")).contains("different options")
     );
@@ -69,6 +71,6 @@ fn a_part_needs_a_valid_number_and_a_command_that_can_be_split() {
         message.contains("it must be as 2/8, from 1/8 to 8/8"),
         "{message}"
     );
-    let message = refusal_of(&paper("design --part 1/2"), "");
+    let message = refusal_of(&with_paper("design --part 1/2"), "");
     assert!(message.contains("--part goes with --search"), "{message}");
 }

@@ -1,13 +1,13 @@
-//! `lizard model` as its user runs it.
+//! Tests of `lizard model` as a user runs it.
 
 use std::fs;
 use std::path::PathBuf;
 
-use crate::program::{run, scratch};
+use crate::program::{run, scratch_folder};
 
 /// Returns a path at which no file exists.
 fn fresh_path(name: &str) -> PathBuf {
-    let file = scratch().join(name);
+    let file = scratch_folder().join(name);
     let _ = fs::remove_file(&file);
     file
 }
@@ -26,7 +26,7 @@ fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
         assert_eq!(text.matches(fragment).count(), 1, "{fragment}");
     }
     assert!(text.ends_with("</mujoco>\n"));
-    assert_eq!(text.matches("<key ").count(), 1, "nobody asked for a gait");
+    assert_eq!(text.matches("<key ").count(), 1, "only the home pose");
     assert!(text.contains("<key name=\"home\""));
 }
 
@@ -43,21 +43,21 @@ fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
     let path = file.display().to_string();
     let refusal_of =
         |arguments: &[&str]| run(&[&["model", &path], arguments].concat()).expect_refusal();
-    let wolk_message = refusal_of(&["--drive", "wolk"]);
+    let unknown_gait_message = refusal_of(&["--drive", "wolk"]);
     assert!(
-        wolk_message.contains("robot.toml has no gait `wolk`"),
-        "{wolk_message}"
+        unknown_gait_message.contains("robot.toml has no gait `wolk`"),
+        "{unknown_gait_message}"
     );
     assert!(
-        wolk_message.ends_with("did you mean `walk`?"),
-        "{wolk_message}"
+        unknown_gait_message.ends_with("did you mean `walk`?"),
+        "{unknown_gait_message}"
     );
     let stand_message = refusal_of(&["--drive", "stand"]);
     assert_eq!(stand_message, "lizard: the gait `stand` moves no servo");
-    let far_message = refusal_of(&["--long-foot", "LF=5.1"]);
+    let long_foot_message = refusal_of(&["--long-foot", "LF=5.1"]);
     assert!(
-        far_message.contains("at most 5 mm either way"),
-        "{far_message}"
+        long_foot_message.contains("at most 5 mm either way"),
+        "{long_foot_message}"
     );
     let twice_message = refusal_of(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
     assert_eq!(twice_message, "lizard: --long-foot LF is given twice");

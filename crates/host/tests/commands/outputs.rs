@@ -1,4 +1,4 @@
-//! The files that commands write: what they never replace, and what a killed command leaves.
+//! Tests of the files that commands write: no input is overwritten, and a killed command leaves no file.
 
 use std::fs;
 use std::path::Path;
@@ -6,17 +6,17 @@ use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-use crate::program::{Outcome, read, run_in};
+use crate::program::{Outcome, read_file, run_in};
 
-fn run_line(folder: &Path, line: &str) -> Outcome {
+fn run_line_in(folder: &Path, line: &str) -> Outcome {
     run_in(folder, &line.split(' ').collect::<Vec<_>>(), "")
 }
 
 #[test]
-fn no_command_writes_over_its_input_or_over_a_robot() {
+fn no_command_overwrites_its_input_or_a_robot_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder_path = folder.path();
-    let robot = &read("robots/paper.toml");
+    let robot = &read_file("robots/paper.toml");
     let session =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
     let files = [
@@ -27,7 +27,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("a.txt", "500 walk\n"),
     ];
     for (name, text) in files {
-        fs::write(folder_path.join(name), text).expect("it is written");
+        fs::write(folder_path.join(name), text).expect("a file");
     }
     fs::create_dir(folder_path.join("charts")).expect("a folder");
     fs::hard_link(
@@ -57,8 +57,10 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
     ] {
         fs::create_dir_all(folder_path.join("x")).expect("a folder");
         let Outcome {
-            code, err: error, ..
-        } = run_line(folder_path, line);
+            code,
+            stderr: error,
+            ..
+        } = run_line_in(folder_path, line);
         assert_eq!(code, Some(2), "{line}: {error}");
         assert!(
             error.contains(file) && error.contains("; name another file for the output"),
@@ -66,47 +68,47 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         );
     }
     for (name, text) in files {
-        let current_text = fs::read_to_string(folder_path.join(name)).expect("it is there");
+        let current_text = fs::read_to_string(folder_path.join(name)).expect("a file");
         assert!(current_text == text, "{name} has changed");
     }
     assert!(!folder_path.join("my-meshes").exists());
 }
 
 #[test]
-fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
+fn a_new_robot_file_has_a_gait_and_replaces_no_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder_path = folder.path();
-    let output = run_line(folder_path, "new my.toml").expect_success();
+    let output = run_line_in(folder_path, "new my.toml").expect_success();
     assert!(output.contains("lizard gaits --robot my.toml"), "{output}");
     let file = folder_path.join("my.toml");
-    let text = fs::read_to_string(&file).expect("it is written");
+    let text = fs::read_to_string(&file).expect("a file");
     assert!(
         text.contains("\n[gait.walk]\n") && text.contains("# "),
         "{text}"
     );
-    run_line(folder_path, "gaits --robot my.toml").expect_success();
-    fs::write(&file, "mine").expect("it is written");
-    let refusal = run_line(folder_path, "new my.toml").expect_refusal();
+    run_line_in(folder_path, "gaits --robot my.toml").expect_success();
+    fs::write(&file, "mine").expect("a file");
+    let refusal = run_line_in(folder_path, "new my.toml").expect_refusal();
     assert_eq!(
         refusal,
         "lizard: my.toml already exists and is left as it is; name a new file"
     );
-    assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
-    let outcome = run_line(folder_path, "new no/folder/my.toml");
-    assert_eq!(outcome.code, Some(1), "{}", outcome.err);
+    assert_eq!(fs::read_to_string(&file).expect("a file"), "mine");
+    let outcome = run_line_in(folder_path, "new no/folder/my.toml");
+    assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
 }
 
 #[test]
-fn an_image_makes_the_folders_that_it_needs() {
+fn flash_image_creates_the_folders_of_its_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = "flash image --robot large --output new/folder/x.hex";
-    run_line(folder.path(), line).expect_success();
+    run_line_in(folder.path(), line).expect_success();
     assert!(folder.path().join("new/folder/x.hex").is_file());
 }
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_command_that_is_killed_while_it_writes_leaves_nothing() {
+fn a_command_that_is_killed_while_it_writes_leaves_no_file() {
     let folder = tempfile::tempdir().expect("a folder");
     // The system kills a program that writes more than 8 KiB into a file.
     let line = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";

@@ -1,33 +1,33 @@
-//! `lizard parts` as its user runs it.
+//! Tests of `lizard parts` as a user runs it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::program::{Outcome, read, robot, run, scratch};
+use crate::program::{Outcome, read_file, robot_path, run, scratch_folder};
 
-fn make(folder: &Path, arguments: &[&str]) -> Outcome {
+fn make_parts(folder: &Path, arguments: &[&str]) -> Outcome {
     let folder = folder.display().to_string();
     run(&[&["parts", &folder], arguments].concat())
 }
 
 /// Returns a path at which no folder exists.
 fn fresh_path(name: &str) -> PathBuf {
-    let folder = scratch().join(name);
+    let folder = scratch_folder().join(name);
     let _ = fs::remove_dir_all(&folder);
     folder
 }
 
-/// Writes the paper's robot with changes to a file of this name and returns its path.
+/// Writes a changed copy of the paper's robot to a file of this name, and returns its path.
 fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String {
-    let file = scratch().join(name);
-    fs::write(&file, change(read("robots/paper.toml"))).expect("a file");
+    let file = scratch_folder().join(name);
+    fs::write(&file, change(read_file("robots/paper.toml"))).expect("a file");
     file.display().to_string()
 }
 
 #[test]
 fn a_folder_holds_everything_to_build_the_robot() {
     let folder = fresh_path("parts-all");
-    make(&folder, &["--robot", &robot("paper")]).expect_success();
+    make_parts(&folder, &["--robot", &robot_path("paper")]).expect_success();
     for file in [
         "step/plate.step",
         "stl/link-A1-A3.stl",
@@ -66,7 +66,11 @@ fn a_folder_holds_everything_to_build_the_robot() {
 #[test]
 fn one_corner_can_be_printed_first() {
     let folder = fresh_path("parts-corner");
-    let list = make(&folder, &["--robot", &robot("paper"), "--corner", "--json"]).json();
+    let list = make_parts(
+        &folder,
+        &["--robot", &robot_path("paper"), "--corner", "--json"],
+    )
+    .expect_json();
     let list = list.as_array().expect("a list");
     let names: Vec<_> = list
         .iter()
@@ -97,14 +101,14 @@ fn a_wrong_weight_is_reported_with_the_right_one() {
         text.replace("mass = 435.0", "mass = 280.0")
     });
     let summary_of =
-        |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
+        |robot: &str| make_parts(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
     let light_summary = summary_of(&light_robot);
     assert!(
         light_summary.contains("The parts weigh 435 g")
             && light_summary.ends_with("\n[body]\nmass = 435.0\n"),
         "{light_summary}"
     );
-    assert_eq!(summary_of(&robot("paper")).lines().count(), 1);
+    assert_eq!(summary_of(&robot_path("paper")).lines().count(), 1);
 }
 
 #[test]
@@ -113,7 +117,7 @@ fn struts_may_have_springs() {
     let robot = write_changed_paper("strut.toml", |text| {
         text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
     });
-    make(&folder, &["--robot", &robot]).expect_success();
+    make_parts(&folder, &["--robot", &robot]).expect_success();
     for file in [
         "stl/rigid-strut.stl",
         "cut/rigid-strut.dxf",
@@ -135,12 +139,12 @@ fn struts_may_have_springs() {
 }
 
 #[test]
-fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
+fn a_robot_whose_parts_overlap_is_refused_and_nothing_is_written() {
     let folder = fresh_path("parts-refused");
     let robot = write_changed_paper("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
-    let outcome = make(&folder, &["--robot", &robot]);
+    let outcome = make_parts(&folder, &["--robot", &robot]);
     assert_eq!(outcome.code, Some(1));
-    let message = outcome.err;
+    let message = outcome.stderr;
     assert!(
         message.contains(" overlap by ") && message.contains(" at pose "),
         "{message}"

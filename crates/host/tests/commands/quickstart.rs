@@ -1,10 +1,9 @@
-//! docs/quickstart.md shows the firmware's real answers to the lines that it tells the reader to
-//! type.
+//! Tests that docs/quickstart.md shows the firmware's real answers to the lines of its examples.
 
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::Robot;
 
-use crate::program::read;
+use crate::program::read_file;
 
 /// The paper's robot on a 5 V supply, with an EEPROM that was never written.
 struct Board {
@@ -13,7 +12,7 @@ struct Board {
 
 impl Board {
     fn new() -> Self {
-        let robot = Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
+        let robot = Robot::parse(&read_file("robots/paper.toml")).expect("robots/paper.toml");
         Self {
             running: RunningRobot::power_on(*robot.firmware()),
         }
@@ -24,8 +23,8 @@ impl Board {
         self.running.run_frames(frames)
     }
 
-    /// Sends a line and returns the lines that the board prints in the next 100 frames, in which
-    /// all motion ends.
+    /// Sends a line and returns the lines that the board prints in the next 100 frames; by then
+    /// all motion has ended.
     fn send(&mut self, line: &str) -> Vec<String> {
         let mut answer = self.running.send(format!("{line}\r").as_bytes());
         answer.extend(self.run(100));
@@ -33,8 +32,8 @@ impl Board {
     }
 }
 
-/// True if a line is as the page shows it; a shown line that ends in `...` is compared only up
-/// to there.
+/// True if a line is as the page shows it; the `...` at the end of a page's line stands for any
+/// text.
 fn matches_page(line: &str, page_line: &str) -> bool {
     page_line
         .strip_suffix("...")
@@ -42,18 +41,20 @@ fn matches_page(line: &str, page_line: &str) -> bool {
 }
 
 #[test]
-fn every_line_of_the_quickstart_is_answered_as_it_shows() {
-    let page = read("docs/quickstart.md");
+fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
+    let page = read_file("docs/quickstart.md");
     let mut board = Board::new();
     let greeting = board.run(50);
+    // The first line is the banner, which the page shortens.
+    assert!(greeting.len() > 1, "{greeting:?}");
     for line in &greeting[1..] {
         assert!(page.contains(line), "{line}");
     }
     let mut line_count = 0;
     for block in page.split("```text\n").skip(1) {
         let block = block.split("```").next().expect("a closed block");
-        for turn in block.split("> ").skip(1) {
-            let mut page_lines = turn.lines();
+        for exchange in block.split("> ").skip(1) {
+            let mut page_lines = exchange.lines();
             let line = page_lines.next().expect("a line");
             let page_lines: Vec<&str> = page_lines.collect();
             let answer = board.send(line);
@@ -73,10 +74,10 @@ fn every_line_of_the_quickstart_is_answered_as_it_shows() {
 }
 
 #[test]
-fn every_message_in_the_table_of_troubles_is_one_of_the_firmware() {
+fn every_message_in_the_troubleshooting_table_is_one_of_the_firmware() {
     let (page, messages) = (
-        read("docs/quickstart.md"),
-        read("crates/core/src/console/text.rs"),
+        read_file("docs/quickstart.md"),
+        read_file("crates/core/src/console/text.rs"),
     );
     let (_, table) = page.split_once("## Troubleshooting").expect("a table");
     let mut codes = [false; 10];

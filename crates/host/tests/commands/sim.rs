@@ -1,6 +1,6 @@
-//! `lizard sim` and `lizard draw` on wrong input, and the picture in docs/.
+//! Tests of `lizard sim` and `lizard draw`: wrong input, inputs of a routine, and the picture in docs/.
 
-use crate::program::{read, robot, run, scratch};
+use crate::program::{read_file, robot_path, run, scratch_folder};
 
 fn refusal_of(arguments: &[&str]) -> String {
     run(arguments).expect_refusal()
@@ -30,7 +30,7 @@ fn a_file_that_is_not_firmware_is_refused() {
 
 #[test]
 fn a_wrong_script_names_file_and_line() {
-    let path = scratch().join("wrong-script.txt");
+    let path = scratch_folder().join("wrong-script.txt");
     std::fs::write(&path, "100 walk\nsoon stop\n").expect("the script is written");
     let path = path.display().to_string();
     let message = refusal_of(&["sim", "--script", &path]);
@@ -53,7 +53,7 @@ fn a_script_that_never_ends_is_refused() {
 
 #[test]
 fn an_unknown_gait_lists_those_of_the_paper_robot() {
-    let message = refusal_of(&["sim", "--robot", &robot("paper"), "--gait", "gallop"]);
+    let message = refusal_of(&["sim", "--robot", &robot_path("paper"), "--gait", "gallop"]);
     assert!(
         message.contains("no gait `gallop`; it has stand, walk, trot"),
         "{message}"
@@ -61,35 +61,34 @@ fn an_unknown_gait_lists_those_of_the_paper_robot() {
 }
 
 #[test]
-fn a_routine_goes_on_at_the_presses_of_its_inputs_and_the_core_agrees() {
-    let (robot_path, script) = (scratch().join("patrol.toml"), scratch().join("patrol.txt"));
-    let gaits = read("docs/gaits.md");
+fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
+    let [patrol_path, script, svg] = ["patrol.toml", "patrol.txt", "patrol.svg"]
+        .map(|name| scratch_folder().join(name).display().to_string());
+    let gaits = read_file("docs/gaits.md");
     let patrol = gaits
         .split("```toml\n")
         .find(|block| block.starts_with("[input.button]"));
     let patrol = patrol
         .and_then(|block| block.split("```").next())
-        .expect("it is there");
-    let text = format!("{}\n{patrol}", read("robots/paper.toml"));
-    std::fs::write(&robot_path, text).expect("the robot is written");
+        .expect("a patrol");
+    let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
+    std::fs::write(&patrol_path, text).expect("the robot is written");
     std::fs::write(&script, "1000 patrol\n").expect("the script is written");
-    let [robot_path, script] = [robot_path, script].map(|path| path.display().to_string());
     let arguments = [
         "sim",
         "--json",
         "--robot",
-        &robot_path,
+        &patrol_path,
         "--script",
         &script,
+        "--svg",
+        &svg,
         "--duration=5",
     ];
-    let svg_option =
-        ["--svg", &scratch().join("patrol.svg").display().to_string()].map(str::to_owned);
-    let play = |presses: &[&str]| {
+    let simulate = |presses: &[&str]| {
         let mut all_arguments = arguments.to_vec();
-        all_arguments.extend(svg_option.iter().map(String::as_str));
         all_arguments.extend(presses.iter().flat_map(|press| ["--press", press]));
-        run(&all_arguments).json()
+        run(&all_arguments).expect_json()
     };
     let wait_times_ms_of = |report: &serde_json::Value, input: &str| -> Vec<f64> {
         let lines = report["dialogue"].as_array().expect("lines");
@@ -99,7 +98,7 @@ fn a_routine_goes_on_at_the_presses_of_its_inputs_and_the_core_agrees() {
             .map(|line| line["ms"].as_f64().expect("a time"))
             .collect()
     };
-    let pressed_report = play(&["button@2", "nose@3-3.5"]);
+    let pressed_report = simulate(&["button@2", "nose@3-3.5"]);
     let wait_starts_ms = wait_times_ms_of(&pressed_report, "nose");
     assert!(
         matches!(wait_starts_ms[..], [start_ms] if (2_040.0..2_100.0).contains(&start_ms)),
@@ -110,7 +109,7 @@ fn a_routine_goes_on_at_the_presses_of_its_inputs_and_the_core_agrees() {
         "{}",
         pressed_report["servos"]
     );
-    let report_without_presses = play(&[]);
+    let report_without_presses = simulate(&[]);
     assert_eq!(
         (
             wait_times_ms_of(&report_without_presses, "button").len(),
@@ -118,7 +117,7 @@ fn a_routine_goes_on_at_the_presses_of_its_inputs_and_the_core_agrees() {
         ),
         (1, 0)
     );
-    let message = refusal_of(&["sim", "--robot", &robot("paper"), "--press", "nose@1"]);
+    let message = refusal_of(&["sim", "--robot", &robot_path("paper"), "--press", "nose@1"]);
     assert_eq!(
         message,
         "lizard: robot.toml has no [input.nose] for --press"
@@ -138,6 +137,6 @@ fn times_out_of_range_are_refused() {
 
 #[test]
 fn the_picture_in_docs_is_up_to_date() {
-    let picture = run(&["draw", "--robot", &robot("paper")]).expect_success();
-    assert!(read("docs/lizard.svg") == picture, "run `make docs`");
+    let picture = run(&["draw", "--robot", &robot_path("paper")]).expect_success();
+    assert!(read_file("docs/lizard.svg") == picture, "run `make docs`");
 }

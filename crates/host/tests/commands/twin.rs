@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use crate::program::{RobotFile, lizard, paper, read};
+use crate::program::{RobotFile, read_file, run_line, with_paper};
 
 /// Runs a command and returns the printed JSON object in which `key` is `name`.
 fn find_object(line: &str, key: &str, name: &str) -> Value {
-    let output = lizard(line, "").expect_success();
+    let output = run_line(line, "").expect_success();
     let mut objects = output
         .lines()
         .map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
@@ -14,40 +14,44 @@ fn find_object(line: &str, key: &str, name: &str) -> Value {
 }
 
 #[test]
-fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
+fn a_round_of_a_routine_moves_the_robot_as_lizard_gaits_predicts_for_the_same_servos() {
     const ROUTINES: &str = "[routine.tour]\nsteps = [\"walk 2\", \"rest 1 s\", \"left 2\", \"trot 1\", \"arc-left 2\"]\n\
          [routine.gaze]\nsteps = [\"look 1\"]\n[gait.stand]";
-    let robot = RobotFile::with("routines", &[("[gait.stand]", ROUTINES)]);
+    let robot = RobotFile::from_paper("routines", &[("[gait.stand]", ROUTINES)]);
     let run_twin = |routine: &str, servo: &str| {
         let line = format!("twin --json --gait {routine} --servo {servo}");
-        find_object(&robot.add_to(&line), "command", &format!("{routine} 1"))
+        find_object(
+            &robot.add_option_to(&line),
+            "command",
+            &format!("{routine} 1"),
+        )
     };
-    let tour = find_object(&robot.add_to("gaits --json"), "routine", "tour");
+    let tour = find_object(&robot.add_option_to("gaits --json"), "routine", "tour");
     let component_of = |path: &Value, name: &str| path[name].as_f64().expect(name);
-    for (servo, key) in [("own", "by_servos"), ("ideal", "predicted")] {
-        let walk_report = run_twin("tour", servo);
-        assert_eq!(walk_report["round"], tour[key], "{servo}");
+    for (servo, prediction) in [("own", "by_servos"), ("ideal", "predicted")] {
+        let report = run_twin("tour", servo);
+        assert_eq!(report["round"], tour[prediction], "{servo}");
         for name in ["forward", "left", "turn"] {
-            let error = component_of(&walk_report["way"], name) - component_of(&tour[key], name);
+            let error = component_of(&report["way"], name) - component_of(&tour[prediction], name);
             assert!(error.abs() < 0.2, "{servo}, {name}: {error}");
         }
     }
-    let lost_deg =
+    let lost_turn_deg =
         component_of(&tour["predicted"], "turn") - component_of(&tour["by_servos"], "turn");
     assert!(
-        lost_deg > 1.0,
-        "servos with a mass to turn lose some: {lost_deg}"
+        lost_turn_deg > 1.0,
+        "real servos turn the robot less than ideal servos: {lost_turn_deg}"
     );
-    // Two feet pull against the other two. Then the distance is not determined, so neither command may state one.
-    let gaze = find_object(&robot.add_to("gaits --json"), "routine", "gaze");
+    // Two feet pull against the other two, so the distance is undetermined, and neither command may state a distance.
+    let gaze = find_object(&robot.add_option_to("gaits --json"), "routine", "gaze");
     for path in [&run_twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
     }
 }
 
 #[test]
-fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
-    let page = read("docs/gaits.md");
+fn the_firmware_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
+    let page = read_file("docs/gaits.md");
     for (name, servo, friction, is_fast) in [
         ("SG-90", "model = \"SG-90\"", "0.7", true),
         (
@@ -62,8 +66,8 @@ fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         let servo = format!("[servo]\n{servo}\n[servo.A1]");
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
-        let robot = RobotFile::changed("robots/grain.toml", "grain", &changes);
-        let output = lizard(&robot.add_to("twin --json"), "").expect_success();
+        let robot = RobotFile::from_file("robots/grain.toml", "grain", &changes);
+        let output = run_line(&robot.add_option_to("twin --json"), "").expect_success();
         let figure_of = |gait: &str, pointer: &str| {
             let mut lines = output.lines().flat_map(serde_json::from_str::<Value>);
             let line = lines.find(|line| line["command"] == gait);
@@ -96,7 +100,7 @@ fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
         ),
         ("stand", "lizard: the gait `stand` moves no servo"),
     ] {
-        let line = paper(&format!("twin --gait {gait}"));
-        assert_eq!(lizard(&line, "").expect_refusal(), expected);
+        let line = with_paper(&format!("twin --gait {gait}"));
+        assert_eq!(run_line(&line, "").expect_refusal(), expected);
     }
 }

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-use crate::program::{robot, root, run, scratch};
+use crate::program::{repo_root, robot_path, run, scratch_folder};
 
 fn output_of(arguments: &[&str]) -> String {
     run(arguments).expect_success()
@@ -16,15 +16,15 @@ fn refusal_of(arguments: &[&str]) -> String {
 }
 
 /// The first words of the lines under a heading of `lizard --help`.
-fn words_under(help: &str, heading: &str) -> Vec<String> {
+fn first_words_under(help: &str, heading: &str) -> Vec<String> {
     let (_, rest) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
-    let (section, _) = rest.split_once("\n\n").expect("a section ends");
+    let (section, _) = rest.split_once("\n\n").expect("the section's end");
     let first_word_of = |line: &str| line.split_whitespace().next().expect("a word").to_owned();
     section.lines().map(first_word_of).collect()
 }
 
 #[test]
-fn help_groups_all_commands_by_purpose_with_the_owners_first() {
+fn help_groups_all_commands_by_purpose_with_those_of_an_owner_first() {
     let help = output_of(&["--help"]);
     let headings = [
         "Drive the robot",
@@ -40,10 +40,10 @@ fn help_groups_all_commands_by_purpose_with_the_owners_first() {
     assert!(help.contains("\n  merge, completions\n"), "{help}");
     let command_counts = headings[..5]
         .iter()
-        .map(|heading| words_under(&help, heading).len());
+        .map(|heading| first_words_under(&help, heading).len());
     // Two more commands, `merge` and `completions`, are for scripts.
     assert!(command_counts.sum::<usize>() + 2 <= 20, "{help}");
-    assert!(words_under(&help, "Drive the robot").contains(&"console".to_owned()));
+    assert!(first_words_under(&help, "Drive the robot").contains(&"console".to_owned()));
     assert_eq!(output_of(&["help"]), help);
 }
 
@@ -76,13 +76,13 @@ fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
         ("man --help", "completions man --help"),
     ] {
         let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
-        assert!(old.out == new.out, "{old:?}");
-        let note = old.err;
+        assert!(old.stdout == new.stdout, "{old:?}");
+        let note = old.stderr;
         assert!(
             note.contains("` now; the next version will not know"),
             "{note}"
         );
-        assert_eq!(new.err, "");
+        assert_eq!(new.stderr, "");
     }
     let message = refusal_of(&["spring", "--wire", "0.6"]);
     assert!(
@@ -96,7 +96,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
     let long_word = "x".repeat(20_000);
     let folder = tempfile::tempdir().expect("a folder");
     let robot = folder.path().join("x.toml");
-    std::fs::write(&robot, format!("name = {long_word}\n")).expect("it is written");
+    std::fs::write(&robot, format!("name = {long_word}\n")).expect("a file");
     let robot = robot.display().to_string();
     for arguments in [
         &[long_word.as_str()][..],
@@ -114,7 +114,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
 
 #[test]
 fn a_mistyped_word_is_answered_with_a_suggestion() {
-    let paper = &robot("paper");
+    let paper = &robot_path("paper");
     for (arguments, expected) in [
         (&["claibrate"][..], "'calibrate'"),
         (&["sim", "--durration", "5"], "'--duration'"),
@@ -165,8 +165,8 @@ fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String
 #[test]
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
-    let script = scratch().join("lizard.bash");
-    std::fs::write(&script, output_of(&["completions", "bash"])).expect("it is written");
+    let script = scratch_folder().join("lizard.bash");
+    std::fs::write(&script, output_of(&["completions", "bash"])).expect("a file");
     assert_eq!(bash_completions(&script, "lizard calib", 1), ["calibrate"]);
     assert_eq!(
         bash_completions(&script, "lizard twin --ro", 2),
@@ -178,7 +178,7 @@ fn bash_completes_commands_and_options() {
     );
     let robots = bash_completions(&script, "lizard gaits --robot la", 3);
     assert_eq!(robots, ["large"]);
-    let root = root().display().to_string();
+    let root = repo_root().display().to_string();
     let files = bash_completions(&script, &format!("lizard gaits --robot {root}/rob"), 3);
     assert_eq!(
         files,
@@ -208,9 +208,9 @@ fn every_command_has_a_manual_page_that_names_its_options() {
         "Build it",
         "The paper, computed",
     ] {
-        for name in words_under(&help, heading) {
+        for name in first_words_under(&help, heading) {
             let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
-            let page = page.expect("it is there");
+            let page = page.expect("a manual page");
             assert!(page.contains(&format!(".TH lizard-{name} 1")), "{page}");
             // In a manual page a hyphen that is to be typed is written `\-`.
             assert!(page.contains(r"\-\-help"), "{page}");
@@ -224,7 +224,7 @@ fn every_command_has_a_manual_page_that_names_its_options() {
         );
     }
     assert!(count > 13, "{count}");
-    let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("it is there");
+    let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("a file");
     assert!(main_page.contains("lizard\\-console(1)"), "{main_page}");
 }
 

@@ -1,17 +1,17 @@
-//! Scripts sent by radio, at a port that does not reset the board.
+//! Tests of scripts that are sent by radio, through a port that does not reset the board.
 
 use lizard_time_limit::LIMIT;
 
 use crate::fixture::{Uno, moving_gait, run};
 
 #[test]
-fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
+fn a_script_by_radio_uses_deadman_so_the_robot_stops_when_the_script_ends() {
     let folder = tempfile::tempdir().expect("a folder");
-    let uno = Uno::by_radio(folder.path());
+    let uno = Uno::start_by_radio(folder.path());
     // The radio loses lines, so the script is repeated until all answers have come.
     let send_script = |lines: &str, expected: &[&str]| {
         let mut text = String::new();
-        LIMIT.expect("the script to be heard", || {
+        LIMIT.expect("all answers to the script", || {
             // Longer than the `deadman` time, so that the robot stops.
             std::thread::sleep(std::time::Duration::from_millis(1_500));
             text = run(folder.path(), &["console", &uno.port()], lines).0;

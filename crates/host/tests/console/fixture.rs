@@ -13,15 +13,15 @@ use lizard_time_limit::LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-/// The robot file of the simulated board, found as in the other tests: the file that
-/// `LIZARD_ROBOT` names, relative to the root of the project, or robot.toml.
+/// The path of the simulated board's robot, as in the other tests: that in `LIZARD_ROBOT`,
+/// relative to the repository's root, or robot.toml.
 fn robot_path() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let environment_path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
     root.join(environment_path.unwrap_or_else(|| "robot.toml".into()))
 }
 
-pub fn lizard(folder: &Path, arguments: &[&str]) -> Command {
+pub fn lizard_command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(arguments);
     if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
@@ -41,7 +41,7 @@ pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, O
         stdout,
         stderr,
     } = LIMIT
-        .output(&mut lizard(folder, arguments), input.as_bytes())
+        .output(&mut lizard_command(folder, arguments), input.as_bytes())
         .expect("the program ends");
     let text_of = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
     (text_of(stdout), text_of(stderr), status.code())
@@ -67,15 +67,15 @@ impl Uno {
         Self::start_with(folder, &[])
     }
 
-    /// A board behind a radio module, which loses a packet now and then.
-    pub fn by_radio(folder: &Path) -> Self {
+    /// Starts a board behind a radio module, which sometimes loses a packet.
+    pub fn start_by_radio(folder: &Path) -> Self {
         Self::start_with(folder, &["--radio", "115200"])
     }
 
     fn start_with(folder: &Path, options: &[&str]) -> Self {
         let link = folder.join("uno");
         let name = link.display().to_string();
-        let child = lizard(folder, &[&["sim", "--pty", &name], options].concat())
+        let child = lizard_command(folder, &[&["sim", "--pty", &name], options].concat())
             .stdout(Stdio::null())
             .spawn()
             .expect("the program starts");
@@ -92,70 +92,71 @@ impl Uno {
     }
 
     fn has_ended(&mut self) -> bool {
-        self.child.try_wait().expect("it is ours").is_some()
+        self.child.try_wait().expect("a child").is_some()
     }
 }
 
 impl Drop for Uno {
     fn drop(&mut self) {
         let _ = self.child.kill();
-        let _ = LIMIT.end_of(&mut self.child);
+        let _ = LIMIT.wait_for_exit(&mut self.child);
         let _ = fs::remove_file(&self.link);
     }
 }
 
 /// Opens a pseudo terminal; returns the test's side, the program's side, and its path.
-pub fn terminal() -> (File, OwnedFd, PathBuf) {
+pub fn open_terminal() -> (File, OwnedFd, PathBuf) {
     let test_side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
     let test_side = test_side.expect("a pseudo terminal");
-    unlockpt(&test_side).expect("it is ours");
-    let path = ptsname(&test_side, Vec::new()).expect("it has a name");
+    unlockpt(&test_side).expect("an unlocked terminal");
+    let path = ptsname(&test_side, Vec::new()).expect("a name");
     let path = PathBuf::from(path.to_string_lossy().into_owned());
     let program_side = File::options()
         .read(true)
         .write(true)
         .open(&path)
-        .expect("it opens");
+        .expect("a terminal");
     (File::from(test_side), program_side.into(), path)
 }
 
 /// Opens a pseudo terminal, 100 columns wide; returns the test's side and the program's
 /// side.
-pub fn wide_terminal() -> (File, OwnedFd) {
-    let (test_side, program_side, _) = terminal();
+pub fn open_wide_terminal() -> (File, OwnedFd) {
+    let (test_side, program_side, _) = open_terminal();
     let size = Winsize {
         ws_row: 30,
         ws_col: 100,
         ws_xpixel: 0,
         ws_ypixel: 0,
     };
-    tcsetwinsize(&program_side, size).expect("it takes a size");
+    tcsetwinsize(&program_side, size).expect("a size");
     (test_side, program_side)
 }
 
-/// A program at a terminal of its own, 100 columns wide.
+/// A program in its own pseudo terminal, 100 columns wide.
 pub struct TerminalSession {
     pub child: Child,
     pub keys: File,
-    seen: Receiver<Vec<u8>>,
-    pub text: String,
+    output: Receiver<Vec<u8>>,
+    /// The output after the text of the last `wait_for`.
+    pub new_text: String,
 }
 
 impl TerminalSession {
     pub fn start(mut command: Command) -> Self {
-        let (test_side, program_side) = wide_terminal();
-        let copy_stdio = || Stdio::from(program_side.try_clone().expect("another of it"));
+        let (test_side, program_side) = open_wide_terminal();
+        let copy_stdio = || Stdio::from(program_side.try_clone().expect("a copy"));
         let child = command
             .stdin(copy_stdio())
             .stdout(copy_stdio())
             .stderr(copy_stdio())
             .spawn()
             .expect("the program starts");
-        let mut screen = test_side.try_clone().expect("another of it");
+        let mut screen_reader = test_side.try_clone().expect("a copy");
         let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {
             let mut bytes = [0; 4096];
-            while let Ok(count @ 1..) = screen.read(&mut bytes) {
+            while let Ok(count @ 1..) = screen_reader.read(&mut bytes) {
                 if sender.send(bytes[..count].to_vec()).is_err() {
                     break;
                 }
@@ -164,73 +165,82 @@ impl TerminalSession {
         Self {
             child,
             keys: test_side,
-            seen: receiver,
-            text: String::new(),
+            output: receiver,
+            new_text: String::new(),
         }
     }
 
     pub fn press(&mut self, keys: &str) {
-        self.keys.write_all(keys.as_bytes()).expect("it takes keys");
+        self.keys.write_all(keys.as_bytes()).expect("keys");
     }
 
     /// Reads the output so far; returns true once the program has closed the terminal.
-    pub fn read(&mut self) -> bool {
+    pub fn read_output(&mut self) -> bool {
         loop {
-            match self.seen.try_recv() {
-                Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
+            match self.output.try_recv() {
+                Ok(bytes) => self.new_text.push_str(&String::from_utf8_lossy(&bytes)),
                 Err(reason) => return reason == TryRecvError::Disconnected,
             }
         }
     }
 
-    /// Waits until the screen shows these words after those of the previous wait. Panics if
+    /// Waits until the program has printed this text after that of the previous wait. Panics if
     /// the program ends first or the time limit passes.
     pub fn wait_for(&mut self, expected: &str) {
         let (mut position, mut has_ended) = (None, false);
         LIMIT.wait_for(|| {
-            has_ended = self.read();
-            position = self.text.find(expected);
+            has_ended = self.read_output();
+            position = self.new_text.find(expected);
             position.is_some() || has_ended
         });
         let Some(start) = position else {
-            panic!("waited up to {LIMIT} for `{expected}`, but {:?}", self.text);
+            panic!(
+                "waited up to {LIMIT} for `{expected}`, but {:?}",
+                self.new_text
+            );
         };
-        self.text.drain(..start + expected.len());
+        self.new_text.drain(..start + expected.len());
     }
 
     pub fn exit_code(mut self) -> Option<i32> {
-        LIMIT.end_of(&mut self.child).expect("it ends").code()
+        LIMIT
+            .wait_for_exit(&mut self.child)
+            .expect("an exit")
+            .code()
     }
 }
 
-/// A device at a pseudo terminal that is not a simulated board; it runs in a thread of its
-/// own.
+/// A device that is not a simulated board; it has a pseudo terminal and its own thread.
 pub struct Device {
     pub port: String,
-    end: mpsc::Sender<()>,
+    stop_sender: mpsc::Sender<()>,
     thread: JoinHandle<()>,
 }
 
 impl Device {
     /// Starts a device that calls `act` repeatedly with its own side of the terminal.
     pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
-        let (mut test_side, program_side, path) = terminal();
-        // Otherwise this test itself would keep the port open.
+        let (mut test_side, program_side, path) = open_terminal();
+        // An open program side would keep the port in use.
         drop(program_side);
-        let (end, end_receiver) = mpsc::channel::<()>();
+        let (stop_sender, stop_receiver) = mpsc::channel::<()>();
         let thread = std::thread::spawn(move || {
             let pause = Duration::from_millis(20);
-            while end_receiver.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+            while stop_receiver.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
                 act(&mut test_side);
             }
         });
         let port = path.display().to_string();
-        Self { port, end, thread }
+        Self {
+            port,
+            stop_sender,
+            thread,
+        }
     }
 
     pub fn stop(self) {
-        drop(self.end);
+        drop(self.stop_sender);
         let join_result = LIMIT.within("the end of the device", || self.thread.join());
-        join_result.expect("it has ended");
+        join_result.expect("no panic");
     }
 }

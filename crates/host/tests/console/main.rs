@@ -1,5 +1,5 @@
-//! `lizard console` and the other commands for a board as a user runs them, with a simulated UNO at a
-//! pseudo terminal. The tests run in real time, so a test takes a few seconds.
+//! Tests of `lizard console` and the other commands for a board as a user runs them, with a simulated
+//! UNO at a pseudo terminal. They run in real time, so each test takes a few seconds.
 #![cfg(target_os = "linux")]
 
 mod by_radio;
@@ -12,7 +12,7 @@ use std::process::{Child, Stdio};
 
 use lizard_time_limit::LIMIT;
 
-use fixture::{Device, TerminalSession, Uno, lizard, moving_gait, run, wide_terminal};
+use fixture::{Device, TerminalSession, Uno, lizard_command, moving_gait, open_wide_terminal, run};
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
@@ -45,17 +45,17 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
 }
 
 #[test]
-fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
+fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_changes_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
     let port = uno.port();
     let (_, error, code) = run(folder_path, &["calibrate", "backup", "a.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
-    let first_text = fs::read_to_string(folder_path.join("a.toml")).expect("it was written");
+    let first_text = fs::read_to_string(folder_path.join("a.toml")).expect("a file");
 
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
-    fs::write(folder_path.join("b.toml"), &changed_text).expect("it is written");
+    fs::write(folder_path.join("b.toml"), &changed_text).expect("a file");
     let (out, error, code) = run(folder_path, &["calibrate", "restore", "b.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     assert!(
@@ -65,7 +65,7 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
 
     let scale_line = first_text.lines().find(|line| line.starts_with("scale = "));
     let refused_text = changed_text.replacen(scale_line.expect("A1 has one"), "scale = 99.0", 1);
-    fs::write(folder_path.join("c.toml"), refused_text).expect("it is written");
+    fs::write(folder_path.join("c.toml"), refused_text).expect("a file");
     let (out, error, code) = run(folder_path, &["calibrate", "restore", "c.toml", &port], "");
     assert_eq!(code, Some(1), "{error}");
     assert!(
@@ -76,15 +76,15 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
 
     let (_, error, code) = run(folder_path, &["calibrate", "backup", "d.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
-    let last_text = fs::read_to_string(folder_path.join("d.toml")).expect("it was written");
+    let last_text = fs::read_to_string(folder_path.join("d.toml")).expect("a file");
     assert_eq!(
         last_text, changed_text,
-        "what was saved last, after a reset"
+        "the saved calibration after a reset"
     );
 }
 
 #[test]
-fn info_says_what_a_board_has_and_leaves_its_settings() {
+fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
@@ -111,10 +111,11 @@ fn info_says_what_a_board_has_and_leaves_its_settings() {
 }
 
 #[test]
-fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
+fn a_session_at_a_terminal_has_line_editing_and_survives_an_unplugged_board() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::start(folder.path());
-    let mut person = TerminalSession::start(lizard(folder.path(), &["console", &uno.port()]));
+    let mut person =
+        TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
     person.wait_for("# lizard ");
     person.wait_for("no fault");
     // Ctrl-A moves to the start of the line, where the forgotten letter is added.
@@ -134,14 +135,14 @@ fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
     person.press("\x04");
     assert_eq!(person.exit_code(), Some(0));
     let history = fs::read_to_string(folder.path().join("lizard/history"));
-    assert_eq!(history.expect("it is kept"), "stop\nstand\n");
+    assert_eq!(history.expect("a history"), "stop\nstand\n");
 }
 
 #[test]
 fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["calibrate", "--sim"];
-    let mut person = TerminalSession::start(lizard(folder.path(), &arguments));
+    let mut person = TerminalSession::start(lizard_command(folder.path(), &arguments));
     person.wait_for("before you begin");
     person.press("\r");
     person.wait_for("fit the horns");
@@ -160,21 +161,21 @@ fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
 fn a_recorded_session_is_drawn_and_summarized() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder_path = folder.path();
-    let mut child = lizard(folder_path, &["console", "--record", "a.jsonl", "--sim"])
+    let mut child = lizard_command(folder_path, &["console", "--record", "a.jsonl", "--sim"])
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");
-    let mut stdin = child.stdin.take().expect("it has an input");
-    stdin.write_all(b"speed 50\nfly\n").expect("it is read");
+    let mut stdin = child.stdin.take().expect("an input");
+    stdin.write_all(b"speed 50\nfly\n").expect("a reader");
     let file = folder_path.join("a.jsonl");
     LIMIT.expect("a refusal and a second of poses in the file", || {
         let recording = fs::read_to_string(&file).unwrap_or_default();
         recording.contains(r#""answer":"err "#) && recording.matches(r#""pose":"#).count() > 50
     });
     drop(stdin);
-    let status = LIMIT.end_of(&mut child).expect("it ends");
+    let status = LIMIT.wait_for_exit(&mut child).expect("an exit");
     assert_eq!(status.code(), Some(1), "a line was refused");
 
     let (out, error, code) = run(
@@ -192,7 +193,7 @@ fn a_recorded_session_is_drawn_and_summarized() {
         "{out}"
     );
     assert!(out.contains("trouble     none\n"), "{out}");
-    let picture = fs::read_to_string(folder_path.join("a.svg")).expect("it was drawn");
+    let picture = fs::read_to_string(folder_path.join("a.svg")).expect("a picture");
     // If the machine pauses for a second, all four curves have a gap.
     let curves = picture.matches("<polyline").count();
     assert!(
@@ -214,7 +215,7 @@ fn a_port_that_another_program_has_open_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::start(folder.path());
     let mut other_session =
-        TerminalSession::start(lizard(folder.path(), &["console", &uno.port()]));
+        TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
     other_session.wait_for("# lizard ");
     let (_, error, code) = run(
         folder.path(),
@@ -229,7 +230,7 @@ fn a_port_that_another_program_has_open_is_refused() {
 }
 
 #[test]
-fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
+fn a_board_that_is_not_a_lizard_is_reported_with_its_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let device = Device::start(|terminal| {
         // Writing fails while no program has the port open.
@@ -272,11 +273,11 @@ fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
 }
 
 #[test]
-fn wrong_input_is_a_message_and_starts_nothing() {
+fn wrong_input_is_refused_with_a_message() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder_path = folder.path();
-    fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("it is written");
-    fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("it is written");
+    fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("a file");
+    fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("a file");
     let refusal_of = |arguments: &[&str]| {
         let (out, error, code) = run(folder_path, arguments, "");
         assert_eq!(out, "");
@@ -315,7 +316,7 @@ fn wrong_input_is_a_message_and_starts_nothing() {
 }
 
 #[test]
-fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
+fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_board() {
     let folder = tempfile::tempdir().expect("a folder");
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other_link).expect("a link");
@@ -327,46 +328,46 @@ fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
     );
     assert_eq!(code, Some(2));
     assert_eq!(
-        fs::read_link(&other_link).expect("it is left"),
+        fs::read_link(&other_link).expect("a link"),
         Path::new("a-file")
     );
 
-    // A killed run leaves such a link behind.
+    // A killed run leaves a broken link behind.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("a link");
     let name = board_link.display().to_string();
-    let mut child = lizard(folder.path(), &["sim", "--pty", &name])
+    let mut child = lizard_command(folder.path(), &["sim", "--pty", &name])
         .stdout(Stdio::null())
         .spawn()
         .expect("the program starts");
     LIMIT.expect("a port at the end of the link", || board_link.exists());
     let id = rustix::process::Pid::from_child(&child);
-    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs");
-    let status = LIMIT.end_of(&mut child).expect("it ends");
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("a process");
+    let status = LIMIT.wait_for_exit(&mut child).expect("an exit");
     let signal = std::os::unix::process::ExitStatusExt::signal(&status);
-    assert_eq!(signal, Some(15), "as it ends without a link");
+    assert_eq!(signal, Some(15), "not ended by SIGTERM");
     assert!(!board_link.is_symlink(), "the link is gone");
 }
 
 #[test]
-fn a_picture_is_not_poured_over_a_terminal() {
+fn a_picture_is_not_printed_to_a_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut person = TerminalSession::start(lizard(folder.path(), &["draw", "--wiring"]));
+    let mut person = TerminalSession::start(lizard_command(folder.path(), &["draw", "--wiring"]));
     person.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
-    assert!(!person.text.contains("<svg"));
+    assert!(!person.new_text.contains("<svg"));
     assert_eq!(person.exit_code(), Some(2));
 }
 
-/// The state of a process, as `ps` prints it: S asleep, R running, T stopped.
-fn state_of(child: &Child) -> char {
-    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("it is there");
-    let (_, rest) = stat.rsplit_once(") ").expect("its name ends");
+/// The state of a process, as `ps` prints it: S for asleep, R for running, T for stopped.
+fn process_state(child: &Child) -> char {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("a process");
+    let (_, rest) = stat.rsplit_once(") ").expect("a process name");
     rest.chars().next().expect("a letter")
 }
 
-/// True if keys come line by line and are echoed, as a shell expects of its terminal.
+/// True if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
 fn is_cooked(terminal: &File) -> bool {
     let modes = rustix::termios::tcgetattr(terminal)
-        .expect("it is a terminal")
+        .expect("a terminal")
         .local_modes;
     modes.contains(rustix::termios::LocalModes::ICANON | rustix::termios::LocalModes::ECHO)
 }
@@ -380,14 +381,14 @@ fn control_z_restores_the_terminal_and_fg_continues() {
         ("console", "no fault", "stop\r", "ok stop"),
         ("calibrate", "before you begin", "\r", "fit the horns"),
     ] {
-        let mut person = TerminalSession::start(lizard(folder.path(), &[command, &port]));
+        let mut person = TerminalSession::start(lizard_command(folder.path(), &[command, &port]));
         person.wait_for(first_text);
         assert!(!is_cooked(&person.keys), "{command}");
         person.press("\x1a");
-        LIMIT.expect("a stopped program", || state_of(&person.child) == 'T');
+        LIMIT.expect("a stopped program", || process_state(&person.child) == 'T');
         assert!(is_cooked(&person.keys), "{command}");
         let id = rustix::process::Pid::from_child(&person.child);
-        rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("it is there");
+        rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("a process");
         LIMIT.expect("keys one by one", || !is_cooked(&person.keys));
         person.press(keys);
         person.wait_for(next_text);
@@ -402,9 +403,9 @@ fn a_program_whose_terminal_is_closed_ends() {
     let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let (mut test_side, program_side) = wide_terminal();
-        let copy_stdio = || Stdio::from(program_side.try_clone().expect("another of it"));
-        let mut child = lizard(folder.path(), &[command, &port])
+        let (mut test_side, program_side) = open_wide_terminal();
+        let copy_stdio = || Stdio::from(program_side.try_clone().expect("a copy"));
+        let mut child = lizard_command(folder.path(), &[command, &port])
             .stdin(copy_stdio())
             .stdout(copy_stdio())
             .stderr(copy_stdio())
@@ -413,15 +414,15 @@ fn a_program_whose_terminal_is_closed_ends() {
         let seen_text = LIMIT.within(first_text, move || {
             let (mut text, mut bytes) = (String::new(), [0; 4096]);
             while !text.contains(first_text) {
-                let count = test_side.read(&mut bytes).expect("it is shown");
+                let count = test_side.read(&mut bytes).expect("output");
                 text.push_str(&String::from_utf8_lossy(&bytes[..count]));
             }
-            // Closes the terminal: no other process has this side of it open.
+            // Closes the terminal: no other process has the test's side open.
             drop(test_side);
             text
         });
         assert!(seen_text.contains(first_text));
-        let status = LIMIT.end_of(&mut child).expect("it ends");
+        let status = LIMIT.wait_for_exit(&mut child).expect("an exit");
         assert_eq!(status.code(), Some(0), "{command}");
     }
 }
@@ -430,7 +431,7 @@ fn a_program_whose_terminal_is_closed_ends() {
 fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["console", "--sim"];
-    let mut person = TerminalSession::start(lizard(folder.path(), &arguments));
+    let mut person = TerminalSession::start(lizard_command(folder.path(), &arguments));
     person.wait_for("no fault");
     let gait = moving_gait(folder.path());
     person.press(&format!("{gait}\r"));
@@ -438,13 +439,17 @@ fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
     person.wait_for(&format!("{gait}  "));
     person.press("\x04");
     LIMIT.expect("the end of the program", || {
-        person.child.try_wait().expect("it is ours").is_some()
+        person.child.try_wait().expect("a child").is_some()
     });
     LIMIT.wait_for(|| {
-        person.read();
-        person.text.contains("\x1b[?2004l")
+        person.read_output();
+        person.new_text.contains("\x1b[?2004l")
     });
-    assert!(!person.text.contains("goes on"), "{:?}", person.text);
+    assert!(
+        !person.new_text.contains("goes on"),
+        "{:?}",
+        person.new_text
+    );
 }
 
 #[test]
@@ -452,7 +457,7 @@ fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = include_str!("../../../../robots/paper.toml");
     let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
-    fs::write(folder.path().join("bad.toml"), text).expect("it is written");
+    fs::write(folder.path().join("bad.toml"), text).expect("a file");
     let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
     assert_eq!(code, Some(2));
     assert!(error.contains("]0;owned"), "{error}");

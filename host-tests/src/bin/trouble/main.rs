@@ -76,7 +76,7 @@ fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     let mut last_pulse_times = [Time::MIN / 2; 4];
     for (time, event) in events(&record) {
         let is_reported = match event {
-            Event::Byte | Event::Pass => false,
+            Event::ByteReceived | Event::TimePasses => false,
             // Of a servo's pulses, only the first after more than 30 ms without a pulse is printed.
             Event::Pulse(pulse) => {
                 let previous_time = std::mem::replace(&mut last_pulse_times[pulse.servo], time);

@@ -1,4 +1,4 @@
-//! Checks of rules about the robot's internal state, or about its future, which is computed on a clone.
+//! Checks of rules about the robot's internal state or its future. The future is computed on a clone.
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
@@ -11,113 +11,116 @@ use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::{Eeprom, RunningRobot};
 use lizard_rules::{Event, Limits, Rule, Time};
 
-use super::{FRAME, Verdict, World, broken};
+use super::{FRAME, Verdict, World, broken_rule};
 use crate::fingerprint;
 
-/// Rounding error at each end of a frame, cycles.
-const ROUNDING: u16 = 2;
+/// Allowance for the rounding of a pulse that changes within a frame, cycles.
+const ROUNDING_CYCLES: u16 = 2;
 
 /// Number of frames within which any motion of this robot ends.
 const MOTION_FRAMES: u32 = 160;
 
-/// Lines that start a gait or a routine for a limited time, which ends within [`MOTION_FRAMES`]
-/// even at half the pace.
-const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
+/// Lines that start a gait or a routine with a count; even at half pace, the motion ends within [`MOTION_FRAMES`].
+const COUNTED_MOTIONS: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 
-/// Number of frames after which a contact is certain to be debounced.
-const DEBOUNCED: u8 = 5;
+/// Number of frames after which a contact is debounced in any case.
+const DEBOUNCE_FRAMES: u8 = 5;
 
-/// Time after which a supply has been measured often enough for the robot to react to it.
-const SUPPLY_SETTLING: Time = 14 * FRAME;
+/// Time after which the robot has measured a new supply voltage often enough to react.
+const SUPPLY_SETTLING_TIME: Time = 14 * FRAME;
 
 /// Returns the observer's limits for a robot.
-pub(super) fn limits(robot: &Robot) -> Limits {
+pub(super) fn observer_limits(robot: &Robot) -> Limits {
     let board = robot.supplies().board;
     Limits {
-        levels: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
-        // The console reports at once when `boot` begins.
-        boots_to_rest: true,
+        levels_mv: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
+        // The console reports at once that `boot` begins.
+        may_boot_to_rest: true,
         ..Limits::default()
     }
 }
 
-/// Returns a number that is the same for equal states of main.
-fn main_fingerprint(running: &RunningRobot) -> u64 {
-    fingerprint::coarse_fingerprint(&running.main)
+/// Returns a fingerprint of main: a number that is the same for equal states.
+fn main_fingerprint(robot: &RunningRobot) -> u64 {
+    fingerprint::coarse_fingerprint(&robot.main)
 }
 
 impl World {
     /// Judges an answer to a line.
-    pub(super) fn judge_answer(&mut self, line: &str, text: &str) -> Verdict {
+    pub(super) fn judge_answer(&mut self, line: &str, answer: &str) -> Verdict {
         let effect = effect(line, &self.robot());
-        let is_done = text.starts_with("ok ");
-        // Main has not seen a late edge yet if its last frame still waits to be played. The
-        // edge then stops the robot after the order.
-        let is_late = self.observer.is_unreported() && self.running.board.late_edges > 0;
-        self.order(effect, Some(is_done));
-        if is_done && effect == Effect::Calibrates {
-            self.observe(Event::Calibrated { is_saved: false });
+        let is_accepted = answer.starts_with("ok ");
+        // While its last frame still waits for the pulses, main has not noticed a late edge yet. The edge then stops
+        // the robot after the order.
+        let has_unnoticed_edge =
+            self.observer.is_stop_unreported() && self.running_robot.board.late_edges > 0;
+        self.observe_order(effect, Some(is_accepted));
+        if is_accepted && effect == Effect::Calibrates {
+            self.observe(Event::CalibrationChanged { is_saved: false });
         }
-        let asked = self.now;
+        let asked_at = self.now;
         self.observe(Event::Answer {
             line,
             effect,
-            asked,
-            text,
+            asked_at,
+            answer,
         });
-        if text == "ok load" {
+        if answer == "ok load" {
             self.check_loaded_limits()?;
         }
-        let is_refused = text.starts_with("err 8");
-        if is_refused
+        let is_refused_for_supply = answer.starts_with("err 8");
+        if is_refused_for_supply
             && !self.observer.was_low(0, 70 * FRAME)
-            && Time::from(self.running.motion().frame_count()) * FRAME > SUPPLY_SETTLING
+            && Time::from(self.running_robot.motion().frame_count()) * FRAME > SUPPLY_SETTLING_TIME
         {
-            return broken(Rule::Allowed, text);
+            return broken_rule(Rule::NoNeedlessRefusal, answer);
         }
-        if is_done && effect == Effect::Moves {
-            let is_stack_intact = self.running.board.is_stack_intact;
-            if is_late {
+        if is_accepted && effect == Effect::Moves {
+            let is_stack_intact = self.running_robot.board.is_stack_intact;
+            if has_unnoticed_edge {
                 self.observe(Event::Fault);
             }
-            if is_late
-                || self.sags_when_servos_wake
+            if has_unnoticed_edge
+                || self.is_supply_weak
                 || self.observer.was_low(0, 1)
-                || self.observer.was_low(1, SUPPLY_SETTLING)
+                || self.observer.was_low(1, SUPPLY_SETTLING_TIME)
             {
                 self.observer.drop_pending();
-            } else if text == "ok stand" && is_stack_intact {
-                self.check_stands_after(text)?;
-            } else if COUNTED.contains(&line) {
-                self.check_ends_after(text)?;
+            } else if answer == "ok stand" && is_stack_intact {
+                self.check_robot_stands(answer)?;
+            } else if COUNTED_MOTIONS.contains(&line) {
+                self.check_motion_ends(answer)?;
             }
         }
         self.observer.verdict()
     }
 
-    /// Tells the observer of an order.
-    pub(super) fn order(&mut self, effect: Effect, done: Option<bool>) {
+    /// Passes an order that moves, freezes or rests the robot to the observer.
+    pub(super) fn observe_order(&mut self, effect: Effect, is_accepted: Option<bool>) {
         if matches!(effect, Effect::Moves | Effect::Freezes | Effect::Rests) {
-            self.observe(Event::Order { effect, done });
+            self.observe(Event::Order {
+                effect,
+                is_accepted,
+            });
         }
     }
 
-    /// Runs a clone until all effects that the answers have promised are due, and checks them.
-    pub(super) fn look_ahead(&mut self) -> Verdict {
+    /// Checks the promises of the answers: runs a clone until all promises are due.
+    pub(super) fn judge_promises(&mut self) -> Verdict {
         self.observer.verdict()?;
-        if let Some(time) = self.observer.due_in() {
+        if let Some(time) = self.observer.time_until_due() {
             let mut future_world = self.clone();
             for _ in 0..=time / FRAME {
-                future_world.frame()?;
+                future_world.run_frame()?;
             }
         }
         self.observer.drop_pending();
         self.observer.verdict()
     }
 
-    /// Checks that `limit` accepts everything that `cal` prints.
+    /// Checks that `limit` accepts all limits that `cal` prints.
     fn check_loaded_limits(&self) -> Verdict {
-        let mut future_robot = self.running.clone();
+        let mut future_robot = self.running_robot.clone();
         future_robot.board.transmitter.text.clear();
         for line in future_robot.send(b"cal\r") {
             let Some((servo, rest)) = line
@@ -126,57 +129,57 @@ impl World {
             else {
                 continue;
             };
-            let (_, limit) = rest.split_once(" limit ").expect("cal prints it");
-            let (limit, _) = limit.split_once(" dir ").expect("it ends there");
-            let answer = future_robot.send_line(&format!("limit {servo} {limit}"));
+            let (_, limits) = rest.split_once(" limit ").expect("cal prints the limits");
+            let (limits, _) = limits.split_once(" dir ").expect("the limits end there");
+            let answer = future_robot.send_line(&format!("limit {servo} {limits}"));
             if answer.starts_with("err ") {
-                return broken(Rule::Load, answer);
+                return broken_rule(Rule::LoadedLimitsValid, answer);
             }
         }
         Ok(())
     }
 
-    /// Closes or opens a contact. Unless a routine runs, checks that the contact has no effect on the robot.
+    /// Closes or opens a contact. Unless a routine runs, also checks that the contact has no effect on the robot.
     pub(super) fn set_contact(&mut self, pin: u8, is_closed: bool) -> Verdict {
-        let mut unchanged = self.running.clone();
-        let other_contacts = self.running.board.closed_pins & !(1 << pin);
-        self.running.board.closed_pins = other_contacts | u32::from(is_closed) << pin;
+        let mut unchanged_robot = self.running_robot.clone();
+        let other_contacts = self.running_robot.board.closed_pins & !(1 << pin);
+        self.running_robot.board.closed_pins = other_contacts | u32::from(is_closed) << pin;
         let robot = self.robot();
-        let activity = self.running.main.control().activity();
+        let activity = self.running_robot.main.control().activity();
         if matches!(activity, Activity::Gait(id) if robot.gait(id).is_routine()) {
             return Ok(());
         }
-        let mut changed = self.running.clone();
-        for running in [&mut unchanged, &mut changed] {
-            running.run_without_reader(u32::from(DEBOUNCED));
+        let mut changed_robot = self.running_robot.clone();
+        for robot in [&mut unchanged_robot, &mut changed_robot] {
+            robot.run_without_reader(u32::from(DEBOUNCE_FRAMES));
         }
-        if changed.board.started_pulses() != unchanged.board.started_pulses()
-            || main_fingerprint(&changed) != main_fingerprint(&unchanged)
+        if changed_robot.board.started_pulses() != unchanged_robot.board.started_pulses()
+            || main_fingerprint(&changed_robot) != main_fingerprint(&unchanged_robot)
         {
-            return broken(Rule::Contacts, format!("{activity:?}"));
+            return broken_rule(Rule::ContactsOnlyInRoutine, format!("{activity:?}"));
         }
         Ok(())
     }
 
-    /// True if the robot rests, and its pose is in the memory.
-    pub(super) fn rest_is_kept(&self) -> bool {
-        let memory = &self.running.board.memory;
-        let motion = self.running.motion();
-        // A busy EEPROM cannot be read, but a copy of its bytes can.
+    /// True if the robot rests and its pose is in the EEPROM.
+    pub(super) fn is_rest_pose_saved(&self) -> bool {
+        let memory = &self.running_robot.board.memory;
+        let motion = self.running_robot.motion();
+        // A busy EEPROM cannot be read, so a copy of its bytes is read.
         let readable_memory = Eeprom::with_bytes(*memory.bytes());
         motion.is_resting()
             && copies::last_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
     }
 
-    fn check_stands_after(&self, answer: &str) -> Verdict {
-        let mut future_robot = self.running.clone();
+    fn check_robot_stands(&self, answer: &str) -> Verdict {
+        let mut future_robot = self.running_robot.clone();
         for _ in 0..MOTION_FRAMES {
             future_robot.run_frame();
         }
         let motion = future_robot.motion();
         let standing_pulses = Pose::NEUTRAL.pulses(motion.calibration());
         let activity = motion.activity();
-        // A gait that robot.toml could not have may have left the safe poses while it braked.
+        // While the unsafe gait `stray` braked, the pose may have left the safe poses.
         if motion.hazard().is_some() {
             return Ok(());
         }
@@ -184,44 +187,51 @@ impl World {
             || activity != Activity::Gait(GaitId::STAND)
         {
             let status = future_robot.send_line("status");
-            return broken(Rule::Stands, format!("{answer}, and then {status}"));
+            return broken_rule(Rule::StandWorks, format!("{answer}, and then {status}"));
         }
         Ok(())
     }
 
-    fn check_ends_after(&self, answer: &str) -> Verdict {
-        let mut future_robot = self.running.clone();
+    fn check_motion_ends(&self, answer: &str) -> Verdict {
+        let mut future_robot = self.running_robot.clone();
         future_robot.run_without_reader(MOTION_FRAMES);
         if future_robot.main.control().activity() != Activity::Stop {
-            return broken(
-                Rule::Ends,
+            return broken_rule(
+                Rule::CountedMotionEnds,
                 format!("{answer}, and then {}", future_robot.send_line("status")),
             );
         }
         Ok(())
     }
 
-    /// Judges the pulses of a frame. `has_main_run` is false if main was stalled in it.
+    /// Judges the pulses of a frame. `has_main_run` is false if main was stalled in the frame.
     pub(super) fn judge_pulses(&mut self, has_main_run: bool) -> Verdict {
-        self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
-        let widths = self.running.board.started_pulses().0.map(|width| width.0);
+        self.observer.limits.is_memory_reliable = !self.running_robot.board.memory.is_worn;
+        let widths = self
+            .running_robot
+            .board
+            .started_pulses()
+            .0
+            .map(|width| width.0);
         let slew = self.robot().slew().per_frame;
-        for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {
-            let max = calibration.max_width_change(slew).saturating_add(ROUNDING);
-            self.observer.limits.leap[servo] = max.into();
+        for (servo, calibration) in self.running_robot.motion().calibration().iter().enumerate() {
+            let max_leap_cycles = calibration
+                .max_width_change(slew)
+                .saturating_add(ROUNDING_CYCLES);
+            self.observer.limits.max_leap_cycles[servo] = max_leap_cycles.into();
         }
         self.observer.observe_frame(self.now, widths);
         self.now += FRAME;
-        self.is_late |= !has_main_run;
-        let motion = self.running.motion();
+        self.was_main_late |= !has_main_run;
+        let motion = self.running_robot.motion();
         let robot = self.robot();
-        let is_sent = has_main_run && widths.iter().any(|width| *width > 0);
-        if is_sent
+        let is_pose_sent = has_main_run && widths.iter().any(|width| *width > 0);
+        if is_pose_sent
             && Clearance::of(&robot, motion.pose())
                 .first_hazard(&robot)
                 .is_some()
         {
-            return broken(Rule::Guarded, format!("{:?}", motion.pose()));
+            return broken_rule(Rule::PosesGuarded, format!("{:?}", motion.pose()));
         }
         self.observer.verdict()
     }

@@ -1,14 +1,14 @@
-// A compare value beyond the counter's top is never reached. avr8js treats the wrap as a match, and sets
-// OCF1B each time that the counter restarts.
+// A counter never reaches a compare value beyond its top. avr8js treats the wrap as a match, and sets OCF1B each time
+// that the counter restarts.
 
-export function compareBeyondTop({ timers }) {
+export function ignoreCompareBeyondTop({ timers }) {
   for (const timer of timers) {
     const timerUpdated = timer.timerUpdated.bind(timer);
-    timer.timerUpdated = (value, previous) => {
+    timer.timerUpdated = (value, oldValue) => {
       const { ocrB } = timer;
-      // NaN is neither less nor more than anything: it never matches.
+      // NaN is neither less nor greater than a number, so it never matches.
       if (ocrB > timer.TOP) timer.ocrB = NaN;
-      timerUpdated(value, previous);
+      timerUpdated(value, oldValue);
       timer.ocrB = ocrB;
     };
   }

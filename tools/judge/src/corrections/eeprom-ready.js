@@ -1,13 +1,13 @@
 // The EEPROM's interrupt is pending as long as no byte is being written (data sheet, EECR). avr8js continues
-// to call the handler while a byte is being written, and ignores the handler's byte then.
+// to call the handler while a byte is being written, and then ignores the handler's byte.
 const EEPE = 0x02;
 
-export function eepromReady({ cpu, eeprom }) {
+export function holdEepromInterrupt({ cpu, eeprom }) {
   const { EECR } = eeprom.config;
-  const write = cpu.writeHooks[EECR];
+  const writeRegister = cpu.writeHooks[EECR];
   cpu.writeHooks[EECR] = (...args) => {
-    const isWritten = write(...args);
+    const isHandled = writeRegister(...args);
     if (cpu.data[EECR] & EEPE) cpu.clearInterrupt(eeprom.EER, false);
-    return isWritten;
+    return isHandled;
   };
 }

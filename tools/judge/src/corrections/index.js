@@ -1,24 +1,24 @@
-// The corrections of avr8js 0.21.1. The order matters: each may wrap functions of the previous ones.
+// The corrections of avr8js 0.21.1, in an order that matters: each may wrap functions of the previous ones.
 import { wakeTimersAtTheirFlags } from '../timer-events.js';
-import { compareBeyondTop } from './compare-beyond-top.js';
-import { dataRegisterEmpty } from './data-register-empty.js';
-import { dueEvents } from './due-events.js';
-import { eepromReady } from './eeprom-ready.js';
-import { interruptEntry } from './interrupt-entry.js';
-import { interruptWaits } from './interrupt-waits.js';
-import { sleep } from './sleep.js';
-import { transmitBuffer } from './transmit-buffer.js';
-import { waitingByte } from './waiting-byte.js';
+import { ignoreCompareBeyondTop } from './compare-beyond-top.js';
+import { keepTransmitInterruptPending } from './data-register-empty.js';
+import { handleAllDueEvents } from './due-events.js';
+import { holdEepromInterrupt } from './eeprom-ready.js';
+import { extendInterruptEntry } from './interrupt-entry.js';
+import { delayInterruptAfterEnable } from './interrupt-waits.js';
+import { simulateSleep } from './sleep.js';
+import { addTransmitBuffer } from './transmit-buffer.js';
+import { keepWaitingByte } from './waiting-byte.js';
 
 export const corrections = [
-  compareBeyondTop,
-  dataRegisterEmpty,
-  waitingByte,
-  transmitBuffer,
-  eepromReady,
+  ignoreCompareBeyondTop,
+  keepTransmitInterruptPending,
+  keepWaitingByte,
+  addTransmitBuffer,
+  holdEepromInterrupt,
   wakeTimersAtTheirFlags,
-  dueEvents,
-  interruptEntry,
-  interruptWaits,
-  sleep,
+  handleAllDueEvents,
+  extendInterruptEntry,
+  delayInterruptAfterEnable,
+  simulateSleep,
 ];

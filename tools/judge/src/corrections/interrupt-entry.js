@@ -1,12 +1,12 @@
-// An interrupt is entered in four cycles (data sheet, 7.7.1); in avr8js in two.
+// The entry of an interrupt takes four cycles (data sheet, 7.7.1), but two in avr8js.
 const MISSING_CYCLES = 2;
 
-export function interruptEntry({ cpu }) {
+export function extendInterruptEntry({ cpu }) {
   const tick = cpu.tick.bind(cpu);
   cpu.tick = () => {
-    const wereEnabled = cpu.interruptsEnabled;
+    const wasEnabled = cpu.interruptsEnabled;
     tick();
-    const isEntered = wereEnabled && !cpu.interruptsEnabled;
-    if (isEntered) cpu.cycles += MISSING_CYCLES;
+    const hasEntered = wasEnabled && !cpu.interruptsEnabled;
+    if (hasEntered) cpu.cycles += MISSING_CYCLES;
   };
 }

@@ -1,17 +1,17 @@
-// The transmitter sends one byte and holds another (data sheet, 19.6): UDRE0 is set as long as there is no
-// second one, and bytes are sent back to back. avr8js holds one, so a gap follows each byte.
+// The transmitter sends one byte and holds a second byte (data sheet, 19.6): UDRE0 is set as long as there is no
+// second byte, and bytes are sent back to back. avr8js holds no second byte, so a gap follows each byte.
 
-export function transmitBuffer({ cpu, usart }) {
-  let isBusy = false;
+export function addTransmitBuffer({ cpu, usart }) {
+  let isSending = false;
   let nextByte = null;
-  // The line's own time: an event is seen only at the end of an instruction.
-  let dueCycle;
+  // The cycle at which the stop bit ends; the event is handled later, at the end of an instruction.
+  let byteEndCycle;
   const shiftOut = (byte) => {
-    isBusy = true;
-    dueCycle += usart.cyclesPerChar;
+    isSending = true;
+    byteEndCycle += usart.cyclesPerChar;
     cpu.addClockEvent(() => {
-      usart.onByteTransmit?.(byte, dueCycle);
-      isBusy = false;
+      usart.onByteTransmit?.(byte, byteEndCycle);
+      isSending = false;
       if (nextByte === null) {
         cpu.setInterruptFlag(usart.TXC);
       } else {
@@ -19,11 +19,11 @@ export function transmitBuffer({ cpu, usart }) {
         nextByte = null;
         cpu.setInterruptFlag(usart.UDRE);
       }
-    }, dueCycle - cpu.cycles);
+    }, byteEndCycle - cpu.cycles);
   };
   cpu.writeHooks[usart.config.UDR] = (byte) => {
-    if (!isBusy) {
-      dueCycle = cpu.cycles;
+    if (!isSending) {
+      byteEndCycle = cpu.cycles;
       shiftOut(byte);
     } else if (nextByte === null) {
       nextByte = byte;

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::path::PathBuf;
 
-use lizard_calibrate::{SendError, command, read, replace, send};
+use lizard_calibrate::{SendError, read_settings, replace_settings, send_command, send_settings};
 use lizard_robot::Calibration;
 use pollster::block_on;
 
@@ -44,7 +44,7 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.into_finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     let calibration =
-        block_on(read(&mut board.link)).map_err(|error| board.failure(&error.into()))?;
+        block_on(read_settings(&mut board.link)).map_err(|error| board.failure(&error.into()))?;
     files::write(&args.file, calibration.to_toml().as_bytes())?;
     println!(
         "the calibration of {} is in {}",
@@ -83,10 +83,10 @@ pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
 ) -> Result<(), SendError<LinkError>> {
-    let old_settings = block_on(read(link)).map_err(SendError::Refused)?;
-    block_on(replace(link, &old_settings, calibration))?;
-    if let Err(error) = block_on(command(link, "save")) {
-        block_on(send(link, &old_settings)).map_err(SendError::Mixed)?;
+    let old_settings = block_on(read_settings(link)).map_err(SendError::Refused)?;
+    block_on(replace_settings(link, &old_settings, calibration))?;
+    if let Err(error) = block_on(send_command(link, "save")) {
+        block_on(send_settings(link, &old_settings)).map_err(SendError::Mixed)?;
         return Err(SendError::Refused(error));
     }
     Ok(())

@@ -38,7 +38,7 @@ pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
 
 /// Returns the active calibration of a connected robot.
 pub fn calibration_of(link: &mut Link<ConsoleDouble>) -> Calibration {
-    block_on(lizard_calibrate::read(link)).expect("it answers")
+    block_on(lizard_calibrate::read_settings(link)).expect("it answers")
 }
 
 impl ConsoleDouble {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{BadReply, read};
+use lizard_calibrate::{BadReply, read_settings};
 use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{Calibration, ServoSettings, Status};
 use pollster::block_on;
@@ -102,7 +102,7 @@ impl BoardInfo {
         link: &mut Link<P>,
     ) -> Result<Self, LinkError> {
         let status = wait_for_voltages(link)?;
-        let calibration = match block_on(read(link)) {
+        let calibration = match block_on(read_settings(link)) {
             Ok(calibration) => Some(calibration.into()),
             Err(error) if error.is_refusal() => None,
             Err(error) => return Err(error.into()),

@@ -170,7 +170,7 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails like [`Link::ask`], or if the robot refuses the line.
     pub fn command(&mut self, line: &str) -> Result<Reply, LinkError> {
-        block_on(lizard_calibrate::command(self, line)).map_err(LinkError::from)
+        block_on(lizard_calibrate::send_command(self, line)).map_err(LinkError::from)
     }
 
     /// Waits for the next line, for at most `wait`.

@@ -188,7 +188,7 @@ mod tests {
             .spawn()
             .expect("it starts");
         let message = open_error(&name).to_string();
-        LIMIT.end_of(&mut process).expect("it ends");
+        LIMIT.wait_for_exit(&mut process).expect("it ends");
         assert_eq!(message, format!("{name} is not a serial port"));
     }
 
@@ -204,7 +204,7 @@ mod tests {
             .expect("it starts");
         let message = open_error(&name).to_string();
         process.kill().expect("it ends");
-        LIMIT.end_of(&mut process).expect("it ends");
+        LIMIT.wait_for_exit(&mut process).expect("it ends");
         let id = process.id();
         assert_eq!(
             message,

@@ -4,13 +4,13 @@ use lizard_host::draw::draw_horns;
 use lizard_robot::Robot;
 
 use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, files, paper, value_of};
+use super::files::{SERVOS, paper_toml, robot_files, servo_value};
 
 #[test]
 fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
-    for (name, text) in files() {
-        let drawing = Drawing::of(&draw_horns(&Robot::parse(&text).expect("a robot")));
-        // All four cranks have the same scale.
+    for (name, text) in robot_files() {
+        let drawing = Drawing::parse(&draw_horns(&Robot::parse(&text).expect("a robot")));
+        // All four cranks are drawn in the same scale.
         let link_length = |key: &str| -> f64 {
             let line = text
                 .lines()
@@ -24,7 +24,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
             .iter()
             .zip(["l1", "l4", "l9", "l6"])
             .map(|(servo, key)| {
-                let crank = drawing.path(&format!("crank-{servo}"));
+                let crank = drawing.points_by_id(&format!("crank-{servo}"));
                 (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / link_length(key)
             });
         let scales: Vec<f64> = scales.collect();
@@ -35,8 +35,10 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
             "{name}"
         );
         for servo in SERVOS {
-            let neutral: f64 = value_of(&text, servo, "neutral").parse().expect("degrees");
-            let crank = drawing.path(&format!("crank-{servo}"));
+            let neutral: f64 = servo_value(&text, servo, "neutral")
+                .parse()
+                .expect("degrees");
+            let crank = drawing.points_by_id(&format!("crank-{servo}"));
             assert!(
                 turn_between(neutral, direction(&crank)).abs() < 0.02,
                 "{name} {servo}"
@@ -47,9 +49,8 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     }
 }
 
-/// The direction of a line, degrees counter-clockwise from the right. Its end points are
-/// rounded to hundredths of a pixel, so the line must be at least 50 pixels long for an
-/// accurate angle.
+/// The direction of a line, degrees counter-clockwise from the right. The drawing rounds points
+/// to hundredths of a pixel, so only a line of more than 50 pixels has an accurate angle.
 fn direction(line: &[Point]) -> f64 {
     let (x, y) = (line[1].0 - line[0].0, line[0].1 - line[1].1);
     assert!(x.hypot(y) > 50.0);
@@ -63,29 +64,29 @@ fn turn_between(from: f64, to: f64) -> f64 {
 
 #[test]
 fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
-    for (name, text) in files() {
-        let drawing = Drawing::of(&draw_horns(&Robot::parse(&text).expect("a robot")));
-        let (placed_crank, exact_crank) = (drawing.path("sits"), drawing.path("should"));
-        let neutral: f64 = value_of(&text, "A1", "neutral").parse().expect("degrees");
+    for (name, text) in robot_files() {
+        let drawing = Drawing::parse(&draw_horns(&Robot::parse(&text).expect("a robot")));
+        let [placed_crank, exact_crank] = ["sits", "should"].map(|id| drawing.points_by_id(id));
+        let neutral: f64 = servo_value(&text, "A1", "neutral")
+            .parse()
+            .expect("degrees");
         assert!(
             turn_between(neutral, direction(&exact_crank)).abs() < 0.02,
             "{name}"
         );
-        let texts = drawing.0.iter().map(|element| element.content.as_str());
-        let trims: Vec<&str> = texts
-            .filter_map(|content| content.strip_prefix("trim 1 "))
-            .collect();
-        let trim: f64 = trims[0].parse().expect("degrees");
+        let mut texts = drawing.texts();
+        let trim = texts.find_map(|text| text.strip_prefix("trim 1 "));
+        let trim: f64 = trim.expect("a trim").parse().expect("degrees");
         let error = turn_between(direction(&placed_crank), direction(&exact_crank)) - trim;
         assert!(error.abs() < 0.02, "{name} {error}");
-        assert!(trim.abs() <= 7.2, "more than the teeth leave");
+        assert!(trim.abs() <= 7.2, "more than half a tooth");
     }
 }
 
 #[test]
 fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
-    let drawing = Drawing::of(&draw_horns(&Robot::parse(&paper()).expect("a robot")));
-    let corners = drawing.path("spline");
+    let drawing = Drawing::parse(&draw_horns(&Robot::parse(&paper_toml()).expect("a robot")));
+    let corners = drawing.points_by_id("spline");
     let count = corners.len() as f64;
     let sum = corners
         .iter()
@@ -98,11 +99,7 @@ fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
         radius_of(previous) < mean && radius_of(&corners[*index]) > mean
     });
     assert_eq!(teeth.count(), 25);
-    let text: String = drawing
-        .0
-        .iter()
-        .map(|element| element.content.as_str())
-        .collect();
+    let text: String = drawing.texts().collect();
     assert!(
         text.contains("14.4° apart") && text.contains("7.2° at most"),
         "{text}"

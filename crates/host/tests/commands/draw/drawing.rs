@@ -1,4 +1,4 @@
-//! Reads an SVG drawing.
+//! The elements of an SVG drawing.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use svg::parser::Event;
 
 pub type Point = (f64, f64);
 
-/// An element of a drawing: its tag, its attributes, and the text in it.
+/// An element of a drawing: its tag, its attributes, and its text.
 #[derive(Debug)]
 pub struct Element {
     pub tag: String,
@@ -19,7 +19,7 @@ impl Element {
         self.attributes.get(key).map_or("", String::as_str)
     }
 
-    pub fn number(&self, key: &str) -> f64 {
+    pub fn finite_number(&self, key: &str) -> f64 {
         let text = self.attribute(key);
         let number = text
             .parse()
@@ -30,7 +30,7 @@ impl Element {
 
     /// The points through which the element is drawn.
     pub fn points(&self) -> Vec<Point> {
-        let point_of = |x, y| (self.number(x), self.number(y));
+        let point_of = |x, y| (self.finite_number(x), self.finite_number(y));
         match self.tag.as_str() {
             "line" => vec![point_of("x1", "y1"), point_of("x2", "y2")],
             "circle" => vec![point_of("cx", "cy")],
@@ -54,10 +54,12 @@ impl Element {
 }
 
 /// The elements of a drawing.
-pub struct Drawing(pub Vec<Element>);
+pub struct Drawing {
+    pub elements: Vec<Element>,
+}
 
 impl Drawing {
-    pub fn of(svg: &str) -> Self {
+    pub fn parse(svg: &str) -> Self {
         let mut elements: Vec<Element> = Vec::new();
         for event in svg::read(svg).expect("SVG") {
             match event {
@@ -76,12 +78,12 @@ impl Drawing {
                 _ => {}
             }
         }
-        Self(elements)
+        Self { elements }
     }
 
     pub fn element_by_id(&self, id: &str) -> &Element {
         let mut matches = self
-            .0
+            .elements
             .iter()
             .filter(|element| element.attribute("id") == id);
         let element = matches.next().unwrap_or_else(|| panic!("no {id}"));
@@ -89,13 +91,23 @@ impl Drawing {
         element
     }
 
-    pub fn path(&self, id: &str) -> Vec<Point> {
+    pub fn has_element(&self, id: &str) -> bool {
+        let mut elements = self.elements.iter();
+        elements.any(|element| element.attribute("id") == id)
+    }
+
+    /// The texts of all elements.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.elements.iter().map(|element| element.content.as_str())
+    }
+
+    pub fn points_by_id(&self, id: &str) -> Vec<Point> {
         self.element_by_id(id).points()
     }
 
-    /// Every wire and rail by its name.
+    /// Every wire and rail: its name and its points.
     pub fn wires(&self) -> Vec<(&str, Vec<Point>)> {
-        self.0
+        self.elements
             .iter()
             .filter(|element| element.tag == "polyline" && !element.attribute("id").is_empty())
             .map(|element| (element.attribute("id"), element.points()))

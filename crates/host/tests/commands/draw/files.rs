@@ -1,13 +1,13 @@
-//! The robots of robots/, and the values in their files, read as text.
+//! The files of robots/ as text, and values in them.
 
-use crate::program::{read, root};
+use crate::program::{read_file, repo_root};
 
 /// The servos, in the order of every array.
 pub const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
 
 /// Every file of robots/: its name and its text.
-pub fn files() -> Vec<(String, String)> {
-    let folder = std::fs::read_dir(root().join("robots")).expect("robots/");
+pub fn robot_files() -> Vec<(String, String)> {
+    let folder = std::fs::read_dir(repo_root().join("robots")).expect("robots/");
     let files: Vec<(String, String)> = folder
         .map(|entry| entry.expect("a file").path())
         .filter(|path| {
@@ -23,9 +23,9 @@ pub fn files() -> Vec<(String, String)> {
     files
 }
 
-/// The value of a key in the table of a servo, read as text: the first line with this key after
-/// the table's header.
-pub fn value_of<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
+/// The text of a servo's value: that of the first line with this key after the header of the
+/// servo's table.
+pub fn servo_value<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
     let (_, table) = text
         .split_once(&format!("[servo.{servo}]"))
         .expect("a servo");
@@ -40,6 +40,6 @@ pub fn value_of<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
         .trim_matches('"')
 }
 
-pub fn paper() -> String {
-    read("robots/paper.toml")
+pub fn paper_toml() -> String {
+    read_file("robots/paper.toml")
 }

@@ -1,4 +1,4 @@
-//! Tests of the drawings that a builder follows: pins, wires and angles are those of robot.toml, for every robot.
+//! Tests of the drawings for a builder: for every robot, pins, wires and angles are those of its robot.toml.
 
 mod cranks;
 mod drawing;
@@ -8,27 +8,27 @@ mod wires;
 use lizard_host::draw::{draw_horns, draw_top_view, draw_wiring};
 use lizard_robot::Robot;
 
-use crate::program::read;
+use crate::program::read_file;
 use drawing::Drawing;
-use files::{files, paper};
+use files::{paper_toml, robot_files};
 
 #[test]
 fn everything_is_on_the_page_and_large_enough_to_be_read() {
-    for (name, text) in files() {
+    for (name, text) in robot_files() {
         let robot = Robot::parse(&text).expect("a robot");
         for svg in [draw_wiring(&robot), draw_horns(&robot)] {
-            let drawing = Drawing::of(&svg);
+            let drawing = Drawing::parse(&svg);
             let (width, height) = {
-                let page = &drawing.0[0];
-                (page.number("width"), page.number("height"))
+                let page = &drawing.elements[0];
+                (page.finite_number("width"), page.finite_number("height"))
             };
-            assert!(width <= 700.0, "a README is that wide");
-            for element in &drawing.0[1..] {
+            assert!(width <= 700.0, "wider than a README");
+            for element in &drawing.elements[1..] {
                 let mut points = element.points();
                 if element.tag == "text" {
-                    let size = element.number("font-size");
+                    let size = element.finite_number("font-size");
                     assert!(size >= 12.0, "{name}: {element:?}");
-                    // A character of a wide font is about 0.55 of the font size wide.
+                    // The width of a character in a wide font is about 0.55 of the font size.
                     let text_width = 0.55 * size * element.content.chars().count() as f64;
                     let (x, y) = points[0];
                     if element.attribute("transform").is_empty() {
@@ -51,11 +51,11 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
 
 #[test]
 fn the_drawings_in_docs_are_up_to_date() {
-    let robot = Robot::parse(&paper()).expect("a robot");
+    let robot = Robot::parse(&paper_toml()).expect("a robot");
     let neutral = robot
         .lizard()
         .solve(&robot.neutral_pose())
-        .expect("it closes");
+        .expect("a solution");
     let view = draw_top_view(&robot, &neutral, true);
     for (name, svg) in [
         ("wiring", draw_wiring(&robot)),
@@ -63,7 +63,7 @@ fn the_drawings_in_docs_are_up_to_date() {
         ("lizard", view.clone()),
         ("charts/top-view", view),
     ] {
-        let stored_svg = read(&format!("docs/{name}.svg"));
+        let stored_svg = read_file(&format!("docs/{name}.svg"));
         assert!(stored_svg == svg, "docs/{name}.svg: run `make docs`");
     }
 }

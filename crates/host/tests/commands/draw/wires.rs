@@ -1,4 +1,4 @@
-//! Checks the netlist that the wiring drawing shows.
+//! Tests of the nets in the wiring drawing.
 
 use std::collections::BTreeMap;
 
@@ -6,15 +6,21 @@ use lizard_host::draw::draw_wiring;
 use lizard_robot::Robot;
 
 use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, files, paper, value_of};
+use super::files::{SERVOS, paper_toml, robot_files, servo_value};
 
-/// The text of the paper's robot with other pins.
+/// Draws the wiring of a robot file.
+fn wiring_of(robot_toml: &str) -> Drawing {
+    let robot = Robot::parse(robot_toml).expect("a robot");
+    Drawing::parse(&draw_wiring(&robot))
+}
+
+/// The file of the paper's robot with other pins.
 fn with_pins(pins: [&str; 4]) -> String {
-    let mut text = paper();
+    let mut text = paper_toml();
     for (servo, pin) in SERVOS.into_iter().zip(pins) {
         let old_entry = format!(
             "[servo.{servo}]\npin = \"{}\"",
-            value_of(&paper(), servo, "pin")
+            servo_value(&paper_toml(), servo, "pin")
         );
         assert!(text.contains(&old_entry));
         text = text.replace(&old_entry, &format!("[servo.{servo}]\npin = \"{pin}\""));
@@ -23,38 +29,34 @@ fn with_pins(pins: [&str; 4]) -> String {
 }
 
 /// Sets of four pins, in many orders. 17 is prime, so four pins at equal steps are always distinct.
-fn many_pins() -> Vec<[String; 4]> {
-    let name_of = |n: usize| {
-        let n = n % 17;
-        if n < 11 {
-            format!("D{}", n + 2)
-        } else {
-            format!("A{}", n - 11)
-        }
+fn many_pin_sets() -> Vec<[String; 4]> {
+    let pin_name = |number: usize| match number % 17 {
+        index @ 0..11 => format!("D{}", index + 2),
+        index => format!("A{}", index - 11),
     };
     (1..17)
         .flat_map(|step| (step % 12..17).step_by(12).map(move |start| (start, step)))
-        .map(|(start, step)| [0, 1, 2, 3].map(|k| name_of(start + k * step)))
+        .map(|(start, step)| [0, 1, 2, 3].map(|servo| pin_name(start + servo * step)))
         .collect()
 }
 
-/// Largest distance of a wire's end from its terminal's centre, px. It is not 0, since two wires may share a
-/// terminal.
-const MAX_TERMINAL_DISTANCE: f64 = 13.0;
+/// Largest distance of a wire's end from its terminal's centre, px; two wires that share a terminal end beside its
+/// centre.
+const MAX_TERMINAL_DISTANCE_PX: f64 = 13.0;
 
 /// The electrical nets of a drawing, as a union-find of the names of terminals and pins.
 struct Nets<'a> {
     drawing: &'a Drawing,
-    parent: BTreeMap<String, String>,
+    parents: BTreeMap<String, String>,
 }
 
 impl<'a> Nets<'a> {
-    /// Joins the ends of wires, links and terminal positions. Components (fuse, switch, resistors) do not join
-    /// their ends, and the optional wires of the radio and the inputs are left out.
-    fn of(drawing: &'a Drawing) -> Self {
+    /// Joins the two ends of each wire, link and terminal position. A component (fuse, switch, resistor) does not
+    /// join its ends, and the optional wires of the radio and the inputs are left out.
+    fn from_drawing(drawing: &'a Drawing) -> Self {
         let mut nets = Self {
             drawing,
-            parent: BTreeMap::new(),
+            parents: BTreeMap::new(),
         };
         for (wire, path) in drawing.wires() {
             let is_option = wire.starts_with("radio-") || wire.starts_with("input-");
@@ -84,21 +86,21 @@ impl<'a> Nets<'a> {
     /// The terminal or pin nearest to a point.
     fn nearest_terminal(&self, point: Point) -> String {
         let distance_to = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
-        let ends = self.drawing.0.iter().filter(|element| {
+        let ends = self.drawing.elements.iter().filter(|element| {
             let id = element.attribute("id");
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
         });
         let ends = ends.map(|element| (distance_to(&element.points()[0]), element.attribute("id")));
         let (min_distance, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
         assert!(
-            min_distance <= MAX_TERMINAL_DISTANCE,
+            min_distance <= MAX_TERMINAL_DISTANCE_PX,
             "nothing is at {point:?}; {name} is {min_distance} away"
         );
         name.to_owned()
     }
 
     fn root(&self, name: &str) -> String {
-        match self.parent.get(name) {
+        match self.parents.get(name) {
             Some(parent) => self.root(parent),
             None => name.to_owned(),
         }
@@ -107,7 +109,7 @@ impl<'a> Nets<'a> {
     fn join(&mut self, first: &str, second: &str) {
         let (first, second) = (self.root(first), self.root(second));
         if first != second {
-            self.parent.insert(first, second);
+            self.parents.insert(first, second);
         }
     }
 
@@ -128,14 +130,14 @@ impl<'a> Nets<'a> {
 
 #[test]
 fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
-    let pin_sets = many_pins();
+    let pin_sets = many_pin_sets();
     let pin_sets = pin_sets.iter().map(|pins| {
         let text = with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str()));
         (format!("{pins:?}"), text)
     });
-    for (name, text) in files().into_iter().chain(pin_sets) {
-        let drawing = Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")));
-        let nets = Nets::of(&drawing);
+    for (name, text) in robot_files().into_iter().chain(pin_sets) {
+        let drawing = wiring_of(&text);
+        let nets = Nets::from_drawing(&drawing);
         let servo_grounds = [
             "end-A1-ground",
             "end-A2-ground",
@@ -167,7 +169,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
                 ["battery-balance", "alarm"].map(|component| format!("end-{component}-{number}"));
             nets.assert_joined(&[&battery, &alarm]);
         }
-        let mut roots = vec![
+        let mut net_roots = vec![
             nets.root("end-battery-plus"),
             nets.root("end-fuse-1"),
             nets.root("end-switch-1"),
@@ -175,17 +177,14 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
             nets.root("end-battery-minus"),
         ];
         for servo in SERVOS {
-            let pin = value_of(&text, servo, "pin");
+            let pin = servo_value(&text, servo, "pin");
             let signal = format!("end-{servo}-signal");
             nets.assert_joined(&[&signal, &format!("pin-{pin}")]);
-            roots.push(nets.root(&signal));
+            net_roots.push(nets.root(&signal));
             let label = format!("to {pin}");
-            assert!(
-                drawing.0.iter().any(|element| element.content == label),
-                "{name}"
-            );
+            assert!(drawing.texts().any(|text| text == label), "{name}");
             // The servo's resistor leads from its terminal position to ground.
-            let leads = drawing.path(&format!("resistor-{servo}"));
+            let leads = drawing.points_by_id(&format!("resistor-{servo}"));
             let ends = [leads[0], leads[leads.len() - 1]]
                 .map(|point| nets.root(&nets.nearest_terminal(point)));
             assert_eq!(
@@ -194,10 +193,10 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
                 "{name} {servo}"
             );
         }
-        let count = roots.len();
-        roots.sort();
-        roots.dedup();
-        assert_eq!(roots.len(), count, "{name}: two nets are one");
+        let net_count = net_roots.len();
+        net_roots.sort();
+        net_roots.dedup();
+        assert_eq!(net_roots.len(), net_count, "{name}: two nets are joined");
         // Spare positions are not joined to ground.
         for position in ["end-ground-11-wire", "end-ground-12-wire"] {
             assert_ne!(nets.root(position), nets.root("pin-GND"));
@@ -207,20 +206,16 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
 
 #[test]
 fn removing_any_link_splits_its_strip() {
-    let svg = draw_wiring(&Robot::parse(&paper()).expect("a robot"));
+    let svg = draw_wiring(&Robot::parse(&paper_toml()).expect("a robot"));
     let links = (1..10).map(|link| format!("link-ground-{link}"));
     let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
     for link in links {
-        let mut drawing = Drawing::of(&svg);
-        assert!(
-            drawing
-                .0
-                .iter()
-                .any(|element| element.attribute("id") == link),
-            "{link}"
-        );
-        drawing.0.retain(|element| element.attribute("id") != link);
-        let nets = Nets::of(&drawing);
+        let mut drawing = Drawing::parse(&svg);
+        assert!(drawing.has_element(&link), "{link}");
+        drawing
+            .elements
+            .retain(|element| element.attribute("id") != link);
+        let nets = Nets::from_drawing(&drawing);
         let ends = match link.starts_with("link-ground") {
             true => ["end-ground-1-wire", "end-ground-10-wire"],
             false => ["end-supply-1-wire", "end-supply-6-wire"],
@@ -230,17 +225,17 @@ fn removing_any_link_splits_its_strip() {
 }
 
 #[test]
-fn wires_only_cross_they_never_run_into_or_along_each_other() {
-    let pin_sets = many_pins();
+fn wires_cross_but_never_run_into_or_along_each_other() {
+    let pin_sets = many_pin_sets();
     let pin_sets = pin_sets
         .iter()
         .map(|pins| with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str())));
-    for text in files().into_iter().map(|file| file.1).chain(pin_sets) {
-        let drawing = Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")));
+    for text in robot_files().into_iter().map(|file| file.1).chain(pin_sets) {
+        let drawing = wiring_of(&text);
         // The wires in the radio's panel may touch each other, so they are left out.
         let mut wires = drawing.wires();
         wires.retain(|(name, _)| !name.starts_with("radio-"));
-        let is_upright = |segment: &[Point]| segment[0].0 == segment[1].0;
+        let is_vertical = |segment: &[Point]| segment[0].0 == segment[1].0;
         for (wire, path) in &wires {
             let is_straight =
                 |segment: &[Point]| segment[0].0 == segment[1].0 || segment[0].1 == segment[1].1;
@@ -261,25 +256,22 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
                         let (segment, other_segment) = (range_of(segment), range_of(other_segment));
                         (segment.0 - other_segment.1).max(other_segment.0 - segment.1)
                     };
-                    let (x, y) = (gap_along(|point| point.0), gap_along(|point| point.1));
-                    if is_upright(segment) == is_upright(other_segment) {
+                    let (x_gap, y_gap) = (gap_along(|point| point.0), gap_along(|point| point.1));
+                    let share_an_end = segment.iter().any(|end| other_segment.contains(end));
+                    if is_vertical(segment) == is_vertical(other_segment) {
                         // Parallel wires keep their distance, unless they share an end or are both links.
                         let are_links =
                             wire.starts_with("link-") && other_wire.starts_with("link-");
-                        let are_near = x < 3.0 && y < 3.0;
+                        let are_near = x_gap < 3.0 && y_gap < 3.0;
                         assert!(
-                            !are_near
-                                || are_links
-                                || segment.contains(&other_segment[0])
-                                || segment.contains(&other_segment[1]),
+                            !are_near || are_links || share_an_end,
                             "{wire} along {other_wire}: {segment:?} {other_segment:?}"
                         );
-                    } else if x <= 0.0 && y <= 0.0 {
-                        // Wires that cross do so well away from the ends of both, unless they share an end.
-                        let depth = (-x).min(-y);
-                        let is_touching = segment.iter().any(|end| other_segment.contains(end));
+                    } else if x_gap <= 0.0 && y_gap <= 0.0 {
+                        // Wires cross away from the ends of both, unless they share an end.
+                        let depth = (-x_gap).min(-y_gap);
                         assert!(
-                            depth > 2.0 || is_touching,
+                            depth > 2.0 || share_an_end,
                             "{wire} runs into {other_wire}: {segment:?} {other_segment:?}"
                         );
                     }
@@ -291,65 +283,46 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
 
 #[test]
 fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
-    let drawing = Drawing::of(&draw_wiring(&Robot::parse(&paper()).expect("a robot")));
-    let point_of = |name: &str| drawing.path(name)[0];
-    let path_of = |name: &str| drawing.path(name);
-    let [anode, cathode] = ["end-diode-anode", "end-diode-cathode"].map(point_of);
+    let drawing = wiring_of(&paper_toml());
+    let points_of = |name: &str| drawing.points_by_id(name);
+    let terminal = |name: &str| points_of(&format!("end-{name}"))[0];
+    let [anode, cathode] = ["diode-anode", "diode-cathode"].map(terminal);
     // The module pulls D0 low: current flows from D0 into TXD.
-    assert_eq!(path_of("radio-d0"), [point_of("end-radio-D0 (RX)"), anode]);
+    assert_eq!(points_of("radio-d0"), [terminal("radio-D0 (RX)"), anode]);
+    let module_txd = terminal("radio-module-TXD");
+    assert_eq!(points_of("radio-txd"), [cathode, module_txd]);
+    assert_eq!(points_of("radio-d1")[0], terminal("radio-D1 (TX)"));
+    assert_eq!(points_of("radio-rxd")[1], terminal("radio-module-RXD"));
+    let [rxd_y, ground_y] = ["radio-rxd", "radio-ground"].map(|name| points_of(name)[0].1);
+    let resistor_points = points_of("radio-2k");
     assert_eq!(
-        path_of("radio-txd"),
-        [cathode, point_of("end-radio-module-TXD")]
+        [resistor_points[0].1, resistor_points[1].1],
+        [rxd_y, ground_y]
     );
-    assert_eq!(path_of("radio-d1")[0], point_of("end-radio-D1 (TX)"));
-    assert_eq!(path_of("radio-rxd")[1], point_of("end-radio-module-RXD"));
-    let [rxd, ground] = ["radio-rxd", "radio-ground"].map(|name| path_of(name)[0].1);
-    let resistor_path = path_of("radio-2k");
-    assert_eq!([resistor_path[0].1, resistor_path[1].1], [rxd, ground]);
-    let has_text = |text: &str| {
-        drawing
-            .0
-            .iter()
-            .any(|element| element.content.contains(text))
-    };
-    assert!(has_text("Option: a radio module") && has_text("1 k\u{3a9}") && has_text("2 k\u{3a9}"));
+    for label in ["Option: a radio module", "1 k\u{3a9}", "2 k\u{3a9}"] {
+        assert!(drawing.texts().any(|text| text.contains(label)), "{label}");
+    }
 }
 
 #[test]
 fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground() {
-    let draw_with = |tables: &str| {
-        let text = paper().replace("[limits]", &format!("{tables}\n[limits]"));
-        Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")))
-    };
-    let has_entry = |drawing: &Drawing, name: &str| {
-        let mut ids = drawing.0.iter().map(|element| element.attribute("id"));
-        ids.any(|id| id == name)
+    let drawing_with = |tables: &str| {
+        let text = paper_toml().replace("[limits]", &format!("{tables}\n[limits]"));
+        wiring_of(&text)
     };
     let (button, nose) = ("[input.button]\npin = \"A1\"", "[input.nose]\npin = \"D7\"");
-    let (no_inputs, button_only) = (draw_with(""), draw_with(button));
-    let both_inputs = draw_with(&format!("{button}\n{nose}"));
+    let (no_inputs, button_only) = (drawing_with(""), drawing_with(button));
+    let both_inputs = drawing_with(&format!("{button}\n{nose}"));
+    let drawings_with_element =
+        |id: &str| [&no_inputs, &button_only, &both_inputs].map(|drawing| drawing.has_element(id));
     for name in ["input-button-A1", "input-button-GND"] {
-        assert_eq!(
-            [
-                has_entry(&no_inputs, name),
-                has_entry(&button_only, name),
-                has_entry(&both_inputs, name)
-            ],
-            [false, true, true]
-        );
+        assert_eq!(drawings_with_element(name), [false, true, true]);
     }
     for name in ["input-nose-D7", "input-nose-GND", "input-nose-5V"] {
-        assert_eq!(
-            [
-                has_entry(&no_inputs, name),
-                has_entry(&button_only, name),
-                has_entry(&both_inputs, name)
-            ],
-            [false, false, true]
-        );
-        let path = both_inputs.path(name);
-        let terminal = name.strip_prefix("input-").expect("it begins so");
-        assert_eq!(path[0], both_inputs.path(&format!("end-{terminal}"))[0]);
+        assert_eq!(drawings_with_element(name), [false, false, true]);
+        let terminal = name.replace("input-", "end-");
+        let [wire, terminal] = [name, &terminal].map(|id| both_inputs.points_by_id(id));
+        assert_eq!(wire[0], terminal[0]);
     }
     let fill_of =
         |drawing: &Drawing, pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
@@ -362,7 +335,7 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
 
 #[test]
 fn pins_are_where_an_uno_has_them() {
-    // Thousandths of an inch from the lower left corner, from Arduino's board file.
+    // Mils (thousandths of an inch) from the lower left corner, from Arduino's board file.
     const PINS: [(&str, Point); 9] = [
         ("D13", (1140.0, 2000.0)),
         ("D9", (1540.0, 2000.0)),
@@ -374,8 +347,8 @@ fn pins_are_where_an_uno_has_them() {
         ("A3", (2300.0, 100.0)),
         ("A5", (2500.0, 100.0)),
     ];
-    let drawing = Drawing::of(&draw_wiring(&Robot::parse(&paper()).expect("a robot")));
-    let pin_point = |name: &str| drawing.path(&format!("pin-{name}"))[0];
+    let drawing = wiring_of(&paper_toml());
+    let pin_point = |name: &str| drawing.points_by_id(&format!("pin-{name}"))[0];
     let scale = (pin_point("D0").0 - pin_point("D13").0) / (2500.0 - 1140.0);
     let (origin, origin_mil) = (pin_point("D13"), PINS[0].1);
     for (name, mil) in PINS {
@@ -393,13 +366,13 @@ fn pins_are_where_an_uno_has_them() {
 
 #[test]
 fn a_rail_that_is_measured_has_its_pin_marked() {
-    let text = paper().replace(
+    let text = paper_toml().replace(
         "[limits]",
         "[supply.rail]\npin = \"A3\"\nratio = 2.5\n[limits]",
     );
-    let drawing = Drawing::of(&draw_wiring(&Robot::parse(&text).expect("a robot")));
+    let drawing = wiring_of(&text);
     let remark = "A3 measures the +5 V strip, divided by 2.50.";
-    assert!(drawing.0.iter().any(|element| element.content == remark));
+    assert!(drawing.texts().any(|text| text == remark));
     let fill_of = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
     assert_eq!(fill_of("pin-A3"), fill_of("pin-D9"));
     assert_ne!(fill_of("pin-A3"), fill_of("pin-A2"));

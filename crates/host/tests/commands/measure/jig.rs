@@ -1,19 +1,20 @@
-//! `lizard measure servo`, `steps` and `slope` on rendered films, whose true values are known.
+//! Tests of `lizard measure servo`, `steps` and `slope` on rendered films with known true values.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use fastrand::Rng;
 use lizard_film::Picture;
-use lizard_studio::board::{self, BOARD, Board};
+use lizard_studio::board::{self, Board, EVEN_BOARD};
+use lizard_studio::encode_jpeg;
 use lizard_studio::servo::Servo;
 use serde_json::Value;
 
-use crate::program::{read, run_in, scratch};
+use crate::program::{read_file, run_in, scratch_folder};
 
 /// Creates an empty folder.
 fn new_folder(name: &str) -> PathBuf {
-    let folder = scratch().join(name);
+    let folder = scratch_folder().join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
     folder
@@ -21,50 +22,45 @@ fn new_folder(name: &str) -> PathBuf {
 
 /// Writes a picture as a JPEG file that is named after its time.
 fn write_picture(folder: &Path, seconds: f64, picture: &Picture) {
-    let [width, height] = picture.size().map(|length| length as u16);
-    let path = folder.join(format!("{seconds:.4}s.jpg"));
-    let encoder = jpeg_encoder::Encoder::new_file(path, 90).expect("a file");
-    let colour = jpeg_encoder::ColorType::Luma;
-    encoder
-        .encode(picture.grey(), width, height, colour)
-        .expect("it is written");
+    let jpeg = encode_jpeg(picture, 90).expect("a small picture");
+    fs::write(folder.join(format!("{seconds:.4}s.jpg")), jpeg).expect("a file");
 }
 
-/// Writes jig.toml: the paper's robot with pulses that move faster than its servos can follow.
+/// Writes jig.toml: the paper's robot with pulses that change faster than its servos can follow.
 fn write_jig(folder: &Path) {
-    let text = read("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
+    let text = read_file("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
     fs::write(folder.join("jig.toml"), text).expect("a file");
 }
 
 /// Checks that a figure is within two standard errors of its true value, and that the standard error
-/// is below `max_error`.
-fn check_figure(object: &Value, key: &str, truth: f64, max_error: f64) {
+/// is below `max_standard_error`.
+fn check_figure(object: &Value, key: &str, true_value: f64, max_standard_error: f64) {
     let figures = object["figures"].as_array().expect("figures");
     let figure = figures.iter().find(|figure| figure["key"] == key);
     let figure = figure.unwrap_or_else(|| panic!("{key}: {object}"));
     let number_at = |name: &str| figure[name].as_f64().expect("a number");
-    let error = number_at("error");
+    let standard_error = number_at("error");
     assert!(
-        (number_at("measured") - truth).abs() < 2.0 * error,
-        "{figure} {truth}"
+        (number_at("measured") - true_value).abs() < 2.0 * standard_error,
+        "{figure} {true_value}"
     );
-    assert!(error < max_error, "{figure}");
+    assert!(standard_error < max_standard_error, "{figure}");
 }
 
 #[test]
-fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
+fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
     let folder = new_folder("horn");
     write_jig(&folder);
     let servo = Servo {
         gain: -0.9,
-        rate: 420.0,
+        no_load_rate: 420.0,
         dead_band: 0.8,
         ..Servo::default()
     };
     let mut studio = super::studio();
-    (studio.deck, studio.shutter) = (40.0, 1.0 / 250.0);
+    (studio.deck_tag_height, studio.exposure_s) = (40.0, 1.0 / 250.0);
     // The poses of A1 go clockwise; counter-clockwise the leg would come too near to its singularity.
-    servo.pictures(
+    servo.take_pictures(
         &studio,
         -1.0,
         90.0,
@@ -77,9 +73,9 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
         "measure", "servo", ".", "--servo", "A1", "--robot", "jig.toml", "--height",
     ];
     let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
-    let object = measure(&["40", "--json"]).json();
+    let object = measure(&["40", "--json"]).expect_json();
     check_figure(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
-    check_figure(&object, "s_per_60_deg", 60.0 / servo.own_rate(), 0.003);
+    check_figure(&object, "s_per_60_deg", 60.0 / servo.steady_rate(), 0.003);
     assert_eq!(object["turns_the_other_way"], true);
     let text = measure(&["40"]).expect_success();
     for expected in [
@@ -108,7 +104,7 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
     };
     assert!((value_of("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
     // The file states the time at 4.8 V; the film was made at 4.5 V.
-    let seconds_per_60_deg = 60.0 / servo.own_rate() * 4.5 / 4.8;
+    let seconds_per_60_deg = 60.0 / servo.steady_rate() * 4.5 / 4.8;
     assert!(
         (value_of("s_per_60_deg") - seconds_per_60_deg).abs() < 0.003,
         "{changed_lines:?}"
@@ -163,15 +159,15 @@ fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
 }
 
 #[test]
-fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_tell() {
+fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_add() {
     let folder = new_folder("slope");
-    let slide = Board {
-        resting: 0.45,
-        sliding: 0.4,
-        lift: 8.0,
-        ..BOARD
+    let sliding_board = Board {
+        static_friction: 0.45,
+        sliding_friction: 0.4,
+        lift_deg_per_s: 8.0,
+        ..EVEN_BOARD
     };
-    slide.pictures(&board::studio(), 30.0, |seconds, picture| {
+    sliding_board.take_pictures(&board::small_studio(), 30.0, |seconds, picture| {
         write_picture(&folder, seconds, picture);
     });
     let arguments = [
@@ -179,9 +175,9 @@ fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_tell() {
     ];
     let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
     check_figure(
-        &measure(&["--json"]).json(),
+        &measure(&["--json"]).expect_json(),
         "friction",
-        slide.sliding,
+        sliding_board.sliding_friction,
         0.02,
     );
     let text = measure(&[]).expect_success();

@@ -1,11 +1,11 @@
-//! `lizard measure keys` on hand-written results of `lizard measure`.
+//! Tests of `lizard measure keys` on hand-written results of `lizard measure`.
 
 use std::fs;
 use std::path::PathBuf;
 
-use crate::program::{Outcome, read, robot, run_in, scratch};
+use crate::program::{Outcome, read_file, robot_path, run_in, scratch_folder};
 
-/// The movement per cycle of a gait, as `lizard measure --json` prints it; all errors are 0.05.
+/// The movement of a gait per cycle, as `lizard measure --json` prints it; all errors are 0.05.
 fn gait_json(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
     let component_json = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
     format!(
@@ -23,20 +23,20 @@ fn gaits_json(objects: &[String]) -> String {
 
 /// Writes a file into the scratch folder.
 fn write_file(name: &str, text: &str) -> PathBuf {
-    let path = scratch().join(name);
-    fs::write(&path, text).expect("it is written");
+    let path = scratch_folder().join(name);
+    fs::write(&path, text).expect("a file");
     path
 }
 
 fn measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
-    let paper = robot("paper");
+    let paper = robot_path("paper");
     let files: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
     let arguments = [&["measure", "keys", "--robot", &paper], &files[..], options].concat();
-    run_in(scratch(), &arguments, "")
+    run_in(scratch_folder(), &arguments, "")
 }
 
 #[test]
-fn files_without_information_are_refused_with_advice() {
+fn files_without_usable_movements_are_refused_with_advice() {
     let foreign_file = write_file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
     let message = measure_keys(&[&foreign_file], &[]).expect_refusal();
     assert!(
@@ -79,12 +79,12 @@ fn files_without_information_are_refused_with_advice() {
 }
 
 #[test]
-fn no_robot_and_no_input_is_replaced() {
+fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
     let movement_file = write_file(
         "way.json",
         &gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])]),
     );
-    let text = read("robots/grain.toml");
+    let text = read_file("robots/grain.toml");
     let robot_file = write_file("other-robot.toml", &text);
     let message = measure_keys(
         &[&movement_file],
@@ -98,11 +98,11 @@ fn no_robot_and_no_input_is_replaced() {
     )
     .expect_refusal();
     assert!(message.contains("this command reads it"), "{message}");
-    assert_eq!(fs::read_to_string(&robot_file).expect("it is there"), text);
+    assert_eq!(fs::read_to_string(&robot_file).expect("a file"), text);
 }
 
 #[test]
-fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
+fn a_measured_robot_differs_only_in_the_lines_that_were_measured() {
     // The model's movement with a friction ratio of 1.1, extrapolated by its derivatives at the file's ratio, 1.
     let gaits = [
         gait_json("walk", [33.57, 0.07, 0.0]),
@@ -112,10 +112,11 @@ fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
         gait_json("left", [1.09, 0.29, 14.53]),
     ];
     let measured_file = write_file("ways.json", &gaits_json(&gaits));
-    let output = scratch().join("measured.toml");
+    let output = scratch_folder().join("measured.toml");
     let _ = fs::remove_file(&output);
     let output_name = output.to_str().expect("a name");
-    let result = measure_keys(&[&measured_file], &["--output", output_name, "--json"]).json();
+    let result =
+        measure_keys(&[&measured_file], &["--output", output_name, "--json"]).expect_json();
     let verdict_of = |key: &str| {
         let mut entries = result["keys"].as_array().into_iter().flatten();
         let entry = entries.find(|entry| entry["key"] == key).expect(key);
@@ -124,8 +125,8 @@ fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
     assert_eq!(verdict_of("ground.friction_back_over_forward"), "moved");
     assert_eq!(result["written"], output_name);
     let (old_text, new_text) = (
-        read("robots/paper.toml"),
-        fs::read_to_string(&output).expect("it is written"),
+        read_file("robots/paper.toml"),
+        fs::read_to_string(&output).expect("a file"),
     );
     let changed_lines = new_text
         .lines()
@@ -139,6 +140,6 @@ fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
         );
     }
     assert!(new_text.contains("friction_back_over_forward = ") && new_text != old_text);
-    let outcome = run_in(scratch(), &["gaits", "--robot", output_name], "");
+    let outcome = run_in(scratch_folder(), &["gaits", "--robot", output_name], "");
     assert!(outcome.expect_success().contains("walk"));
 }

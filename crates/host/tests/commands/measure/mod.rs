@@ -1,4 +1,4 @@
-//! `lizard measure` on rendered films, whose true values are known, and the printed sheet that they show.
+//! Tests of `lizard measure` on rendered films with known true values, and of the printed sheet in these films.
 
 mod jig;
 mod keys;
@@ -8,31 +8,36 @@ use std::fs;
 use std::path::PathBuf;
 
 use fastrand::Rng;
-use lizard_studio::render::{Spot, Studio};
-use lizard_studio::walk::{Show, Variation, Walk, gait, truth};
+use lizard_studio::encode_jpeg;
+use lizard_studio::render::{Pose, Studio};
+use lizard_studio::walk::{Variation, Walk, WalkSeries, paper_gait, true_displacement};
 use serde_json::Value;
 
-use crate::program::{lizard, run_in, scratch};
+use crate::program::{run_in, run_line, scratch_folder};
 
-/// Pictures per second of the films.
-const RATE: f64 = 8.0;
+/// Frame rate of the films.
+const PICTURES_PER_SECOND: f64 = 8.0;
 
-/// A studio whose camera has few pixels, to be fast, and whose picture is filled by the sheet.
+/// A studio whose camera has few pixels, for speed. The sheet fills its picture.
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(4));
-    (studio.size, studio.focal) = ([640, 360], 1.0);
-    (studio.height, studio.tilt, studio.direction) = (800.0, 15.0, 90.0);
-    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
-    studio.deck = 95.0;
+    (studio.size, studio.focal_length) = ([640, 360], 1.0);
+    (
+        studio.camera_height,
+        studio.camera_tilt,
+        studio.camera_direction,
+    ) = (800.0, 15.0, 90.0);
+    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
+    studio.deck_tag_height = 95.0;
     studio
 }
 
-/// Five cycles of `walk` that differ a little from each other.
+/// Five cycles of `walk` that differ slightly from each other.
 fn varied_walk() -> Walk {
-    let gait = gait("walk");
-    let start = -truth(&gait).forward * 2.5;
+    let gait = paper_gait("walk");
+    let start = -true_displacement(&gait).forward * 2.5;
     let variation = Variation {
-        cycle: [0.1, 0.1, 0.002],
+        cycle_deviation: [0.1, 0.1, 0.002],
         ..Variation::default()
     };
     Walk::new(
@@ -45,46 +50,44 @@ fn varied_walk() -> Walk {
 }
 
 /// Renders five cycles of `walk` into a new folder.
-fn render_walk(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
+fn render_walk(folder: &str, file_name: impl Fn(usize) -> String) -> PathBuf {
     let walk = varied_walk();
-    render_film(folder, name, walk.seconds(), |time| walk.at(time))
+    render_film(folder, file_name, walk.duration_s(), |time| {
+        walk.pose_at(time)
+    })
 }
 
-/// Renders a moving robot as JPEG files in a new folder; `name` makes a file name from the picture's number.
+/// Renders a moving robot as JPEG files in a new folder; `file_name` makes a name from the picture's index.
 fn render_film(
     folder: &str,
-    name: impl Fn(usize) -> String,
+    file_name: impl Fn(usize) -> String,
     seconds: f64,
-    robot: impl Fn(f64) -> Spot,
+    spot_at: impl Fn(f64) -> Pose,
 ) -> PathBuf {
-    let folder = scratch().join(folder);
+    let folder = scratch_folder().join(folder);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
     let mut rng = Rng::with_seed(4);
     let background = studio().background(&mut rng);
-    for i in 0..(seconds * RATE) as usize {
-        let picture = background.picture(i as f64 / RATE, &robot, &mut rng);
-        let path = folder.join(name(i));
-        let [width, height] = picture.size().map(|length| length as u16);
-        let encoder = jpeg_encoder::Encoder::new_file(path, 80).expect("a file");
-        let colour = jpeg_encoder::ColorType::Luma;
-        encoder
-            .encode(picture.grey(), width, height, colour)
-            .expect("it is written");
+    for i in 0..(seconds * PICTURES_PER_SECOND) as usize {
+        let picture = background.picture(i as f64 / PICTURES_PER_SECOND, &spot_at, &mut rng);
+        let path = folder.join(file_name(i));
+        let jpeg = encode_jpeg(&picture, 80).expect("a small picture");
+        fs::write(path, jpeg).expect("a file");
     }
     folder
 }
 
-/// The words of a table, without its numbers and verdicts, which change with every film.
-fn without_figures(table: &str) -> Vec<&str> {
+/// The words of a table that are the same for every film: all but numbers and verdicts.
+fn stable_words(table: &str) -> Vec<&str> {
     let verdict_words = ["more", "less", "errors", "agrees"];
-    let part_names = ["ahead", "left", "turn", "mm", "deg"];
+    let component_words = ["ahead", "left", "turn", "mm", "deg"];
     table
         .lines()
         .flat_map(|line| {
-            // The name of the part that is farthest off depends on the figures, so it is skipped, too.
+            // The component with the largest error depends on the film, so its name is skipped, too.
             let skipped_words = if line.starts_with("path") {
-                &part_names[..]
+                &component_words[..]
             } else {
                 &[]
             };
@@ -103,14 +106,14 @@ fn without_figures(table: &str) -> Vec<&str> {
 fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let folder = render_walk("walk film", |i| format!("walk-{}ms.jpg", i * 125));
     let folder = folder.to_str().expect("a name");
-    let robot = crate::program::robot("paper");
+    let robot = crate::program::robot_path("paper");
     let measure = |options: &[&str]| {
         let arguments = [
             "measure", folder, "--robot", &robot, "--gait", "walk", "--height", "95",
         ];
-        run_in(scratch(), &[&arguments[..], options].concat(), "")
+        run_in(scratch_folder(), &[&arguments[..], options].concat(), "")
     };
-    let object = measure(&["--json"]).json();
+    let object = measure(&["--json"]).expect_json();
     let film = object["films"][0].clone();
     let object = object["gaits"][0].clone();
     let number_at = |path: &[&str]| {
@@ -119,7 +122,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
             .as_f64()
             .unwrap_or_else(|| panic!("{path:?}: {object}"))
     };
-    let truth = truth(&gait("walk"));
+    let truth = true_displacement(&paper_gait("walk"));
     for (name, truth, max_error) in [
         ("forward", truth.forward, 0.2),
         ("left", truth.left, 0.2),
@@ -139,23 +142,23 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         object["each"].as_array().map(Vec::len),
         Some(number_at(&["cycles"]) as usize)
     );
-    let figures = crate::program::read("tools/physics/figures.json");
+    let figures = crate::program::read_file("tools/physics/figures.json");
     let figures: Value = serde_json::from_str(&figures).expect("figures");
     let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);
     // The stored MuJoCo figures stay valid if a comment is added to robot.toml, but not if the mass changes.
-    let text = crate::program::read("robots/paper.toml");
+    let text = crate::program::read_file("robots/paper.toml");
     let heavier_text = text.replace("mass = 435.0", "mass = 500.0");
     assert_ne!(heavier_text, text);
     for (text, mujoco) in [
         (format!("# mine\n{text}"), mujoco),
         (heavier_text, &Value::Null),
     ] {
-        let changed_path = scratch().join("changed.toml");
+        let changed_path = scratch_folder().join("changed.toml");
         fs::write(&changed_path, text).expect("a file");
         let changed_path = changed_path.to_str().expect("a name");
         let outcome = run_in(
-            scratch(),
+            scratch_folder(),
             &[
                 "measure",
                 folder,
@@ -169,7 +172,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
             ],
             "",
         );
-        assert_eq!(&outcome.json()["gaits"][0]["mujoco"], mujoco);
+        assert_eq!(&outcome.expect_json()["gaits"][0]["mujoco"], mujoco);
     }
     let range = &object["range"];
     let predicted = number_at(&["forward", "predicted"]);
@@ -179,30 +182,30 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let table = measure(&[]).expect_success();
     assert!(table.contains("agrees"), "{table}");
     // The example in docs/measure.md comes from such a film.
-    let page = crate::program::read("docs/measure.md");
+    let page = crate::program::read_file("docs/measure.md");
     let (_, example) = page
         .split_once("--gait walk --height 95\n")
         .expect("an example");
-    let (example, _) = example.split_once("```").expect("its end");
+    let (example, _) = example.split_once("```").expect("an end");
     let table = table.replace(folder, "film.mp4");
-    assert_eq!(without_figures(example), without_figures(&table));
-    let path = run_in(
-        scratch(),
+    assert_eq!(stable_words(example), stable_words(&table));
+    let csv = run_in(
+        scratch_folder(),
         &["measure", folder, "--height", "95", "--csv"],
         "",
     )
     .expect_success();
     assert!(
-        path.starts_with("seconds,forward,left,heading\n0.0000,"),
-        "{path}"
+        csv.starts_with("seconds,forward,left,heading\n0.0000,"),
+        "{csv}"
     );
     assert_eq!(
-        Some(path.lines().count() as u64 - 1),
+        Some(csv.lines().count() as u64 - 1),
         film["pictures"].as_u64()
     );
-    // A film is refused if the path does not fit the named gait; the message names the gait that fits.
+    // A path that does not fit the named gait is refused; the message names the gait that fits.
     let outcome = run_in(
-        scratch(),
+        scratch_folder(),
         &["measure", folder, "--gait", "left", "--height", "95"],
         "",
     );
@@ -230,14 +233,14 @@ fn walk_counts(object: &Value) -> Vec<(&str, usize)> {
 }
 
 #[test]
-fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
-    let [walk, left] = ["walk", "left"].map(gait);
+fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
+    let [walk, left] = ["walk", "left"].map(paper_gait);
     let variation = Variation {
-        cycle: [0.1, 0.1, 0.002],
+        cycle_deviation: [0.1, 0.1, 0.002],
         ..Variation::default()
     };
     let order = [(&walk, 3), (&left, 4), (&walk, 3)];
-    let show = Show::new(
+    let series = WalkSeries::new(
         [-90.0, -20.0, 0.0],
         &order,
         2.2,
@@ -247,34 +250,34 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     let folder = render_film(
         "gaits",
         |i| format!("{i}.jpg"),
-        show.seconds(),
-        |time| show.at(time),
+        series.duration_s(),
+        |time| series.pose_at(time),
     );
     let folder = folder.to_str().expect("a name");
-    let robot = crate::program::robot("paper");
+    let robot = crate::program::robot_path("paper");
     let measure = |options: &[&str]| {
         let arguments = [
             "measure", folder, "--robot", &robot, "--fps", "8", "--height", "95",
         ];
-        run_in(scratch(), &[&arguments[..], options].concat(), "")
+        run_in(scratch_folder(), &[&arguments[..], options].concat(), "")
     };
-    let svg = scratch().join("measured.svg");
-    let picture = ["--json", "--picture", svg.to_str().expect("a name")];
-    let found_result = measure(&picture).json();
+    let svg_path = scratch_folder().join("measured.svg");
+    let picture_options = ["--json", "--picture", svg_path.to_str().expect("a name")];
+    let unnamed_result = measure(&picture_options).expect_json();
     assert_eq!(
-        walk_counts(&found_result),
+        walk_counts(&unnamed_result),
         [("walk", 2), ("left", 1)],
-        "{found_result}"
+        "{unnamed_result}"
     );
-    let named_result = measure(&["--json", "--gait", "walk,left,walk"]).json();
-    assert_eq!(walk_counts(&named_result), walk_counts(&found_result));
-    for (result, gait) in found_result["gaits"]
+    let named_result = measure(&["--json", "--gait", "walk,left,walk"]).expect_json();
+    assert_eq!(walk_counts(&named_result), walk_counts(&unnamed_result));
+    for (result, gait) in unnamed_result["gaits"]
         .as_array()
         .expect("a list")
         .iter()
         .zip([&walk, &left])
     {
-        let truth = truth(gait);
+        let truth = true_displacement(gait);
         for (part, truth, max_error) in [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)]
         {
             let mean = result[part]["mean"].as_f64().expect("a mean");
@@ -286,9 +289,9 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
             "{result}"
         );
     }
-    let picture_text = fs::read_to_string(svg).expect("a picture");
+    let svg = fs::read_to_string(svg_path).expect("a picture");
     for label in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
-        assert!(picture_text.contains(label), "{label}: {picture_text}");
+        assert!(svg.contains(label), "{label}: {svg}");
     }
     // Refused: a gait that is not in the film, and gaits in the wrong order.
     let refusal = measure(&["--gait", "walk,left,walk,back"]).expect_refusal();
@@ -309,7 +312,7 @@ fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
 
 #[test]
 fn impossible_measurements_are_refused_with_a_message() {
-    let folder = scratch().join("measure troubles");
+    let folder = scratch_folder().join("measure troubles");
     let _ = fs::remove_dir_all(&folder);
     let path_in = |name: &str| folder.join(name);
     fs::create_dir_all(path_in("empty")).expect("a folder");
@@ -363,7 +366,7 @@ fn impossible_measurements_are_refused_with_a_message() {
 
 #[test]
 fn a_film_without_ffmpeg_says_what_to_install() {
-    let film = scratch().join("film.mp4");
+    let film = scratch_folder().join("film.mp4");
     fs::write(&film, "a film").expect("a file");
     let program = env!("CARGO_BIN_EXE_lizard");
     let mut command = std::process::Command::new(program);
@@ -373,7 +376,7 @@ fn a_film_without_ffmpeg_says_what_to_install() {
         .env("PATH", "");
     let output = lizard_time_limit::LIMIT
         .output(&mut command, b"")
-        .expect("it ends");
+        .expect("an exit");
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(
         message.contains("install ffmpeg, or give a folder of pictures"),
@@ -382,22 +385,22 @@ fn a_film_without_ffmpeg_says_what_to_install() {
     assert_eq!(output.status.code(), Some(1));
 }
 
-/// Replaces ffmpeg and ffprobe by scripts: one prints decoded pictures, the other uneven times like a phone's.
+/// Replaces ffmpeg and ffprobe by scripts: ffmpeg prints decoded pictures, ffprobe the uneven times of a phone's film.
 #[test]
 #[cfg(unix)]
 fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     use std::fmt::Write as _;
     use std::os::unix::fs::PermissionsExt;
-    let folder = scratch().join("ffmpeg");
+    let folder = scratch_folder().join("ffmpeg");
     fs::create_dir_all(&folder).expect("a folder");
     let mut film = b"YUV4MPEG2 W640 H360 F8:1 Ip A1:1 Cmono\n".to_vec();
     let mut times = String::new();
     let (background, walk) = (studio(), varied_walk());
     let mut rng = Rng::with_seed(9);
     let background = background.background(&mut rng);
-    for i in 0..(walk.seconds() * RATE) as usize {
-        let seconds = i as f64 / RATE + 0.01 * f64::from(i as u32 % 3);
-        let picture = background.picture(seconds, |time| walk.at(time), &mut rng);
+    for i in 0..(walk.duration_s() * PICTURES_PER_SECOND) as usize {
+        let seconds = i as f64 / PICTURES_PER_SECOND + 0.01 * f64::from(i as u32 % 3);
+        let picture = background.picture(seconds, |time| walk.pose_at(time), &mut rng);
         film.extend(b"FRAME\n");
         film.extend(picture.grey());
         let _ = write!(times, "{seconds:.6},\n\n");
@@ -408,28 +411,28 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
         let path = folder.join(program);
         let script = format!("#!/bin/sh\nexec cat '{}'\n", folder.join(file).display());
         fs::write(&path, script).expect("a script");
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("it may run");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("permissions");
     }
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lizard"));
     let path = format!("{}:/usr/bin:/bin", folder.display());
     command.args(["measure", "--gait", "walk", "--height", "95", "--json"]);
-    command.args(["--robot", &crate::program::robot("paper")]);
+    command.args(["--robot", &crate::program::robot_path("paper")]);
     command.arg(folder.join("film")).env("PATH", path);
     let output = lizard_time_limit::LIMIT
         .output(&mut command, b"")
-        .expect("it ends");
+        .expect("an exit");
     let object: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let forward = object["gaits"][0]["forward"]["mean"]
+    let forward_mm = object["gaits"][0]["forward"]["mean"]
         .as_f64()
-        .expect("a way");
+        .expect("a distance");
     assert!(
-        (forward - truth(&gait("walk")).forward).abs() < 0.2,
+        (forward_mm - true_displacement(&paper_gait("walk")).forward).abs() < 0.2,
         "{object}"
     );
 }
 
 #[test]
-fn json_of_a_film_has_no_value_that_is_no_number() {
+fn every_number_in_the_json_of_a_film_is_finite() {
     // serde_json writes NaN and infinity as null.
     let folder = render_walk("numbers", |i| format!("{i}.jpg"));
     let arguments = [
@@ -441,11 +444,12 @@ fn json_of_a_film_has_no_value_that_is_no_number() {
         "95",
     ];
     let options = ["--gait", "walk", "--json"];
-    let object: Value = run_in(scratch(), &[&arguments[..], &options].concat(), "").json();
+    let object: Value =
+        run_in(scratch_folder(), &[&arguments[..], &options].concat(), "").expect_json();
     let text = object.to_string();
     assert!(!text.contains("null"), "{text}");
     assert!(
-        lizard("measure --help", "")
+        run_line("measure --help", "")
             .expect_success()
             .contains("standard error of the mean")
     );

@@ -1,14 +1,14 @@
-//! The sheet's PDF, rasterised here and read by the tag detector.
+//! Tests of the sheet's PDF: it is rasterised, and the tag detector reads the picture.
 
 use std::fs;
 
 use lizard_film::{Picture, read_tags, sheet};
 
-use crate::program::{run, scratch};
+use crate::program::{run, scratch_folder};
 
-/// Pixels per mm.
+/// Resolution of the rasterised page.
 const PIXELS_PER_MM: f64 = 3.0;
-/// Millimetres per PDF point.
+/// Size of a PDF point.
 const MM_PER_POINT: f64 = 25.4 / 72.0;
 
 /// The operands of each line of `text` that ends in the PDF operator `operator`.
@@ -24,14 +24,14 @@ fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f6
 }
 
 /// Writes the sheet; returns the PDF's text, and the page's width and height in mm.
-fn sheet_on(paper: &str) -> (String, [f64; 2]) {
-    let path = scratch().join(format!("sheets/{paper}.pdf"));
+fn write_sheet(paper: &str) -> (String, [f64; 2]) {
+    let path = scratch_folder().join(format!("sheets/{paper}.pdf"));
     let name = path.to_str().expect("a name");
     let output = run(&["measure", "sheet", "--paper", paper, "--output", name]).expect_success();
     assert!(output.contains("print it at 100 %"), "{output}");
-    let text = String::from_utf8_lossy(&fs::read(&path).expect("it is written")).into_owned();
+    let text = String::from_utf8_lossy(&fs::read(&path).expect("a file")).into_owned();
     let (_, media_box) = text.split_once("/MediaBox [").expect("a size");
-    let (media_box, _) = media_box.split_once(']').expect("its end");
+    let (media_box, _) = media_box.split_once(']').expect("an end");
     let size: Vec<f64> = media_box
         .split(' ')
         .map(|word| word.parse().expect("a number"))
@@ -42,11 +42,11 @@ fn sheet_on(paper: &str) -> (String, [f64; 2]) {
 
 /// Draws the filled rectangles of a page as a picture. Also returns the extent of the ink: the least and
 /// greatest distance from the left edge, then from the lower edge, mm.
-fn rasterize(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
-    let columns = (width * PIXELS_PER_MM) as usize;
-    let rows = (height * PIXELS_PER_MM) as usize;
+fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
+    let columns = (page_width * PIXELS_PER_MM) as usize;
+    let rows = (page_height * PIXELS_PER_MM) as usize;
     let mut grey = vec![255; columns * rows];
-    let mut ink = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    let mut ink_extent = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     let mut lines = text.lines().peekable();
     let mut fill = 0;
     while let Some(line) = lines.next() {
@@ -56,9 +56,10 @@ fn rasterize(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) 
         let Some(rectangle) = operands(line, " re").next() else {
             continue;
         };
-        let [x, y, w, h] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
-        for (i, (from, length)) in [(x, w), (y, h)].into_iter().enumerate() {
-            ink[i] = [ink[i][0].min(from), ink[i][1].max(from + length)];
+        let [x, y, width, height] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
+        for (axis, (from, length)) in [(x, width), (y, height)].into_iter().enumerate() {
+            let [low, high] = ink_extent[axis];
+            ink_extent[axis] = [low.min(from), high.max(from + length)];
         }
         if lines.peek() != Some(&"f") {
             continue;
@@ -67,28 +68,29 @@ fn rasterize(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) 
         let pixel_range = |from: f64, to: f64| {
             (from * PIXELS_PER_MM + 0.5) as usize..(to * PIXELS_PER_MM + 0.5) as usize
         };
-        for row in pixel_range(height - y - h, height - y) {
-            for column in pixel_range(x, x + w) {
+        for row in pixel_range(page_height - y - height, page_height - y) {
+            for column in pixel_range(x, x + width) {
                 grey[row * columns + column] = fill;
             }
         }
     }
-    (Picture::new(columns, rows, grey).expect("a picture"), ink)
+    let picture = Picture::new(columns, rows, grey).expect("a picture");
+    (picture, ink_extent)
 }
 
 #[test]
 fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
-    for (paper, size) in [("a4", [297.0, 210.0]), ("letter", [279.4, 215.9])] {
-        let (text, page) = sheet_on(paper);
+    for (paper, size_mm) in [("a4", [297.0, 210.0]), ("letter", [279.4, 215.9])] {
+        let (text, page_mm) = write_sheet(paper);
         assert!(
-            (page[0] - size[0]).abs() < 0.1 && (page[1] - size[1]).abs() < 0.1,
-            "{page:?}"
+            (page_mm[0] - size_mm[0]).abs() < 0.1 && (page_mm[1] - size_mm[1]).abs() < 0.1,
+            "{page_mm:?}"
         );
-        let (picture, ink) = rasterize(&text, page);
-        for (i, [low, high]) in ink.into_iter().enumerate() {
+        let (picture, ink_extent) = rasterize(&text, page_mm);
+        for (axis, [low, high]) in ink_extent.into_iter().enumerate() {
             assert!(
-                low > 5.0 && high < page[i] - 5.0,
-                "printers leave a margin: {ink:?}"
+                low > 5.0 && high < page_mm[axis] - 5.0,
+                "outside the margins of a printer: {ink_extent:?}"
             );
         }
         let mut tags = read_tags(&picture);
@@ -99,33 +101,36 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
             |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / PIXELS_PER_MM;
         for tag in &tags {
             let [left, right, ..] = tag.corners;
-            let edge = distance_mm(left, right);
+            let edge_mm = distance_mm(left, right);
             assert!(
-                (edge - sheet::tag_edge(tag.id)).abs() < 0.4,
-                "{paper} {}: {edge}",
+                (edge_mm - sheet::tag_edge(tag.id)).abs() < 0.4,
+                "{paper} {}: {edge_mm}",
                 tag.id
             );
             assert!(
                 left[0] < right[0] && (left[1] - right[1]).abs() < 1.0,
-                "it is upright"
+                "a tag is not upright"
             );
         }
         for strip in [0, 2] {
-            let span = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
-            assert!((span - sheet::TAG_SPACING).abs() < 0.4, "{paper}: {span}");
+            let spacing_mm = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
+            assert!(
+                (spacing_mm - sheet::TAG_SPACING).abs() < 0.4,
+                "{paper}: {spacing_mm}"
+            );
         }
     }
 }
 
 #[test]
 fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
-    let (text, _) = sheet_on("a4");
+    let (text, _) = write_sheet("a4");
     let rectangles: Vec<Vec<f64>> = operands(&text, " re").collect();
     let lines = rectangles
         .iter()
         .filter(|line| (line[2] * MM_PER_POINT - sheet::RULER_LENGTH).abs() < 0.01);
     assert_eq!(lines.count(), sheet::STRIP_COUNT);
-    // The outer edges of the two end ticks are the end points of the line.
+    // The outer edges of the two end ticks are at the ends of the line.
     let ticks = rectangles
         .iter()
         .filter(|line| (line[3] * MM_PER_POINT - 8.0).abs() < 0.01);

@@ -1,9 +1,8 @@
-//! Bad input: each case has its message and its exit code, and leaves no half-written
-//! output.
+//! Tests of bad input: each case has its message and exit code, and leaves no half-written output.
 
 use lizard_time_limit::LIMIT;
 
-use crate::program::{lizard, paper};
+use crate::program::{run_line, scratch_folder, with_paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
@@ -43,22 +42,22 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
     ];
     for (rows, message) in cases {
         for command in ["pose", "pose --json"] {
-            let outcome = lizard(command, format!("{HEADER}{rows}"));
+            let outcome = run_line(command, format!("{HEADER}{rows}"));
             assert_eq!(outcome.code, Some(2), "{rows}");
-            assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
-            assert!(outcome.out.is_empty() || outcome.out.ends_with('\n'));
+            assert_eq!(outcome.stderr.trim_end(), format!("lizard: {message}"));
+            assert!(outcome.stdout.is_empty() || outcome.stdout.ends_with('\n'));
         }
     }
 }
 
 #[test]
-fn rows_before_the_malformed_one_are_answered_whole() {
-    let outcome = lizard(
+fn rows_before_a_malformed_row_are_answered_in_full() {
+    let outcome = run_line(
         "pose --json",
         format!("{HEADER}138,42,318,221\n138,42,318,221\n?,42,318,221\n"),
     );
-    assert_eq!((outcome.code, outcome.out.lines().count()), (Some(2), 2));
-    for line in outcome.out.lines() {
+    assert_eq!((outcome.code, outcome.stdout.lines().count()), (Some(2), 2));
+    for line in outcome.stdout.lines() {
         serde_json::from_str::<serde_json::Value>(line).expect("a whole object");
     }
 }
@@ -91,15 +90,15 @@ fn a_wrong_header_is_refused() {
         ),
     ];
     for (input, message) in cases {
-        let outcome = lizard("pose --json", input);
+        let outcome = run_line("pose --json", input);
         assert_eq!(outcome.code, Some(2));
-        assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
-        assert_eq!(outcome.out, "");
+        assert_eq!(outcome.stderr.trim_end(), format!("lizard: {message}"));
+        assert_eq!(outcome.stdout, "");
     }
-    let long_line_outcome = lizard("pose", vec![b'1'; 100_000]);
+    let long_line_outcome = run_line("pose", vec![b'1'; 100_000]);
     assert_eq!(long_line_outcome.code, Some(2));
     assert_eq!(
-        long_line_outcome.err.trim_end(),
+        long_line_outcome.stderr.trim_end(),
         "lizard: line 1, column 1: longer than 1024 bytes"
     );
 }
@@ -167,10 +166,14 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
         ("walk", "walk"),
     ];
     for (args, message) in cases {
-        let outcome = lizard(args, "");
-        assert_eq!(outcome.code, Some(2), "{args}: {}", outcome.err);
-        assert!(outcome.err.contains(message), "{args}: {}", outcome.err);
-        assert_eq!(outcome.out, "", "{args}");
+        let outcome = run_line(args, "");
+        assert_eq!(outcome.code, Some(2), "{args}: {}", outcome.stderr);
+        assert!(
+            outcome.stderr.contains(message),
+            "{args}: {}",
+            outcome.stderr
+        );
+        assert_eq!(outcome.stdout, "", "{args}");
     }
 }
 
@@ -191,21 +194,27 @@ fn an_impossible_request_ends_with_code_1() {
         ),
     ];
     for (args, message) in cases {
-        let outcome = lizard(&paper(args), "");
-        assert_eq!(outcome.code, Some(1), "{args}: {}", outcome.err);
-        assert!(outcome.err.contains(message), "{args}: {}", outcome.err);
+        let outcome = run_line(&with_paper(args), "");
+        assert_eq!(outcome.code, Some(1), "{args}: {}", outcome.stderr);
+        assert!(
+            outcome.stderr.contains(message),
+            "{args}: {}",
+            outcome.stderr
+        );
     }
 }
 
+#[cfg(unix)]
 #[test]
 fn a_closed_pipe_is_not_a_failure() {
     let mut input = HEADER.to_string();
     input += &"138,42,318,221\n".repeat(50_000);
-    std::fs::write(std::env::temp_dir().join("lizard-poses.csv"), input).unwrap();
+    let file = scratch_folder().join("poses.csv");
+    std::fs::write(&file, input).unwrap();
     let script = format!(
-        "'{}' pose --json < {}/lizard-poses.csv | head -n 1; exit ${{PIPESTATUS[0]}}",
+        "'{}' pose --json < '{}' | head -n 1; exit ${{PIPESTATUS[0]}}",
         env!("CARGO_BIN_EXE_lizard"),
-        std::env::temp_dir().display()
+        file.display()
     );
     let mut bash = std::process::Command::new("bash");
     let output = LIMIT.output(bash.args(["-c", &script]), b"").unwrap();

@@ -1,15 +1,15 @@
-//! The pages in docs/ are up to date with the program's output.
+//! Tests that the pages in docs/ agree with the program's output.
 
 use lizard_paper::errata::{SAMPLES, markdown, measure};
 
-use crate::program::{lizard, paper, read, root};
+use crate::program::{read_file, repo_root, run_line, with_paper};
 
 #[test]
-fn the_errata_are_what_is_measured_and_every_correction_holds() {
+fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
     let entries = measure(SAMPLES, &|| {});
     assert!(entries.iter().all(|entry| entry.is_settled()));
     // Each printed form has one entry, so no erratum is counted twice.
-    let json_entries = lizard("errata --samples 1 --json", "").json();
+    let json_entries = run_line("errata --samples 1 --json", "").expect_json();
     let mut forms: Vec<String> = json_entries
         .as_array()
         .unwrap()
@@ -22,41 +22,41 @@ fn the_errata_are_what_is_measured_and_every_correction_holds() {
     forms.dedup();
     assert_eq!(forms.len(), count, "a condition is counted twice");
     assert!(
-        read("docs/errata.md") == markdown(&entries, SAMPLES),
+        read_file("docs/errata.md") == markdown(&entries, SAMPLES),
         "docs/errata.md is out of date: lizard errata --markdown > docs/errata.md"
     );
 }
 
 #[test]
-fn every_command_in_the_walk_through_of_the_paper_prints_what_the_page_shows() {
-    let page = read("docs/paper.md");
-    let mut commands = 0;
+fn every_command_of_the_page_on_the_paper_prints_the_output_that_the_page_shows() {
+    let page = read_file("docs/paper.md");
+    let mut command_count = 0;
     for block in page.split("```console\n").skip(1) {
         let block = block.split("```").next().expect("a closed block");
         let (command, expected_output) = block.split_once('\n').expect("a command and its answer");
         let args = command.strip_prefix("$ lizard ").expect("a lizard command");
-        let outcome = lizard(&paper(args), "");
-        assert_eq!(outcome.code, Some(0), "{args}: {}", outcome.err);
+        let outcome = run_line(&with_paper(args), "");
+        assert_eq!(outcome.code, Some(0), "{args}: {}", outcome.stderr);
         assert!(
-            outcome.out.trim_end() == expected_output.trim_end(),
+            outcome.stdout.trim_end() == expected_output.trim_end(),
             "docs/paper.md is out of date: lizard {args}\n{}",
-            outcome.out
+            outcome.stdout
         );
-        commands += 1;
+        command_count += 1;
     }
-    assert!(commands >= 6, "{commands}");
+    assert!(command_count >= 6, "{command_count}");
 }
 
 #[test]
-fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
+fn charts_are_written_as_svg_only_and_are_those_of_the_docs() {
     let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
-    let robot = root().join("robots/paper.toml");
+    let robot = repo_root().join("robots/paper.toml");
     let (folder_path, robot) = (folder.display(), robot.display());
-    let outcome = lizard(
+    let outcome = run_line(
         &format!("draw charts --json {folder_path} --robot {robot}"),
         "",
     );
-    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -78,14 +78,14 @@ fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
         let svg = std::fs::read_to_string(folder.join(name)).unwrap();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
         assert!(
-            read(&format!("docs/charts/{name}")) == svg,
+            read_file(&format!("docs/charts/{name}")) == svg,
             "docs/charts/{name} is out of date: lizard draw charts docs/charts --robot robots/paper.toml"
         );
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Table 1 of the paper, as it is printed: names and lengths, mm.
+/// Table 1 of the paper as printed: names of links, and their lengths, mm.
 const TABLE_1: [(&str, f64); 7] = [
     ("l0 l5", 20.0),
     ("l1 l4 l6 l9 l14 l11 l16 l19", 30.0),
@@ -97,8 +97,8 @@ const TABLE_1: [(&str, f64); 7] = [
 ];
 
 #[test]
-fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
-    let robot = read("robots/paper.toml");
+fn table_1_of_the_paper_agrees_with_its_robot_except_for_the_link_that_it_names_twice() {
+    let robot = read_file("robots/paper.toml");
     let value_of = |name: &str| -> f64 {
         let line = robot
             .lines()
@@ -125,13 +125,14 @@ fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
     assert_eq!(links.len(), 19);
     assert!(!links.contains(&"l17") && value_of("l17") == 45.0);
     assert!(
-        read("docs/paper.md").contains("19 of 20 links; l17 is missing and l16 is there twice")
+        read_file("docs/paper.md")
+            .contains("19 of 20 links; l17 is missing and l16 is there twice")
     );
 }
 
 #[test]
-fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
-    let page = read("docs/paper.md");
+fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
+    let page = read_file("docs/paper.md");
     let (_, table) = page.split_once("| in the paper |").expect("the table");
     let rows: Vec<Vec<&str>> = table
         .lines()
@@ -140,28 +141,31 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
         .map(|line| line.trim_end_matches(" |").split(" | ").collect())
         .collect();
     let figures = (1..=10).map(|number| format!("Figure {number}"));
-    let other_items = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
-    let expected: Vec<String> = figures.chain(other_items).collect();
+    let other_entries = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
+    let expected: Vec<String> = figures.chain(other_entries).collect();
     let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(names, expected);
-    let charts = lizard("draw charts --help", "").expect_success();
+    let charts = run_line("draw charts --help", "").expect_success();
     for row in &rows {
         let [name, _, command, files, agreement] = row[..] else {
             panic!("{row:?}")
         };
         assert!(!agreement.is_empty(), "{name}");
         for file in files.split(", ") {
-            assert!(root().join("docs").join(file).is_file(), "{name}: {file}");
+            assert!(
+                repo_root().join("docs").join(file).is_file(),
+                "{name}: {file}"
+            );
         }
         let Some(command) = command.strip_prefix("`lizard ") else {
             assert_eq!(command, "none", "{name}");
             continue;
         };
         let command = command.trim_end_matches('`');
-        // Other tests make all parts and all charts, which takes seconds.
+        // Commands with a DIR take seconds, and other tests run them.
         if let Some(base_command) = command.strip_suffix(" DIR") {
             assert_eq!(
-                lizard(&format!("{base_command} --help"), "").code,
+                run_line(&format!("{base_command} --help"), "").code,
                 Some(0),
                 "{name}"
             );
@@ -173,16 +177,16 @@ fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
                 assert!(charts.contains(&chart), "{name}: {chart}");
             }
         } else {
-            let outcome = lizard(&paper(command), "");
-            assert_eq!(outcome.code, Some(0), "{name}: {}", outcome.err);
+            let outcome = run_line(&with_paper(command), "");
+            assert_eq!(outcome.code, Some(0), "{name}: {}", outcome.stderr);
         }
     }
 }
 
 #[test]
-fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
-    let page = read("docs/paper.md").replace('\n', " ");
-    let rows = lizard(&paper("gaits --json"), "").expect_success();
+fn the_figures_of_the_papers_walk_on_the_page_are_those_of_the_gaits() {
+    let page = read_file("docs/paper.md").replace('\n', " ");
+    let rows = run_line(&with_paper("gaits --json"), "").expect_success();
     let prediction_of = |gait: &str, key: &str| -> f64 {
         let rows = rows
             .lines()
@@ -198,7 +202,7 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
         prediction_of("left", "turn"),
     );
     let foot_travel_mm = 80.0_f64.hypot(55.0) * left_deg.to_radians();
-    let table = lizard(&paper("gaits --sensitivity"), "").expect_success();
+    let table = run_line(&with_paper("gaits --sensitivity"), "").expect_success();
     let numbers_of = |heading: &str, name: &str| -> Vec<f64> {
         let (_, rows) = table.split_once(heading).expect(heading);
         let row = rows
@@ -207,8 +211,8 @@ fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
         let row = row.expect(name).split_whitespace();
         row.filter_map(|word| word.parse().ok()).collect()
     };
-    // The third column of mounts is 41.4 deg, the fourth friction ratio 1.25; a row of a turn has two numbers per
-    // column.
+    // The third column of mounts is for 41.4 deg, and the fourth of friction for a ratio of 1.25. The row of a turn has
+    // two numbers in each column.
     let [mounted_walk_mm, mounted_turn_deg] = [
         numbers_of("mount, deg", "walk")[2],
         numbers_of("mount, deg", "left")[5],

@@ -1,8 +1,13 @@
-//! Numbers of the paper and numbers measured for this project, as the commands print them for the paper's robot.
+//! Tests that the commands print the numbers of the paper and of this project's measurements for the paper's robot.
 
 use serde_json::Value;
 
-use crate::program::{lizard, paper, read};
+use crate::program::{read_file, run_line, with_paper};
+
+/// Runs a command with the paper's robot, and parses its output.
+fn paper_json(args: &str) -> Value {
+    run_line(&with_paper(args), "").expect_json()
+}
 
 fn number_of(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -10,7 +15,7 @@ fn number_of(value: &Value) -> f64 {
 
 #[test]
 fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
-    let design = lizard("design --json", "").json();
+    let design = run_line("design --json", "").expect_json();
     let expected_values = [
         ("d", 100.0, 1e-9),
         ("l0", 20.0, 1e-9),
@@ -33,8 +38,8 @@ fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
 
 #[test]
 fn a_design_of_another_size_keeps_its_shape() {
-    let small = lizard("design --json --r1 0.35 --r2 0.45", "").json();
-    let large = lizard("design --json --r1 0.35 --r2 0.45 --l0 60", "").json();
+    let small = run_line("design --json --r1 0.35 --r2 0.45", "").expect_json();
+    let large = run_line("design --json --r1 0.35 --r2 0.45 --l0 60", "").expect_json();
     assert!((number_of(&large["d"]) / number_of(&small["d"]) - 3.0).abs() < 1e-12);
     assert!((number_of(&large["area"]) / number_of(&small["area"]) - 9.0).abs() < 1e-9);
     for key in ["mean", "share_above"] {
@@ -44,7 +49,7 @@ fn a_design_of_another_size_keeps_its_shape() {
 
 #[test]
 fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
-    let points = lizard("design --chart --json --step 0.05", "").json();
+    let points = run_line("design --chart --json --step 0.05", "").expect_json();
     let points = points.as_array().unwrap();
     // Every (i, j) with r3 = .9 - (i + j) .05 between 0 and .45.
     let expected = (1..18)
@@ -54,8 +59,9 @@ fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
     assert_eq!(points.len(), expected);
     let paper = points
         .iter()
-        .find(|p| {
-            (number_of(&p["r1"]) - 0.3).abs() < 1e-9 && (number_of(&p["r2"]) - 0.5).abs() < 1e-9
+        .find(|point| {
+            (number_of(&point["r1"]) - 0.3).abs() < 1e-9
+                && (number_of(&point["r2"]) - 0.5).abs() < 1e-9
         })
         .unwrap();
     assert!((number_of(&paper["r_mic"]) - 0.3).abs() < 1e-9);
@@ -64,8 +70,8 @@ fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
 }
 
 #[test]
-fn the_search_keeps_its_promises() {
-    let designs = lizard(&paper("design --search --json --step 0.05 --top 50"), "").json();
+fn the_search_gives_designs_within_the_limits_the_best_first() {
+    let designs = paper_json("design --search --json --step 0.05 --top 50");
     let designs = designs.as_array().unwrap();
     assert!(!designs.is_empty());
     let mut last_score = f64::INFINITY;
@@ -82,8 +88,8 @@ fn the_search_keeps_its_promises() {
 }
 
 #[test]
-fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
-    let mechanisms = lizard(&paper("pose --show freedoms --json"), "").json();
+fn gruebler_count_and_rank_give_the_body_four_freedoms_and_each_leg_one() {
+    let mechanisms = paper_json("pose --show freedoms --json");
     let freedoms: Vec<(i64, i64)> = mechanisms
         .as_array()
         .unwrap()
@@ -98,11 +104,8 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
     assert_eq!(freedoms, [(4, 4), (1, 1), (1, 1), (1, 1), (1, 1)]);
     assert_eq!(mechanisms[0]["rank"], 32);
     // A flat leg gains a freedom, which Gruebler's count does not show.
-    let flat_leg_mechanisms = lizard(
-        &paper("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
-        "",
-    )
-    .json();
+    let flat_leg_mechanisms =
+        paper_json("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318");
     assert_eq!(
         (
             &flat_leg_mechanisms[2]["gruebler"],
@@ -114,46 +117,43 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
 
 #[test]
 fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
-    let report = lizard(
-        &paper(
-            "pose --show singularities --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
-        ),
-        "",
-    )
-    .json();
+    let report = paper_json(
+        "pose --show singularities --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
+    );
     let (eliminated_determinant, factored_determinant) = (
         number_of(&report["determinant"]),
         number_of(&report["factored"]),
     );
     assert!((eliminated_determinant / factored_determinant - 1.0).abs() < 1e-9);
-    let start = [120.0, 70.0, 310.0, 230.0];
+    let start_angles = [120.0, 70.0, 310.0, 230.0];
     let mut last_distance = 0.0;
     for near_pose in report["nearest"].as_array().unwrap() {
         let distance = number_of(&near_pose["distance"]);
         assert!(distance >= last_distance);
         last_distance = distance;
         let near_angles: Vec<f64> = (0..4)
-            .map(|i| start[i] + number_of(&near_pose["turn"][i]))
+            .map(|i| start_angles[i] + number_of(&near_pose["turn"][i]))
             .collect();
         let pose = format!(
             "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
             near_angles[0], near_angles[1], near_angles[2], near_angles[3]
         );
-        let solution = lizard(&paper("pose --json"), pose).json();
+        let solution = run_line(&with_paper("pose --json"), pose).expect_json();
         let margins: Vec<f64> = match solution["margins"].as_object() {
             Some(margins) => margins.values().map(number_of).collect(),
             None => vec![0.0],
         };
         let smallest = margins
             .iter()
-            .fold(1.0_f64, |smallest, m| smallest.min(m.abs()));
+            .fold(1.0_f64, |smallest, margin| smallest.min(margin.abs()));
         assert!(smallest < 1e-4, "{} {smallest}", near_pose["what"]);
     }
 }
 
 #[test]
 fn rates_agree_with_differences_of_positions() {
-    let rows = lizard(&paper("pose --show rates --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700"), "").json();
+    let options = "--omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700";
+    let rows = paper_json(&format!("pose --show rates --json {options}"));
     for row in rows.as_array().unwrap() {
         assert!(
             number_of(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number_of(&row["rate"]).abs())
@@ -172,7 +172,7 @@ fn rates_of_any_size_agree_with_differences() {
         "--alpha4 1e9",
         "--omega1 1e-3 --alpha5 1e-3",
     ] {
-        let rows = lizard(&paper(&format!("pose --show rates {options}")), "").out;
+        let rows = run_line(&with_paper(&format!("pose --show rates {options}")), "").stdout;
         let verdicts = rows
             .lines()
             .skip(1)
@@ -182,8 +182,8 @@ fn rates_of_any_size_agree_with_differences() {
 }
 
 #[test]
-fn a_point_leads_to_angles_and_back_to_the_point() {
-    // The last two points can only be reached by taking a leg through its change point.
+fn the_angles_for_a_point_lead_back_to_the_point() {
+    // The last two points can only be reached through the change point of a leg.
     for (point, is_safe) in [
         ("5 120", true),
         ("-6 118", true),
@@ -191,7 +191,7 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
         ("-22 110", false),
         ("20 105.5", false),
     ] {
-        let report = lizard(&paper(&format!("pose --json --head {point}")), "").json();
+        let report = paper_json(&format!("pose --json --head {point}"));
         let modes = report["head"]["working_modes"].as_array().unwrap();
         assert_eq!(modes.len(), 4);
         for mode in modes {
@@ -205,7 +205,8 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
 
 #[test]
 fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
-    let robot = lizard_robot::Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
+    let robot =
+        lizard_robot::Robot::parse(&read_file("robots/paper.toml")).expect("robots/paper.toml");
     let look = robot.gait("look").expect("look");
     for i in 0..1000 {
         let solution = robot
@@ -218,13 +219,12 @@ fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
 
 #[test]
 fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
-    let freedoms_at =
-        |pose: &str| lizard(&paper(&format!("pose --show freedoms --json {pose}")), "").json();
+    let freedoms_at = |pose: &str| paper_json(&format!("pose --show freedoms --json {pose}"));
     let home_mechanisms = freedoms_at("");
     for mechanism in home_mechanisms.as_array().unwrap() {
         assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
     }
-    // With these angles the crank tips coincide to about six digits.
+    // At these angles the crank tips coincide to about six digits.
     let head_mechanisms =
         freedoms_at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
     assert_eq!(
@@ -244,21 +244,21 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
         tail_mechanisms[0]["loose"][0],
         "the tail's end point is loose (type 2)"
     );
-    let outcome = lizard(
-        &paper(
+    let outcome = run_line(
+        &with_paper(
             "pose --show freedoms --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41",
         ),
         "",
     );
     assert!(
-        !outcome.out.contains("four servos hold the body"),
+        !outcome.stdout.contains("four servos hold the body"),
         "{}",
-        outcome.out
+        outcome.stdout
     );
     assert!(
-        outcome.out.contains("the head's end point is loose"),
+        outcome.stdout.contains("the head's end point is loose"),
         "{}",
-        outcome.out
+        outcome.stdout
     );
     // A flat leg is loose even with its crank locked.
     let flat_leg_mechanisms = freedoms_at("--theta1 138 --theta4 0 --theta8 318 --theta5 221");
@@ -266,11 +266,11 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
 }
 
 #[test]
-fn a_wide_base_has_a_circle() {
-    let design = lizard("design --json --r1 0.2 --r2 0.3", "").json();
+fn a_design_with_a_wide_base_has_an_inscribed_circle() {
+    let design = run_line("design --json --r1 0.2 --r2 0.3", "").expect_json();
     assert!((number_of(&design["r_mic"]) - 2.5).abs() < 1e-9);
     assert_eq!(number_of(&design["y_mic"]), 0.0);
-    let points = lizard("design --chart --json --step 0.05", "").json();
+    let points = run_line("design --chart --json --step 0.05", "").expect_json();
     for point in points.as_array().unwrap() {
         assert!(number_of(&point["r_mic"]) > 0.0, "{point}");
     }
@@ -278,7 +278,7 @@ fn a_wide_base_has_a_circle() {
 
 #[test]
 fn matrices_name_their_rows_and_columns_in_servo_order() {
-    let report = lizard("pose --show singularities --json", "").json();
+    let report = run_line("pose --show singularities --json", "").expect_json();
     assert_eq!(
         report["k"]["columns"],
         serde_json::json!(["theta1", "theta4", "theta8", "theta5"])
@@ -291,7 +291,7 @@ fn matrices_name_their_rows_and_columns_in_servo_order() {
             assert_eq!(row.as_array().unwrap().len(), columns);
         }
     }
-    // The head's rows depend on the front servos only, the tail's on the back ones.
+    // The rows of the head depend only on the front servos, those of the tail only on the back servos.
     for (row, is_front) in [(0, true), (1, true), (2, false), (3, false)] {
         for column in 0..4 {
             let entry = number_of(&report["k"]["values"][row][column]);

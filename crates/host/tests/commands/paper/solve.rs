@@ -1,24 +1,24 @@
-//! `lizard pose`, mostly on the paper's robot.
+//! Tests of `lizard pose`, mostly on the paper's robot.
 
 use lizard_kinematics::wrap;
 use serde_json::Value;
 
-use crate::program::{RobotFile, lizard, paper};
+use crate::program::{RobotFile, run_line, with_paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
 fn solve_lines(input: &str) -> Vec<Value> {
-    let outcome = lizard(&paper("pose --json"), input);
-    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let outcome = run_line(&with_paper("pose --json"), input);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     outcome
-        .out
+        .stdout
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect()
 }
 
 #[test]
-fn the_object_has_exactly_the_promised_keys() {
+fn a_solution_in_json_has_exactly_the_documented_keys() {
     let solution = &solve_lines(&format!("{HEADER}138,42,318,221\n"))[0];
     let keys_of = |value: &Value| {
         let mut keys: Vec<&str> = value
@@ -63,7 +63,7 @@ fn every_printed_solution_closes_all_loops() {
     }
     let solutions = solve_lines(&input);
     assert_eq!(solutions.len(), poses.len());
-    let cis = |length: f64, degrees: f64| {
+    let vector = |length: f64, degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         [length * cos, length * sin]
     };
@@ -73,27 +73,27 @@ fn every_printed_solution_closes_all_loops() {
             assert!(angle > -180.0 && angle <= 180.0);
             angle
         };
-        let assert_closed = |links: [[f64; 2]; 4], rest: [f64; 2]| {
+        let assert_closed = |links: [[f64; 2]; 4], ground: [f64; 2]| {
             let [a, b, c, d] = links;
-            let x = a[0] + b[0] - c[0] - d[0] - rest[0];
-            let y = a[1] + b[1] - c[1] - d[1] - rest[1];
+            let x = a[0] + b[0] - c[0] - d[0] - ground[0];
+            let y = a[1] + b[1] - c[1] - d[1] - ground[1];
             assert!(x.hypot(y) < 1e-9, "{x} {y}");
         };
         assert_closed(
             [
-                cis(30.0, t1),
-                cis(50.0, angle_of("theta2")),
-                cis(50.0, angle_of("theta3")),
-                cis(30.0, t4),
+                vector(30.0, t1),
+                vector(50.0, angle_of("theta2")),
+                vector(50.0, angle_of("theta3")),
+                vector(30.0, t4),
             ],
             [20.0, 0.0],
         );
         assert_closed(
             [
-                cis(30.0, t5),
-                cis(50.0, angle_of("theta6")),
-                cis(50.0, angle_of("theta7")),
-                cis(30.0, t8),
+                vector(30.0, t5),
+                vector(50.0, angle_of("theta6")),
+                vector(50.0, angle_of("theta7")),
+                vector(30.0, t8),
             ],
             [20.0, 0.0],
         );
@@ -102,14 +102,14 @@ fn every_printed_solution_closes_all_loops() {
             ("right", t8 + 90.0, t4 - 90.0),
         ] {
             let span = 90.0 + solution[side]["s"].as_f64().unwrap();
-            let slider = cis(span, solution[side]["phi"].as_f64().unwrap());
+            let slider = vector(span, solution[side]["phi"].as_f64().unwrap());
             assert_closed(
-                [cis(30.0, rear), slider, cis(30.0, front), [0.0, 0.0]],
+                [vector(30.0, rear), slider, vector(30.0, front), [0.0, 0.0]],
                 [0.0, 135.0],
             );
         }
-        let head = cis(30.0, t1);
-        let coupler = cis(50.0, angle_of("theta2"));
+        let head = vector(30.0, t1);
+        let coupler = vector(50.0, angle_of("theta2"));
         let x = solution["head"][0].as_f64().unwrap() - (-10.0 + head[0] + coupler[0]);
         let y = solution["head"][1].as_f64().unwrap() - (67.5 + head[1] + coupler[1]);
         assert!(x.hypot(y) < 1e-9);
@@ -132,7 +132,7 @@ fn every_printed_solution_closes_all_loops() {
 }
 
 #[test]
-fn a_singular_row_says_why_and_the_stream_goes_on() {
+fn a_singular_row_states_its_reason_and_the_next_rows_are_solved() {
     let solutions = solve_lines(&format!(
         "{HEADER}70.528779365509308,109.47122063449069,318.59,221.41\n60,60,318,221\n138.59,41.41,318.59,221.41\n"
     ));
@@ -161,12 +161,12 @@ fn columns_come_in_any_order_and_line_ends_and_quotes_do_not_matter() {
 }
 
 #[test]
-fn flags_and_stream_agree() {
-    let flag_solution = lizard(
-        &paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
+fn angles_by_options_and_by_input_give_the_same_solution() {
+    let flag_solution = run_line(
+        &with_paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
         "",
     )
-    .json();
+    .expect_json();
     assert_eq!(
         flag_solution,
         solve_lines(&format!("{HEADER}138,42,-42,-139\n"))[0]
@@ -188,16 +188,17 @@ fn a_long_stream_keeps_its_order() {
 }
 
 #[test]
-fn the_table_is_aligned_and_says_safe() {
-    let outcome = lizard(
-        &paper("pose"),
+fn the_table_is_aligned_and_marks_safe_poses() {
+    let outcome = run_line(
+        &with_paper("pose"),
         format!("{HEADER}138,42,318,221\n60,60,318,221\n"),
     );
-    let lines: Vec<&str> = outcome.out.lines().collect();
+    let lines: Vec<&str> = outcome.stdout.lines().collect();
     assert_eq!(lines.len(), 3);
-    let bars_of = |line: &str| -> Vec<usize> { line.match_indices('|').map(|(i, _)| i).collect() };
-    assert_eq!(bars_of(lines[0]), bars_of(lines[1]));
-    assert_eq!(bars_of(lines[0]), bars_of(lines[2]));
+    let bar_columns =
+        |line: &str| -> Vec<usize> { line.match_indices('|').map(|(i, _)| i).collect() };
+    assert_eq!(bar_columns(lines[0]), bar_columns(lines[1]));
+    assert_eq!(bar_columns(lines[0]), bar_columns(lines[2]));
     assert!(lines[1].ends_with("safe"));
 }
 
@@ -218,41 +219,49 @@ fn without_a_header_the_columns_are_the_servos_in_order() {
 fn a_time_is_passed_through() {
     let solutions = solve_lines("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
     assert_eq!(solutions[0]["seconds"], 0.02);
-    let table = lizard(
-        &paper("pose"),
+    let table = run_line(
+        &with_paper("pose"),
         "seconds,theta1,theta4,theta8,theta5\n0.02,138,42,318,221\n",
     );
-    let rows: Vec<&str> = table.out.lines().collect();
+    let rows: Vec<&str> = table.stdout.lines().collect();
     assert!(
         rows[0].trim_start().starts_with("seconds |"),
         "{}",
-        table.out
+        table.stdout
     );
-    assert!(rows[1].trim_start().starts_with("0.02 |"), "{}", table.out);
+    assert!(
+        rows[1].trim_start().starts_with("0.02 |"),
+        "{}",
+        table.stdout
+    );
     assert_eq!(rows[0].find("| safe"), rows[1].find("| safe"));
 }
 
 #[test]
 fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
-    // Holds for any robot.toml: every gait of a valid file keeps the file's limits.
-    let gaits = lizard("gaits --json", "");
-    assert_eq!(gaits.code, Some(0), "{}", gaits.err);
-    for gait in gaits.out.lines() {
+    // This holds for any robot.toml: every gait of a valid file keeps the file's limits.
+    let gaits = run_line("gaits --json", "");
+    assert_eq!(gaits.code, Some(0), "{}", gaits.stderr);
+    for gait in gaits.stdout.lines() {
         let gait: Value = serde_json::from_str(gait).expect("JSON");
         let name = gait["gait"].as_str().unwrap();
-        let trace = lizard(&format!("gaits --trace {name}"), "");
-        let solved_outcome = lizard("pose --json", trace.out.as_bytes());
+        let trace = run_line(&format!("gaits --trace {name}"), "");
+        let solved_outcome = run_line("pose --json", trace.stdout.as_bytes());
         assert_eq!(
             solved_outcome.code,
             Some(0),
             "{name}: {}",
-            solved_outcome.err
+            solved_outcome.stderr
         );
         assert_eq!(
-            solved_outcome.out.lines().count(),
-            trace.out.lines().count() - 1
+            solved_outcome.stdout.lines().count(),
+            trace.stdout.lines().count() - 1
         );
-        for (line, row) in solved_outcome.out.lines().zip(trace.out.lines().skip(1)) {
+        for (line, row) in solved_outcome
+            .stdout
+            .lines()
+            .zip(trace.stdout.lines().skip(1))
+        {
             let solution: Value = serde_json::from_str(line).expect("JSON");
             let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
             assert_eq!(solution["seconds"], fields[0], "{name}");
@@ -270,7 +279,7 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
 fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     // A3 can turn only 20 degrees from neutral in one direction: 400 us at 20 us per
     // degree.
-    let robot = RobotFile::with(
+    let robot = RobotFile::from_paper(
         "short-travel",
         &[(
             "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 1500.0\nus_per_degree = 10.0\nmin_us = 600.0\nmax_us = 2400.0",
@@ -280,7 +289,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     let pose_at = |theta8: f64| {
         let pose =
             format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
-        lizard(&robot.add_to(&pose), "").json()
+        run_line(&robot.add_option_to(&pose), "").expect_json()
     };
     assert_eq!(
         pose_at(318.590378 + 20.0)["safe"],
@@ -293,32 +302,37 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         beyond_travel["why"][0],
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg, its travel is 266.1 to 338.6 deg"
     );
-    let page = lizard(
-        &robot.add_to("pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
+    let page = run_line(
+        &robot.add_option_to("pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
         "",
     );
     assert!(
-        page.out.contains("safe     no, servo A3 would turn +20.2"),
+        page.stdout
+            .contains("safe     no, servo A3 would turn +20.2"),
         "{}",
-        page.out
+        page.stdout
     );
-    let table = lizard(&robot.add_to("pose"), "138.59,41.41,338.8,221.41\n");
-    assert!(table.out.contains("| servo A3 would turn"), "{}", table.out);
+    let table = run_line(&robot.add_option_to("pose"), "138.59,41.41,338.8,221.41\n");
+    assert!(
+        table.stdout.contains("| servo A3 would turn"),
+        "{}",
+        table.stdout
+    );
     // The inverse kinematics, too, reports the tail point of that pose as unreachable.
     let tail_point: Vec<f64> = beyond_travel["tail"]
         .as_array()
         .unwrap()
         .iter()
-        .map(|v| v.as_f64().unwrap())
+        .map(|coordinate| coordinate.as_f64().unwrap())
         .collect();
-    let inverse = lizard(
-        &robot.add_to(&format!(
+    let inverse = run_line(
+        &robot.add_option_to(&format!(
             "pose --json --tail {} {}",
             tail_point[0], tail_point[1]
         )),
         "",
     )
-    .json();
+    .expect_json();
     assert_eq!(inverse["safe"], false);
     let reasons = inverse["why"].as_array().unwrap();
     assert!(
@@ -331,7 +345,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
 }
 
 #[test]
-fn no_zero_has_a_minus() {
+fn zero_is_printed_without_a_minus() {
     for args in [
         "pose --theta1 138.59038 --theta4 41.40962 --theta8 318.59038 --theta5 221.40962",
         "pose --theta1 180 --theta4 0 --theta8 -0 --theta5 -180",
@@ -339,16 +353,16 @@ fn no_zero_has_a_minus() {
         "pose --show singularities",
         "pose --head -0.0001 120 --tail -0.0001 -120",
     ] {
-        let outcome = lizard(&paper(args), "");
+        let outcome = run_line(&with_paper(args), "");
         let zeros = outcome
-            .out
+            .stdout
             .split(|c: char| c.is_whitespace() || "(),|".contains(c))
             .filter(|word| word.starts_with("-0.") && word[3..].bytes().all(|digit| digit == b'0'));
         assert_eq!(
             zeros.collect::<Vec<_>>(),
             [""; 0],
             "{args}\n{}",
-            outcome.out
+            outcome.stdout
         );
     }
 }

@@ -6,7 +6,7 @@
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{BadReply, ConsoleError, SCALE_TURNS, SIGN_TURNS};
+use lizard_calibrate::{BadReply, ConsoleError, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 use lizard_robot::Status;
 use pollster::block_on;
 
@@ -111,8 +111,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
             (Key::Next, Step::Save) => self.save().map(|()| false),
             (Key::Next, _) => self.enter_step(self.step_index + 1).map(|()| false),
-            (Key::Act, Step::Sign(servo)) => self.move_servo(servo, &SIGN_TURNS).map(|()| false),
-            (Key::Act, Step::Scale(servo)) => self.move_servo(servo, &SCALE_TURNS).map(|()| false),
+            (Key::Act, Step::Sign(servo)) => {
+                self.move_servo(servo, &SIGN_TURNS_DEG).map(|()| false)
+            }
+            (Key::Act, Step::Scale(servo)) => {
+                self.move_servo(servo, &SCALE_TURNS_DEG).map(|()| false)
+            }
             (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Scale(servo)) => {
                 self.change_scale(servo, degrees).map(|()| false)
             }
@@ -211,7 +215,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         let scale = self.robot.calibration().servos[servo].scale;
         block_on(
             self.robot
-                .scale(servo, scale * (1.0 + degrees / commanded_degrees)),
+                .set_scale(servo, scale * (1.0 + degrees / commanded_degrees)),
         )
     }
 

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use crate::shared::ink::PLACES;
 
 use super::step::{STEPS, Step};
-use super::{Guide, SCALE_TURNS, SIGN_TURNS};
+use super::{Guide, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 
 /// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 ("fit the horns".to_owned(), text, next_keys)
             }
             Step::Sign(index) => {
-                let commanded_degrees = self.moved_degrees.unwrap_or(SIGN_TURNS[0]);
+                let commanded_degrees = self.moved_degrees.unwrap_or(SIGN_TURNS_DEG[0]);
                 let direction = if commanded_degrees < 0.0 {
                     "clockwise"
                 } else {
@@ -97,7 +97,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
             Step::Scale(index) => {
-                let commanded_degrees = self.moved_degrees.unwrap_or(SCALE_TURNS[0]);
+                let commanded_degrees = self.moved_degrees.unwrap_or(SCALE_TURNS_DEG[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\

@@ -1,5 +1,5 @@
-//! A small robot: the paper's robot with few and short gaits, so that the states of a walk
-//! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
+//! A small robot for the search: the paper's robot with few and short gaits, so that states soon repeat. One of its
+//! gaits leaves the safe poses; a robot.toml with such a gait would be refused.
 
 use lizard_core::numbers::calibration::NeededTravel;
 use lizard_core::numbers::gaits::{Channel, Gait, Input, SAMPLES_PER_WAVE, Step, Wave};
@@ -9,30 +9,29 @@ use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::units::Sweep;
 use lizard_robot::flash;
 
-/// The slew limit, 1/65536 turn in a frame: a third of the paper's, so that a servo that starts with
-/// a pulse for a wrong position jumps by more than the limit.
+/// The slew limit, 1/65536 turn per frame. It is a third of the paper's limit: if a servo wakes with a pulse for a
+/// wrong position, the change is then larger than the limit.
 const SLEW_PER_FRAME: u16 = 364;
 
-/// The sweep to either side of neutral that the gaits declare, 1/65536 turn; only `stray` exceeds it.
+/// The sweep to either side of neutral that the gaits declare, 1/65536 turn. Only `stray` exceeds this sweep.
 const DECLARED_REACH: i16 = 1_000;
 
 /// Arduino number of the button's pin, A1.
-pub const BUTTON: u8 = 15;
+pub const BUTTON_PIN: u8 = 15;
 /// Arduino number of the pin of the nose contact, A2.
-pub const NOSE: u8 = 16;
+pub const NOSE_PIN: u8 = 16;
 
-/// Returns the paper's robot with the gaits `stand`, `walk`, `trot` and `stray`, which leaves the safe
-/// poses, and two endless routines: `round` walks and stands, `patrol` waits for a button, walks up to a
-/// wall, and turns away.
+/// Returns the paper's robot with four gaits and two endless routines. The gait `stray` leaves the safe poses. The
+/// routine `round` walks and stands; `patrol` waits for the button, walks up to a wall and turns away.
 ///
 /// # Panics
 /// If robots/paper.toml is not valid.
 pub fn small_robot() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
-    let angle_rad = |n: usize| n as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
-    let wave_of = |height_at: &dyn Fn(usize) -> f64| -> Wave {
-        std::array::from_fn(|n| (height_at(n) * 1820.0).round() as i16)
+    let angle_rad = |sample: usize| sample as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
+    let wave_of = |height_at: &dyn Fn(f64) -> f64| -> Wave {
+        std::array::from_fn(|sample| (height_at(angle_rad(sample)) * 1820.0).round() as i16)
     };
     let mut content = Content {
         slew: Slew::new(SLEW_PER_FRAME),
@@ -43,12 +42,12 @@ pub fn small_robot() -> Robot<'static> {
         gaits: Vec::new(),
         names: Vec::new(),
         waves: vec![
-            wave_of(&|n| angle_rad(n).sin()),
-            wave_of(&|n| 4.0 * (1.0 - angle_rad(n).cos())),
+            wave_of(&f64::sin),
+            wave_of(&|angle_rad: f64| 4.0 * (1.0 - angle_rad.cos())),
         ],
         ..paper.content().clone()
     };
-    // A cycle of sixteen frames.
+    // A cycle takes sixteen frames.
     let increment = (1 << 24) / 16;
     add_gait(&mut content, "stand", increment, 0, [0; 4]);
     add_gait(
@@ -72,7 +71,10 @@ pub fn small_robot() -> Robot<'static> {
         "round",
         &[(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)],
     );
-    let (button, nose) = (Input::button(BUTTON).byte(), Input::nose(NOSE).byte());
+    let (button, nose) = (
+        Input::button(BUTTON_PIN).byte(),
+        Input::nose(NOSE_PIN).byte(),
+    );
     let patrol = [
         (Step::UNTIL, button, 0),
         (Step::WAIT, 0, Step::ENDLESS),
@@ -84,6 +86,7 @@ pub fn small_robot() -> Robot<'static> {
     Robot::open(flash(&content.section_bytes())).expect("whole")
 }
 
+/// Adds a gait whose four servos follow the same wave.
 fn add_gait(content: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4]) {
     content.gaits.push(Gait {
         name_start: content.names.len() as u16,

@@ -1,34 +1,29 @@
-//! The reading of a picture file as a grey picture.
+//! The decoding of PNG and JPEG, the formats in which cameras store pictures.
 
-use std::fs;
 use std::io::Cursor;
-use std::path::Path;
 
-use lizard_film::{Picture, luminance};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use crate::Failure;
+use crate::Picture;
+use crate::picture::luminance;
 
-/// Reads a PNG or JPEG file as a grey picture.
-///
-/// # Errors
-/// Fails if the file cannot be read or is not such a picture.
-pub(super) fn read_picture(path: &Path) -> Result<Picture, Failure> {
-    let name = path.display();
-    let bytes =
-        fs::read(path).map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
-    let picture = match bytes.starts_with(b"\x89PNG") {
-        true => decode_png(bytes),
-        false => decode_jpeg(bytes),
-    };
-    picture.map_err(|reason| {
-        Failure::Input(format!("{name} is no picture that can be read: {reason}"))
-    })
+impl Picture {
+    /// Makes a grey picture from the bytes of a PNG or JPEG file.
+    ///
+    /// # Errors
+    /// Returns the reason if the bytes are not such a file.
+    pub fn decode(bytes: &[u8]) -> Result<Self, String> {
+        if bytes.starts_with(b"\x89PNG") {
+            decode_png(bytes)
+        } else {
+            decode_jpeg(bytes)
+        }
+    }
 }
 
-fn decode_png(bytes: Vec<u8>) -> Result<Picture, String> {
+fn decode_png(bytes: &[u8]) -> Result<Picture, String> {
     let error_text = |error: png::DecodingError| error.to_string();
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
@@ -47,7 +42,7 @@ fn decode_png(bytes: Vec<u8>) -> Result<Picture, String> {
     Picture::new(width, height, grey.collect()).ok_or_else(|| "it has no pixels".to_owned())
 }
 
-fn decode_jpeg(bytes: Vec<u8>) -> Result<Picture, String> {
+fn decode_jpeg(bytes: &[u8]) -> Result<Picture, String> {
     let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::Luma);
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
     let grey = decoder.decode().map_err(|error| error.to_string())?;

@@ -1,4 +1,4 @@
-//! List of the gaits that are walked, each in its cases.
+//! List of the walks that both the contact model and MuJoCo simulate: every gait in its cases.
 
 use lizard_parts::{Assembly, Scene};
 use lizard_robot::{CheckedGait, Robot};
@@ -7,19 +7,19 @@ use crate::case::{Case, Legs};
 use crate::figures::Displacement;
 use crate::mujoco::scene_of;
 
-/// A gait to be walked in a case.
+/// A gait that is walked in a case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct Walk {
     /// The gait's name.
     pub gait: String,
     /// The case in which the gait is walked.
     pub case: Case,
-    /// True if the contact model has an answer, since at no time two feet pull against the other two.
+    /// True if the contact model has an answer: no two feet pull against the other two at any time.
     pub is_decided: bool,
 }
 
-impl Row {
-    /// Returns the scene for MuJoCo under a name, and the scene's legs.
+impl Walk {
+    /// Returns the legs, and the scene for MuJoCo under this name.
     pub fn scene(&self, name: &str, assembly: &Assembly) -> (Legs, Scene) {
         let scene = scene_of(name, assembly, &self.gait, self.case);
         (self.case.legs, scene)
@@ -29,30 +29,30 @@ impl Row {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn model(&self, robot: &Robot) -> Option<Displacement> {
-        let gait = robot.gait(&self.gait).expect("it is the robot's");
+    pub fn model_displacement(&self, robot: &Robot) -> Option<Displacement> {
+        let gait = robot.gait(&self.gait).expect("a gait of the robot");
         let simulate = || gait.simulate_cycle(&self.case.ground(robot)).travel;
         self.is_decided.then(|| simulate().into())
     }
 }
 
-/// Returns every gait of a robot that moves, in every case. A gait on which the contact model cannot decide
-/// has only the first case.
-pub fn rows(robot: &Robot) -> Vec<Row> {
+/// Returns the walks of a robot: every gait that moves, in every case. A gait for which the contact model has no answer
+/// is walked only in the first case.
+pub fn walks_of(robot: &Robot) -> Vec<Walk> {
     let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
-    gaits.flat_map(|gait| rows_of(robot, gait)).collect()
+    gaits.flat_map(|gait| walks_of_gait(robot, gait)).collect()
 }
 
-fn rows_of(robot: &Robot, gait: &CheckedGait) -> Vec<Row> {
+fn walks_of_gait(robot: &Robot, gait: &CheckedGait) -> Vec<Walk> {
     let [first_case, ..] = Case::ALL;
     let is_decided = gait.predict(&first_case.ground(robot)).is_decided();
     let cases = Case::ALL
         .into_iter()
         .filter(|case| is_decided || *case == first_case);
-    let row_of = |case| Row {
+    let walk_in = |case| Walk {
         gait: gait.name().to_owned(),
         case,
         is_decided,
     };
-    cases.map(row_of).collect()
+    cases.map(walk_in).collect()
 }
